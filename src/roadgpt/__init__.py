@@ -1,0 +1,50 @@
+"""RoadGPT turns words into tested roads.
+
+The values and the verbs of the rooms can be taken from here; each is imported when it is first used, so that
+``import roadgpt`` stays instant::
+
+    import roadgpt
+
+    brief = roadgpt.read("an uphill road with 3 turns")
+    design = roadgpt.draft(brief, roadgpt.World(), seed=7)
+    road = roadgpt.build(design)
+"""
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+# Every value and verb, and the room that owns it.
+_ROOMS = {
+    "Brief": "brief",
+    "read": "brief",
+    "World": "road",
+    "Design": "road",
+    "Road": "road",
+    "build": "road",
+    "read_design": "road",
+    "read_road": "road",
+    "Finding": "check",
+    "inspect": "check",
+    "draft": "design",
+    "Drive": "drive",
+    "simulate": "drive",
+    "Verdict": "verdict",
+    "judge": "verdict",
+    "Run": "run",
+    "perform": "run",
+    "prove": "run",
+}
+
+__all__ = ["__version__", *sorted(_ROOMS)]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _ROOMS:
+        raise AttributeError(f"roadgpt has no '{name}'; it offers {', '.join(sorted(_ROOMS))}")
+    return getattr(import_module(f"roadgpt.{_ROOMS[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__
