@@ -1,0 +1,180 @@
+"""What words mean: the one table from which the readers, the outline and the docs take their numbers.
+
+Every number is in the unit in which people say it (degrees, metres, percent, uphill positive) and is
+measured on the final geometry: the angle and the tightest radius of a turn, the length of a straight, the
+mean slope of a feature. Designers aim well inside these ranges; a measured curvature is averaged over 5 m.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from roadgpt.brief.model import Kind, Sharpness, Size, Slope
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """From lo to hi, both allowed; either may be infinite."""
+
+    lo: float = -inf
+    hi: float = inf
+
+    def __contains__(self, number: float) -> bool:
+        return self.lo <= number <= self.hi
+
+    def __str__(self) -> str:
+        if self.lo == self.hi:
+            return f"{self.lo:g}"
+        if self.lo == -inf:
+            return f"{self.hi:g} or less"
+        return f"{self.lo:g} or more" if self.hi == inf else f"{self.lo:g} to {self.hi:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What a word promises; None where it promises nothing."""
+
+    said: tuple[str, ...]
+    """English words with this meaning; the first is the one that we say ourselves."""
+    turns: Range | None = None
+    """How many turns one such thing has, where no number is said."""
+    alternating: bool = False
+    degrees: Range | None = None
+    """Heading change of each turn; of a straight, all turning along it."""
+    radius: Range | None = None
+    """Metres, at the tightest place of each turn."""
+    length: Range | None = None
+    """Metres."""
+    grade: Range | None = None
+    """Percent, uphill positive, of the feature as a whole."""
+
+
+ONE = Range(1, 1)
+NO_TURN = Range(0, 5)  # degrees: what still counts as straight
+LEAST_STRAIGHT = 10.0  # metres: a shorter one is not seen between two turns
+
+KINDS: Mapping[Kind, Meaning] = {
+    "straight": Meaning(("straight",), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
+    "crest": Meaning(("crest", "hump", "hilltop"), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
+    "dip": Meaning(("dip", "hollow"), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
+    "turn": Meaning(("turn", "bend", "curve"), ONE, degrees=Range(25, 120)),
+    "hairpin": Meaning(("hairpin",), ONE, degrees=Range(140, 210), radius=Range(0, 35)),
+    "switchback": Meaning(("switchback",), ONE, alternating=True, degrees=Range(100, 210)),
+    "u_turn": Meaning(("U-turn",), ONE, degrees=Range(150, 210)),
+    "s_bend": Meaning(("S-bend", "S-curve"), Range(2, 2), alternating=True, degrees=Range(25, 120)),
+    "chicane": Meaning(
+        ("chicane",), Range(2, 4), alternating=True, degrees=Range(25, 120), radius=Range(0, 30)
+    ),
+    # four, and tight: right for those who count a slalom with the chicanes and for those who do not
+    "slalom": Meaning(
+        ("slalom",), Range(4, 4), alternating=True, degrees=Range(40, 120), radius=Range(0, 30)
+    ),
+    "serpentine": Meaning(("serpentine",), Range(4), alternating=True, degrees=Range(40, 210)),
+    "zigzag": Meaning(("zig-zag",), Range(4), alternating=True, degrees=Range(40, 210)),
+    "winding": Meaning(("winding", "twisty", "curvy"), Range(3), degrees=Range(25, 120)),
+}
+
+SHARPNESS: Mapping[Sharpness, Meaning] = {
+    "gentle": Meaning(("gentle", "easy", "lazy", "slight"), degrees=Range(15, 120), radius=Range(40)),
+    "sweeping": Meaning(("sweeping", "wide"), degrees=Range(15, 120), radius=Range(60)),
+    "sharp": Meaning(("sharp", "tight", "hard"), degrees=Range(30, 120), radius=Range(0, 30)),
+}
+"""Where the map cannot hold radii of 60 m, a sweeping turn may be as tight as a gentle one."""
+
+SIZES: Mapping[Size, Meaning] = {
+    "long": Meaning(("long",), length=Range(60)),
+    "short": Meaning(("short",), length=Range(LEAST_STRAIGHT, 30)),
+}
+
+SLOPES: Mapping[Slope, Meaning] = {
+    "up": Meaning(("uphill", "climbing", "rising"), grade=Range(3, 12)),
+    "down": Meaning(("downhill", "descending", "dropping"), grade=Range(-12, -3)),
+    "flat": Meaning(("flat", "level"), grade=Range(-1, 1)),
+    "nearly_flat": Meaning(("nearly flat", "almost level"), grade=Range(-3.5, 3.5)),
+    "gently_up": Meaning(("gently uphill", "a gentle incline"), grade=Range(2, 5)),
+    "gently_down": Meaning(("gently downhill", "a gentle decline"), grade=Range(-5, -2)),
+    "steeply_up": Meaning(("steeply uphill", "a steep climb"), grade=Range(8, 15)),
+    "steeply_down": Meaning(("steeply downhill", "a steep descent"), grade=Range(-15, -8)),
+}
+
+MOUNTAIN = Range(4, 15)
+"""Percent: the steepest place of 'a mountain road', up or down."""
+HILLS = 3
+"""Changes between climbing and falling on 'a hilly road': up, down, up, down."""
+
+PERCENT_SLACK = 1.0  # percentage points, around a grade that was said as a number
+LENGTH_SLACK = 0.15  # ratio, around the length of a straight or the radius of a turn
+ROAD_LENGTH_SLACK = 0.10  # ratio, around the length of the whole road
+
+
+def degrees_slack(degrees: float) -> float:
+    """How far a turn may be off the angle that was said: a tenth, at most 7 degrees, 10 from 90 on."""
+    return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
+
+
+def table() -> str:
+    """The whole table as a Markdown page; ``docs/reference/words.md`` is this text."""
+    return "\n".join([*_top(), *_turns(), *_straights(), *_slopes(), *_numbers()]) + "\n"
+
+
+def _top() -> list[str]:
+    return [
+        "# What words mean",
+        "",
+        "Measured on the centreline of the finished road. This page is printed by `roadgpt.brief.words.table()`.",
+    ]
+
+
+def _turns() -> list[str]:
+    kinds = [meaning for meaning in KINDS.values() if meaning.turns]
+    rows = (
+        (
+            _said(m),
+            str(m.turns or "-") + (", alternating" if m.alternating else ""),
+            str(m.degrees or "-"),
+            str(m.radius or "-"),
+        )
+        for m in [*kinds, *SHARPNESS.values()]
+    )
+    return _rows("Turns", ("words", "turns", "degrees each", "radius (m)"), rows) + [
+        "",
+        "Where the map cannot hold 60 m, a sweeping turn has a radius of 40 m or more."
+        " Switchbacks alternate where there are several."
+        " 'Sharp' with a kind of its own angle (a tight hairpin) keeps the angle of the kind.",
+    ]
+
+
+def _straights() -> list[str]:
+    kinds = [meaning for meaning in KINDS.values() if not meaning.turns]
+    rows = ((_said(m), str(m.degrees or "-"), str(m.length or "-")) for m in [*kinds, *SIZES.values()])
+    return _rows("Straights", ("words", "degrees in all", "length (m)"), rows)
+
+
+def _slopes() -> list[str]:
+    rows = [(_said(m), str(m.grade)) for m in SLOPES.values()]
+    rows.append(("a mountain road (steepest place, up or down)", str(MOUNTAIN)))
+    rows.append(("a hilly road", f"{HILLS} or more changes between climbing and falling"))
+    return _rows("Slopes", ("words", "percent, uphill positive"), rows)
+
+
+def _numbers() -> list[str]:
+    rows = [
+        ("degrees", "10 %, at most 7 degrees; at most 10 from 90 degrees on"),
+        ("metres", f"{LENGTH_SLACK:.0%}; of the whole road {ROAD_LENGTH_SLACK:.0%}"),
+        ("percent", f"{PERCENT_SLACK:g} percentage point"),
+        ("a number of turns", "none"),
+    ]
+    return _rows("Numbers", ("a number of", "may be off by"), rows)
+
+
+def _said(meaning: Meaning) -> str:
+    return ", ".join(meaning.said)
+
+
+def _rows(title: str, heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[str]:
+    lines = ["", f"## {title}", "", f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
+    return lines + [f"| {' | '.join(row)} |" for row in rows]
