@@ -1,0 +1,73 @@
+# make demo    words to driven roads and pictures, from nothing but Python, pip and make
+# make test    format, types and every test; ends with the seconds it took
+# make bench   the figures of benchmarks/        make docs    the site in site/
+# make format  mend the format                   make clean   remove what make made
+#
+# Another Python: make test PYTHON=python3.12
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+START := $(shell date +%s)
+SECONDS_SO_FAR = $$(($$(date +%s) - $(START)))
+
+FIND_VERSION := import sys; print("%d.%d" % sys.version_info[:2])
+WANTED := $(shell $(PYTHON) -c '$(FIND_VERSION)' 2>/dev/null)
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+INSTALL := $(PIP) install --quiet --constraint constraints.txt
+
+.PHONY: help demo test bench docs format clean
+.DELETE_ON_ERROR:
+
+help:
+	@sed -n '/^# /s/^# //p;/^$$/q' Makefile
+
+# The environment: one for everything; a wish for another Python makes it anew.
+# Where Python comes without ensurepip, the pip at hand fills the environment.
+$(VENV)/.python-$(WANTED):
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "make: needs Python 3.11 or newer, '$(PYTHON)' is '$(WANTED)'; say make PYTHON=python3.12"; exit 1; }
+	@if [ "$$($(BIN)/python -c '$(FIND_VERSION)' 2>/dev/null)" != "$(WANTED)" ]; then \
+	  echo "making $(VENV) with Python $(WANTED)"; \
+	  $(PYTHON) -m venv --clear $(VENV) >/dev/null 2>&1 \
+	  || { $(PYTHON) -m venv --clear --without-pip $(VENV) && $(PYTHON) -m pip --python $(BIN)/python install -q pip; }; \
+	fi
+	@touch $@
+
+$(VENV)/.installed: $(VENV)/.python-$(WANTED) pyproject.toml constraints.txt
+	@echo "installing RoadGPT into $(VENV)"
+	@$(INSTALL) hatchling editables
+	@$(INSTALL) --no-build-isolation --editable .
+	@touch $@
+
+$(VENV)/.installed-test $(VENV)/.installed-docs: $(VENV)/.installed-%: $(VENV)/.installed
+	@echo "adding what '$*' needs"
+	@$(INSTALL) --no-build-isolation --editable '.[$*]'
+	@touch $@
+
+demo: $(VENV)/.installed
+	$(BIN)/roadgpt run "an uphill road with 3 turns" -n 3
+	@echo "make demo: $(SECONDS_SO_FAR) s"
+
+test: $(VENV)/.installed-test
+	$(BIN)/python -m ruff check .
+	$(BIN)/python -m ruff format --check .
+	$(BIN)/python -m mypy
+	$(BIN)/python -m pytest -n 2
+	@echo "make test: $(SECONDS_SO_FAR) s"
+
+bench: $(VENV)/.installed-test
+	@for file in benchmarks/bench_*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+	@echo "make bench: $(SECONDS_SO_FAR) s"
+
+docs: $(VENV)/.installed-docs
+	$(BIN)/python -m mkdocs build --strict --quiet
+	@echo "make docs: site/index.html, $(SECONDS_SO_FAR) s"
+
+format: $(VENV)/.installed-test
+	$(BIN)/python -m ruff check --fix .
+	$(BIN)/python -m ruff format .
+
+clean:
+	rm -rf $(VENV) build dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find src tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
