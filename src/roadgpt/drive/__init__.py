@@ -1,0 +1,91 @@
+"""The room that drives: a car, a road and a driver give a Drive.
+
+Two shelves. ``simulators/`` hold the car and its physics; ``drivers/`` hold those who sit in it:
+
+    class Simulator:
+        def simulate(self, road, world, driver, seed, keep_driving=False) -> Drive
+
+    class Driver:
+        def start(self, road, world, seed) -> None     # optional: called once, before time 0
+        def steer(self, view: View) -> Command         # called every 20 ms
+"""
+
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+from roadgpt import plugins
+from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
+from roadgpt.drive.view import Command, View
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+__all__ = [
+    "COLUMNS",
+    "Box",
+    "Columns",
+    "Command",
+    "Drive",
+    "Driver",
+    "Ended",
+    "Simulator",
+    "View",
+    "simulate",
+]
+
+
+@runtime_checkable
+class Driver(Protocol):
+    """Who sits in the car. A driver may also have ``start(road, world, seed)``, called once before time 0,
+    and an attribute ``name`` (else its class's name is recorded)."""
+
+    def steer(self, view: View) -> Command:
+        """What to do for the next 20 ms."""
+        ...
+
+
+@runtime_checkable
+class Simulator(Protocol):
+    """A car and its physics."""
+
+    def simulate(
+        self, road: "Road", world: "World", driver: Driver, seed: int, keep_driving: bool = False
+    ) -> Drive:
+        """Drive from the start of the road until the drive ends.
+
+        It ends at the goal, when the car fell, is stuck or takes too long; and, unless ``keep_driving``,
+        when more than ``world.oob_tolerance`` of the car's box is outside the right lane.
+
+        Raises:
+            DriverError: the driver raised, answered with what is no command, or hung.
+        """
+        ...
+
+
+def simulate(
+    road: "Road",
+    world: "World",
+    driver: Driver | type[Driver] | str,
+    seed: int = 0,
+    simulator: str = "mujoco",
+    keep_driving: bool = False,
+) -> Drive:
+    """One driver on one road; the same arguments give the same Drive, bit for bit, on one machine.
+
+    Args:
+        driver: a driver, its class, or the name of one on the shelf ``drivers``.
+        seed: handed to the driver and recorded; the car's physics draws no random number.
+        simulator: the name of one on the shelf ``simulators``.
+        keep_driving: go on after the car has left the lane.
+
+    Raises:
+        PartError: no simulator or driver of that name.
+        DriverError: the driver raised, answered with what is no command, or hung.
+    """
+    made: Any = plugins.find("drivers", driver) if isinstance(driver, str) else driver
+    if isinstance(made, type):
+        made = made()
+    engine: Any = plugins.find("simulators", simulator)
+    if isinstance(engine, type):
+        engine = engine()
+    drive: Drive = engine.simulate(road, world, made, seed, keep_driving)
+    return drive

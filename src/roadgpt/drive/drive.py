@@ -1,0 +1,186 @@
+"""The Drive: what one driver did on one road, as columns of numbers."""
+
+import io
+import json
+import os
+import zipfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, NamedTuple, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.errors import UsageError
+
+FloatArray = NDArray[np.float64]
+Ended = Literal["goal", "out_of_lane", "fell", "stuck", "timeout"]
+
+COLUMNS = {
+    "time": "s, since the start",
+    "x": "m, centre of gravity",
+    "y": "m, centre of gravity",
+    "z": "m, centre of gravity",
+    "heading": "rad, 0 along +x, left positive",
+    "pitch": "rad, nose up positive, against the horizon",
+    "roll": "rad, left side up positive (the car leans to its right), against the horizon",
+    "vx": "m/s, forward along the car",
+    "vy": "m/s, to the car's left",
+    "yaw_rate": "rad/s, left positive",
+    "speed": "m/s",
+    "ax": "m/s^2, forward along the car, gravity not counted",
+    "ay": "m/s^2, to the car's left, gravity not counted",
+    "steer": "rad, angle of the front wheels, left positive",
+    "throttle": "0..1, as commanded",
+    "brake": "0..1, as commanded",
+    "s": "m, along the centre line",
+    "t": "m, left of the centre line",
+    "outside": "0..1, share of the car's box outside the right lane",
+}
+"""Names of the columns, in their order, with what they hold."""
+
+# The format of the file; raised when a reader of the old one would misread the new one.
+FORMAT = 1
+
+
+class Box(NamedTuple):
+    """The car's outline in plan."""
+
+    length: float
+    """Metres."""
+    width: float
+    """Metres."""
+    ahead: float = 0.0
+    """Metres, from the centre of gravity forward to the middle of the box."""
+
+
+class Columns(Mapping[str, FloatArray]):
+    """Read-only arrays of one length by name."""
+
+    __slots__ = ("_arrays",)
+
+    def __init__(self, arrays: Mapping[str, FloatArray]) -> None:
+        kept = {}
+        for name, values in arrays.items():
+            column = np.array(values, dtype=np.float64)
+            column.setflags(write=False)
+            kept[name] = column
+        self._arrays = kept
+
+    def __getitem__(self, name: str) -> FloatArray:
+        return self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Columns, (self._arrays,))
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """One driver on one road: poses every 20 ms, seed, how it ended.
+
+    ``drive["x"]`` is a column, shape (n,); COLUMNS says which there are and in which unit.
+    """
+
+    driver: str
+    simulator: str
+    seed: int
+    columns: Columns
+    ended: Ended
+    car: Box
+
+    def __getitem__(self, name: str) -> FloatArray:
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        return len(self.columns["time"])
+
+    @property
+    def duration(self) -> float:
+        """Seconds, simulated."""
+        return float(self.columns["time"][-1])
+
+    @property
+    def max_outside(self) -> float:
+        """Largest share of the car's box outside the right lane, 0..1."""
+        return float(self.columns["outside"].max())
+
+    def corners(self, step: int) -> FloatArray:
+        """The four corners of the car's box in plan at one step, shape (4, 2), counter-clockwise.
+
+        For pictures; level ground is assumed (the column ``outside`` counts pitch and roll as well).
+        """
+        front = self.car.ahead + self.car.length / 2
+        rear = front - self.car.length
+        half = self.car.width / 2
+        outline = np.array([[rear, -half], [front, -half], [front, half], [rear, half]])
+        c, s = np.cos(self["heading"][step]), np.sin(self["heading"][step])
+        place = np.array([self["x"][step], self["y"][step]])
+        turned: FloatArray = outline @ np.array([[c, s], [-s, c]]) + place
+        return turned
+
+    def to_bytes(self) -> bytes:
+        """A compressed .npz; the same Drive gives the same bytes."""
+        header = {
+            "format": FORMAT,
+            "driver": self.driver,
+            "simulator": self.simulator,
+            "seed": self.seed,
+            "ended": self.ended,
+            "car": self.car._asdict(),
+        }
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w") as archive:
+            _write(archive, "header", np.array(json.dumps(header, sort_keys=True)))
+            for name, column in self.columns.items():
+                _write(archive, name, column)
+        return buffer.getvalue()
+
+    def save(self, path: Path | str) -> None:
+        """Write the .npz whole or not at all."""
+        target = Path(path)
+        draft = target.with_name(f"{target.name}.{os.getpid()}.part")
+        draft.write_bytes(self.to_bytes())
+        draft.replace(target)
+
+    @classmethod
+    def load(cls, path: Path | str) -> "Drive":
+        """Read what `save` wrote.
+
+        Raises:
+            UsageError: there is no such file, or it holds no Drive.
+        """
+        try:
+            with np.load(path, allow_pickle=False) as archive:
+                header = json.loads(str(archive["header"]))
+                columns = Columns({name: archive[name] for name in archive.files if name != "header"})
+        except FileNotFoundError as error:
+            raise UsageError(f"there is no drive at {path}: check the path") from error
+        except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError) as error:
+            raise UsageError(
+                f"{path} is not a drive saved by roadgpt ({error}): drive the road again"
+            ) from error
+        if header["format"] != FORMAT or header["ended"] not in get_args(Ended):
+            raise UsageError(f"{path} was saved by another version of roadgpt: drive the road again")
+        return cls(
+            driver=header["driver"],
+            simulator=header["simulator"],
+            seed=header["seed"],
+            columns=columns,
+            ended=header["ended"],
+            car=Box(**header["car"]),
+        )
+
+
+def _write(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
+    # A fixed date, so that the bytes do not depend on the clock.
+    entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+    entry.compress_type = zipfile.ZIP_DEFLATED
+    with archive.open(entry, "w") as file:
+        np.lib.format.write_array(file, np.asanyarray(values), version=(1, 0), allow_pickle=False)

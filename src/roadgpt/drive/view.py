@@ -1,0 +1,53 @@
+"""What a driver sees, and what it answers, at every control step."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+
+class View(NamedTuple):
+    """The car and its road now; made anew for every control step (20 ms), so a driver may keep it.
+
+    The place is that of the car's centre of gravity.
+    """
+
+    time: float
+    """Seconds since the start."""
+    x: float
+    """Metres."""
+    y: float
+    """Metres."""
+    z: float
+    """Metres, height of the centre of gravity (about half a metre above the road)."""
+    heading: float
+    """Radians, 0 along +x, positive to the left, in (-pi, pi]."""
+    speed: float
+    """Metres per second, never negative."""
+    yaw_rate: float
+    """Radians per second, positive to the left."""
+    s: float
+    """Metres along the centre line."""
+    t: float
+    """Metres to the left of the centre line; the right lane's middle is ``-world.lane_width / 2``."""
+    road: "Road"
+    world: "World"
+    steer: float
+    """Radians, the angle at which the front wheels stand now (left positive)."""
+    dt: float
+    """Seconds to the next control step."""
+    vx: float
+    """Metres per second, forward along the car; negative when it rolls back."""
+    vy: float
+    """Metres per second, to the car's left."""
+
+
+class Command(NamedTuple):
+    """A driver's answer; held until the next control step."""
+
+    steer: float
+    """Radians at the front wheels, left positive; the car turns them at a limited rate."""
+    throttle: float = 0.0
+    """0 to 1."""
+    brake: float = 0.0
+    """0 to 1."""
