@@ -1,0 +1,31 @@
+"""What can go wrong, said as advice: every message tells what is wrong and what to do."""
+
+
+class RoadGPTError(Exception):
+    """Base of all errors that a user can cause or cure; its text is one clear sentence."""
+
+    exit_status = 1
+
+
+class UsageError(RoadGPTError):
+    """Something that the user typed, or a file that they gave, cannot be used."""
+
+    exit_status = 2
+
+
+class BriefError(UsageError):
+    """A description that is nonsense, contradicts itself or asks for the impossible."""
+
+
+class DesignError(RoadGPTError):
+    """No road could be designed that keeps every promise of the Brief on this map."""
+
+    exit_status = 3
+
+
+class DriverError(RoadGPTError):
+    """A driver raised, returned something that is not a command, or hung."""
+
+
+class PartError(UsageError):
+    """A part was asked for by a name that no installed package registers."""

@@ -1,0 +1,24 @@
+"""Curves and frames of reference: makes planar curves and height profiles, and knows no roads.
+
+A plan curve answers ``at(s)``, ``heading(s)`` and ``curvature(s)`` by exact arc length; a profile answers
+``height(s)``, ``grade(s)`` and ``vertical_curvature(s)`` at the same stations.
+"""
+
+from roadgpt.geometry.curve import PlanCurve, Profile, wrap_angle
+from roadgpt.geometry.pieces import Piece, PieceCurve
+from roadgpt.geometry.profile import GradeProfile
+from roadgpt.geometry.projection import project
+from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate
+
+__all__ = [
+    "GradeProfile",
+    "Piece",
+    "PieceCurve",
+    "PlanCurve",
+    "Profile",
+    "SplineCurve",
+    "SplineProfile",
+    "interpolate",
+    "project",
+    "wrap_angle",
+]

@@ -1,0 +1,64 @@
+"""Height profile of steady grades joined by parabolas: the grade is piecewise linear."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roadgpt.geometry.curve import Array
+
+
+@dataclass(frozen=True, eq=False)
+class GradeProfile:
+    """Starts at height ``z0``; the grade runs linearly between its values at the stations.
+
+    Args:
+        z0: height at the first station, metres.
+        stations: rising, metres; at least two.
+        grades: slope at each station, as ratios.
+
+    Raises:
+        ValueError: the stations do not rise, or are not as many as the grades.
+    """
+
+    z0: float
+    stations: tuple[float, ...]
+    grades: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.stations) < 2 or len(self.stations) != len(self.grades):
+            raise ValueError("a profile needs two or more stations and as many grades")
+        if any(b <= a for a, b in zip(self.stations, self.stations[1:], strict=False)):
+            raise ValueError("the stations of a profile must rise")
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array, Array]:
+        """Per stretch: station, height and grade at its start, and change of grade per metre."""
+        s, g = np.array(self.stations), np.array(self.grades)
+        rise = np.diff(s) * (g[1:] + g[:-1]) / 2
+        z = self.z0 + np.r_[0.0, np.cumsum(rise)]
+        return s[:-1], z[:-1], g[:-1], np.diff(g) / np.diff(s)
+
+    def _place(self, s: ArrayLike) -> tuple[Array, np.ndarray]:
+        s = np.asarray(s, float)
+        start = self._table[0]
+        index = np.clip(np.searchsorted(start, s, side="right") - 1, 0, len(start) - 1)
+        return s - start[index], index
+
+    def height(self, s: ArrayLike) -> Array:
+        """Heights in metres."""
+        u, i = self._place(s)
+        _, z, g, dg = self._table
+        return np.asarray(z[i] + u * (g[i] + u * dg[i] / 2))
+
+    def grade(self, s: ArrayLike) -> Array:
+        """Slopes, as ratios."""
+        u, i = self._place(s)
+        _, _, g, dg = self._table
+        return np.asarray(g[i] + u * dg[i])
+
+    def vertical_curvature(self, s: ArrayLike) -> Array:
+        """Change of slope in 1/m, negative on a crest."""
+        _, i = self._place(s)
+        return np.asarray(self._table[3][i])

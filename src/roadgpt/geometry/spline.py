@@ -1,0 +1,156 @@
+"""The cubic spline through points that RoadGPT and the SBFT tool competition build roads from.
+
+``interpolate`` gives their points exactly, quirks included; ``SplineCurve`` is the same curve by arc length.
+Source: the competition's ``road_points`` interpolation (scipy.interpolate.splprep without smoothing).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import splev, splprep
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
+
+MIN_NODES = 20  # of the interpolation, however short the road
+DECIMALS = 3  # that the competition rounds interpolated points to
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_SPANS = 4  # quadrature spans per spline interval: arc length good to a micrometre
+
+Tck = tuple[Array, list[Array], int]
+
+
+def _spline(points: Array) -> tuple[Tck, Array]:
+    if len(points) < 2:
+        raise UsageError("a road needs two points or more; give at least two [x, y] pairs")
+    degree = {2: 1, 3: 2}.get(len(points), 3)
+    try:
+        tck, u = splprep(points.T, s=0, k=degree)
+    except ValueError as error:
+        raise UsageError("two neighbouring points of the road are the same; remove the double one") from error
+    knots, coefficients, _ = cast(tuple[Array, list[Array], int], tck)
+    return (knots, coefficients, degree), np.asarray(u)
+
+
+def interpolate(points: ArrayLike) -> Array:
+    """The competition's interpolated points, about one per metre, rounded to millimetres.
+
+    Args:
+        points: control points ``(n, 2)`` or ``(n, 3)`` in metres, n >= 2.
+
+    Returns:
+        ``(m, 2)`` or ``(m, 3)``. For some lengths the last point lies beyond the last control point, as theirs
+        does: ``arange`` runs over by rounding.
+
+    Raises:
+        UsageError: fewer than two points, or two neighbours are the same.
+    """
+    points = np.asarray(points, float)
+    tck, _ = _spline(points)
+    run = float(np.sum(np.hypot(*np.diff(points[:, :2], axis=0).T)))
+    count = max(MIN_NODES, int(run))
+    u = np.arange(0, 1 + 1 / count, 1 / count)
+    return np.asarray(np.round(np.stack(splev(u, tck), axis=-1), DECIMALS), float)
+
+
+@dataclass(frozen=True, eq=False)
+class SplineCurve:
+    """A spline in the plane, or in space and seen from above, asked by arc length in plan."""
+
+    tck: Tck
+    knots: Array
+    """Parameter values of the control points."""
+
+    @classmethod
+    def through(cls, points: ArrayLike) -> "SplineCurve":
+        """The curve through control points ``(n, 2)`` or ``(n, 3)`` in metres.
+
+        Raises:
+            UsageError: fewer than two points, two neighbours are the same, or the spline runs nowhere.
+        """
+        tck, knots = _spline(np.asarray(points, float))
+        return cls(tck, knots)
+
+    @cached_property
+    def _arc(self) -> tuple[Array, Array]:
+        """Parameters and the arc length reached at each, by Gauss-Legendre over every span."""
+        u = np.unique(np.linspace(self.knots[:-1], self.knots[1:], _SPANS + 1).ravel())
+        half = np.diff(u)[:, None] / 2
+        inner = u[:-1, None] + half * (_NODES + 1)
+        speed = np.hypot(*self._derivative(inner.ravel(), 1)[:2]).reshape(inner.shape)
+        return u, np.r_[0.0, np.cumsum(half[:, 0] * (speed @ _WEIGHTS))]
+
+    def _derivative(self, u: Array, order: int) -> Array:
+        return np.array(splev(u, self.tck, der=order))
+
+    @property
+    def length(self) -> float:
+        """Arc length in plan, metres."""
+        return float(self._arc[1][-1])
+
+    def parameter(self, s: ArrayLike) -> Array:
+        """Spline parameters at stations ``s``, by one Newton step from a table that is already close."""
+        s = np.asarray(s, float)
+        table_u, table_s = self._arc
+        u = np.interp(s, table_s, table_u)
+        for _ in range(2):
+            u = np.asarray(np.clip(u + (s - self._reached(u)) / self._speed(u), 0.0, 1.0))
+        return np.asarray(u, float)
+
+    def _speed(self, u: Array) -> Array:
+        flat = np.hypot(*self._derivative(np.ravel(u), 1)[:2])
+        return np.asarray(np.maximum(flat, 1e-9)).reshape(np.shape(u))
+
+    def _reached(self, u: Array) -> Array:
+        """Arc length at parameters ``u``: from the table to the last span, and by quadrature inside it."""
+        table_u, table_s = self._arc
+        i = np.clip(np.searchsorted(table_u, u, side="right") - 1, 0, len(table_u) - 2)
+        half = np.asarray((u - table_u[i]) / 2)[..., None]
+        inner = table_u[i][..., None] + half * (_NODES + 1)
+        return np.asarray(table_s[i] + half[..., 0] * (self._speed(inner) @ _WEIGHTS))
+
+    def at(self, s: ArrayLike) -> Array:
+        """Points ``(..., 2)`` in metres."""
+        return np.asarray(np.stack(splev(self.parameter(s), self.tck)[:2], axis=-1), float)
+
+    def heading(self, s: ArrayLike) -> Array:
+        """Directions in radians, continuous along the stations given."""
+        dx, dy = self._derivative(self.parameter(s), 1)[:2]
+        angle = np.arctan2(dy, dx)
+        return np.asarray(np.unwrap(angle) if angle.ndim else angle)
+
+    def curvature(self, s: ArrayLike) -> Array:
+        """Curvatures in 1/m."""
+        u = self.parameter(s)
+        dx, dy = self._derivative(u, 1)[:2]
+        ddx, ddy = self._derivative(u, 2)[:2] if self.tck[2] > 1 else (np.zeros_like(dx), np.zeros_like(dy))
+        return np.asarray((dx * ddy - dy * ddx) / np.maximum(np.hypot(dx, dy), 1e-9) ** 3)
+
+
+@dataclass(frozen=True, eq=False)
+class SplineProfile:
+    """Heights of a spline in space, over its arc length in plan."""
+
+    curve: SplineCurve
+
+    def height(self, s: ArrayLike) -> Array:
+        """Heights in metres."""
+        return np.asarray(splev(self.curve.parameter(s), self.curve.tck)[2])
+
+    def grade(self, s: ArrayLike) -> Array:
+        """Slopes, as ratios."""
+        dx, dy, dz = self.curve._derivative(self.curve.parameter(s), 1)
+        return np.asarray(dz / np.maximum(np.hypot(dx, dy), 1e-9))
+
+    def vertical_curvature(self, s: ArrayLike) -> Array:
+        """Change of slope in 1/m, negative on a crest."""
+        u = self.curve.parameter(s)
+        dx, dy, dz = self.curve._derivative(u, 1)
+        if self.curve.tck[2] == 1:
+            return np.zeros_like(dx)
+        ddx, ddy, ddz = self.curve._derivative(u, 2)
+        run = np.maximum(np.hypot(dx, dy), 1e-9)
+        return np.asarray((ddz - dz * (dx * ddx + dy * ddy) / run**2) / run**2)

@@ -1,0 +1,23 @@
+"""Roads: makes a World, a Design and the Road that grows from it. Verb: ``build``.
+
+A Design is the blueprint that a designer writes and a person reads; a Road is 3-D geometry, asked with
+``road.at(s, t)``. Stations ``s`` run along the centre line, offsets ``t`` to its left, heights up.
+"""
+
+from roadgpt.road.builder import Geometry, build
+from roadgpt.road.design import Design, Segment, read_design
+from roadgpt.road.road import Road, Samples
+from roadgpt.road.source import read_road
+from roadgpt.road.world import World
+
+__all__ = [
+    "Design",
+    "Geometry",
+    "Road",
+    "Samples",
+    "Segment",
+    "World",
+    "build",
+    "read_design",
+    "read_road",
+]

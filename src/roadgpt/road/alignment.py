@@ -1,0 +1,120 @@
+"""The plan of a Design: how each segment becomes lines, arcs and clothoids.
+
+A turning segment bends from the curvature at its entry over its own to that at its exit:
+
+    curvature   own   ____arc____
+                     /           \\
+           entry ___/             \\___ exit        entry and exit are 0 next to a straight or a turn of the
+                clothoid      clothoid             other hand; between turns of one hand, the gentler of the two
+
+so segments of one hand in a row are one longer turn, as RoadGPT's prompt asks of turns beyond 70 degrees.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from roadgpt.geometry import Piece
+from roadgpt.road.design import Segment
+
+TRANSITION_SHARE = 0.25  # of the distance, for each clothoid that the design leaves open
+LONGEST_TRANSITION = 12.0  # m, for a clothoid that the design leaves open
+MOST_TRANSITION = 0.45  # of the distance, for each clothoid, whatever the design says
+ROUNDS = 60  # of settling joints; each brings neighbours closer
+SETTLED = 1e-12  # 1/m
+
+
+class _Bend(NamedTuple):
+    """What a segment asks of its turn; angle and curvatures without their sign."""
+
+    distance: float
+    turn: float
+    ramp: float
+    radius: float | None
+    hand: float
+
+
+class _Shape(NamedTuple):
+    """How the turn is laid out: own curvature, and lengths of clothoid, arc, clothoid and spare straight."""
+
+    own: float
+    first: float
+    arc: float
+    last: float
+    spare: float
+
+
+def pieces_of(segments: Sequence[Segment]) -> list[Piece]:
+    """The pieces of all segments, in order; every segment keeps its distance and its turn exactly.
+
+    A radius is kept where it fits into the distance and the turn has a straight, or the other hand, beside it.
+    """
+    bends = [_bend(segment) for segment in segments]
+    joints = _settled_joints(bends)
+    out: list[Piece] = []
+    for segment, bend, entry, exit_ in zip(segments, bends, joints, joints[1:], strict=False):
+        out += _pieces(bend, entry, exit_) if bend else [Piece(segment.distance)]
+    return out
+
+
+def _bend(segment: Segment) -> _Bend | None:
+    turn = math.radians(segment.turn_degrees)
+    if abs(turn) < 1e-9:
+        return None
+    ramp = segment.transition or min(TRANSITION_SHARE * segment.distance, LONGEST_TRANSITION)
+    ramp = min(ramp, MOST_TRANSITION * segment.distance)
+    return _Bend(segment.distance, abs(turn), ramp, segment.radius, math.copysign(1.0, turn))
+
+
+def _settled_joints(bends: Sequence[_Bend | None]) -> list[float]:
+    """Curvatures at the start, between all segments, and at the end: a fixed point, reached from below."""
+    joints = [0.0] * (len(bends) + 1)
+    meets = [i for i in range(1, len(bends)) if _same_hand(bends[i - 1], bends[i])]
+    for _ in range(ROUNDS if meets else 0):
+        own = [_solve(b, joints[i], joints[i + 1]).own if b else 0.0 for i, b in enumerate(bends)]
+        moved = max(abs(min(own[i - 1], own[i]) - joints[i]) for i in meets)
+        for i in meets:
+            joints[i] = min(own[i - 1], own[i])
+        if moved < SETTLED:
+            break
+    return joints
+
+
+def _same_hand(one: _Bend | None, other: _Bend | None) -> bool:
+    return one is not None and other is not None and one.hand == other.hand
+
+
+def _solve(bend: _Bend, entry: float, exit_: float) -> _Shape:
+    """The layout whose lengths add up to the distance and whose curvature adds up to the turn."""
+    if bend.radius and 0 in (entry, exit_):
+        kept = _with_radius(bend, 1 / bend.radius, entry, exit_)
+        if kept:
+            return kept
+    ramp = bend.ramp
+    own = (bend.turn - (entry + exit_) * ramp / 2) / (bend.distance - ramp)
+    return _Shape(own, ramp, bend.distance - 2 * ramp, ramp, 0.0)
+
+
+def _with_radius(bend: _Bend, own: float, entry: float, exit_: float) -> _Shape | None:
+    """The layout with this curvature, the spare length straight; None where the distance is too short."""
+    ramps = bend.ramp * (own + (entry + exit_) / 2)
+    shrink = min(1.0, bend.turn / ramps)
+    ramp = bend.ramp * shrink
+    arc = (bend.turn - ramps * shrink) / own
+    spare = bend.distance - 2 * ramp - arc
+    fits = spare > -1e-6 and own >= max(entry, exit_)
+    return _Shape(own, ramp, arc, ramp, max(spare, 0.0)) if fits else None
+
+
+def _pieces(bend: _Bend, entry: float, exit_: float) -> list[Piece]:
+    """Clothoid, arc, clothoid; the spare length lies at the ends where the curvature is 0."""
+    shape = _solve(bend, entry, exit_)
+    free = (entry == 0) + (exit_ == 0)
+    k, k_in, k_out = bend.hand * shape.own, bend.hand * entry, bend.hand * exit_
+    return [
+        Piece(shape.spare / free if entry == 0 else 0.0),
+        Piece(shape.first, k_in, k),
+        Piece(shape.arc, k, k),
+        Piece(shape.last, k, k_out),
+        Piece(shape.spare / free if exit_ == 0 else 0.0),
+    ]

@@ -1,0 +1,32 @@
+"""From a Design to a Road: lines, arcs and clothoids over parabolic grades, or RoadGPT's spline."""
+
+import math
+from typing import Literal
+
+from roadgpt.geometry import PieceCurve
+from roadgpt.geometry.pieces import joined
+from roadgpt.road.alignment import pieces_of
+from roadgpt.road.design import Design
+from roadgpt.road.grades import profile_of
+from roadgpt.road.nodes import nodes_of
+from roadgpt.road.road import Road
+
+Geometry = Literal["arcs", "spline"]
+
+
+def build(design: Design, geometry: Geometry = "arcs") -> Road:
+    """The Road that grows from a Design.
+
+    Args:
+        design: the blueprint.
+        geometry: "arcs" keeps every distance, angle and radius; "spline" is RoadGPT's way: nodes at the ends of
+            the segments, and a cubic spline through them.
+
+    Raises:
+        UsageError: the spline's nodes coincide.
+    """
+    if geometry == "spline":
+        return Road.through(nodes_of(design))
+    x, y, z = design.starting_point
+    plan = PieceCurve(x, y, math.radians(design.theta), joined(pieces_of(design.segments)))
+    return Road(plan, profile_of(design.segments, z))

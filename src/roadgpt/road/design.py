@@ -1,0 +1,145 @@
+"""The blueprint of a road in RoadGPT's own format, read and written exactly.
+
+    {"starting_point": [x, y, z], "theta": degrees,
+     "road_segment1": {"distance", "direction", "incline", "turn_degrees"}, "road_segment2": ...}
+
+``theta`` 0 looks along +x and grows counter-clockwise, as RoadGPT's code has it (its prompt says +y).
+``distance`` is the length along the plan curve; ``radius`` and ``transition`` are ours, and optional.
+"""
+
+import math
+import re
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from roadgpt.errors import UsageError
+
+MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
+MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
+MAX_SEGMENTS = 500
+KEY = re.compile(r"road_segment(\d{1,6})")
+
+Direction = Literal["left", "right", "straight"]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Length = Annotated[float, Field(gt=0, le=100_000, allow_inf_nan=False)]
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Segment(_Frozen):
+    """One stretch of road: how far, which way, how steep, how much it turns."""
+
+    distance: Length
+    """Metres along the plan curve."""
+    direction: Direction
+    incline: Annotated[float, Field(ge=-100, le=100)] = 0.0
+    """Percent."""
+    turn_degrees: Annotated[float, Field(ge=-360, le=360)] = 0.0
+    """Left positive, right negative."""
+    radius: Length | None = None
+    """Metres, of the arc; what the turn does not need of the distance stays straight."""
+    transition: Length | None = None
+    """Metres, of the clothoid at either end of a turn."""
+
+
+class Design(_Frozen):
+    """Where a road starts, which way it looks, and its segments in driving order."""
+
+    starting_point: tuple[Finite, Finite, Finite]
+    theta: Finite
+    """Degrees, 0 along +x, counter-clockwise."""
+    segments: Annotated[tuple[Segment, ...], Field(min_length=1, max_length=MAX_SEGMENTS)]
+
+    def to_json(self) -> dict[str, Any]:
+        """RoadGPT's dictionary; whole numbers are written as integers, as its models write them."""
+        out: dict[str, Any] = {
+            "starting_point": [_plain(v) for v in self.starting_point],
+            "theta": _plain(self.theta),
+        }
+        for number, segment in enumerate(self.segments, 1):
+            out[f"road_segment{number}"] = {
+                key: _plain(value) for key, value in segment.model_dump(exclude_none=True).items()
+            }
+        return out
+
+
+def _plain(value: Any) -> Any:
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
+    """A Design from RoadGPT's dictionary, and a sentence for everything that had to be settled.
+
+    Where ``direction`` and the sign of ``turn_degrees`` disagree, as in the thesis' own example, the direction
+    wins. A turn beyond 70 degrees or an incline beyond 15 % is kept, and remarked on: the rules judge it.
+
+    Raises:
+        UsageError: a field is missing, misnamed, of the wrong type or out of range.
+    """
+    if not isinstance(data, Mapping):
+        raise UsageError("a design is a JSON object with starting_point, theta and road_segment1, ...")
+    segments, remarks = [], []
+    for number, raw in _numbered(data):
+        segment, said = _segment(number, raw)
+        segments.append(segment)
+        remarks += said
+    try:
+        design = Design(
+            starting_point=data.get("starting_point", ()), theta=data.get("theta"), segments=tuple(segments)
+        )
+    except ValidationError as error:
+        raise UsageError(f"the design cannot be read: {_first(error)}") from error
+    return design, tuple(remarks)
+
+
+def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
+    found = []
+    for key, raw in data.items():
+        match = KEY.fullmatch(str(key))
+        if match:
+            found.append((int(match[1]), raw))
+        elif key not in ("starting_point", "theta"):
+            raise UsageError(
+                f"the design has a field '{str(key)[:40]}' that nobody knows; fields are starting_point, theta and "
+                "road_segment1, road_segment2, ..."
+            )
+    found.sort(key=lambda pair: pair[0])
+    if not found:
+        raise UsageError(
+            "the design has no segment; add road_segment1 with distance, direction, incline, turn_degrees"
+        )
+    return found
+
+
+def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
+    try:
+        segment = Segment.model_validate(raw)
+    except ValidationError as error:
+        raise UsageError(f"segment {number} cannot be read: {_first(error)}") from error
+    remarks = []
+    turn = math.copysign(segment.turn_degrees, {"left": 1.0, "right": -1.0}.get(segment.direction, 1.0))
+    if segment.direction == "straight":
+        turn = 0.0
+    if turn != segment.turn_degrees and segment.turn_degrees != 0:
+        remarks.append(
+            f"segment {number}: direction '{segment.direction}' and turn_degrees {segment.turn_degrees:g} disagree; "
+            f"the direction wins: {turn:g}"
+        )
+    if abs(turn) > MAX_TURN:
+        remarks.append(
+            f"segment {number}: turns {abs(turn):g} degrees, more than {MAX_TURN:g} in one segment"
+        )
+    if abs(segment.incline) > MAX_INCLINE:
+        remarks.append(f"segment {number}: incline {segment.incline:g} % is beyond {MAX_INCLINE:g} %")
+    return segment.model_copy(update={"turn_degrees": turn}), remarks
+
+
+def _first(error: ValidationError) -> str:
+    """The first complaint, as 'field: what is wrong'."""
+    problem = error.errors()[0]
+    place = ".".join(str(part) for part in problem["loc"])
+    return f"{place}: {problem['msg']}" if place else str(problem["msg"])

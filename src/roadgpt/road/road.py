@@ -1,0 +1,182 @@
+"""The Road: 3-D geometry, asked with ``road.at(s, t)``."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry import (
+    GradeProfile,
+    Piece,
+    PieceCurve,
+    PlanCurve,
+    Profile,
+    SplineCurve,
+    SplineProfile,
+    project,
+)
+from roadgpt.geometry.curve import Array
+
+CONTROL_SPACING = 2.0  # m: closer than this, SBFT's spline keeps our radii (14.8 m nominal is accepted)
+MOST_CONTROL_POINTS = 500  # SBFT rule
+LONGEST = 1_000_000.0  # m, of a road from a file
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """A road measured at stations ``s``; every array has shape ``(n,)``."""
+
+    s: Array
+    x: Array
+    y: Array
+    z: Array
+    heading: Array
+    curvature: Array
+    grade: Array
+
+    @property
+    def points(self) -> Array:
+        """Centre line ``(n, 3)`` in metres."""
+        return np.stack([self.x, self.y, self.z], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Road:
+    """A centre line in plan and the heights over it; ``nodes`` are its control points if it came from points."""
+
+    plan: PlanCurve
+    profile: Profile
+    nodes: Array | None = None
+    _sampled: dict[float, Samples] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def through(cls, points: ArrayLike) -> Self:
+        """The road whose centre line is SBFT's spline through points ``(n, 2)`` or ``(n, 3)``, in metres.
+
+        Raises:
+            UsageError: not such points, fewer than two, not finite, or two neighbours are the same.
+        """
+        nodes = _checked(points)
+        plan = SplineCurve.through(nodes)
+        if nodes.shape[1] == 3:
+            return cls(plan, SplineProfile(plan), nodes)
+        return cls(plan, GradeProfile(0.0, (0.0, max(plan.length, 1e-9)), (0.0, 0.0)), nodes)
+
+    @property
+    def length(self) -> float:
+        """In plan, metres."""
+        return self.plan.length
+
+    def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
+        """Points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left; the road is not banked."""
+        s, t = np.broadcast_arrays(np.asarray(s, float), np.asarray(t, float))
+        heading = self.plan.heading(s)
+        xy = self.plan.at(s)
+        x, y = xy[..., 0] - t * np.sin(heading), xy[..., 1] + t * np.cos(heading)
+        return np.stack([x, y, self.profile.height(s)], axis=-1)
+
+    def locate(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
+        """Stations and offsets (``s``, ``t``) of points in plan; the nearest place where several would do."""
+        return project(
+            self.plan, np.stack(np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float)), -1)
+        )
+
+    def heading(self, s: ArrayLike) -> Array:
+        """Directions in radians."""
+        return self.plan.heading(s)
+
+    def curvature(self, s: ArrayLike) -> Array:
+        """Curvatures in 1/m, positive to the left."""
+        return self.plan.curvature(s)
+
+    def grade(self, s: ArrayLike) -> Array:
+        """Slopes, as ratios."""
+        return self.profile.grade(s)
+
+    def vertical_curvature(self, s: ArrayLike) -> Array:
+        """Change of slope in 1/m, negative on a crest."""
+        return self.profile.vertical_curvature(s)
+
+    def sample(self, step: float = 1.0) -> Samples:
+        """The road about every ``step`` metres, both ends included; measured once and kept."""
+        if step not in self._sampled:
+            s = np.linspace(0.0, self.length, max(2, round(self.length / step) + 1))
+            xy = self.plan.at(s)
+            self._sampled[step] = Samples(
+                s,
+                xy[:, 0],
+                xy[:, 1],
+                self.profile.height(s),
+                self.heading(s),
+                self.curvature(s),
+                self.grade(s),
+            )
+        return self._sampled[step]
+
+    def centreline(self, step: float = 1.0) -> Array:
+        """Points ``(n, 3)`` in metres, both ends included."""
+        return self.sample(step).points
+
+    def control_points(self) -> Array:
+        """SBFT's ``road_points`` ``(n, 2)``: our own nodes, or points dense enough for their spline to keep radii."""
+        if self.nodes is not None:
+            return self.nodes[:, :2]
+        count = min(MOST_CONTROL_POINTS, max(4, int(np.ceil(self.length / CONTROL_SPACING)) + 1))
+        return self.plan.at(np.linspace(0.0, self.length, count))
+
+    def to_json(self) -> dict[str, Any]:
+        """The exact geometry as data; ``Road.from_json`` gives the road back."""
+        if self.nodes is not None:
+            return {"nodes": self.nodes.tolist()}
+        assert isinstance(self.plan, PieceCurve) and isinstance(self.profile, GradeProfile)
+        return {
+            "start": [self.plan.x, self.plan.y, self.plan.heading0],
+            "pieces": [[p.length, p.k0, p.k1] for p in self.plan.pieces],
+            "height": self.profile.z0,
+            "stations": list(self.profile.stations),
+            "grades": list(self.profile.grades),
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """The road that ``to_json`` wrote.
+
+        Raises:
+            UsageError: a field is missing, not a number or not finite.
+        """
+        if "nodes" in data:
+            return cls.through(data["nodes"])
+        try:
+            x, y, heading = (float(v) for v in data["start"])
+            pieces = tuple(Piece(*(float(v) for v in row)) for row in data["pieces"])
+            stations, grades = tuple(map(float, data["stations"])), tuple(map(float, data["grades"]))
+            numbers = [x, y, heading, float(data["height"]), *stations, *grades]
+            numbers += [v for p in pieces for v in (p.length, p.k0, p.k1)]
+            if not np.isfinite(numbers).all() or sum(p.length for p in pieces) > LONGEST:
+                raise ValueError("a number is not finite, or the road is endless")
+            return cls(
+                PieceCurve(x, y, heading, pieces), GradeProfile(float(data["height"]), stations, grades)
+            )
+        except (KeyError, TypeError, ValueError) as error:
+            raise UsageError(
+                f"the road cannot be read: {error}; it needs start, pieces, height, stations, grades"
+            ) from error
+
+
+def _checked(points: ArrayLike) -> Array:
+    try:
+        nodes = np.array(points, float)
+    except (TypeError, ValueError) as error:
+        raise UsageError(
+            "road points are lists of two or three numbers each, like [[10, 20], [60, 25]]"
+        ) from error
+    if nodes.ndim != 2 or nodes.shape[1] not in (2, 3):
+        raise UsageError("road points are lists of two or three numbers each, like [[10, 20], [60, 25]]")
+    if not np.isfinite(nodes).all() or np.abs(nodes).max(initial=0) > LONGEST:
+        raise UsageError(
+            "a road point has a number that is not finite or beyond 1,000 km; correct or remove it"
+        )
+    return nodes

@@ -1,0 +1,67 @@
+"""Roads from files: ours, SBFT test JSON, RoadGPT designs, or a plain list of points."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from roadgpt.errors import UsageError
+from roadgpt.road.builder import Geometry, build
+from roadgpt.road.design import read_design
+from roadgpt.road.road import Road
+
+LARGEST = 50_000_000  # bytes of a road file
+SHAPES = "a road, a design or a test written by roadgpt, an SBFT test with road_points, or a list of [x, y] or [x, y, z]"
+
+
+def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
+    """The road in a JSON file, or in the folder of a run.
+
+    Args:
+        path: the file, or a folder that holds ``road.json``.
+        geometry: how a RoadGPT design becomes a road.
+
+    Raises:
+        UsageError: the file cannot be read, is not JSON, or holds no road.
+    """
+    path = Path(path)
+    if path.is_dir():
+        path = path / "road.json"
+    try:
+        if path.stat().st_size > LARGEST:
+            raise UsageError(f"{path} is larger than {LARGEST // 1_000_000} MB; that is no road file")
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}; give the path of a road file") from error
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"{path} is not valid JSON ({error}); give {SHAPES}") from error
+    try:
+        return road_of(data, geometry)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from error
+
+
+def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
+    """The road in parsed JSON.
+
+    Raises:
+        UsageError: it holds no road.
+    """
+    if isinstance(data, list):
+        return Road.through(data)
+    if isinstance(data, dict):
+        if "pieces" in data or "nodes" in data:
+            return Road.from_json(data)
+        if "starting_point" in data:
+            return build(read_design(data)[0], geometry)
+        points = _test_points(data)
+        if points is not None:
+            return Road.through(points)
+    raise UsageError(f"there is no road in it; a road file is {SHAPES}")
+
+
+def _test_points(data: dict[str, Any]) -> Any:
+    """Points of an SBFT test: those with heights where it has them, else its control points."""
+    dense = data.get("interpolated_points")
+    if isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3:
+        return dense
+    return data.get("road_points")
