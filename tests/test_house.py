@@ -1,0 +1,170 @@
+"""Keeps docs/house.md true: rooms, order of imports, registered parts, short files, light imports."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+from roadgpt import plugins
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "src" / "roadgpt"
+HALLWAY = {"errors", "plugins"}
+MOST_LINES = 400
+HEAVY = ("numpy", "scipy", "numba", "matplotlib", "mujoco", "pydantic", "shapely", "rich")
+
+
+def rooms() -> list[str]:
+    """The rooms in the order of the plan in docs/house.md."""
+    plan = (ROOT / "docs" / "house.md").read_text(encoding="utf-8").split("```")[1]
+    return re.findall(r"^  (\w+)/", plan, flags=re.MULTILINE)
+
+
+def sources() -> list[Path]:
+    return sorted(SOURCE.rglob("*.py"))
+
+
+def texts() -> list[Path]:
+    """Every text that the project ships or is built from."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False)
+    names = listed.stdout.decode().split("\0") if listed.returncode == 0 else []
+    found = [ROOT / name for name in names if name] or sources()
+    return [path for path in found if path.suffix in {".py", ".md", ".toml", ".txt", ".yml", ".json", ""}]
+
+
+def room_of(path: Path) -> str:
+    inside = path.relative_to(SOURCE)
+    return inside.parts[0].removesuffix(".py")
+
+
+def imports_of(path: Path) -> set[str]:
+    """Rooms (or hallway modules) of roadgpt that a file imports, wherever in the file it does so."""
+    package = ("roadgpt", *path.relative_to(SOURCE).parent.parts)
+    found = set[str]()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        modules: list[str] = []
+        if isinstance(node, ast.Import):
+            modules = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else ()
+            whole = ".".join((*base, *([node.module] if node.module else [])))
+            modules = [f"{whole}.{alias.name}" for alias in node.names] if whole == "roadgpt" else [whole]
+        found |= {module.split(".")[1] for module in modules if module.startswith("roadgpt.")}
+    return found
+
+
+def test_the_plan_lists_exactly_the_rooms_that_exist() -> None:
+    exist = {path.parent.name for path in SOURCE.glob("*/__init__.py")}
+    assert set(rooms()) == exist
+    assert {path.stem for path in SOURCE.glob("*.py")} == {"__init__", *HALLWAY}
+
+
+@pytest.mark.parametrize("path", sources(), ids=lambda path: str(path.relative_to(SOURCE)))
+def test_a_room_uses_only_rooms_above_it(path: Path) -> None:
+    order = rooms()
+    room = room_of(path)
+    if room in HALLWAY:
+        allowed = HALLWAY
+    elif room == "__init__":
+        allowed = set(order)
+    else:
+        allowed = {*order[: order.index(room) + 1], *HALLWAY}
+    # __version__ is a name of the package itself, open to all
+    assert imports_of(path) - {"__version__"} <= allowed
+
+
+def test_the_reader_of_imports_sees_every_form(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules[__name__], "SOURCE", tmp_path)
+    (tmp_path / "road").mkdir()
+    file = tmp_path / "road" / "x.py"
+    file.write_text(
+        "import roadgpt.run\nfrom roadgpt import plugins\nfrom roadgpt.check.rules import a\n"
+        "from ..drive import b\nfrom .design import c\ndef f():\n    from roadgpt.cli import d\n"
+    )
+    assert imports_of(file) == {"run", "plugins", "check", "drive", "road", "cli"}
+
+
+@pytest.mark.parametrize("shelf", plugins.SHELVES)
+def test_every_registered_part_loads_and_every_part_file_is_registered(shelf: str) -> None:
+    ours = {
+        part.name: part for part in entry_points(group=f"roadgpt.{shelf}") if part.module[:8] == "roadgpt."
+    }
+    assert ours, f"nothing on the shelf {shelf}"
+    for name in ours:
+        assert plugins.find(shelf, name).__doc__, f"the part {name} says nothing about itself"
+    (folder,) = SOURCE.glob(f"*/{shelf}")
+    files = {
+        path.stem for path in folder.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()
+    }
+    assert {part.module.split(".")[3] for part in ours.values()} == files - {"__init__"}
+
+
+@pytest.mark.parametrize("path", sources(), ids=lambda path: str(path.relative_to(SOURCE)))
+def test_a_file_is_short_finished_and_well_named(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert text.count("\n") <= MOST_LINES
+    assert not re.search(r"\b(TODO|FIXME|XXX|NotImplementedError)\b", text)
+    assert not re.search(r"\beval\(|\bexec\(|except:", text)
+    assert not {"utils", "util", "common", "helpers", "misc"} & {
+        *path.relative_to(SOURCE).with_suffix("").parts
+    }
+
+
+def test_no_text_names_a_place_on_one_machine() -> None:
+    place = re.compile(
+        r"/(?:work|home|root|Users)/\w+|[A-Z]:\\Users|[\w.-]*pypi[\w.-]*\.(?:org|io)|index-url", re.I
+    )
+    telling = [
+        f"{path.relative_to(ROOT)}: {found.group()}"
+        for path in texts()
+        if path != Path(__file__).resolve() and path.is_file()
+        for found in place.finditer(path.read_text(encoding="utf-8", errors="replace"))
+    ]
+    assert not telling
+
+
+@pytest.mark.parametrize("module", ["roadgpt", "roadgpt.cli", "roadgpt.plugins"])
+def test_light_modules_import_nothing_heavy(module: str) -> None:
+    code = f"import sys, {module}; print(*{{name.split('.')[0] for name in sys.modules}})"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
+    assert module.split(".")[0] in loaded
+    assert not {*HEAVY} & {*loaded}
+
+
+def test_the_package_offers_every_value_and_verb_that_it_names() -> None:
+    import roadgpt
+
+    for name in roadgpt.__all__:
+        assert getattr(roadgpt, name) is not None
+    with pytest.raises(AttributeError, match="it offers Brief"):
+        _ = roadgpt.gpt
+
+
+def cpu_seconds(*command: str) -> float:
+    """Processor time that a command takes, start included; unlike wall time it bears a busy machine."""
+    before = os.times()
+    subprocess.run(command, capture_output=True, check=True)
+    after = os.times()
+    return sum(after[2:4]) - sum(before[2:4])  # of the children: in user code, and in the system for them
+
+
+def test_help_answers_at_once() -> None:
+    command = [sys.executable, "-c", "from roadgpt.cli import main; main()", "--help"]
+    assert min(cpu_seconds(*command) for _ in range(3)) < 0.4
+
+
+def test_the_pins_cover_every_dependency_and_name_no_place() -> None:
+    pins = (ROOT / "constraints.txt").read_text(encoding="utf-8")
+    pinned = {re.sub(r"[-_.]+", "-", name).lower() for name in re.findall(r"^([\w.-]+)==[\w.]+$", pins, re.M)}
+    project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    wanted = {re.sub(r"[-_.]+", "-", name).lower() for name in re.findall(r'"([\w-]+)>=[\d.]+"', project)}
+    assert len(wanted) > 15
+    assert wanted <= pinned
+    assert "://" not in pins
