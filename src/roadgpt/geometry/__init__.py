@@ -8,7 +8,7 @@ from roadgpt.geometry.curve import PlanCurve, Profile, wrap_angle
 from roadgpt.geometry.pieces import Piece, PieceCurve
 from roadgpt.geometry.profile import GradeProfile
 from roadgpt.geometry.projection import project
-from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate
+from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate, walked
 
 __all__ = [
     "GradeProfile",
@@ -20,5 +20,6 @@ __all__ = [
     "SplineProfile",
     "interpolate",
     "project",
+    "walked",
     "wrap_angle",
 ]

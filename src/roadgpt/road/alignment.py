@@ -1,11 +1,11 @@
-"""The plan of a Design: how each segment becomes lines, arcs and clothoids.
+r"""The plan of a Design: how each segment becomes lines, arcs and clothoids.
 
 A turning segment bends from the curvature at its entry over its own to that at its exit:
 
     curvature   own   ____arc____
-                     /           \\
-           entry ___/             \\___ exit        entry and exit are 0 next to a straight or a turn of the
-                clothoid      clothoid             other hand; between turns of one hand, the gentler of the two
+                     /           \
+           entry ___/             \___ exit        entry and exit are 0 next to a straight or a turn of
+                clothoid      clothoid             the other hand; between turns of one hand, the gentler's
 
 so segments of one hand in a row are one longer turn, as RoadGPT's prompt asks of turns beyond 70 degrees.
 """
@@ -47,7 +47,7 @@ class _Shape(NamedTuple):
 def pieces_of(segments: Sequence[Segment]) -> list[Piece]:
     """The pieces of all segments, in order; every segment keeps its distance and its turn exactly.
 
-    A radius is kept where it fits into the distance and the turn has a straight, or the other hand, beside it.
+    A radius is kept where it fits into the distance and the turn does not run on into others on both sides.
     """
     bends = [_bend(segment) for segment in segments]
     joints = _settled_joints(bends)

@@ -19,8 +19,8 @@ def build(design: Design, geometry: Geometry = "arcs") -> Road:
 
     Args:
         design: the blueprint.
-        geometry: "arcs" keeps every distance, angle and radius; "spline" is RoadGPT's way: nodes at the ends of
-            the segments, and a cubic spline through them.
+        geometry: "arcs" keeps every distance, angle and radius; "spline" is RoadGPT's way: nodes at the ends
+            of the segments, and a cubic spline through them.
 
     Raises:
         UsageError: the spline's nodes coincide.

@@ -74,8 +74,8 @@ def _plain(value: Any) -> Any:
 def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
     """A Design from RoadGPT's dictionary, and a sentence for everything that had to be settled.
 
-    Where ``direction`` and the sign of ``turn_degrees`` disagree, as in the thesis' own example, the direction
-    wins. A turn beyond 70 degrees or an incline beyond 15 % is kept, and remarked on: the rules judge it.
+    Where ``direction`` and the sign of ``turn_degrees`` disagree, as in the thesis' own example, the
+    direction wins. A turn beyond 70 degrees or an incline beyond 15 % is kept, and remarked on: the rules judge it.
 
     Raises:
         UsageError: a field is missing, misnamed, of the wrong type or out of range.
@@ -104,8 +104,8 @@ def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
             found.append((int(match[1]), raw))
         elif key not in ("starting_point", "theta"):
             raise UsageError(
-                f"the design has a field '{str(key)[:40]}' that nobody knows; fields are starting_point, theta and "
-                "road_segment1, road_segment2, ..."
+                f"the design has a field '{str(key)[:40]}' that nobody knows; "
+                "fields are starting_point, theta and road_segment1, road_segment2, ..."
             )
     found.sort(key=lambda pair: pair[0])
     if not found:
@@ -126,8 +126,8 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
         turn = 0.0
     if turn != segment.turn_degrees and segment.turn_degrees != 0:
         remarks.append(
-            f"segment {number}: direction '{segment.direction}' and turn_degrees {segment.turn_degrees:g} disagree; "
-            f"the direction wins: {turn:g}"
+            f"segment {number}: direction '{segment.direction}' and turn_degrees "
+            f"{segment.turn_degrees:g} disagree; the direction wins: {turn:g}"
         )
     if abs(turn) > MAX_TURN:
         remarks.append(

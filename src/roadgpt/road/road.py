@@ -45,7 +45,7 @@ class Samples:
 
 @dataclass(frozen=True, eq=False)
 class Road:
-    """A centre line in plan and the heights over it; ``nodes`` are its control points if it came from points."""
+    """A centre line in plan and the heights over it; ``nodes`` are control points, if it came from such."""
 
     plan: PlanCurve
     profile: Profile
@@ -71,7 +71,7 @@ class Road:
         return self.plan.length
 
     def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
-        """Points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left; the road is not banked."""
+        """Points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left; there is no banking."""
         s, t = np.broadcast_arrays(np.asarray(s, float), np.asarray(t, float))
         heading = self.plan.heading(s)
         xy = self.plan.at(s)
@@ -121,7 +121,7 @@ class Road:
         return self.sample(step).points
 
     def control_points(self) -> Array:
-        """SBFT's ``road_points`` ``(n, 2)``: our own nodes, or points dense enough for their spline to keep radii."""
+        """SBFT's ``road_points`` ``(n, 2)``: our nodes, or points so dense that a spline keeps the radii."""
         if self.nodes is not None:
             return self.nodes[:, :2]
         count = min(MOST_CONTROL_POINTS, max(4, int(np.ceil(self.length / CONTROL_SPACING)) + 1))
@@ -131,7 +131,8 @@ class Road:
         """The exact geometry as data; ``Road.from_json`` gives the road back."""
         if self.nodes is not None:
             return {"nodes": self.nodes.tolist()}
-        assert isinstance(self.plan, PieceCurve) and isinstance(self.profile, GradeProfile)
+        assert isinstance(self.plan, PieceCurve)
+        assert isinstance(self.profile, GradeProfile)
         return {
             "start": [self.plan.x, self.plan.y, self.plan.heading0],
             "pieces": [[p.length, p.k0, p.k1] for p in self.plan.pieces],

@@ -10,7 +10,10 @@ from roadgpt.road.design import read_design
 from roadgpt.road.road import Road
 
 LARGEST = 50_000_000  # bytes of a road file
-SHAPES = "a road, a design or a test written by roadgpt, an SBFT test with road_points, or a list of [x, y] or [x, y, z]"
+SHAPES = (
+    "a road, a design or a test written by roadgpt, an SBFT test with road_points, "
+    "or a list of [x, y] or [x, y, z]"
+)
 
 
 def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
