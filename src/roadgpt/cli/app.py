@@ -1,0 +1,110 @@
+"""The group of commands: finds a command when it is called, and turns errors into sentences."""
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
+
+import click
+
+from roadgpt import __version__
+from roadgpt.cli.crash import report_crash
+from roadgpt.errors import RoadGPTError
+
+# Each command is `command` in the module of its name in roadgpt.cli.commands; its line of help stands here
+# so that `roadgpt --help` need not import it.
+COMMANDS = {
+    "run": "Design, check, drive and judge roads from a description.",
+    "drive": "Drive roads that exist.",
+    "check": "Check roads that exist against the rules.",
+    "plot": "Draw roads that exist.",
+    "show": "Tell what is in the folder of a run or a campaign.",
+    "parts": "List what is installed on each shelf.",
+    "doctor": "Find out whether this installation works.",
+}
+
+INTERRUPTED = 130  # exit status after Ctrl-C, as shells have it: 128 + SIGINT
+NO_READER = 141  # 128 + SIGPIPE: whoever read the output went away
+INTERNAL = 70  # EX_SOFTWARE of sysexits.h
+
+
+class Commands(click.Group):
+    """A group whose commands are imported when they are called, and whose errors are sentences."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """In the order in which a newcomer needs them."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """The command of that name, imported now."""
+        if name not in COMMANDS:
+            return None
+        command: click.Command = import_module(f"roadgpt.cli.commands.{name}").command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The lines of help, without importing a command."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that the first word names; words that are a description are told where they belong."""
+        name = args[0]
+        if name not in COMMANDS and " " in name.strip():
+            raise click.UsageError(f'to make roads from a description, say: roadgpt run "{name}"', ctx)
+        return super().resolve_command(ctx, args)
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **extra: Any,
+    ) -> Any:
+        """Run a command; where it is the program, end the process with its exit status."""
+        if not standalone_mode:
+            return super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+        try:
+            status = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+            sys.stdout.flush()
+        except BrokenPipeError:
+            # Python flushes stdout once more at its end; let it flush into nothing.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            status = NO_READER
+        except click.ClickException as error:
+            error.show()
+            status = error.exit_code
+        except RoadGPTError as error:
+            click.echo(f"roadgpt: {error}", err=True)
+            status = error.exit_status
+        except (KeyboardInterrupt, click.Abort):
+            click.echo("roadgpt: stopped", err=True)
+            status = INTERRUPTED
+        except Exception as error:  # the last door: nothing may leave as a traceback
+            click.echo(f"roadgpt: {report_crash(error)}", err=True)
+            status = INTERNAL
+        sys.exit(status if isinstance(status, int) else 0)
+
+
+@click.group(
+    cls=Commands,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog='First time? Try: roadgpt run "an uphill road with 3 turns" -n 3',
+)
+@click.version_option(__version__, message="roadgpt %(version)s")
+@click.pass_context
+def app(ctx: click.Context) -> None:
+    """Turn words into tested roads.
+
+    RoadGPT designs 3-D roads that keep what a description promises, drives a car along them, and says whether
+    it kept its lane. Without a command it asks for descriptions, one after another.
+    """
+    if ctx.invoked_subcommand is None:
+        from roadgpt.cli.talk import talk
+
+        talk()

@@ -1,0 +1,42 @@
+"""What happens to an error that nobody foresaw: its traceback goes to a file, its sentence to the user."""
+
+import platform
+import sys
+import tempfile
+import traceback
+from pathlib import Path
+
+from roadgpt import __version__
+
+# Where a command works, once it has made a folder; else a traceback goes to the system's temporary folder.
+_folder: list[Path] = []
+
+
+def crashes_go_to(folder: Path) -> None:
+    """Keep tracebacks in this folder from now on."""
+    _folder[:] = [folder]
+
+
+def report_crash(error: Exception) -> str:
+    """Write the traceback to a file; the sentence says what happened and where the file is."""
+    head = f"roadgpt {__version__}, Python {platform.python_version()}, {platform.platform()}\n"
+    head += f"arguments: {sys.argv[1:]}\n\n"
+    text = head + "".join(traceback.format_exception(error))
+    what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
+    try:
+        path = _write(text)
+    except OSError:
+        sys.stderr.write(text)
+        return f"an error that should not happen ({what}); please report it with the lines above"
+    return f"an error that should not happen ({what}); please report it with the file {path}"
+
+
+def _write(text: str) -> Path:
+    for folder in (*_folder, Path(tempfile.gettempdir())):
+        if folder.is_dir():
+            with tempfile.NamedTemporaryFile(
+                "w", prefix="roadgpt-crash-", suffix=".txt", dir=folder, delete=False, encoding="utf-8"
+            ) as file:
+                file.write(text)
+            return Path(file.name)
+    raise OSError("no folder to write to")

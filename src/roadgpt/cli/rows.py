@@ -1,0 +1,85 @@
+"""A Row: what a command tells about one road, as a line to read or as JSON."""
+
+import json
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+Outcome = Literal["PASS", "FAIL", "VALID", "INVALID", "ERROR"]
+
+COLOURS = {"PASS": "green", "VALID": "green", "FAIL": "red", "INVALID": "yellow", "ERROR": "magenta"}
+
+
+@dataclass(frozen=True)
+class Row:
+    """How one road ended. VALID is a road that was checked and not driven."""
+
+    file: str
+    test_outcome: Outcome
+    description: str
+    """One sentence: what the verdict, the rule or the error says."""
+    is_valid: bool = True
+    validation_message: str = ""
+    cause: str | None = None
+    """Of a FAIL: out of lane, fell, stuck or timeout."""
+    max_oob: float | None = None
+    """Largest share of the car outside its lane, 0 to 1."""
+    margin_m: float | None = None
+    length_m: float | None = None
+    seconds: float = 0.0
+
+    @property
+    def outcome(self) -> str:
+        """With its cause: 'FAIL (out of lane)'."""
+        return f"{self.test_outcome} ({self.cause})" if self.cause else self.test_outcome
+
+    def to_json(self) -> str:
+        """One line."""
+        return json.dumps(
+            {
+                "file": self.file,
+                "is_valid": self.is_valid,
+                "validation_message": self.validation_message,
+                "test_outcome": self.test_outcome,
+                "description": self.description,
+                "max_oob": _rounded(self.max_oob),
+                "margin_m": _rounded(self.margin_m),
+                "length_m": _rounded(self.length_m),
+                "seconds": _rounded(self.seconds),
+            }
+        )
+
+    def to_line(self) -> str:
+        """Outcome, length, margin, file, and the sentence where something is wrong."""
+        length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
+        margin = "" if self.margin_m is None else f"margin {self.margin_m:+.2f} m"
+        line = f"{self.outcome:<19} {length:>9}  {margin:<15}  {self.seconds:5.2f} s  {self.file}"
+        wrong = self.test_outcome in ("INVALID", "ERROR")
+        return f"{line}  {self.description}" if wrong else line
+
+
+def _rounded(number: float | None) -> float | None:
+    """Four decimals; JSON knows no infinity, so that becomes null."""
+    return None if number is None or not math.isfinite(number) else round(number, 4)
+
+
+def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str]]:
+    """Per outcome: its name, how many roads, their share, and the smallest margin among them."""
+    counted = Counter(row.outcome for row in rows)
+    table = []
+    for outcome, count in sorted(counted.items(), key=lambda item: (_rank(item[0]), item[0])):
+        margins = [row.margin_m for row in rows if row.outcome == outcome and row.margin_m is not None]
+        least = f"{min(margins):+.2f} m" if margins else "-"
+        table.append((outcome, count, f"{100 * count / len(rows):.0f} %", least))
+    return table
+
+
+def _rank(outcome: str) -> int:
+    return [*COLOURS].index(outcome.split(" ")[0])
+
+
+def number(value: Any) -> float | None:
+    """A float, where there is one."""
+    return None if value is None else float(value)

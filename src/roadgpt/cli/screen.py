@@ -1,0 +1,106 @@
+"""How a command talks while it works: a bar on a terminal, plain lines in a pipe, JSON, or nothing."""
+
+import sys
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+import click
+
+from roadgpt.cli.rows import COLOURS, Row, summary
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+
+
+class Screen:
+    """Told of every road as it ends; at its own end it shows the table of outcomes.
+
+    Roads go to standard output, all talk goes there too unless the roads are JSON; the bar goes to standard
+    error, and only where that is a terminal.
+    """
+
+    def __init__(self, total: int, as_json: bool = False, quiet: bool = False, verbose: bool = False) -> None:
+        self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
+        self.rows: list[Row] = []
+        self._begun = time.perf_counter()
+        self._bar: Progress | None = None
+        self._task: TaskID | None = None
+
+    def __enter__(self) -> Self:
+        self._begun = time.perf_counter()
+        if not self.quiet and sys.stderr.isatty():
+            self._bar = _new_bar()
+            self._task = self._bar.add_task("roads", total=self.total, rate="")
+            self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    @property
+    def seconds(self) -> float:
+        """Since the work began."""
+        return time.perf_counter() - self._begun
+
+    def say(self, sentence: str) -> None:
+        """Something for the person who waits."""
+        if not self.quiet:
+            click.echo(sentence, err=self.as_json)
+
+    def detail(self, sentence: str) -> None:
+        """Something for the person who asked for more."""
+        if self.verbose:
+            self.say(sentence)
+
+    def row(self, row: Row) -> None:
+        """A road has ended."""
+        self.rows.append(row)
+        if self.as_json:
+            click.echo(row.to_json())
+        elif not self.quiet:
+            done = f"{len(self.rows):>{len(str(self.total))}}/{self.total}"
+            click.echo(f"{done}  {_coloured(row)}")
+        if self._bar is not None and self._task is not None:
+            rate = f"{len(self.rows) / max(self.seconds, 1e-9):.1f} roads/s"
+            self._bar.update(self._task, completed=len(self.rows), rate=rate)
+
+    def close(self) -> None:
+        """The table of outcomes."""
+        if self.quiet or self.as_json or not self.rows:
+            return
+        click.echo()
+        click.echo(f"{'outcome':<19} {'roads':>7} {'share':>7}  {'least margin':>12}")
+        for outcome, count, share, least in summary(self.rows):
+            colour = COLOURS[outcome.split(" ")[0]]
+            click.echo(click.style(f"{outcome:<19}", fg=colour) + f" {count:>7} {share:>7}  {least:>12}")
+        rate = len(self.rows) / max(self.seconds, 1e-9)
+        click.echo(f"{len(self.rows)} of {self.total} roads in {self.seconds:.1f} s ({rate:.1f} roads/s)")
+
+
+def _coloured(row: Row) -> str:
+    line = row.to_line()
+    head = len(row.outcome)
+    return click.style(line[:head], fg=COLOURS[row.test_outcome], bold=True) + line[head:]
+
+
+def _new_bar() -> "Progress":
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    # Lines on standard output pass above the bar only if both are the terminal; a file must get its lines.
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TextColumn("ETA"),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+        redirect_stdout=sys.stdout.isatty(),
+        redirect_stderr=True,
+        transient=True,
+    )
