@@ -75,7 +75,7 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
     """A Design from RoadGPT's dictionary, and a sentence for everything that had to be settled.
 
     Where ``direction`` and the sign of ``turn_degrees`` disagree, as in the thesis' own example, the
-    direction wins. A turn beyond 70 degrees or an incline beyond 15 % is kept, and remarked on: the rules judge it.
+    direction wins. A turn beyond 70 degrees or an incline beyond 15 % is kept, and remarked on.
 
     Raises:
         UsageError: a field is missing, misnamed, of the wrong type or out of range.

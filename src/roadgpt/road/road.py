@@ -71,7 +71,7 @@ class Road:
         return self.plan.length
 
     def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
-        """Points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left; there is no banking."""
+        """Points ``(..., 3)`` in metres at stations ``s`` and offsets ``t``; there is no banking."""
         s, t = np.broadcast_arrays(np.asarray(s, float), np.asarray(t, float))
         heading = self.plan.heading(s)
         xy = self.plan.at(s)

@@ -1,0 +1,264 @@
+"""What the final geometry must show: the Brief's words turned into ranges that can be measured.
+
+A designer aims inside an Outline, and a rule holds a finished road against it. All numbers are in the units
+of ``words.py`` (degrees, metres, percent uphill positive), measured as ``check.measures`` measures them.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Literal
+
+from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope
+from roadgpt.brief.words import (
+    KINDS,
+    LENGTH_SLACK,
+    PERCENT_SLACK,
+    ROAD_LENGTH_SLACK,
+    SHARPNESS,
+    SIZES,
+    SLOPES,
+    Range,
+    degrees_slack,
+)
+
+SMALLEST_TURN = 12.0  # degrees; below 10 a bend is not measured as a turn
+SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have this share of it or more
+LARGEST_TURN = 270.0  # degrees, where only a lower bound was said
+NO_LIMIT = Range()
+STEEPEST = Range(0, 15)  # percent, the rules' limit
+KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
+
+
+@dataclass(frozen=True, slots=True)
+class Feature:
+    """One turn or one straight; None promises nothing."""
+
+    kind: Literal["turn", "straight"]
+    name: str
+    """What a person calls it: 'hairpin'."""
+    side: Side | None = None
+    degrees: Range | None = None
+    radius: Range | None = None
+    length: Range | None = None
+    grade: Range | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """``lo`` to ``hi`` features of one sort in a row; no upper limit where ``hi`` is None."""
+
+    feature: Feature
+    lo: int = 1
+    hi: int | None = 1
+    alternating: bool = False
+    """Sides alternate; ``feature.side`` is then that of the first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """All promises of a Brief."""
+
+    groups: tuple[Group, ...]
+    """In driving order; where any is a turn, these are all turns of the road."""
+    turns: Range
+    left: Range = NO_LIMIT
+    right: Range = NO_LIMIT
+    alternating: bool = False
+    each_turn: Feature = Feature("turn", "turn")
+    """Limits of every turn, besides those of its group."""
+    grade: Literal["up", "down", "flat"] | None = None
+    """Of the whole road: up or down all the way on 20 m windows, or within 1 %."""
+    grade_range: Range | None = None
+    """Percent: mean of the whole road, or every place of it where ``grade`` is None or flat."""
+    steepest: Range | None = None
+    climb: Range | None = None
+    hills: Range | None = None
+    length: Range | None = None
+    starts: Feature | None = None
+    ends: Feature | None = None
+    hard: bool = False
+
+    @property
+    def names_all_turns(self) -> bool:
+        """Do the groups say every turn of the road, in order?"""
+        return any(group.feature.kind == "turn" for group in self.groups) or self.turns.hi == 0
+
+
+def outline(brief: Brief, roomy: bool = True) -> Outline:
+    """The Outline of a Brief.
+
+    Args:
+        brief: what was asked for.
+        roomy: the map can hold sweeping turns of 60 m radius; else they are held to 40 m, as gentle ones.
+    """
+    groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))
+    grade, grade_range = _whole_grade(brief)
+    steepest = _near(brief.steepest, _percent_slack)
+    if grade is None and grade_range:  # nearly flat: no place is steeper
+        steepest = _both(steepest, Range(0, max(abs(grade_range.lo), abs(grade_range.hi))))
+    return Outline(
+        groups=groups,
+        turns=_turn_count(brief, groups),
+        left=_count(brief.left),
+        right=_count(brief.right),
+        alternating=brief.alternating,
+        each_turn=_turn(
+            Clause(kind="turn", sharpness=brief.sharpness, degrees=brief.degrees, radius=brief.radius),
+            roomy,
+            angle_is_free=True,
+        ),
+        grade=grade,
+        grade_range=grade_range,
+        steepest=steepest,
+        climb=_near(brief.climb, lambda m: LENGTH_SLACK * abs(m)),
+        hills=_count(brief.hills) if brief.hills else None,
+        length=_near(brief.length, lambda m: ROAD_LENGTH_SLACK * m),
+        starts=_groups(brief.starts, roomy)[0].feature if brief.starts else None,
+        ends=_last(brief.ends, roomy) if brief.ends else None,
+        hard=brief.hard,
+    )
+
+
+def _groups(clause: Clause, roomy: bool) -> list[Group]:
+    """A clause as groups: crests and dips are two straights, straights one each, turns a group."""
+    if clause.kind in ("crest", "dip"):
+        slopes: tuple[Slope, Slope] = ("up", "down") if clause.kind == "crest" else ("down", "up")
+        return [Group(_straight(clause.model_copy(update={"slope": slope}))) for slope in slopes]
+    if clause.kind == "straight":
+        return [Group(_straight(clause))]
+    lo, hi = _how_many(clause)
+    meaning = KINDS[clause.kind]
+    alternates = (clause.alternating or meaning.alternating) and (hi is None or hi > 1)
+    return [Group(_turn(clause, roomy), lo, hi, alternates)]
+
+
+def _how_many(clause: Clause) -> tuple[int, int | None]:
+    """Turns of a clause: of S-bends and chicanes, those of each; of a serpentine with no number, its own."""
+    own, asked = KINDS[clause.kind].turns or Range(1, 1), clause.count
+    lo, hi = asked.lo or 1, asked.hi
+    if clause.kind in ("s_bend", "chicane"):
+        return int(lo * own.lo), None if hi is None else int(hi * own.hi)
+    if asked == Amount(lo=1, hi=1) and own.lo > 1:
+        return int(own.lo), None if own.hi == inf else int(own.hi)
+    return int(lo), None if hi is None else int(hi)
+
+
+def _turn(clause: Clause, roomy: bool, angle_is_free: bool = False) -> Feature:
+    meaning = KINDS[clause.kind]
+    degrees, radius = (None if angle_is_free else meaning.degrees), meaning.radius
+    if clause.sharpness:
+        sharpness = "gentle" if clause.sharpness == "sweeping" and not roomy else clause.sharpness
+        radius = _both(radius, SHARPNESS[sharpness].radius)
+        if clause.kind not in KEEPS_OWN_ANGLE:
+            asked = SHARPNESS[sharpness].degrees or NO_LIMIT
+            degrees = Range(asked.lo) if angle_is_free else asked
+    if clause.degrees:
+        degrees = _angle(clause.degrees)
+    if clause.radius:
+        radius = _near(clause.radius, lambda m: LENGTH_SLACK * m)
+    length = _near(clause.length, lambda m: LENGTH_SLACK * m)
+    name = meaning.said[0]
+    return Feature("turn", name, clause.side, degrees, radius, length, _grade(clause.slope, clause.incline))
+
+
+def _straight(clause: Clause) -> Feature:
+    length = KINDS["straight"].length
+    if clause.size:
+        length = SIZES[clause.size].length
+    if clause.length:
+        length = _near(clause.length, lambda m: LENGTH_SLACK * m)
+    grade = _grade(clause.slope, clause.incline)
+    return Feature("straight", "straight", None, KINDS["straight"].degrees, None, length, grade)
+
+
+def _merged(groups: Iterable[Group]) -> list[Group]:
+    """Neighbouring straights that nobody could tell apart, made one as long as both."""
+    out: list[Group] = []
+    for group in groups:
+        last = out[-1].feature if out else None
+        if last and last.kind == group.feature.kind == "straight" and last.grade == group.feature.grade:
+            length = _sum(last.length, group.feature.length)
+            out[-1] = Group(replace(last, length=length))
+        else:
+            out.append(group)
+    return out
+
+
+def _sum(one: Range | None, other: Range | None) -> Range | None:
+    return Range(one.lo + other.lo, one.hi + other.hi) if one and other else one or other
+
+
+def _last(clause: Clause, roomy: bool) -> Feature:
+    """The last feature of a clause; which way the last of alternating turns goes is open."""
+    group = _groups(clause, roomy)[-1]
+    return replace(group.feature, side=None) if group.alternating else group.feature
+
+
+def _grade(slope: Slope | None, incline: Amount | None) -> Range | None:
+    """Percent; a number wins over 'steep', and takes its sign from the slope."""
+    if incline is None:
+        return SLOPES[slope].grade if slope else None
+    size = _near(incline, _percent_slack) or NO_LIMIT
+    low, high = max(size.lo, 1.0), min(size.hi, STEEPEST.hi)
+    return Range(-high, -low) if slope and slope.endswith("down") else Range(low, high)
+
+
+def _whole_grade(brief: Brief) -> tuple[Literal["up", "down", "flat"] | None, Range | None]:
+    span = _grade(brief.slope, brief.incline)
+    if span is None:
+        return None, None
+    if brief.slope == "flat" and not brief.incline:
+        return "flat", span
+    if brief.slope == "nearly_flat" and not brief.incline:
+        return None, span
+    return ("down" if span.hi < 0 else "up"), span
+
+
+def _turn_count(brief: Brief, groups: Sequence[Group]) -> Range:
+    """How many turns: those of the groups where any turns; else what was wished; none on mere straights."""
+    turning = [group for group in groups if group.feature.kind == "turn"]
+    wished = _count(brief.turns)
+    if turning:
+        most = inf if any(g.hi is None for g in turning) else sum(g.hi or 0 for g in turning)
+        return _both(Range(sum(g.lo for g in turning), most), wished) or NO_LIMIT
+    if brief.turns:
+        return wished
+    ends_turn = any(c and c.kind not in ("straight", "crest", "dip") for c in (brief.starts, brief.ends))
+    sides = [_count(side) for side in (brief.left, brief.right) if side]
+    if sides or ends_turn or brief.hard:
+        return Range(max(sum(max(side.lo, 0) for side in sides), 1 if ends_turn or brief.hard else 0))
+    return Range(0, 0) if groups else Range(1)
+
+
+def _count(amount: Amount | None) -> Range:
+    if amount is None:
+        return NO_LIMIT
+    return Range(amount.lo if amount.lo is not None else 0, amount.hi if amount.hi is not None else inf)
+
+
+def _angle(amount: Amount) -> Range:
+    """Degrees of a turn; an open end still is a turn that can be seen and driven."""
+    near = _near(amount, degrees_slack) or NO_LIMIT
+    low = near.lo if near.lo > -inf else max(SMALLEST_TURN, SMALLEST_OF_MOST * near.hi)
+    return Range(low, near.hi if near.hi < inf else max(LARGEST_TURN, near.lo))
+
+
+def _percent_slack(_: float) -> float:
+    return PERCENT_SLACK
+
+
+def _near(amount: Amount | None, slack: Callable[[float], float]) -> Range | None:
+    """An exact number with its slack; a bound or a range as it was said."""
+    if amount is None:
+        return None
+    if amount.exact and amount.lo is not None:
+        return Range(amount.lo - slack(amount.lo), amount.lo + slack(amount.lo))
+    return Range(amount.lo if amount.lo is not None else -inf, amount.hi if amount.hi is not None else inf)
+
+
+def _both(one: Range | None, other: Range | None) -> Range | None:
+    """Where two ranges overlap."""
+    if one is None or other is None:
+        return one or other
+    return Range(max(one.lo, other.lo), min(one.hi, other.hi))
