@@ -61,6 +61,7 @@ bench: $(VENV)/.installed-test
 	@echo "make bench: $(SECONDS_SO_FAR) s"
 
 docs: $(VENV)/.installed-docs
+	$(BIN)/python docs/commands.py
 	$(BIN)/python -m mkdocs build --strict --quiet
 	@echo "make docs: site/index.html, $(SECONDS_SO_FAR) s"
 

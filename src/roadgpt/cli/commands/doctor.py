@@ -1,0 +1,121 @@
+"""``roadgpt doctor``: does this installation work, and if not, what is to be done?"""
+
+import json
+import platform
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from functools import partial
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import click
+
+from roadgpt import __version__
+from roadgpt.errors import RoadGPTError
+
+LIBRARIES = ("numpy", "scipy", "numba", "mujoco-core", "matplotlib", "shapely", "pydantic", "click", "rich")
+TEST_ROAD = [[40.0, 100.0], [60.0, 100.0], [80.0, 100.0]]  # m; a straight, driven in a few seconds
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One thing that was looked at."""
+
+    about: str
+    is_fine: bool
+    sentence: str
+
+
+def examined() -> Iterator[Answer]:
+    """Everything that is looked at, one answer after another; none of them raises."""
+    yield Answer("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
+    fits = sys.version_info >= (3, 11)
+    yield Answer("Python", fits, f"{platform.python_version()} on {platform.platform()}")
+    for name in LIBRARIES:
+        yield _library(name)
+    yield from _shelves()
+    yield _tried("numba", _numba)
+    yield _tried("test drive", _drive)
+    for folder in (Path.cwd(), Path(tempfile.gettempdir())):
+        yield _tried(f"folder {folder}", partial(_writable, folder))
+
+
+def _library(name: str) -> Answer:
+    try:
+        return Answer(name, True, version(name))
+    except PackageNotFoundError:
+        return Answer(name, False, f"is missing: python -m pip install {name}")
+
+
+def _shelves() -> Iterator[Answer]:
+    from roadgpt.cli.commands.parts import installed
+
+    try:
+        parts = installed()
+    except RoadGPTError as error:
+        yield Answer("parts", False, str(error))
+        return
+    for part in parts:
+        if not part.works:
+            yield Answer(f"{part.shelf}: {part.name}", False, part.about)
+    working = sum(part.works for part in parts)
+    yield Answer("parts", working == len(parts), f"{working} of {len(parts)} can be used (roadgpt parts)")
+
+
+def _tried(about: str, look: Callable[[], str]) -> Answer:
+    """The answer of a look; whatever it raises is the answer too, since finding that out is the point."""
+    try:
+        return Answer(about, True, look())
+    except Exception as error:
+        return Answer(about, False, f"{type(error).__name__}: {error}")
+
+
+def _numba() -> str:
+    from roadgpt.drive.compiled import BINDS
+
+    return (
+        "compiles the inner loop" if BINDS else "does not bind here: drives work, but about 50 times slower"
+    )
+
+
+def _drive() -> str:
+    from roadgpt.drive import simulate
+    from roadgpt.road import Road, World
+    from roadgpt.verdict import judge
+
+    road, world = Road.through(TEST_ROAD), World()
+    simulate(road, world, "reference")  # compiles
+    begun = time.perf_counter()
+    drive = simulate(road, world, "reference")
+    took = time.perf_counter() - begun
+    verdict = judge(road, drive, world)
+    if not verdict.kept:
+        raise RoadGPTError(f"the car left a straight road ({verdict.description}); please report this")
+    return f"{drive.duration:.1f} s simulated in {took:.2f} s, {drive.duration / took:.0f} times real time"
+
+
+def _writable(folder: Path) -> str:
+    with tempfile.TemporaryFile(dir=folder):
+        return "can be written to"
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="As one JSON list.")
+def command(as_json: bool) -> None:
+    """Find out whether this installation works: versions, parts, compiler, a test drive, folders."""
+    answers = []
+    for answer in examined():
+        answers.append(answer)
+        if not as_json:
+            mark = click.style("ok     ", fg="green") if answer.is_fine else click.style("PROBLEM", fg="red")
+            click.echo(f"{mark}  {answer.about:<14} {answer.sentence}")
+    if as_json:
+        click.echo(json.dumps([asdict(answer) for answer in answers], indent=2))
+    problems = sum(not answer.is_fine for answer in answers)
+    if problems:
+        raise RoadGPTError(f"{problems} of {len(answers)} looks found a problem; mend those marked above")
+    if not as_json:
+        click.echo("all is well")

@@ -1,0 +1,58 @@
+"""``roadgpt parts``: what is installed on each shelf."""
+
+import inspect
+import json
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import click
+
+from roadgpt import plugins
+from roadgpt.errors import PartError
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part on a shelf, where it comes from, and what it says about itself."""
+
+    shelf: str
+    name: str
+    origin: str
+    about: str
+    works: bool
+
+
+def installed() -> list[Part]:
+    """Every part on every shelf; one that cannot be loaded says why."""
+    return [_part(shelf, name) for shelf in plugins.SHELVES for name in plugins.names(shelf)]
+
+
+def _part(shelf: str, name: str) -> Part:
+    try:
+        about, works = _first_line(plugins.find(shelf, name)), True
+    except PartError as error:
+        about, works = str(error), False
+    return Part(shelf, name, plugins.origin(shelf, name), about, works)
+
+
+def _first_line(part: Any) -> str:
+    """Of the part's documentation; a rule without one is spoken for by its module."""
+    text = inspect.getdoc(part) or inspect.getdoc(inspect.getmodule(part)) or "says nothing about itself"
+    return text.strip().splitlines()[0]
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="As one JSON list.")
+def command(as_json: bool) -> None:
+    """List what is installed on each shelf: readers, designers, rules, simulators, drivers."""
+    parts = installed()
+    if as_json:
+        click.echo(json.dumps([asdict(part) for part in parts], indent=2))
+        return
+    wide = max(len(part.name) for part in parts)
+    for shelf in plugins.SHELVES:
+        click.secho(shelf, bold=True)
+        for part in parts:
+            if part.shelf == shelf:
+                line = f"  {part.name:<{wide}}  {part.origin:<16}  {part.about}"
+                click.secho(line, fg=None if part.works else "red")
