@@ -45,6 +45,8 @@ class Meaning:
     alternating: bool = False
     degrees: Range | None = None
     """Heading change of each turn; of a straight, all turning along it."""
+    aim: Range | None = None
+    """Degrees from which designers draw, where the promise alone would be a poor example of the word."""
     radius: Range | None = None
     """Metres, at the tightest place of each turn."""
     length: Range | None = None
@@ -73,15 +75,22 @@ KINDS: Mapping[Kind, Meaning] = {
     "slalom": Meaning(
         ("slalom",), Range(4, 4), alternating=True, degrees=Range(40, 120), radius=Range(0, 30)
     ),
-    "serpentine": Meaning(("serpentine",), Range(4), alternating=True, degrees=Range(40, 210)),
-    "zigzag": Meaning(("zig-zag",), Range(4), alternating=True, degrees=Range(40, 210)),
-    "winding": Meaning(("winding", "twisty", "curvy"), Range(3), degrees=Range(25, 120)),
+    # four turns of 40 degrees are hardly a serpentine: drawn from 65 on, they turn 260 degrees in all
+    "serpentine": Meaning(
+        ("serpentine",), Range(4), alternating=True, degrees=Range(40, 210), aim=Range(65, 170)
+    ),
+    "zigzag": Meaning(("zig-zag",), Range(4), alternating=True, degrees=Range(40, 210), aim=Range(65, 170)),
+    "winding": Meaning(("winding", "twisty", "curvy"), Range(3), degrees=Range(25, 120), aim=Range(40, 110)),
 }
 
 SHARPNESS: Mapping[Sharpness, Meaning] = {
-    "gentle": Meaning(("gentle", "easy", "lazy", "slight"), degrees=Range(15, 120), radius=Range(40)),
-    "sweeping": Meaning(("sweeping", "wide"), degrees=Range(15, 120), radius=Range(60)),
-    "sharp": Meaning(("sharp", "tight", "hard"), degrees=Range(30, 120), radius=Range(0, 30)),
+    "gentle": Meaning(
+        ("gentle", "easy", "lazy", "slight"), degrees=Range(15, 120), aim=Range(22, 90), radius=Range(40)
+    ),
+    "sweeping": Meaning(("sweeping", "wide"), degrees=Range(15, 120), aim=Range(22, 80), radius=Range(60)),
+    "sharp": Meaning(
+        ("sharp", "tight", "hard"), degrees=Range(30, 120), aim=Range(35, 115), radius=Range(0, 30)
+    ),
 }
 """Where the map cannot hold radii of 60 m, a sweeping turn may be as tight as a gentle one."""
 
@@ -105,6 +114,8 @@ MOUNTAIN = Range(4, 15)
 """Percent: the steepest place of 'a mountain road', up or down."""
 HILLS = 3
 """Changes between climbing and falling on 'a hilly road': up, down, up, down."""
+ROAD_SIZES: Mapping[Size, Range] = {"long": Range(250), "short": Range(20, 150)}
+"""Metres: 'a long road', 'a short road'."""
 
 PERCENT_SLACK = 1.0  # percentage points, around a grade that was said as a number
 LENGTH_SLACK = 0.15  # ratio, around the length of a straight or the radius of a turn
@@ -125,7 +136,8 @@ def _top() -> list[str]:
     return [
         "# What words mean",
         "",
-        "Measured on the centreline of the finished road. This page is printed by `roadgpt.brief.words.table()`.",
+        "Measured on the centreline of the finished road."
+        " This page is printed by `roadgpt.brief.words.table()`.",
     ]
 
 
@@ -140,7 +152,8 @@ def _turns() -> list[str]:
         )
         for m in [*kinds, *SHARPNESS.values()]
     )
-    return _rows("Turns", ("words", "turns", "degrees each", "radius (m)"), rows) + [
+    return [
+        *_rows("Turns", ("words", "turns", "degrees each", "radius (m)"), rows),
         "",
         "Where the map cannot hold 60 m, a sweeping turn has a radius of 40 m or more."
         " Switchbacks alternate where there are several."
@@ -151,7 +164,8 @@ def _turns() -> list[str]:
 def _straights() -> list[str]:
     kinds = [meaning for meaning in KINDS.values() if not meaning.turns]
     rows = ((_said(m), str(m.degrees or "-"), str(m.length or "-")) for m in [*kinds, *SIZES.values()])
-    return _rows("Straights", ("words", "degrees in all", "length (m)"), rows)
+    roads = [(f"a {size} road", "-", str(length)) for size, length in ROAD_SIZES.items()]
+    return _rows("Lengths", ("words", "degrees in all", "length (m)"), [*rows, *roads])
 
 
 def _slopes() -> list[str]:
@@ -164,7 +178,7 @@ def _slopes() -> list[str]:
 def _numbers() -> list[str]:
     rows = [
         ("degrees", "10 %, at most 7 degrees; at most 10 from 90 degrees on"),
-        ("metres", f"{LENGTH_SLACK:.0%}; of the whole road {ROAD_LENGTH_SLACK:.0%}"),
+        ("metres", f"{100 * LENGTH_SLACK:g} %; of the whole road {100 * ROAD_LENGTH_SLACK:g} %"),
         ("percent", f"{PERCENT_SLACK:g} percentage point"),
         ("a number of turns", "none"),
     ]
