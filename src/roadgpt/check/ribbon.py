@@ -1,0 +1,96 @@
+"""The ribbon of a road as a row of quads, and how far quads stand apart: plain numpy, no geometry library.
+
+left[0] ---- left[1] ---- left[2]        quad i is (left i, left i+1, right i+1, right i),
+   |   quad 0   |   quad 1   |           clockwise where the road does not fold
+right[0] --- right[1] --- right[2]
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Samples
+
+Indices = NDArray[np.intp]
+
+BLOCK = 8  # quads that share one bounding box in the first, coarse look
+SLIVER = 1e-6  # m^2: a corner flatter than this does not count as convex
+
+
+def sides(samples: Samples, half_width: float) -> tuple[Array, Array]:
+    """Left and right edge points ``(n, 2)`` of a road at its samples, metres."""
+    centre = np.stack((samples.x, samples.y), axis=1)
+    across = half_width * np.stack((-np.sin(samples.heading), np.cos(samples.heading)), axis=1)
+    return centre + across, centre - across
+
+
+def bulge(samples: Samples, half_width: float) -> float:
+    """How far, at most, a true edge bulges beyond the straight line between its samples, metres.
+
+    The rise of an arc over its chord: chord^2 times curvature / 8, on the outer edge of the tightest bend.
+    """
+    step, bend = samples.s[1] - samples.s[0], float(np.abs(samples.curvature).max())
+    return float(step**2 * bend * (1 + bend * half_width) / 8)
+
+
+def quads_of(left: Array, right: Array) -> Array:
+    """Quads ``(n - 1, 4, 2)`` between edge points ``(n, 2)`` on the left and on the right."""
+    return np.stack((left[:-1], left[1:], right[1:], right[:-1]), axis=1)
+
+
+def is_convex(quads: Array) -> NDArray[np.bool_]:
+    """Which quads are convex, clockwise and no slivers, ``(n,)``. False where a number is not finite."""
+    sides = np.roll(quads, -1, axis=1) - quads
+    ahead = np.roll(sides, -1, axis=1)
+    corner = sides[..., 0] * ahead[..., 1] - sides[..., 1] * ahead[..., 0]
+    return np.asarray((corner < -SLIVER).all(axis=1))
+
+
+def near_pairs(quads: Array, reach: float, apart: int = 2) -> tuple[Indices, Indices]:
+    """Pairs i < j, at least ``apart`` in the row, whose bounding boxes come within ``reach`` metres."""
+    low, high = quads.min(axis=1) - reach, quads.max(axis=1)
+    starts = np.arange(0, len(quads), BLOCK)
+    first, second = _meeting(np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts))
+    within = np.arange(BLOCK)
+    i = (first[:, None, None] * BLOCK + within[:, None]) + np.zeros(BLOCK, np.intp)
+    j = (second[:, None, None] * BLOCK + within) + np.zeros((BLOCK, 1), np.intp)
+    wanted = (j - i >= apart) & (j < len(quads))
+    i, j = i[wanted], j[wanted]
+    meet = _touch(low[i], high[i], low[j], high[j])
+    return i[meet], j[meet]
+
+
+def _meeting(low: Array, high: Array) -> tuple[Indices, Indices]:
+    """Pairs a <= b of boxes that touch."""
+    return np.nonzero(np.triu(_touch(low[:, None], high[:, None], low, high)))  # type: ignore[return-value]
+
+
+def _touch(low: Array, high: Array, other_low: Array, other_high: Array) -> Any:
+    return (
+        (low[..., 0] <= other_high[..., 0])
+        & (other_low[..., 0] <= high[..., 0])
+        & (low[..., 1] <= other_high[..., 1])
+        & (other_low[..., 1] <= high[..., 1])
+    )
+
+
+def gaps(quads: Array, i: Indices, j: Indices) -> Array:
+    """How far convex quads i and j stand apart, metres ``(m,)``: by the separating axes of their sides.
+
+    Positive: they are disjoint, and at least this far apart. Negative: they overlap; it takes this much to
+    part them. Nought: they touch.
+    """
+    sides = np.roll(quads, -1, axis=1) - quads
+    outward = np.stack((-sides[..., 1], sides[..., 0]), axis=-1)
+    outward /= np.maximum(np.sqrt((outward**2).sum(axis=-1, keepdims=True)), 1e-12)
+    edge = (outward * quads).sum(axis=-1)
+    return np.maximum(_beyond(quads, outward, edge, i, j), _beyond(quads, outward, edge, j, i))
+
+
+def _beyond(quads: Array, outward: Array, edge: Array, i: Indices, j: Indices) -> Array:
+    """Over the sides of quads i: how far all of quad j lies beyond the side that parts them best."""
+    normal, corner = outward[i][:, :, None], quads[j][:, None]
+    along = normal[..., 0] * corner[..., 0] + normal[..., 1] * corner[..., 1]
+    return np.asarray((along.min(axis=2) - edge[i]).max(axis=1))

@@ -1,0 +1,20 @@
+"""All numbers of the road are finite: a road with a hole in its numbers is no road."""
+
+import numpy as np
+
+from roadgpt.brief.model import Brief
+from roadgpt.check.finding import Finding
+from roadgpt.road import Road, World
+
+
+def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Says where a coordinate, heading, curvature or grade is not a number."""
+    if not np.isfinite(road.length):
+        return (Finding("finite", "the length of the road is not a number"),)
+    samples = road.sample()
+    for name in ("x", "y", "z", "heading", "curvature", "grade"):
+        bad = np.flatnonzero(~np.isfinite(getattr(samples, name)))
+        if bad.size:
+            s = float(samples.s[bad[0]])
+            return (Finding("finite", f"at s = {s:.0f} m: {name} is not a number", s),)
+    return ()

@@ -1,0 +1,12 @@
+"""The verdict of the SBFT competition's validator in its own words, quirks included: ``check/sbft.py``."""
+
+from roadgpt.brief.model import Brief
+from roadgpt.check.finding import Finding
+from roadgpt.check.sbft import sbft_verdict
+from roadgpt.road import Road, World
+
+
+def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Says what the competition's validator says of the road's control points, if it objects."""
+    is_valid, message = sbft_verdict(road.control_points(), world.map_size)
+    return () if is_valid else (Finding("sbft", message),)

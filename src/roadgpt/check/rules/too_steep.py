@@ -1,0 +1,33 @@
+"""The grade stays within 15 %, uphill and downhill, at every place and over every 10 m.
+
+Source of the limit: RoadGPT's prompt. Its code looked at the mean of blocks of ten nodes, and only uphill, so
+that a road falling by 60 % passed; here a window slides over the whole road and both signs count.
+"""
+
+import numpy as np
+
+from roadgpt.brief.model import Brief
+from roadgpt.check.finding import Finding
+from roadgpt.road import Road, World
+
+WINDOW = 10.0  # m
+ROUNDING = 1e-6  # ratio
+
+
+def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Says where the road is steepest, where that is too steep."""
+    samples = road.sample()
+    step = max(float(samples.s[1] - samples.s[0]), ROUNDING)
+    width = min(max(1, round(WINDOW / step)), len(samples.s) - 1)
+    windows = (samples.z[width:] - samples.z[:-width]) / (width * step)
+    looks = ((windows, width // 2, f" over {width * step:.0f} m"), (samples.grade, 0, ""))
+    for grades, middle, over in looks:
+        worst = int(np.abs(grades).argmax())
+        grade = float(grades[worst])
+        if abs(grade) > world.max_grade + ROUNDING:
+            s, x, y = (float(v[worst + middle]) for v in (samples.s, samples.x, samples.y))
+            way = "uphill" if grade > 0 else "downhill"
+            limit = f"steeper than {100 * world.max_grade:g} %"
+            sentence = f"at s = {s:.0f} m: grade {100 * abs(grade):.1f} % {way}{over} is {limit}"
+            return (Finding("too_steep", sentence, s, x, y),)
+    return ()

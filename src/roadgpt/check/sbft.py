@@ -1,0 +1,190 @@
+"""The verdict of the SBFT tool competition's validator: its rules, order, messages and quirks, but fast.
+
+Source: the Cyber-Physical Systems tool competition's validator (2024). Quirks that are kept on purpose:
+
+* its test for "inside the map" binds ``and`` before ``or``, so a road wholly outside can be valid;
+* interpolation may add a node beyond the last point;
+* quads of the road that touch count as crossing, unless they are neighbours;
+* the length is measured on nodes that were interpolated once more;
+* the radius is that of the circle through nodes i, i+2, i+4, and the last such window is left out.
+
+Their validator asks a geometry library about every pair of quads. Here numpy decides the clear cases, by a
+margin that no rounding can bridge, and the library (shapely, imported only then) the rest, as it does there.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from roadgpt.check.ribbon import Indices, gaps, is_convex, near_pairs, quads_of
+from roadgpt.errors import UsageError
+from roadgpt.geometry import interpolate, walked
+from roadgpt.geometry.curve import Array
+
+ROAD_WIDTH = 8.0  # m, of every competition road
+FEET_PER_METRE = 3.280839895
+MIN_RADIUS = 47.0  # ft
+MIN_LENGTH = 20.0  # m
+MAX_POINTS = 500
+STRAIGHT = 1e-6  # m^2: three nodes that span less (twice the triangle's area) lie on a line
+DOUBT = 1e-9  # of the largest coordinate, but no less than so many metres: closer calls go to shapely
+
+TOO_FEW = "Not enough road points."
+TOO_MANY = "The road definition contains too many points"
+OUTSIDE = "Not entirely inside the map boundaries"
+CROSSING = "The road is self-intersecting"
+TOO_SHORT = "The road is not long enough."
+TOO_SHARP = "The road is too sharp"
+
+
+def sbft_verdict(points: ArrayLike, map_size: float) -> tuple[bool, str]:
+    """What the competition's validator says of a road: ``(is_valid, validation_message)``.
+
+    Args:
+        points: control points ``(n, 2)`` in metres; further columns are ignored.
+        map_size: side of the square map, metres.
+
+    Raises:
+        UsageError: two neighbouring points are the same or a number is not finite; the competition's code
+            itself stops there.
+    """
+    points = np.asarray(points, float)
+    if len(points) < 2:
+        return False, TOO_FEW
+    if len(points) > MAX_POINTS:
+        return False, TOO_MANY
+    if not np.isfinite(points[:, :2]).all():
+        raise UsageError("a number of the road points is not finite; give every point as two plain numbers")
+    with np.errstate(invalid="ignore"):  # nodes that coincide have no direction: NaN, which no quad survives
+        message = _complaint(interpolate(points[:, :2]), map_size)
+    return not message, message
+
+
+def _complaint(nodes: Array, map_size: float) -> str:
+    left, right = edges(nodes)
+    if not _passes_for_inside(nodes, map_size) or _meets_border(left, right, map_size):
+        return OUTSIDE
+    if not _keeps_clear(quads_of(left, right)):
+        return CROSSING
+    if not _is_long_enough(nodes):
+        return TOO_SHORT
+    if smallest_radius(nodes)[0] * FEET_PER_METRE < MIN_RADIUS:
+        return TOO_SHARP
+    return ""
+
+
+def edges(nodes: Array) -> tuple[Array, Array]:
+    """Left and right edge points ``(n, 2)``: across the way to the next node; at the last, the one before."""
+    ahead = np.diff(nodes, axis=0, append=nodes[-2:-1])
+    across = ahead / np.sqrt((ahead**2).sum(axis=1, keepdims=True)) * (ROAD_WIDTH / 2)
+    turned = np.stack((-across[:, 1], across[:, 0]), axis=1)
+    turned[-1] *= -1
+    return nodes + turned, nodes - turned
+
+
+def _passes_for_inside(nodes: Array, map_size: float) -> bool:
+    (min_x, min_y), (_, max_y), max_x = nodes.min(axis=0), nodes.max(axis=0), nodes[:, 0].max()
+    # theirs, with what the others imply left out: 0 < min_x or ... and 0 < max_x or ... and 0 < min_y or ...
+    return bool(min_x > 0 or (max_x > map_size and min_y > 0) or max_y > map_size)
+
+
+def _meets_border(left: Array, right: Array, map_size: float) -> bool:
+    """Does the closed outline touch the border line of the map?"""
+    outline = np.concatenate((left, right[::-1]))
+    low, high, doubt = outline.min(), outline.max(), _doubt(outline)
+    if low > doubt and high < map_size - doubt:
+        return False
+    import shapely
+
+    border = shapely.box(0, 0, map_size, map_size).boundary
+    try:
+        return bool(shapely.intersects(shapely.polygons(outline), border))
+    except shapely.errors.GEOSException:  # a NaN: their code stops here, ours lets the quads complain
+        return False
+
+
+def _doubt(points: Array) -> float:
+    """Distances below this are too close to call in floating point, metres."""
+    return DOUBT * max(1.0, float(np.abs(points).max()))
+
+
+def _keeps_clear(quads: Array) -> bool:
+    """Every quad valid; quads apart in the row disjoint; neighbours sharing exactly their common side."""
+    plain = is_convex(quads)
+    odd = np.flatnonzero(~plain)
+    if odd.size and not _are_valid(quads[odd]):
+        return False
+    if not _strangers_are_apart(quads, plain):
+        return False
+    # Two convex clockwise neighbours lie on either side of their common side, and so meet in it alone.
+    joints = np.flatnonzero(~(plain[:-1] & plain[1:]))
+    return not joints.size or _share_a_side(quads, joints)
+
+
+def _strangers_are_apart(quads: Array, plain: NDArray[np.bool_]) -> bool:
+    """Are quads that are no neighbours disjoint? Equal ones do not count."""
+    doubt = _doubt(quads)
+    i, j = near_pairs(quads, reach=doubt)
+    gap = np.where(plain[i] & plain[j], gaps(quads, i, j), 0.0)
+    i, j, gap = i[gap <= doubt], j[gap <= doubt], gap[gap <= doubt]
+    differ = (quads[i] != quads[j]).any(axis=(1, 2))
+    if (differ & (gap < -doubt)).any():
+        return False
+    return not differ.any() or _are_disjoint(quads, i[differ], j[differ])
+
+
+def _are_valid(quads: Array) -> bool:
+    import shapely
+
+    return bool(np.isfinite(quads).all() and shapely.is_valid(shapely.polygons(quads)).all())
+
+
+def _are_disjoint(quads: Array, i: Indices, j: Indices) -> bool:
+    import shapely
+
+    return not shapely.intersects(shapely.polygons(quads[i]), shapely.polygons(quads[j])).any()
+
+
+def _share_a_side(quads: Array, joints: Indices) -> bool:
+    """Is what quads i and i + 1 have in common a line, for every joint i, and neither in the other?"""
+    import shapely
+
+    one, other = shapely.polygons(quads[joints]), shapely.polygons(quads[joints + 1])
+    equal = (quads[joints] == quads[joints + 1]).all(axis=(1, 2))
+    inside = shapely.contains(one, other) | shapely.contains(other, one)
+    is_line = shapely.get_type_id(shapely.intersection(one, other)) == shapely.GeometryType.LINESTRING
+    return bool((equal | (is_line & ~inside)).all())
+
+
+def _is_long_enough(nodes: Array) -> bool:
+    apart = nodes[-1] - nodes[0]
+    if apart @ apart > (MIN_LENGTH + 1) ** 2:  # no detour can make it shorter than its ends are apart
+        return True
+    return walked(interpolate(nodes)) > MIN_LENGTH
+
+
+def smallest_radius(nodes: Array) -> tuple[float, int]:
+    """Least radius over circles through nodes i, i+2, i+4 of ``(n, 2)``, metres, and its middle node's index.
+
+    The last window is left out, as theirs is. Infinite where no three nodes make a circle: on a straight
+    road, or with fewer than six nodes.
+    """
+    if len(nodes) < 6:
+        return math.inf, 0
+    radii = _radii(nodes)
+    least = int(radii.argmin())
+    return float(radii[least]), least + 2
+
+
+def _radii(nodes: Array) -> Array:
+    a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
+    (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T
+    square = bx * bx + by * by
+    p, q = (ax * ax + ay * ay - square) / 2, (square - cx * cx - cy * cy) / 2
+    area = (ax - bx) * (by - cy) - (bx - cx) * (ay - by)
+    bends = np.abs(area) >= STRAIGHT
+    area = np.where(bends, area, 1.0)
+    x = (p * (by - cy) - q * (ay - by)) / area
+    y = ((ax - bx) * q - (bx - cx) * p) / area
+    return np.where(bends, np.sqrt((x - ax) ** 2 + (y - ay) ** 2), np.inf)
