@@ -13,6 +13,7 @@ from scipy.special import fresnel
 
 from roadgpt.geometry.curve import Array
 
+SAME = 1e-9  # 1/m, curvatures that no measurement tells apart
 ALMOST_ARC = 1e-3  # rad, change of curvature times length squared; below it Fresnel arguments lose digits
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
@@ -142,7 +143,10 @@ def joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
         if piece.length <= 1e-9:
             continue
         last = out[-1] if out else None
-        if last and last.k0 == last.k1 == piece.k0 == piece.k1:
+        if (
+            last
+            and max(last.k0, last.k1, piece.k0, piece.k1) - min(last.k0, last.k1, piece.k0, piece.k1) < SAME
+        ):
             out[-1] = Piece(last.length + piece.length, last.k0, last.k1)
         else:
             out.append(piece)

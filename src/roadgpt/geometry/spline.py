@@ -36,7 +36,7 @@ def _spline(points: Array) -> tuple[Tck, Array]:
 
 
 def walked(points: Array) -> float:
-    """Length of the polyline through points ``(n, 2)``, added up one by one as the competition's library does.
+    """Length of a polyline through points ``(n, 2)``, added up one by one as the competition's library does.
 
     Another order of adding, or hypot, would round a 30 m polyline to 29.999... and lose a node.
     """

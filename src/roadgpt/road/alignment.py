@@ -19,9 +19,10 @@ from roadgpt.road.design import Segment
 
 TRANSITION_SHARE = 0.25  # of the distance, for each clothoid that the design leaves open
 LONGEST_TRANSITION = 12.0  # m, for a clothoid that the design leaves open
-MOST_TRANSITION = 0.45  # of the distance, for each clothoid, whatever the design says
+MOST_TRANSITION = 0.45  # of the distance, for each clothoid of a turn whose radius is open
 ROUNDS = 60  # of settling joints; each brings neighbours closer
 SETTLED = 1e-12  # 1/m
+EQUAL = 1e-9  # 1/m; between curvatures so near no clothoid is needed
 
 
 class _Bend(NamedTuple):
@@ -62,7 +63,6 @@ def _bend(segment: Segment) -> _Bend | None:
     if abs(turn) < 1e-9:
         return None
     ramp = segment.transition or min(TRANSITION_SHARE * segment.distance, LONGEST_TRANSITION)
-    ramp = min(ramp, MOST_TRANSITION * segment.distance)
     return _Bend(segment.distance, abs(turn), ramp, segment.radius, math.copysign(1.0, turn))
 
 
@@ -90,20 +90,21 @@ def _solve(bend: _Bend, entry: float, exit_: float) -> _Shape:
         kept = _with_radius(bend, 1 / bend.radius, entry, exit_)
         if kept:
             return kept
-    ramp = bend.ramp
+    ramp = min(bend.ramp, MOST_TRANSITION * bend.distance)
     own = (bend.turn - (entry + exit_) * ramp / 2) / (bend.distance - ramp)
     return _Shape(own, ramp, bend.distance - 2 * ramp, ramp, 0.0)
 
 
 def _with_radius(bend: _Bend, own: float, entry: float, exit_: float) -> _Shape | None:
     """The layout with this curvature, the spare length straight; None where the distance is too short."""
-    ramps = bend.ramp * (own + (entry + exit_) / 2)
-    shrink = min(1.0, bend.turn / ramps)
-    ramp = bend.ramp * shrink
-    arc = (bend.turn - ramps * shrink) / own
-    spare = bend.distance - 2 * ramp - arc
+    first = bend.ramp if entry < own - EQUAL else 0.0
+    last = bend.ramp if exit_ < own - EQUAL else 0.0
+    turned = first * (own + entry) / 2 + last * (own + exit_) / 2
+    shrink = min(1.0, bend.turn / turned) if turned else 1.0
+    first, last, arc = first * shrink, last * shrink, (bend.turn - turned * shrink) / own
+    spare = bend.distance - first - last - arc
     fits = spare > -1e-6 and own >= max(entry, exit_)
-    return _Shape(own, ramp, arc, ramp, max(spare, 0.0)) if fits else None
+    return _Shape(own, first, arc, last, max(spare, 0.0)) if fits else None
 
 
 def _pieces(bend: _Bend, entry: float, exit_: float) -> list[Piece]:

@@ -1,0 +1,48 @@
+"""Laws of height profiles."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadgpt.geometry import GradeProfile
+
+
+@st.composite
+def profiles(draw: st.DrawFn) -> GradeProfile:
+    grades = draw(st.lists(st.floats(-0.15, 0.15), min_size=2, max_size=8))
+    steps = draw(st.lists(st.floats(0.5, 80), min_size=len(grades) - 1, max_size=len(grades) - 1))
+    return GradeProfile(draw(st.floats(-28, 50)), (0.0, *np.cumsum(steps).tolist()), tuple(grades))
+
+
+@given(profiles(), st.floats(0.01, 0.99))
+def test_grade_is_the_slope_of_the_height(profile: GradeProfile, share: float) -> None:
+    s, step = share * profile.stations[-1], 1e-4
+    slope = (profile.height(s + step) - profile.height(s - step)) / (2 * step)
+    assert profile.grade(s) == pytest.approx(slope, abs=1e-4)
+
+
+@given(profiles())
+def test_heights_and_grades_have_no_jump(profile: GradeProfile) -> None:
+    at = np.array(profile.stations[1:-1])
+    for ask in (profile.height, profile.grade):
+        assert ask(at - 1e-9) == pytest.approx(ask(at + 1e-9), abs=1e-7)
+
+
+def test_a_parabola_between_two_grades_is_the_textbook_one() -> None:
+    """A crest from +4 % to -2 % over 60 m: its top lies 40 m in, 0.8 m up (y = g1 x - (g1-g2) x^2 / 2L)."""
+    profile = GradeProfile(0.0, (0.0, 60.0), (0.04, -0.02))
+    assert profile.height(40.0) == pytest.approx(0.8)
+    assert profile.grade(40.0) == pytest.approx(0.0)
+    assert profile.height(60.0) == pytest.approx(0.6)
+    assert profile.vertical_curvature(30.0) == pytest.approx(-0.001)
+
+
+@pytest.mark.parametrize(
+    ("stations", "grades"), [((0.0,), (0.1,)), ((0.0, 1.0), (0.1,)), ((0.0, 1.0, 1.0), (0.1, 0.1, 0.1))]
+)
+def test_profiles_that_make_no_sense_are_refused(
+    stations: tuple[float, ...], grades: tuple[float, ...]
+) -> None:
+    with pytest.raises(ValueError, match="stations"):
+        GradeProfile(0.0, stations, grades)

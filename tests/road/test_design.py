@@ -1,0 +1,103 @@
+"""RoadGPT's format, read and written exactly."""
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, read_design
+
+THESIS = """{"starting_point": [50, 30, 0], "theta": 90,
+ "road_segment1": {"distance": 50, "direction": "right", "incline": 5, "turn_degrees": 40},
+ "road_segment2": {"distance": 40, "direction": "left", "incline": 3, "turn_degrees": -20},
+ "road_segment3": {"distance": 30, "direction": "straight", "incline": 0, "turn_degrees": 0}}"""
+
+
+def good() -> dict[str, object]:
+    return json.loads(THESIS)
+
+
+def test_the_direction_wins_and_the_conflict_is_reported() -> None:
+    design, remarks = read_design(good())
+    assert [s.turn_degrees for s in design.segments] == [-40, 20, 0]
+    assert len(remarks) == 2
+    assert "segment 1" in remarks[0]
+    assert "direction wins" in remarks[0]
+
+
+def test_what_was_read_is_written_alike() -> None:
+    data = good()
+    data["road_segment1"]["turn_degrees"] = -40  # type: ignore[index]
+    data["road_segment2"]["turn_degrees"] = 20  # type: ignore[index]
+    assert json.dumps(read_design(data)[0].to_json()) == json.dumps(data)
+
+
+def test_segments_come_in_the_order_of_their_numbers() -> None:
+    data = good()
+    shuffled = {key: data[key] for key in reversed(data)}
+    shuffled["road_segment10"] = {"distance": 7, "direction": "straight", "incline": 0, "turn_degrees": 0}
+    assert [s.distance for s in read_design(shuffled)[0].segments] == [50, 40, 30, 7]
+
+
+def test_steep_inclines_and_wide_turns_are_kept_and_remarked_on() -> None:
+    data = good()
+    data["road_segment3"] = {"distance": 30, "direction": "left", "incline": -17, "turn_degrees": 95}
+    design, remarks = read_design(data)
+    assert design.segments[2].turn_degrees == 95
+    assert any("95 degrees" in r for r in remarks)
+    assert any("-17 %" in r for r in remarks)
+
+
+SEGMENT = {"distance": 50, "direction": "left", "incline": 5, "turn_degrees": 40}
+
+
+@pytest.mark.parametrize(
+    ("change", "hint"),
+    [
+        ({"theta": None}, "theta"),
+        ({"theta": "north"}, "theta"),
+        ({"theta": float("nan")}, "theta"),
+        ({"starting_point": [1, 2]}, "starting_point"),
+        ({"starting_point": [1, 2, float("inf")]}, "starting_point"),
+        ({"road_segment1": {**SEGMENT, "distance": 0}}, "segment 1"),
+        ({"road_segment1": {**SEGMENT, "distance": "far"}}, "distance"),
+        ({"road_segment1": {**SEGMENT, "direction": "up"}}, "direction"),
+        ({"road_segment1": {**SEGMENT, "incline": float("nan")}}, "incline"),
+        ({"road_segment1": {**SEGMENT, "colour": "red"}}, "colour"),
+        ({"road_segment1": [1, 2, 3]}, "segment 1"),
+        ({"segment1": SEGMENT}, "nobody knows"),
+    ],
+)
+def test_bad_fields_get_one_sentence_that_names_them(change: dict[str, object], hint: str) -> None:
+    with pytest.raises(UsageError, match=hint) as caught:
+        read_design({**good(), **change})
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("data", [[], "road", {}, {"starting_point": [0, 0, 0], "theta": 0}])
+def test_no_design_at_all(data: object) -> None:
+    with pytest.raises(UsageError):
+        read_design(data)  # type: ignore[arg-type]
+
+
+junk = st.recursive(
+    st.none() | st.booleans() | st.floats() | st.text(max_size=8),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(
+            st.sampled_from([*SEGMENT, "starting_point", "theta", "road_segment1"]), inner, max_size=5
+        )
+    ),
+    max_leaves=12,
+)
+
+
+@given(junk)
+def test_anything_else_is_a_design_or_a_sentence(data: object) -> None:
+    try:
+        design, _ = read_design(data)  # type: ignore[arg-type]
+    except UsageError:
+        return
+    assert isinstance(design, Design)
