@@ -1,0 +1,145 @@
+"""A Brief on one short line, for people who label descriptions and for models that write them.
+
+    turn x3 left up; straight long down; hairpin right | len=300 hard
+
+Clauses stand in driving order, separated by ``;``; behind ``|`` stand the wishes for the whole road. A number
+is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief.
+"""
+
+import re
+from typing import TypeVar, get_args
+
+from pydantic import ValidationError
+
+from roadgpt.brief.model import Amount, Brief, Clause, Kind
+from roadgpt.errors import BriefError
+
+NUMBER = r"-?\d+(?:\.\d+)?"
+AMOUNT = re.compile(rf"({NUMBER})?(\.\.)?({NUMBER})?")
+KINDS = frozenset(get_args(Kind))
+WORDS = {
+    **dict.fromkeys(("left", "right"), "side"),
+    **dict.fromkeys(("gentle", "sweeping", "sharp"), "sharpness"),
+    **dict.fromkeys(("long", "short"), "size"),
+    **dict.fromkeys(("up", "down", "flat", "nearly_flat", "gently_up", "gently_down"), "slope"),
+    **dict.fromkeys(("steeply_up", "steeply_down"), "slope"),
+}
+FLAGS = ("alternating", "hard")
+KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
+ROAD_KEYS = {
+    "turns": "turns",
+    "lefts": "left",
+    "rights": "right",
+    "steepest": "steepest",
+    "climb": "climb",
+    "hills": "hills",
+    **KEYS,
+}
+PLACES = ("starts", "ends")
+ONE = Amount(lo=1, hi=1)
+Model = TypeVar("Model", Brief, Clause)
+
+
+def plan(brief: Brief) -> str:
+    """The line of a Brief; its words, unused words and confidence are not part of it."""
+    wishes = _mods(brief, ROAD_KEYS)
+    for place in PLACES:
+        clause = getattr(brief, place)
+        if clause:
+            wishes.append(f"{place}({_clause(clause)})")
+    line = "; ".join(_clause(clause) for clause in brief.clauses)
+    return f"{line} | {' '.join(wishes)}".strip() if wishes else line
+
+
+def _clause(clause: Clause) -> str:
+    count = [] if clause.count == ONE else [f"x{_amount(clause.count)}"]
+    return " ".join([clause.kind, *count, *_mods(clause, KEYS)])
+
+
+def _mods(thing: Clause | Brief, keys: dict[str, str]) -> list[str]:
+    """Words, flags and numbers of a clause or of the whole road, in one fixed order."""
+    fields = ("side", "sharpness", "size", "slope")
+    out = [value for name in fields if (value := getattr(thing, name, None))]
+    out += [flag for flag in FLAGS if getattr(thing, flag, False)]
+    return out + [
+        f"{key}={_amount(a)}" for key, name in keys.items() if (a := getattr(thing, name)) is not None
+    ]
+
+
+def _amount(amount: Amount) -> str:
+    if amount.exact:
+        return _number(amount.lo)
+    low, high = (_number(bound) for bound in (amount.lo, amount.hi))
+    return f"{low}..{high}"
+
+
+def read_plan(line: str) -> Brief:
+    """The Brief of a line.
+
+    Raises:
+        BriefError: a word, key or number that is not part of the language, or a place that is taken twice.
+    """
+    clauses, _, wishes = line.partition("|")
+    fields: dict[str, object] = {
+        "clauses": tuple(_read_clause(part) for part in clauses.split(";") if part.strip())
+    }
+    for place, inner in re.findall(r"(starts|ends)\(([^()]*)\)", wishes):
+        _set(fields, place, _read_clause(inner))
+    for word in re.sub(r"(starts|ends)\([^()]*\)", " ", wishes).split():
+        _read_mod(fields, word, ROAD_KEYS)
+    return _made(Brief, fields, line)
+
+
+def _read_clause(text: str) -> Clause:
+    kind, *words = text.split() or [""]
+    if kind not in KINDS:
+        raise BriefError(f"a plan has no clause '{kind[:40]}'; clauses begin with {', '.join(sorted(KINDS))}")
+    fields: dict[str, object] = {"kind": kind}
+    for word in words:
+        if word.startswith("x") and word[1:2] in "0123456789.":
+            _set(fields, "count", _read_amount(word[1:]))
+        else:
+            _read_mod(fields, word, KEYS)
+    return _made(Clause, fields, text)
+
+
+def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> None:
+    key, equals, value = word.partition("=")
+    if equals and key in keys:
+        _set(fields, keys[key], _read_amount(value))
+    elif word in FLAGS:
+        _set(fields, word, True)
+    elif word in WORDS:
+        _set(fields, WORDS[word], word)
+    else:
+        raise BriefError(f"a plan has no word '{word[:40]}' here; see the language in roadgpt.brief.plan")
+
+
+def _set(fields: dict[str, object], name: str, value: object) -> None:
+    if name in fields:
+        raise BriefError(f"a plan says its {name} twice: '{value}'; say it once")
+    fields[name] = value
+
+
+def _read_amount(text: str) -> Amount:
+    match = AMOUNT.fullmatch(text)
+    if not match or not (match[1] or match[3]) or (match[1] and match[3] and not match[2]):
+        raise BriefError(f"a plan has no number '{text[:40]}'; write 3, 3.., ..3 or 3..5")
+    low, high = (float(bound) if bound else None for bound in (match[1], match[3]))
+    try:
+        return Amount(lo=low, hi=high if match[2] else low)
+    except ValidationError as error:
+        raise BriefError(f"a plan has the range '{text[:40]}' the wrong way round") from error
+
+
+def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
+    try:
+        return model.model_validate(fields)
+    except ValidationError as error:
+        problem = error.errors()[0]
+        raise BriefError(f"the plan '{text.strip()[:60]}' is not a Brief: {problem['msg']}") from error
+
+
+def _number(value: float | None) -> str:
+    """Plain decimals, never an exponent; nothing for no bound."""
+    return "" if value is None else f"{value:.6f}".rstrip("0").rstrip(".")

@@ -1,0 +1,138 @@
+"""What words promise, against the table of meanings in the project's brief: written out by hand."""
+
+from math import inf
+
+import pytest
+
+from roadgpt.brief.model import Brief, Clause, at_least, at_most, between, exactly
+from roadgpt.brief.outline import Outline, outline
+from roadgpt.brief.words import Range
+
+
+def of(*clauses: Clause, **wishes: object) -> Outline:
+    return outline(Brief.model_validate({"clauses": clauses, **wishes}))
+
+
+@pytest.mark.parametrize(
+    ("kind", "turns", "degrees", "radius", "alternating"),
+    [
+        ("turn", (1, 1), Range(25, 120), None, False),
+        ("hairpin", (1, 1), Range(140, 210), Range(0, 35), False),
+        ("switchback", (1, 1), Range(100, 210), None, False),
+        ("u_turn", (1, 1), Range(150, 210), None, False),
+        ("s_bend", (2, 2), Range(25, 120), None, True),
+        ("chicane", (2, 4), Range(25, 120), Range(0, 30), True),
+        ("serpentine", (4, None), Range(40, 210), None, True),
+        ("zigzag", (4, None), Range(40, 210), None, True),
+        ("winding", (3, None), Range(25, 120), None, False),
+    ],
+)
+def test_kinds_of_turns(
+    kind: str, turns: tuple[int, int | None], degrees: Range, radius: Range | None, alternating: bool
+) -> None:
+    (group,) = of(Clause.model_validate({"kind": kind})).groups
+    assert (group.lo, group.hi) == turns
+    assert group.feature.degrees == degrees
+    assert group.feature.radius == radius
+    assert group.alternating == alternating
+
+
+@pytest.mark.parametrize(
+    ("asked", "lo", "hi"), [(45, 40.5, 49.5), (60, 54, 66), (80, 73, 87), (90, 81, 99), (150, 140, 160)]
+)
+def test_a_number_of_degrees_has_a_tenth_and_never_more_than_seven_or_ten(
+    asked: float, lo: float, hi: float
+) -> None:
+    (group,) = of(Clause(kind="turn", degrees=exactly(asked))).groups
+    assert group.feature.degrees is not None
+    assert (group.feature.degrees.lo, group.feature.degrees.hi) == pytest.approx((lo, hi))
+
+
+def test_lengths_and_percents_have_their_tolerance() -> None:
+    (group,) = of(Clause(kind="straight", length=exactly(60), slope="down", incline=exactly(8))).groups
+    assert group.feature.length == Range(51, 69)
+    assert group.feature.grade == Range(-9, -7)
+    assert of(length=exactly(300)).length == Range(270, 330)
+
+
+def test_gentle_and_sharp_turns() -> None:
+    gentle, sharp, hairpin = of(
+        Clause(kind="turn", sharpness="gentle"),
+        Clause(kind="turn", sharpness="sharp"),
+        Clause(kind="hairpin", sharpness="sharp"),
+    ).groups
+    assert (gentle.feature.degrees, gentle.feature.radius) == (Range(15, 120), Range(40))
+    assert (sharp.feature.degrees, sharp.feature.radius) == (Range(30, 120), Range(0, 30))
+    assert (hairpin.feature.degrees, hairpin.feature.radius) == (Range(140, 210), Range(0, 30))
+
+
+def test_a_sweeping_turn_is_gentle_where_the_map_is_small() -> None:
+    brief = Brief(clauses=(Clause(kind="turn", sharpness="sweeping"),))
+    assert outline(brief).groups[0].feature.radius == Range(60)
+    assert outline(brief, roomy=False).groups[0].feature.radius == Range(40)
+
+
+@pytest.mark.parametrize(
+    ("slope", "grade", "span"),
+    [
+        ("up", "up", Range(3, 12)),
+        ("steeply_down", "down", Range(-15, -8)),
+        ("gently_up", "up", Range(2, 5)),
+        ("flat", "flat", Range(-1, 1)),
+        ("nearly_flat", None, Range(-3.5, 3.5)),
+        (None, None, None),
+    ],
+)
+def test_the_slope_of_the_whole_road(slope: str | None, grade: str | None, span: Range | None) -> None:
+    seen = of(slope=slope)
+    assert (seen.grade, seen.grade_range) == (grade, span)
+    assert seen.steepest == (Range(0, 3.5) if slope == "nearly_flat" else None)
+
+
+def test_turns_are_counted_from_clauses_or_wishes() -> None:
+    three = Clause(kind="turn", count=exactly(3))
+    assert of(three, Clause(kind="chicane")).turns == Range(5, 7)
+    assert of(Clause(kind="straight")).turns == Range(0, 0)
+    assert of(Clause(kind="straight"), turns=exactly(2)).turns == Range(2, 2)
+    assert of(turns=at_least(3), left=exactly(0)).turns == Range(3, inf)
+    assert of(left=exactly(2), right=exactly(1)).turns == Range(3, inf)
+    assert of().turns == Range(1, inf)
+    assert of(ends=Clause(kind="hairpin")).turns == Range(1, inf)
+    assert of(three, Clause(kind="turn", count=between(1, 3)), turns=at_most(5)).turns == Range(4, 5)
+
+
+def test_a_crest_is_a_climb_and_a_fall_and_a_dip_the_reverse() -> None:
+    up, down = of(Clause(kind="crest")).groups
+    assert (up.feature.grade, down.feature.grade) == (Range(3, 12), Range(-12, -3))
+    down, up = of(Clause(kind="dip")).groups
+    assert (up.feature.grade, down.feature.grade) == (Range(3, 12), Range(-12, -3))
+
+
+def test_straights_that_nobody_could_tell_apart_are_one() -> None:
+    long, short = Clause(kind="straight", length=at_least(50)), Clause(kind="straight", length=at_least(30))
+    (group,) = of(long, short).groups
+    assert group.feature.length == Range(80)
+    assert len(of(long, short.model_copy(update={"slope": "up"})).groups) == 2
+
+
+def test_the_end_of_a_slalom_may_go_either_way() -> None:
+    seen = of(ends=Clause(kind="s_bend", side="left"), starts=Clause(kind="s_bend", side="left"))
+    assert seen.ends is not None
+    assert seen.starts is not None
+    assert (seen.starts.side, seen.ends.side) == ("left", None)
+
+
+def test_bounds_on_angles_stay_turns_that_can_be_seen() -> None:
+    most, least = of(
+        Clause(kind="turn", degrees=at_most(20)), Clause(kind="turn", degrees=at_least(90))
+    ).groups
+    assert most.feature.degrees == Range(12, 20)
+    assert least.feature.degrees is not None
+    assert least.feature.degrees.lo == 90
+    assert least.feature.degrees.hi < inf
+
+
+def test_gentle_for_every_turn_leaves_hairpins_their_angle() -> None:
+    seen = of(Clause(kind="hairpin"), sharpness="sharp")
+    assert seen.each_turn.degrees == Range(30)
+    assert seen.each_turn.radius == Range(0, 30)

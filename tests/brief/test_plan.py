@@ -1,0 +1,106 @@
+"""The one-line language of a Brief."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadgpt.brief.model import Amount, Brief, Clause, Kind, Sharpness, Side, Slope, at_least, exactly
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.errors import BriefError
+
+numbers = st.integers(0, 400).map(lambda n: n / 2)
+amounts = (
+    numbers.map(exactly)
+    | numbers.map(at_least)
+    | numbers.map(lambda n: Amount(hi=n))
+    | st.tuples(numbers, numbers).map(lambda pair: Amount(lo=min(pair), hi=max(pair)))
+)
+
+
+def maybe(strategy: st.SearchStrategy[object]) -> st.SearchStrategy[object]:
+    return st.none() | strategy
+
+
+shared = {
+    "alternating": st.booleans(),
+    "sharpness": maybe(st.sampled_from(Sharpness.__args__)),
+    "degrees": maybe(amounts),
+    "radius": maybe(amounts),
+    "length": maybe(amounts),
+    "slope": maybe(st.sampled_from(Slope.__args__)),
+    "incline": maybe(amounts),
+}
+clauses = st.builds(
+    Clause,
+    kind=st.sampled_from(Kind.__args__),
+    count=amounts,
+    side=maybe(st.sampled_from(Side.__args__)),
+    size=maybe(st.sampled_from(["long", "short"])),
+    **shared,
+)
+counted = ("turns", "left", "right", "steepest", "climb", "hills")
+briefs = st.builds(
+    Brief,
+    clauses=st.lists(clauses, max_size=4).map(tuple),
+    hard=st.booleans(),
+    starts=maybe(clauses),
+    ends=maybe(clauses),
+    **{name: maybe(amounts) for name in counted},
+    **shared,
+)
+
+
+@given(briefs)
+def test_a_brief_comes_back_from_its_line(brief: Brief) -> None:
+    line = plan(brief)
+    assert "\n" not in line
+    assert read_plan(line) == brief
+
+
+@pytest.mark.parametrize(
+    ("line", "brief"),
+    [
+        ("", Brief()),
+        ("| turns=1..", Brief(turns=at_least(1))),
+        (
+            "turn x3 | up climb=-12.5",
+            Brief(clauses=(Clause(kind="turn", count=exactly(3)),), slope="up", climb=exactly(-12.5)),
+        ),
+        ("| ends(hairpin left)", Brief(ends=Clause(kind="hairpin", side="left"))),
+    ],
+)
+def test_lines_by_hand(line: str, brief: Brief) -> None:
+    assert read_plan(line) == brief
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "road",
+        "turn left right",
+        "turn x",
+        "turn xx",
+        "turn deg=",
+        "turn deg=..",
+        "turn deg=5..3",
+        "turn 3",
+        "turn slope",
+        "| left",
+        "| ends(road)",
+        "| up down",
+        "turn len=1e5",
+        "turn | turns=3 turns=4",
+    ],
+)
+def test_lines_that_are_no_plan_get_a_sentence(line: str) -> None:
+    with pytest.raises(BriefError, match="plan"):
+        read_plan(line)
+
+
+@given(st.text(max_size=60))
+def test_any_text_is_a_brief_or_a_sentence(line: str) -> None:
+    try:
+        brief = read_plan(line)
+    except BriefError:
+        return
+    assert read_plan(plan(brief)) == brief
