@@ -6,7 +6,7 @@ from typing import Any
 
 from roadgpt.errors import UsageError
 from roadgpt.road.builder import Geometry, build
-from roadgpt.road.design import read_design
+from roadgpt.road.design import Design, read_design
 from roadgpt.road.road import Road
 
 LARGEST = 50_000_000  # bytes of a road file
@@ -26,6 +26,16 @@ def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
     Raises:
         UsageError: the file cannot be read, is not JSON, or holds no road.
     """
+    blueprint, _ = read_blueprint(path)
+    return build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint
+
+
+def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
+    """What a file holds, a Design or a Road, and a sentence for everything that had to be settled.
+
+    Raises:
+        UsageError: as for ``read_road``.
+    """
     path = Path(path)
     if path.is_dir():
         path = path / "road.json"
@@ -38,7 +48,9 @@ def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{path} is not valid JSON ({error}); give {SHAPES}") from error
     try:
-        return road_of(data, geometry)
+        if isinstance(data, dict) and "starting_point" in data:
+            return read_design(data)
+        return road_of(data), ()
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from error
 
