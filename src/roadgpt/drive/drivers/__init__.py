@@ -1,0 +1,2 @@
+"""The shelf of drivers: one file each, every one a class with ``start(road, world, seed)`` and
+``steer(view)``."""

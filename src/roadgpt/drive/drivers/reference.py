@@ -1,0 +1,80 @@
+"""The reference driver: feed-forward and look-ahead feedback along the middle of the right lane."""
+
+import math
+from typing import TYPE_CHECKING
+
+from roadgpt.drive.driving_line import line_along
+from roadgpt.drive.pedals import pedals
+from roadgpt.drive.speed_profile import Limits, plan_speed
+from roadgpt.drive.view import Command, View
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+TURN = 2 * math.pi
+
+
+class Reference:
+    """Keeps to the middle of the right lane; a road that it fails can hardly be driven.
+
+    Steering is that of N. R. Kapania, J. C. Gerdes, "Design of a feedback-feedforward steering controller for
+    accurate path tracking and stability at the limits of handling", Vehicle System Dynamics 53 (2015):
+    the steer that the bend ahead needs in a steady state, and feedback on the lateral error at a point ahead
+    of the car, slip angle counted. Speed is planned on the friction circle with grade and crests.
+
+    Args:
+        risk: lateral acceleration in bends, in g; at most 0.72 of the friction is used.
+        wheelbase: metres; to_rear: metres from the centre of gravity to the rear axle.
+        understeer: s^2/m, steer per lateral acceleration beyond Ackermann's; slip: s^2/m, slip angle of the
+            rear axle per lateral acceleration. Both belong to the car, and were fitted to ours.
+        gain: rad of steer per metre of lateral error ahead; ahead, headway: the point lies
+            ``ahead + headway * speed`` metres before the car.
+        lag: seconds that the steering needs; the bend is looked up that far ahead.
+    """
+
+    name = "reference"
+
+    def __init__(
+        self,
+        risk: float = 0.6,
+        wheelbase: float = 2.83,
+        to_rear: float = 1.47,
+        understeer: float = 0.0020,
+        slip: float = 0.0055,
+        gain: float = 0.10,
+        ahead: float = 5.0,
+        headway: float = 0.25,
+        lag: float = 0.10,
+    ) -> None:
+        self.risk = risk
+        self.wheelbase, self.to_rear = wheelbase, to_rear
+        self.understeer, self.slip = understeer, slip
+        self.gain, self.ahead, self.headway, self.lag = gain, ahead, headway, lag
+
+    def start(self, road: "Road", world: "World", seed: int) -> None:
+        """Plan line and speed."""
+        del seed  # the same road is driven the same way every time
+        line = line_along(road, -world.lane_width / 2)
+        lateral = min(self.risk, FRICTION_USED * world.friction)
+        limits = Limits(lateral, BRAKING * lateral, TRACTION * lateral, world.speed_limit)
+        self._line, self._speed = line, plan_speed(line, limits)
+
+    def steer(self, view: View) -> Command:
+        """Steer for the bend ahead and against the error; follow the planned speed."""
+        line, v = self._line, max(view.vx, 0.0)
+        i, share = line.place(view.s)
+        error = view.t - line.offset[i]
+        heading = line.heading[i] + share * (line.heading[i + 1] - line.heading[i])
+        turned = math.remainder(view.heading - heading, TURN)
+        j, share = line.place(view.s + self.lag * v)
+        bend = line.curvature[j] + share * (line.curvature[j + 1] - line.curvature[j])
+        lateral = v * v * bend
+        drift = self.to_rear * bend - self.slip * lateral
+        steer = self.wheelbase * bend + self.understeer * lateral
+        steer -= self.gain * (error + (self.ahead + self.headway * v) * (turned + drift))
+        return Command(steer, *pedals(line, self._speed, view.s, v))
+
+
+FRICTION_USED = 0.72  # share of the friction that bends may need; the rest is for errors
+BRAKING = 0.9  # of the lateral limit
+TRACTION = 0.8  # of the lateral limit

@@ -1,0 +1,93 @@
+"""The line that a driver wants to follow: the road, moved sideways by so many metres at every station.
+
+Drivers look it up every 20 ms, so it is measured once per road and kept as plain lists: an index is all it
+takes.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road
+
+STEP = 0.5  # m between stations
+BEYOND = 60.0  # m that the line runs straight on behind the road's end, for drivers that look ahead
+LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves to the line on the inside of a bend
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """Lists over equal stations of the road; number ``i`` belongs to station ``i * step``."""
+
+    step: float
+    """Metres of road between stations."""
+    offset: list[float]
+    """Metres to the left of the centre line."""
+    x: list[float]
+    y: list[float]
+    heading: list[float]
+    """Radians, continuous."""
+    curvature: list[float]
+    """1/m, of the line itself, positive to the left."""
+    stretch: list[float]
+    """Metres of line per metre of road."""
+    grade: list[float]
+    """Of the road, as a ratio."""
+    crest: list[float]
+    """Vertical curvature of the road in 1/m, negative on a crest."""
+
+    def place(self, s: float) -> tuple[int, float]:
+        """Index below station ``s`` and the share of the way to the next."""
+        at = s / self.step
+        last = len(self.x) - 2
+        if at <= 0.0:
+            return 0, 0.0
+        i = int(at)
+        return (i, at - i) if i <= last else (last, 1.0)
+
+
+def stations(road: "Road") -> FloatArray:
+    """The stations of the road that a line is measured at, both ends included, shape ``(n,)``."""
+    return np.linspace(0.0, road.length, max(2, math.ceil(road.length / STEP)) + 1)
+
+
+def line_along(road: "Road", offset: ArrayLike) -> Line:
+    """The line at an offset to the left of the centre line, running on straight behind the end.
+
+    Args:
+        road: the road.
+        offset: metres; a number, or one per station of ``stations(road)``.
+    """
+    s = stations(road)
+    step = float(s[1])
+    t = np.broadcast_to(np.asarray(offset, float), s.shape)
+    turning = np.gradient(t, step)
+    along = np.maximum(1 - road.curvature(s) * t, LEAST_STRETCH)
+    stretch = np.hypot(along, turning)
+    heading = np.unwrap(road.heading(s)) + np.arctan2(turning, along)
+    curvature = np.gradient(heading, step) / stretch
+    xy = road.at(s, t)[:, :2]
+    more = math.ceil(BEYOND / step)
+    far = step * np.arange(1, more + 1)[:, None] * [[np.cos(heading[-1]), np.sin(heading[-1])]]
+    xy = np.concatenate([xy, xy[-1] + far])
+    return Line(
+        step,
+        _longer(t, more, t[-1]),
+        xy[:, 0].tolist(),
+        xy[:, 1].tolist(),
+        _longer(heading, more, heading[-1]),
+        _longer(curvature, more, 0.0),
+        _longer(stretch, more, 1.0),
+        _longer(road.grade(s), more, float(road.grade(s[-1]))),
+        _longer(road.vertical_curvature(s), more, 0.0),
+    )
+
+
+def _longer(values: FloatArray, more: int, last: float) -> list[float]:
+    return [float(v) for v in values] + [float(last)] * more

@@ -1,0 +1,33 @@
+"""From a planned speed to throttle and brake."""
+
+from roadgpt.drive.driving_line import Line
+
+LAG = 0.12  # s that engine and brakes need; the plan is looked up that far ahead
+FULL_THROTTLE = 6.8  # m/s^2 at low speed, of a strong saloon
+POWER = 85.0  # W/kg at the wheels
+FULL_BRAKE = 13.0  # m/s^2, of the brakes if the tyres held
+DRAG = 3e-4  # 1/m, of air over mass
+ROLLING = 0.11  # m/s^2
+GRAVITY = 9.81  # m/s^2
+GAIN = 1.5  # 1/s, acceleration per error of speed
+COAST = 0.3  # m/s^2 of wanted braking that lifting the foot is answer enough for
+
+
+def pedals(line: Line, speed: list[float], s: float, v: float) -> tuple[float, float]:
+    """Throttle and brake, 0..1 each, that follow a plan: what it needs ahead, and feedback on the error.
+
+    Args:
+        line: the line that the speeds belong to.
+        speed: m/s at the stations of the line.
+        s: station of the car, metres.
+        v: speed of the car, m/s.
+    """
+    i, share = line.place(s + LAG * v + 0.5 * line.step)
+    here, there = speed[i], speed[i + 1]
+    planned = here + share * (there - here)
+    needed = planned * (there - here) / (line.step * line.stretch[i])
+    wanted = needed + GAIN * (planned - v)
+    wanted += GRAVITY * line.grade[i] + DRAG * v * v + ROLLING
+    if wanted > 0.0:
+        return min(wanted / min(FULL_THROTTLE, POWER / max(v, 1.0)), 1.0), 0.0
+    return 0.0, min(max(-wanted - COAST, 0.0) / FULL_BRAKE, 1.0)

@@ -1,0 +1,65 @@
+"""The Verdict: whether the car kept its lane, by how many metres, and where it first did not."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Literal, Self
+
+from roadgpt.errors import UsageError
+
+Outcome = Literal["PASS", "FAIL"]
+Cause = Literal["out of lane", "fell", "stuck", "timeout"]
+Side = Literal["left", "right"]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of one drive. Places are those of the car's centre of gravity where it first failed."""
+
+    outcome: Outcome
+    cause: Cause | None
+    """None when the car kept its lane to the goal."""
+    description: str
+    """One sentence."""
+    sbft_description: str
+    """What the SBFT tool competition writes into ``description``, without the name of the simulation."""
+    max_oob: float
+    """Largest share of the car's box outside the right lane, 0..1, over the whole drive."""
+    margin: float
+    """Metres, see `roadgpt.verdict.margin`: how far sideways the car still was from failing where it came
+    closest; negative exactly when it left its lane or fell."""
+    oob_counter: int
+    """How many times the car went from inside the tolerance to outside it."""
+    at_s: float | None = None
+    """Metres along the road where it failed; None when it kept its lane."""
+    at_xy: tuple[float, float] | None = None
+    """Metres."""
+    at_time: float | None = None
+    """Seconds since the start."""
+    side: Side | None = None
+    """Where it left its lane or fell; None for other outcomes."""
+
+    @property
+    def kept(self) -> bool:
+        """The car kept its lane, and came to the goal."""
+        return self.outcome == "PASS"
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data, ``kept`` included; ``Verdict.from_json`` gives the verdict back."""
+        data = asdict(self)
+        data["at_xy"] = None if self.at_xy is None else list(self.at_xy)
+        return {"kept": self.kept, **data}
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """The verdict that ``to_json`` wrote.
+
+        Raises:
+            UsageError: a field is missing or unknown.
+        """
+        fields = {key: value for key, value in data.items() if key != "kept"}
+        if fields.get("at_xy") is not None:
+            fields["at_xy"] = tuple(fields["at_xy"])
+        try:
+            return cls(**fields)
+        except TypeError as error:
+            raise UsageError(f"the verdict cannot be read ({error}): judge the drive again") from error
