@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 FloatArray = NDArray[np.float64]
-THINNEST = 1e-6  # m, half-width of a box seen exactly end-on
+THINNEST = 1e-9  # m, half-width of a box seen exactly end-on
 NOTHING = 1e-9  # m, the least by which a car that failed is said to have failed
 LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves on the inside of a bend
 
