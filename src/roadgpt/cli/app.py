@@ -82,7 +82,6 @@ class Commands(click.Group):
             click.echo(f"roadgpt: {error}", err=True)
             status = error.exit_status
         except (KeyboardInterrupt, click.Abort):
-            click.echo("roadgpt: stopped", err=True)
             status = INTERRUPTED
         except Exception as error:  # the last door: nothing may leave as a traceback
             click.echo(f"roadgpt: {report_crash(error)}", err=True)

@@ -151,6 +151,14 @@ geometry_option = click.option(
     help="What a design becomes: lines, arcs and clothoids, or RoadGPT's spline through hops.",
 )
 
+rules_option = click.option(
+    "--rules",
+    type=click.Choice(["strict", "sbft"]),
+    default="strict",
+    show_default=True,
+    help="Is the road sound, or what would the SBFT tool competition's validator say?",
+)
+
 axes_option = click.option(
     "--axes",
     type=click.Choice(["equal", "thesis"]),

@@ -5,7 +5,10 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from roadgpt.run.model import Run
 
 Outcome = Literal["PASS", "FAIL", "VALID", "INVALID", "ERROR"]
 
@@ -23,7 +26,7 @@ class Row:
     is_valid: bool = True
     validation_message: str = ""
     cause: str | None = None
-    """Of a FAIL: out of lane, fell, stuck or timeout."""
+    """Of a FAIL: out of lane, fell, stuck or timeout; of an ERROR: unreadable, where the file is at fault."""
     max_oob: float | None = None
     """Largest share of the car outside its lane, 0 to 1."""
     margin_m: float | None = None
@@ -80,6 +83,23 @@ def _rank(outcome: str) -> int:
     return [*COLOURS].index(outcome.split(" ")[0])
 
 
-def number(value: Any) -> float | None:
-    """A float, where there is one."""
-    return None if value is None else float(value)
+def row_of(run: "Run", file: str) -> Row:
+    """What is told of a Run whose road is in a file."""
+    verdict = run.verdict
+    return Row(
+        file,
+        run.outcome,
+        run.description,
+        is_valid=run.is_valid,
+        validation_message=run.validation_message,
+        cause=verdict.cause if verdict else None,
+        max_oob=verdict.max_oob if verdict else None,
+        margin_m=verdict.margin if verdict else None,
+        length_m=run.length if run.road else None,
+        seconds=run.seconds.total,
+    )
+
+
+def unreadable(file: str, error: Exception) -> Row:
+    """What is told of a file that holds no road."""
+    return Row(file, "ERROR", str(error), is_valid=False, validation_message=str(error), cause="unreadable")

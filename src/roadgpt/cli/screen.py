@@ -40,6 +40,9 @@ class Screen:
     ) -> None:
         if self._bar is not None:
             self._bar.stop()
+        if isinstance(error, KeyboardInterrupt):
+            finished = f"{len(self.rows)} of {self.total} roads are finished and complete"
+            click.echo(f"roadgpt: stopped; {finished}", err=True)
 
     @property
     def seconds(self) -> float:

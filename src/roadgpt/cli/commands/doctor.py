@@ -74,11 +74,9 @@ def _tried(about: str, look: Callable[[], str]) -> Answer:
 
 
 def _numba() -> str:
-    from roadgpt.drive.compiled import BINDS
+    from roadgpt.drive.compiled import COMPILES
 
-    return (
-        "compiles the inner loop" if BINDS else "does not bind here: drives work, but about 50 times slower"
-    )
+    return "compiles the inner loop" if COMPILES else "does not load: drives work, but far slower"
 
 
 def _drive() -> str:

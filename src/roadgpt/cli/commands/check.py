@@ -1,0 +1,70 @@
+"""``roadgpt check``: what the rules say of roads that exist."""
+
+import time
+from typing import Any
+
+import click
+
+from roadgpt.cli.options import (
+    files_argument,
+    geometry_option,
+    rules_option,
+    screen_options,
+    world_of,
+    world_options,
+)
+from roadgpt.cli.rows import Row, unreadable
+from roadgpt.cli.screen import Screen
+from roadgpt.errors import UsageError
+
+INVALID = 1  # exit status, so that a script can ask
+UNREADABLE = 2
+
+
+@click.command()
+@files_argument
+@rules_option
+@world_options("map_size")
+@geometry_option
+@screen_options
+def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **rest: Any) -> int:
+    """Check roads that exist against the rules.
+
+    ROAD.json is a RoadGPT design, an SBFT test, or a list of points [x, y] or [x, y, z]. The exit status is 0
+    when all roads are valid, 1 when one is not, 2 when one cannot be read.
+    """
+    world = world_of(rest)
+    with Screen(len(files), rest["as_json"], rest["quiet"], verbose) as screen:
+        for file in files:
+            try:
+                screen.row(_checked(screen, file, rules, geometry, world))
+            except UsageError as error:
+                screen.row(unreadable(file, error))
+        screen.close()
+    outcomes = {row.test_outcome for row in screen.rows}
+    return UNREADABLE if "ERROR" in outcomes else INVALID if "INVALID" in outcomes else 0
+
+
+def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> Row:
+    from roadgpt.check import inspect
+    from roadgpt.road import Design, build, read_blueprint
+
+    begun = time.perf_counter()
+    blueprint, remarks = read_blueprint(file)
+    road = build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint
+    findings = inspect(road, None, world, rules)
+    seconds = time.perf_counter() - begun
+    for remark in remarks:
+        screen.say(f"{file}: {remark}")
+    for finding in findings[1:]:
+        screen.detail(f"{file}: also, {finding.sentence}")
+    sentence = findings[0].sentence if findings else ""
+    return Row(
+        file,
+        "INVALID" if findings else "VALID",
+        sentence or f"valid by the rules '{rules}'",
+        is_valid=not findings,
+        validation_message=sentence,
+        length_m=road.length,
+        seconds=seconds,
+    )

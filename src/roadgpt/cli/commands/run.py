@@ -1,0 +1,67 @@
+"""``roadgpt run``: from a description to roads that were designed, checked, driven, judged and drawn."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from roadgpt.cli.options import (
+    ROADS,
+    SEED,
+    axes_option,
+    drive_options,
+    folder,
+    geometry_option,
+    part_option,
+    rules_option,
+    screen_options,
+    world_of,
+    world_options,
+)
+from roadgpt.cli.screen import Screen
+from roadgpt.cli.work import Wish, work_off
+
+
+@click.command()
+@click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION")
+@click.option("-n", "--roads", type=ROADS, default=1, show_default=True, help="How many roads.")
+@click.option("--seed", type=SEED, default=None, help="The same seed gives the same roads. [default: drawn]")
+@click.option("--out", type=folder, default=None, help="Folder for the campaign. [default: a new one]")
+@part_option("readers", "grammar", "What reads the description.")
+@part_option("designers", "planner", "What designs the roads.")
+@drive_options
+@world_options()
+@geometry_option
+@rules_option
+@click.option("--no-drive", is_flag=True, help="Design and check only.")
+@click.option("--no-plot", is_flag=True, help="Draw no pictures.")
+@axes_option
+@screen_options
+def command(
+    words: tuple[str, ...],
+    roads: int,
+    seed: int | None,
+    out: Path | None,
+    no_drive: bool,
+    no_plot: bool,
+    axes: str,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **rest: Any,
+) -> None:
+    r"""Design, check, drive and judge roads from a description.
+
+    The exit status is 0 when all roads were worked off, whatever became of them, 2 when something that was
+    typed cannot be used, 3 when nothing could be designed.
+
+    \b
+    roadgpt run "an uphill road with 3 turns" -n 5
+    roadgpt run "two hairpins, then a long straight" -n 20 --seed 7 --friction 0.6 --json
+    """
+    from roadgpt.run import Setup
+
+    world = world_of(rest)
+    setup = Setup(drives=not no_drive, **rest)
+    wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, has_pictures=not no_plot)
+    work_off(wish, Screen(roads, as_json, quiet, verbose))

@@ -1,0 +1,68 @@
+"""``roadgpt`` without a command: asks for a description and a number of roads, again and again."""
+
+import sys
+
+import click
+
+from roadgpt.cli.options import ROADS
+from roadgpt.cli.screen import Screen
+from roadgpt.cli.work import Wish, work_off
+from roadgpt.errors import RoadGPTError
+
+USUAL_ROADS = 3
+ENOUGH = {"exit", "quit", "bye", "q"}
+
+HELLO = """Describe a road, for example: an uphill road with 3 turns
+Leave with 'exit' or an empty line; Ctrl-C stops the roads that are being made."""
+
+
+def talk() -> None:
+    """Ask, work off, show; until the user has had enough."""
+    from roadgpt.road import World
+    from roadgpt.run import Setup
+
+    _enable_editing()
+    click.echo(HELLO)
+    while (words := _asked("\ndescription> ")) and words.lower() not in ENOUGH:
+        roads = _how_many()
+        if roads is None:
+            break
+        try:
+            work_off(Wish(words, roads, World(), Setup()), Screen(roads))
+        except RoadGPTError as error:
+            click.echo(f"roadgpt: {error}", err=True)
+        except KeyboardInterrupt:
+            click.echo()  # what was finished has been said; ask for the next description
+
+
+def _asked(question: str) -> str:
+    """The answer without blanks around it; an empty one where there is no more input."""
+    click.echo(question, nl=False)
+    try:
+        return input().strip()
+    except EOFError:
+        click.echo()
+        return ""
+
+
+def _how_many() -> int | None:
+    """The number of roads; None where the user has had enough."""
+    while True:
+        answer = _asked(f"how many roads [{USUAL_ROADS}]> ")
+        if answer.lower() in ENOUGH:
+            return None
+        if not answer:
+            return USUAL_ROADS
+        try:
+            return ROADS(answer)
+        except click.BadParameter as error:
+            click.echo(f"roadgpt: {error.message}", err=True)
+
+
+def _enable_editing() -> None:
+    """Arrow keys and history, where the platform has them."""
+    if sys.stdin.isatty():
+        try:
+            import readline  # noqa: F401  importing it is what switches it on
+        except ImportError:
+            return

@@ -1,0 +1,88 @@
+"""Working off one description: ``roadgpt run`` does it once, the conversation as often as it is asked."""
+
+import secrets
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadgpt.cli.crash import crashes_go_to
+from roadgpt.cli.rows import row_of
+from roadgpt.cli.screen import Screen
+
+if TYPE_CHECKING:
+    from roadgpt.brief import Brief
+    from roadgpt.road import World
+    from roadgpt.run import Campaign, Setup
+    from roadgpt.run.folder import Draw
+
+SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be typed again
+
+
+@dataclass(frozen=True)
+class Wish:
+    """One description and how it is to be worked off."""
+
+    words: str
+    roads: int
+    world: "World"
+    setup: "Setup"
+    seed: int | None = None
+    out: Path | None = None
+    axes: str = "equal"
+    has_pictures: bool = True
+
+
+def work_off(wish: Wish, screen: Screen) -> None:
+    """Read, say what was understood, design, drive, and show every road as it ends.
+
+    Raises:
+        RoadGPTError: the words, a part or the folder cannot be used, or nothing could be designed.
+        KeyboardInterrupt: the user stopped it; what is finished is complete, and was said.
+    """
+    from roadgpt.brief import read
+    from roadgpt.run import campaign
+
+    brief = read(wish.words, wish.setup.reader)
+    screen.say(understood(brief))
+    screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
+    seed = secrets.randbelow(SEEDS) if wish.seed is None else wish.seed
+    work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, _pictures(wish))
+    crashes_go_to(work.folder)
+    screen.say(f"seed {seed}, into {work.folder}")
+    if work.kept:
+        screen.say(f"{len(work.kept)} roads were finished before; going on")
+    _watch(work, screen)
+
+
+def understood(brief: "Brief") -> str:
+    """What was understood of the words, and which of them were not."""
+    from roadgpt.brief import sentence
+
+    unused = ", ".join(f"'{word}'" for word in brief.unused)
+    return f"understood: {sentence(brief)}" + (f"; not understood: {unused}" if unused else "")
+
+
+def _watch(work: "Campaign", screen: Screen) -> None:
+    """Show the roads of a campaign, first those that were there before; close with the table, come what may."""
+    from roadgpt.run.test_file import test_name
+
+    try:
+        with screen:
+            for runs in (work.earlier_runs(), work):
+                for run in runs:
+                    screen.row(row_of(run, str(work.folder / test_name(run.index))))
+                    screen.detail(f"  {run.description}")
+    finally:
+        screen.close()
+        if screen.rows:
+            screen.say(f"tests and tables: {work.folder}")
+            if work.draw is not None:
+                screen.say(f"pictures: {work.folder / 'runs'}/*/*.png")
+
+
+def _pictures(wish: Wish) -> "Draw | None":
+    if not wish.has_pictures:
+        return None
+    from roadgpt.report import drawing
+
+    return drawing(wish.axes)
