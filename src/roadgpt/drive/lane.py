@@ -1,0 +1,109 @@
+"""How much of the car lies outside the right lane: exact clipping of two polygons, near the car.
+
+The lane is a strip of quads between the centre line and one lane width to its right. Only the strip near
+the car's own station counts, so where a road passes under or beside itself, the other lane is no refuge.
+"""
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from roadgpt.drive.compiled import compiled
+from roadgpt.drive.drive import FloatArray
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+STEP = 0.5  # m, longest quad; a chord of that length is 2 mm off a 14 m arc
+REACH = 8.0  # m along the road on both sides of the car in which its box can lie
+
+
+class Lane(NamedTuple):
+    """The right lane in plan."""
+
+    edges: FloatArray
+    """Shape (n, 4): x, y of the left edge (the centre line), x, y of the right edge."""
+    step: float
+    """m along the centre line between rows."""
+
+    @classmethod
+    def along(cls, road: "Road", world: "World") -> "Lane":
+        """The right lane of a road, from its start to its end."""
+        count = max(2, math.ceil(road.length / STEP))
+        s = np.linspace(0.0, road.length, count + 1)
+        left = np.asarray(road.at(s))[:, :2]
+        right = np.asarray(road.at(s, -world.lane_width))[:, :2]
+        edges = np.ascontiguousarray(np.hstack([left, right]), dtype=np.float64)
+        return cls(edges, road.length / count)
+
+    def outside(self, corners: FloatArray, s: float) -> float:
+        """Share of a convex counter-clockwise box, shape (4, 2), outside the lane near station s; 0..1."""
+        box = np.ascontiguousarray(corners, dtype=np.float64)
+        return share_outside(self.edges, self.step, box, float(s), np.empty((2, 16, 2)))
+
+
+@compiled
+def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scratch: FloatArray) -> float:
+    """Share of the convex box outside the strip; scratch is room for 2 x 16 corners."""
+    whole = 0.0
+    mid_x = 0.25 * (box[0, 0] + box[1, 0] + box[2, 0] + box[3, 0])
+    mid_y = 0.25 * (box[0, 1] + box[1, 1] + box[2, 1] + box[3, 1])
+    around = 0.0
+    for k in range(4):
+        after = (k + 1) % 4
+        whole += 0.5 * (box[k, 0] * box[after, 1] - box[after, 0] * box[k, 1])
+        around = max(around, math.hypot(box[k, 0] - mid_x, box[k, 1] - mid_y))
+    if whole < 1e-3:
+        return 1.0
+    first = max(int((s - REACH) / step), 0)
+    last = min(int((s + REACH) / step) + 1, edges.shape[0] - 1)
+    inside = 0.0
+    for i in range(first, last):
+        a = edges[i]
+        b = edges[i + 1]
+        far = around + 0.5 * (math.hypot(a[0] - b[2], a[1] - b[3]) + step)
+        if math.hypot(0.5 * (a[0] + b[2]) - mid_x, 0.5 * (a[1] + b[3]) - mid_y) > far:
+            continue
+        count = 4
+        for k in range(4):
+            scratch[0, k, 0] = box[k, 0]
+            scratch[0, k, 1] = box[k, 1]
+        source = 0
+        # Counter-clockwise round the quad: right edge forward, across, left edge back, across.
+        for side in range(4):
+            if side == 0:
+                px, py, qx, qy = a[2], a[3], b[2], b[3]
+            elif side == 1:
+                px, py, qx, qy = b[2], b[3], b[0], b[1]
+            elif side == 2:
+                px, py, qx, qy = b[0], b[1], a[0], a[1]
+            else:
+                px, py, qx, qy = a[0], a[1], a[2], a[3]
+            kept = 0
+            for k in range(count):
+                x0, y0 = scratch[source, k, 0], scratch[source, k, 1]
+                after = k + 1 if k + 1 < count else 0
+                x1, y1 = scratch[source, after, 0], scratch[source, after, 1]
+                d0 = (qx - px) * (y0 - py) - (qy - py) * (x0 - px)
+                d1 = (qx - px) * (y1 - py) - (qy - py) * (x1 - px)
+                if d0 >= 0.0:
+                    scratch[1 - source, kept, 0] = x0
+                    scratch[1 - source, kept, 1] = y0
+                    kept += 1
+                if (d0 >= 0.0) != (d1 >= 0.0):
+                    share = d0 / (d0 - d1)
+                    scratch[1 - source, kept, 0] = x0 + share * (x1 - x0)
+                    scratch[1 - source, kept, 1] = y0 + share * (y1 - y0)
+                    kept += 1
+            count = kept
+            source = 1 - source
+            if count < 3:
+                break
+        if count >= 3:
+            x0, y0 = scratch[source, 0, 0], scratch[source, 0, 1]
+            for k in range(1, count - 1):
+                ax, ay = scratch[source, k, 0] - x0, scratch[source, k, 1] - y0
+                bx, by = scratch[source, k + 1, 0] - x0, scratch[source, k + 1, 1] - y0
+                inside += 0.5 * (ax * by - ay * bx)
+    return min(max(1.0 - inside / whole, 0.0), 1.0)

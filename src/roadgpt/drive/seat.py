@@ -1,0 +1,202 @@
+"""The driver's seat: asks the driver, checks the answer and minds the clock, for every simulator.
+
+Whatever a driver does wrong becomes one DriverError. A driver that hangs is stopped like this:
+
+- in the main thread, where the system has interval timers (Linux, macOS): by a signal, which ends endless
+  loops, sleeps and most waits;
+- elsewhere (other threads, Windows): by an exception that Python raises in the driver's thread between two
+  of its instructions. That ends endless loops, but a ``time.sleep(60)`` ends only when it is over.
+
+A driver that hangs inside compiled code which never looks up cannot be stopped from within its own process.
+"""
+
+import contextlib
+import ctypes
+import math
+import signal
+import threading
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from roadgpt.drive.view import View
+from roadgpt.errors import DriverError
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+ONE_ANSWER = 2.0  # s of wall time for one `steer`
+BEFORE_START = 30.0  # s for `start`: a driver may plan, or load a network
+WHOLE_DRIVE = 600.0  # s for all answers of a drive together
+TICK = 0.2  # s between two looks at the clock
+
+
+class _HungError(BaseException):
+    """Not an Exception, so that a driver that swallows those does not swallow this."""
+
+
+class Seat:
+    """Where a driver sits during one drive.
+
+    Use it as ``with seat.watched(): seat.start(...); seat.ask(view) ...``.
+    """
+
+    def __init__(self, driver: Any, one_answer: float = ONE_ANSWER, whole_drive: float = WHOLE_DRIVE) -> None:
+        """A seat for this driver; the limits are seconds of wall time.
+
+        Raises:
+            DriverError: the driver has no method ``steer``.
+        """
+        self.name = str(getattr(driver, "name", type(driver).__name__))
+        self._driver = driver
+        self._steer = getattr(driver, "steer", None)
+        if not callable(self._steer):
+            raise DriverError(
+                f"driver '{self.name}' cannot steer: give its class a method steer(self, view) that returns "
+                "roadgpt.drive.Command(steer, throttle, brake)"
+            )
+        self._one_answer = one_answer
+        self._whole_drive = whole_drive
+        self._used = 0.0
+        self._due = math.inf
+
+    def start(self, road: "Road", world: "World", seed: int) -> None:
+        """Lets the driver get ready, if it wants to.
+
+        Raises:
+            DriverError: it raised or hung.
+        """
+        start = getattr(self._driver, "start", None)
+        if start is not None:
+            self._guarded(0.0, BEFORE_START, lambda: start(road, world, seed))
+
+    def ask(self, view: View) -> tuple[float, float, float]:
+        """The driver's answer as (steer, throttle, brake), finite and in range.
+
+        Raises:
+            DriverError: it raised, hung, or the answer is no command.
+        """
+        begun = time.perf_counter()
+        self._due = begun + self._one_answer
+        try:
+            answer = self._steer(view)  # type: ignore[misc]
+            self._due = math.inf
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # a driver may raise anything; it costs this drive only
+            raise self._failure(error, view.time, self._one_answer) from error
+        finally:
+            self._due = math.inf
+        self._used += time.perf_counter() - begun
+        if self._used > self._whole_drive:
+            raise DriverError(
+                f"driver '{self.name}' took more than {self._whole_drive:g} s for one drive: "
+                "make steer() faster"
+            )
+        return self._checked(answer, view.time)
+
+    def _guarded(self, at: float, limit: float, action: Callable[[], Any]) -> None:
+        self._due = time.perf_counter() + limit
+        try:
+            action()
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # as in `ask`
+            raise self._failure(error, at, limit) from error
+        finally:
+            self._due = math.inf
+
+    def _checked(self, answer: Any, at: float) -> tuple[float, float, float]:
+        try:
+            steer, throttle, brake = answer
+            command = float(steer), float(throttle), float(brake)
+        except (TypeError, ValueError):
+            raise DriverError(
+                f"driver '{self.name}' answered {_short(answer)} at {at:.2f} s: return "
+                "roadgpt.drive.Command(steer, throttle, brake)"
+            ) from None
+        if not all(map(math.isfinite, command)):
+            raise DriverError(
+                f"driver '{self.name}' answered {_short(answer)} at {at:.2f} s: steer, throttle and brake "
+                "must be finite numbers"
+            )
+        return command[0], min(max(command[1], 0.0), 1.0), min(max(command[2], 0.0), 1.0)
+
+    def _failure(self, error: BaseException, at: float, limit: float) -> DriverError:
+        if isinstance(error, _HungError):
+            return DriverError(
+                f"driver '{self.name}' gave no answer within {limit:g} s at {at:.2f} s of its drive: "
+                "make steer() return at once"
+            )
+        frames = traceback.extract_tb(error.__traceback__)
+        where = f" ({frames[-1].filename}, line {frames[-1].lineno})" if len(frames) > 1 else ""
+        return DriverError(
+            f"driver '{self.name}' raised {type(error).__name__} at {at:.2f} s of its drive{where}: "
+            f"{_short(str(error) or 'no message', quoted=False)}"
+        )
+
+    @contextlib.contextmanager
+    def watched(self) -> Iterator[None]:
+        """While this is open, a driver that takes too long is stopped."""
+        main = threading.current_thread() is threading.main_thread()
+        try:
+            with _by_signal(self) if main and hasattr(signal, "setitimer") else _by_thread(self):
+                yield
+        except _HungError as error:  # sent just when the answer came
+            raise self._failure(error, 0.0, self._one_answer) from error
+
+    def is_late(self) -> bool:
+        """Is the driver being asked, and beyond its time?"""
+        return time.perf_counter() > self._due
+
+
+@contextlib.contextmanager
+def _by_signal(seat: Seat) -> Iterator[None]:
+    begun = time.perf_counter()
+    before = signal.getsignal(signal.SIGALRM)
+
+    def look(number: int, frame: Any) -> None:
+        if left and time.perf_counter() - begun > left and callable(before):
+            before(number, frame)  # somebody else's alarm (a test's time limit) rings through ours
+        if seat.is_late():
+            raise _HungError
+
+    signal.signal(signal.SIGALRM, look)
+    left, every = signal.setitimer(signal.ITIMER_REAL, TICK, TICK)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+        if left:
+            signal.setitimer(signal.ITIMER_REAL, max(left - (time.perf_counter() - begun), 1e-3), every)
+
+
+@contextlib.contextmanager
+def _by_thread(seat: Seat) -> Iterator[None]:
+    asked = ctypes.c_ulong(threading.get_ident())
+    done = threading.Event()
+
+    def look() -> None:
+        while not done.wait(TICK):
+            if seat.is_late():
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(asked, ctypes.py_object(_HungError))
+
+    watcher = threading.Thread(target=look, name="roadgpt-seat", daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        done.set()
+        watcher.join()
+        # One that was sent but not yet raised must not surface in the caller's code.
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(asked, None)
+
+
+def _short(value: Any, quoted: bool = True) -> str:
+    try:
+        text = repr(value) if quoted else str(value)
+    except Exception:
+        text = f"an object of {type(value).__name__}"
+    return text if len(text) <= 120 else text[:117] + "..."

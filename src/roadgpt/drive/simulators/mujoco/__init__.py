@@ -1,0 +1,7 @@
+"""The simulator ``mujoco``. Its car is a value: ``MujocoSimulator(replace(ETK_LIKE, launch=4.0))``."""
+
+from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre
+from roadgpt.drive.simulators.mujoco.simulator import MujocoSimulator
+from roadgpt.drive.simulators.mujoco.vehicle import Vehicle, plane
+
+__all__ = ["ETK_LIKE", "Axle", "Car", "MujocoSimulator", "Tyre", "Vehicle", "plane"]

@@ -1,0 +1,87 @@
+"""What the road does to one tyre.
+
+Magic formula by the similarity method: each axis has its own pure-slip curve; combined slips share the
+friction ellipse in the direction of the (normalised) slip. Slips build up over a relaxation length.
+Source: H. B. Pacejka, Tyre and Vehicle Dynamics, 3rd ed., sections 4.3.1, 7.2 and 8.6 (low speeds).
+"""
+
+import math
+from typing import Any
+
+from roadgpt.drive.compiled import inlined
+
+LOW_SPEED = 2.5  # m/s, below which a damper joins in (Pacejka 8.6)
+LOW_SPEED_DAMPING = 0.75  # Ns/m per N of load
+MOST_SLIP = 3.0  # normalised, how far beyond its peak a standing tyre's carcass may be wound up
+
+
+@inlined
+def _curve(shape: float, bend: float, slip: float) -> float:
+    """The magic formula of height 1 and slope 1, over normalised slip."""
+    b = slip / shape
+    return math.sin(shape * math.atan(b - bend * (b - math.atan(b))))
+
+
+@inlined
+def tyre_forces(
+    axle: Any,
+    friction: float,
+    load: float,
+    camber: float,
+    forward: float,
+    across: float,
+    rolling: float,
+    slip_x: float,
+    slip_y: float,
+    dt: float,
+) -> tuple[float, float, float, float]:
+    """Forces along and across the tyre, and its slips a moment later.
+
+    Args:
+        axle: record with the tyre's numbers and its nominal load.
+        friction: of the road.
+        load: N, vertical.
+        camber: rad, positive when the top leans to the right.
+        forward, across: m/s of the contact point along and to the left.
+        rolling: m/s, wheel speed times radius.
+        slip_x, slip_y: slips of a moment ago (positive: pushes forward, to the left).
+        dt: s.
+
+    Returns:
+        (N forward, N to the left, slip_x, slip_y)
+    """
+    if load <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    speed = abs(forward)
+    # Implicit in the slips, so that the relaxation is stable at every speed.
+    way_x = dt / axle.tyre_relaxation_x
+    way_y = dt / axle.tyre_relaxation_y
+    slip_x = (slip_x + way_x * (rolling - forward)) / (1.0 + way_x * speed)
+    slip_y = (slip_y - way_y * across) / (1.0 + way_y * speed)
+
+    over = load / axle.load - 1.0
+    fade = max(1.0 - axle.tyre_grip_fade * over, 0.3)
+    grip_x = friction * axle.tyre_grip_x * fade
+    grip_y = friction * axle.tyre_grip_y * fade * (1.0 - axle.tyre_camber_grip * camber * camber)
+    soft = max(1.0 - axle.tyre_stiffness_fade * over, 0.3)
+    side = 1.0 if camber > 0.0 else (-1.0 if camber < 0.0 else 0.0)
+    shift = side * axle.tyre_ply_shift + axle.tyre_camber_shift * camber
+    nx = slip_x * soft * axle.tyre_stiffness_x / grip_x
+    ny = (slip_y - shift) * soft * axle.tyre_stiffness_y / grip_y
+    total = math.sqrt(nx * nx + ny * ny)
+    if total < 1e-9:
+        fx = 0.0
+        fy = 0.0
+    else:
+        fx = grip_x * load * _curve(axle.tyre_shape_x, axle.tyre_bend_x, total) * nx / total
+        fy = grip_y * load * _curve(axle.tyre_shape_y, axle.tyre_bend_y, total) * ny / total
+        if total > MOST_SLIP and speed < LOW_SPEED:
+            slip_x *= MOST_SLIP / total
+            slip_y *= MOST_SLIP / total
+    fy += load * (side * axle.tyre_ply_thrust + axle.tyre_camber_thrust * camber)
+    if speed < LOW_SPEED:
+        damper = LOW_SPEED_DAMPING * load * 0.5 * (1.0 + math.cos(math.pi * speed / LOW_SPEED))
+        hold = math.hypot(grip_x, grip_y) * load
+        fx = min(max(fx + damper * (rolling - forward), -hold), hold)
+        fy = min(max(fy - damper * across, -hold), hold)
+    return fx, fy, slip_x, slip_y
