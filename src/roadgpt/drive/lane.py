@@ -106,4 +106,6 @@ def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scr
                 ax, ay = scratch[source, k, 0] - x0, scratch[source, k, 1] - y0
                 bx, by = scratch[source, k + 1, 0] - x0, scratch[source, k + 1, 1] - y0
                 inside += 0.5 * (ax * by - ay * bx)
-    return min(max(1.0 - inside / whole, 0.0), 1.0)
+    share = 1.0 - inside / whole
+    # A box wholly inside leaves rounding only.
+    return min(share, 1.0) if share > 1e-9 else 0.0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from roadgpt.drive.compiled import compiled, inlined
+from roadgpt.drive.compiled import inlined
 from roadgpt.drive.drive import FloatArray
 
 if TYPE_CHECKING:
@@ -102,11 +102,3 @@ def place_on(
             break
         s += min(max(along / crowd, -5.0), 5.0)
     return s, t, height, slope, heading
-
-
-@compiled
-def locate_near(
-    table: FloatArray, first: float, step: float, x: float, y: float, s: float
-) -> tuple[float, float, float, float, float]:
-    """`place_on` for callers outside compiled code."""
-    return place_on(table, first, step, x, y, s)

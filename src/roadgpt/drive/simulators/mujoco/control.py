@@ -37,17 +37,6 @@ STEERED, THROTTLE, BRAKE = _ROW["steer"], _ROW["throttle"], _ROW["brake"]
 S, T = _ROW["s"], _ROW["t"]
 
 
-def _sources() -> str:
-    """A mark of the code below `control_step`: numba looks only at the file of the function itself when it
-    decides whether what it kept on disk still holds."""
-    here = Path(__file__)
-    files = sorted([*here.parent.glob("*.py"), *here.parents[2].glob("*.py")])
-    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
-
-
-SOURCES = _sources() if compiling.COMPILES else ""
-
-
 @inlined
 def _look(engine: Engine, car: Any, ground: Ground, motion: Motion, row: FloatArray) -> bool:
     """Fills the row; says whether the car has fallen off the road or over."""
@@ -83,36 +72,53 @@ def _look(engine: Engine, car: Any, ground: Ground, motion: Motion, row: FloatAr
     return fell
 
 
-@compiled
-def control_step(
-    engine: Engine,
-    cars: Any,
-    axles: Any,
-    ground: Ground,
-    motion: Motion,
-    steer: float,
-    throttle: float,
-    brake: float,
-    steps: int,
-    row: FloatArray,
-    sources: str = SOURCES,  # not used: part of the key under which numba keeps the compiled code
-) -> bool:
-    """`steps` steps of 2 ms with these commands (rad, 0..1, 0..1), then the row; True when the car fell."""
-    car = cars[0]
-    for _ in range(steps):
-        step_once(engine, car, axles, ground, motion, steer, throttle, brake)
-    fell = _look(engine, car, ground, motion, row)
-    m = engine.xmat[BODY]
-    vx, vy = engine.qvel[0], engine.qvel[1]
-    dt = max(steps, 1) * STEP
-    state = motion.state
-    gx, gy = (vx - state[PAST_VX]) / dt, (vy - state[PAST_VY]) / dt
-    state[PAST_VX], state[PAST_VY] = vx, vy
-    # Level axes of the car; over a step of 20 ms the mean acceleration.
-    norm = 1.0 / max(math.hypot(m[0], m[3]), 1e-6)
-    c, n = m[0] * norm, m[3] * norm
-    row[AX] = gx * c + gy * n
-    row[AY] = gy * c - gx * n
-    row[THROTTLE] = throttle
-    row[BRAKE] = brake
-    return fell
+def _made(mark: int) -> Any:
+    """`control_step`, compiled. Numba finds what it kept on disk by a function's own file and by the values
+    that it closes over; the mark lets it know of all the other files."""
+
+    @compiled
+    def control_step(
+        engine: Engine,
+        cars: Any,
+        axles: Any,
+        ground: Ground,
+        motion: Motion,
+        steer: float,
+        throttle: float,
+        brake: float,
+        steps: int,
+        row: FloatArray,
+    ) -> bool:
+        """`steps` steps of 2 ms with these commands (rad, 0..1, 0..1), then the row; True: the car fell."""
+        car = cars[0]
+        for _ in range(steps):
+            step_once(engine, car, axles, ground, motion, steer, throttle, brake)
+        fell = _look(engine, car, ground, motion, row)
+        m = engine.xmat[BODY]
+        vx, vy = engine.qvel[0], engine.qvel[1]
+        dt = max(steps, 1) * STEP
+        state = motion.state
+        gx, gy = (vx - state[PAST_VX]) / dt, (vy - state[PAST_VY]) / dt
+        state[PAST_VX], state[PAST_VY] = vx, vy
+        # Level axes of the car; over a step of 20 ms the mean acceleration.
+        norm = 1.0 / max(math.hypot(m[0], m[3]), 1e-6)
+        c, n = m[0] * norm, m[3] * norm
+        row[AX] = gx * c + gy * n
+        row[AY] = gy * c - gx * n
+        row[THROTTLE] = throttle
+        row[BRAKE] = brake
+        return fell or mark == 0  # it never is; but a value that is not used is not closed over
+
+    return control_step
+
+
+def _mark_of_sources() -> int:
+    """Another number when any file of the physics has changed."""
+    here = Path(__file__)
+    files = sorted(here.parent.glob("*.py"))
+    files += [here.parents[2] / name for name in ("compiled.py", "drive.py", "lane.py", "ribbon.py")]
+    digest = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
+    return int(digest[:12], 16) | 1
+
+
+control_step = _made(_mark_of_sources() if compiling.COMPILES else 1)
