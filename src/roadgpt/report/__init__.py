@@ -1,0 +1,57 @@
+"""Reports: makes pictures of Runs and campaigns. Verb: ``draw``; the only room that imports matplotlib.
+
+birds_eye.png          the road from above, the driven path by speed, the place of a failure or objection
+height.png             distance against height
+curvature_grade.png    curvature, grade and speed along the road, with the limits of the rules
+overview.png           all roads of a campaign
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadgpt.report.birds_eye import Scale, birds_eye
+from roadgpt.report.canvas import save
+from roadgpt.report.height import height_profile
+from roadgpt.report.overview import overview
+from roadgpt.report.strip import strip
+from roadgpt.run import Run
+
+__all__ = ["Drawing", "Scale", "birds_eye", "draw", "drawing", "height_profile", "overview", "strip"]
+
+
+def draw(run: Run, folder: Path | str, axes: Scale = "equal") -> list[Path]:
+    """Draw all pictures of a Run into a folder that exists; none of a Run that has no road.
+
+    Args:
+        run: driven or not, valid or not.
+        folder: where the pictures go; those of the same names are replaced.
+        axes: "equal" fits and shows metres as metres; "thesis" gives the two plots RoadGPT's fixed axes.
+    """
+    if run.road is None:
+        return []
+    folder = Path(folder)
+    return [
+        save(birds_eye(run, axes), folder / "birds_eye.png"),
+        save(height_profile(run, axes), folder / "height.png"),
+        save(strip(run), folder / "curvature_grade.png"),
+    ]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Draws for a campaign as it goes; hand it to ``run.campaign``."""
+
+    axes: Scale = "equal"
+
+    def of_run(self, run: Run, folder: Path) -> list[Path]:
+        """All pictures of a Run."""
+        return draw(run, folder, self.axes)
+
+    def of_campaign(self, folder: Path) -> list[Path]:
+        """All roads of a campaign on one page, or on several."""
+        return overview(folder)
+
+
+def drawing(axes: Scale = "equal") -> Drawing:
+    """Who draws a campaign's pictures, on axes to scale or on RoadGPT's."""
+    return Drawing(axes)

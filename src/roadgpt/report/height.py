@@ -1,0 +1,128 @@
+"""Distance against height: to scale, or on the axes of RoadGPT's plots."""
+
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+from roadgpt.report.birds_eye import Scale
+from roadgpt.report.canvas import (
+    FAINT,
+    HALO,
+    HEADER,
+    INK,
+    SOFT,
+    VERMILLION,
+    add_axes,
+    header,
+    new_figure,
+)  # fmt: skip
+from roadgpt.report.places import places_of
+from roadgpt.report.scenery import Array, stations_of
+from roadgpt.run import Run
+
+WIDTH = 9.6  # inches
+LEFT, BOTTOM, RIGHT = 0.78, 0.62, 0.3  # inches
+LOWEST = 1.45  # inches, of the axes, however flat the road
+THESIS_HEIGHT = 3.6  # inches
+THESIS_X, THESIS_Z = 200.0, 20.0  # m
+SAME_GRADE = 0.004  # slopes within this are one stretch
+SHORTEST = 0.55  # inches, of a stretch that is worth a label
+EARTH, SURFACE = "#dcd9c3", "#4b5563"
+
+
+def height_profile(run: Run, scale: Scale = "equal") -> Figure:
+    """Heights over the distance along the road, with the slope of every longer stretch."""
+    assert run.road is not None
+    s = stations_of(run.road)
+    z = run.road.at(s)[:, 2]
+    across = WIDTH - LEFT - RIGHT
+    if scale == "thesis":
+        figure, axes, z, label = _thesis(run, z)
+    else:
+        per_inch = run.length * 1.03 / across
+        tall = max(LOWEST, np.ptp(z) / per_inch + 0.9)
+        figure = new_figure(WIDTH, HEADER + tall + BOTTOM)
+        axes = add_axes(figure, LEFT, BOTTOM, RIGHT, HEADER)
+        middle = (z.min() + z.max()) / 2 + 0.1 * per_inch
+        axes.set(xlim=(-0.015 * run.length, 1.015 * run.length))
+        axes.set_ylim(middle - tall / 2 * per_inch, middle + tall / 2 * per_inch)
+        axes.set_aspect("equal")
+        axes.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+        label = "height, m"
+    header(figure, run)
+    axes.set_xlabel("distance along the road, m")
+    axes.set_ylabel(label)
+    axes.grid(color=FAINT, lw=0.8)
+    axes.set_axisbelow(True)
+    low, high = axes.get_ylim()
+    axes.fill_between(s, z, low, color=EARTH, lw=0)
+    axes.plot(s, z, color=SURFACE, lw=2.4, solid_capstyle="round")
+    _slopes(axes, run, s, z)
+    for place in places_of(run):
+        at = float(np.interp(place.s, s, z))
+        axes.plot([place.s, place.s], [low, high], color=VERMILLION, lw=1, ls=(0, (4, 3)), zorder=3)
+        axes.plot(place.s, at, "X", ms=10, mfc=VERMILLION, mec="white", mew=1.2, zorder=6)
+        _say(axes, place.s, low, place.text.replace("\n", " "))
+    return figure
+
+
+def _thesis(run: Run, z: Array) -> tuple[Figure, Axes, Array, str]:
+    """RoadGPT's axes. A road that does not lie between 0 and 20 m is measured from its lowest point."""
+    figure = new_figure(WIDTH, HEADER + THESIS_HEIGHT + BOTTOM)
+    axes = add_axes(figure, LEFT, BOTTOM, RIGHT, HEADER)
+    label = "height, m"
+    if z.min() < 0 or z.max() > THESIS_Z:
+        z, label = z - z.min(), "height above the lowest point, m"
+    axes.set(xlim=(0, THESIS_X), ylim=(0, THESIS_Z))
+    axes.xaxis.set_major_locator(MultipleLocator(25))
+    axes.yaxis.set_major_locator(MultipleLocator(5))
+    if run.length > THESIS_X:
+        axes.text(
+            0.995, 0.97, f"goes on to {run.length:.0f} m →", transform=axes.transAxes, ha="right", va="top",
+            size=9.5, color=SOFT, path_effects=HALO,
+        )  # fmt: skip
+    return figure, axes, z, label
+
+
+def _slopes(axes: Axes, run: Run, s: Array, z: Array) -> None:
+    """The slope of every stretch of one slope, written over it, in percent."""
+    assert run.road is not None
+    grade = run.road.grade(s)
+    breaks = np.flatnonzero(np.abs(np.diff(grade)) > SAME_GRADE * (s[1] - s[0]) / 2)
+    edges = np.r_[0, breaks + 1, len(s) - 1]
+    left, right = axes.get_xlim()
+    shortest = SHORTEST * (right - left) / (WIDTH - LEFT - RIGHT)
+    lift = 0.13 * _metres_per_inch(axes)
+    for a, b in pairwise(edges):
+        middle = (s[a] + s[b]) / 2
+        if s[b] - s[a] < shortest or not left <= middle <= right:
+            continue
+        slope = float(grade[(a + b) // 2])
+        text = "level" if abs(slope) < 5e-4 else f"{slope:+.1%}".replace("%", " %").replace("-", "−")
+        axes.text(
+            middle, np.interp(middle, s, z) + lift, text, ha="center", va="bottom", size=9, color=INK,
+            path_effects=HALO,
+        )  # fmt: skip
+
+
+def _metres_per_inch(axes: Axes) -> float:
+    """Upwards."""
+    low, high = axes.get_ylim()
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    return float((high - low) / (axes.get_position().height * figure.get_figheight()))
+
+
+def _say(axes: Axes, s: float, low: float, text: str) -> None:
+    """A word beside the line of a place, on the side where there is room."""
+    left, right = axes.get_xlim()
+    gap = (right - left) * 0.008
+    is_late = s > (left + right) / 2
+    axes.text(
+        s - gap if is_late else s + gap, low + 0.06 * np.ptp(axes.get_ylim()), text,
+        ha="right" if is_late else "left", va="bottom", size=9.5, color=VERMILLION,
+        path_effects=HALO, zorder=7,
+    )  # fmt: skip

@@ -1,0 +1,73 @@
+"""Where to put a label so that it covers neither the road nor another label."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from roadgpt.report.canvas import HALO, INK
+from roadgpt.report.scenery import Frame
+
+Array = NDArray[np.float64]
+
+LETTER, LINE = 0.088, 0.19  # inches that a letter of 10 points is wide, and a line high
+REACHES = (0.34, 0.5, 0.72, 1.0, 1.4)  # inches from the place to the label
+WAYS = 16
+
+
+@dataclass
+class Labels:
+    """Labels that keep clear of points and of each other."""
+
+    axes: Axes
+    frame: Frame
+    per_inch: float
+    """Metres."""
+    clear_of: Array
+    """Points ``(n, 2)`` that no label should cover."""
+    radius: float
+    """Metres around each of these points."""
+    _boxes: list[tuple[float, float, float, float]] = field(default_factory=list)
+
+    def put(
+        self, place: tuple[float, float], text: str, colour: str = INK, away: Array | None = None
+    ) -> None:
+        """Label a place, metres; ``away`` is a direction ``(2,)`` to prefer."""
+        rows = text.split("\n")
+        wide = (max(map(len, rows)) * LETTER + 0.1) * self.per_inch
+        high = (len(rows) * LINE + 0.04) * self.per_inch
+        best = min(self._offers(place, wide, high, away), key=lambda offer: offer[0])
+        _, x, y = best
+        self._boxes.append((x - wide / 2, x + wide / 2, y - high / 2, y + high / 2))
+        self.axes.annotate(
+            text, place, (x, y), ha="center", va="center", size=10, color=colour, zorder=12,
+            path_effects=HALO, linespacing=1.15,
+            arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.9, "shrinkA": 0, "shrinkB": 5},
+        )  # fmt: skip
+
+    def _offers(
+        self, place: tuple[float, float], wide: float, high: float, away: Array | None
+    ) -> list[tuple[float, float, float]]:
+        """Cost and centre of every place that a label could take."""
+        offers = []
+        for reach in REACHES:
+            for angle in np.arange(WAYS) * (2 * np.pi / WAYS):
+                way = np.array([np.cos(angle), np.sin(angle)])
+                # the label's near side, not its middle, lies so far away
+                x = place[0] + way[0] * (reach * self.per_inch + wide / 2)
+                y = place[1] + way[1] * (reach * self.per_inch + high / 2)
+                cost = reach + (0.0 if away is None else 0.6 * (1 - float(way @ away)))
+                offers.append((cost + self._cover(x, y, wide, high), x, y))
+        return offers
+
+    def _cover(self, x: float, y: float, wide: float, high: float) -> float:
+        """How bad it is to cover what lies under a box: the road, labels, or the border of the frame."""
+        x0, x1, y0, y1 = x - wide / 2, x + wide / 2, y - high / 2, y + high / 2
+        dx = np.maximum(np.abs(self.clear_of[:, 0] - x) - wide / 2, 0)
+        dy = np.maximum(np.abs(self.clear_of[:, 1] - y) - high / 2, 0)
+        cost = 10.0 * float((np.hypot(dx, dy) < self.radius).mean())
+        cost += 2.0 * bool((np.hypot(dx, dy) < self.radius).any())
+        cost += 8.0 * sum(x0 < b and a < x1 and y0 < d and c < y1 for a, b, c, d in self._boxes)
+        frame = self.frame
+        return cost + 20.0 * (x0 < frame.x0 or x1 > frame.x1 or y0 < frame.y0 or y1 > frame.y1)

@@ -1,0 +1,165 @@
+"""All roads of a campaign on one page: small multiples of the map, told apart by outcome."""
+
+import json
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from roadgpt.errors import UsageError
+from roadgpt.report.canvas import INK, MARGIN, OUTCOMES, SOFT, VERMILLION, clipped, new_figure, save
+from roadgpt.report.scenery import GROUND, Array
+from roadgpt.road import World
+
+PER_PAGE = 100
+WIDEST = 11.0  # inches
+LARGEST, TITLE, GAP = 2.4, 0.24, 0.12  # inches: of a map, over it, and between maps
+HEADER = 0.9  # inches
+STYLES = {"PASS": "solid", "FAIL": "solid", "VALID": "solid", "INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What the page shows of one road."""
+
+    number: int
+    outcome: str
+    points: Array
+    failed_at: tuple[float, float] | None
+
+
+def overview(folder: Path | str) -> list[Path]:
+    """Draw ``overview.png`` of a campaign's folder (and ``overview-2.png`` and so on beyond 100 roads).
+
+    Reads the folder's ``test.NNNN.json``, so folders of the SBFT competition's own tools can be drawn too.
+
+    Raises:
+        UsageError: there is no test in the folder, or one cannot be read.
+    """
+    folder = Path(folder)
+    names = sorted(folder.glob("test.*.json"))
+    if not names:
+        raise UsageError(f"{folder} holds no test.0001.json; give the folder of a campaign")
+    about, size = _about(folder)
+    outcomes = Counter[str]()
+    pages = [names[i : i + PER_PAGE] for i in range(0, len(names), PER_PAGE)]
+    drawn = []
+    for number, page in enumerate(pages, 1):
+        entries = [_entry(path) for path in page]
+        outcomes.update(entry.outcome for entry in entries)
+        counts = outcomes if len(pages) == 1 else Counter(entry.outcome for entry in entries)
+        part = f"page {number} of {len(pages)}" if len(pages) > 1 else ""
+        figure = page_of(entries, about, part, counts, size)
+        drawn.append(save(figure, folder / f"overview{'' if number == 1 else f'-{number}'}.png"))
+    return drawn
+
+
+def _about(folder: Path) -> tuple[tuple[str, str], float]:
+    """Description and seed of the campaign, and the size of its map."""
+    card = folder / "campaign.json"
+    if not card.is_file():
+        return (folder.name, ""), World().map_size
+    request = _loaded(card)["request"]
+    return (request["words"], f"seed {request['seed']}"), request["world"]["map_size"]
+
+
+def _entry(path: Path) -> Entry:
+    test = _loaded(path)
+    points = np.asarray(test.get("interpolated_points") or np.empty((0, 2)), float)[:, :2]
+    outcome = test.get("test_outcome") or ("VALID" if test.get("is_valid") else "INVALID")
+    records = test.get("execution_data") or []
+    outside = next((record for record in records if record[12]), records[-1] if records else None)
+    place = (outside[1][0], outside[1][1]) if outcome == "FAIL" and outside else None
+    return Entry(int(test["id"]), outcome, points, place)
+
+
+def _loaded(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path} cannot be read ({error}); remove it or make it again") from error
+
+
+def page_of(
+    entries: list[Entry], about: tuple[str, str], part: str, counts: Counter[str], size: float
+) -> Figure:
+    """One page of maps, row by row."""
+    columns = _columns(len(entries))
+    rows = -(-len(entries) // columns)
+    cell = min(LARGEST, (WIDEST - 2 * MARGIN) / columns - GAP)
+    width = max(6.0, 2 * MARGIN + columns * (cell + GAP) - GAP)
+    high = HEADER + rows * (cell + TITLE + GAP) + 0.15
+    figure = new_figure(width, high)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(0, width), ylim=(high, 0))
+    axes.axis("off")
+    _header(axes, about, part, counts, width)
+    left = (width - columns * (cell + GAP) + GAP) / 2
+    for place, entry in zip(_places(len(entries), columns, cell, left), entries, strict=True):
+        _cell(axes, entry, place, cell, size)
+    return figure
+
+
+def _columns(count: int) -> int:
+    """As many as make the page about as wide as a sheet of paper is."""
+    return min(10, max(1, count if count <= 4 else int(np.ceil(np.sqrt(count * 1.05)))))
+
+
+def _places(count: int, columns: int, cell: float, left: float) -> Iterator[tuple[float, float]]:
+    """Upper left corners of the maps, inches from the page's."""
+    for i in range(count):
+        row, column = divmod(i, columns)
+        yield left + column * (cell + GAP), HEADER + TITLE + row * (cell + TITLE + GAP)
+
+
+def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str], width: float) -> None:
+    title = clipped(about[0] or "roads that were given", int((width - 2 * MARGIN) * 10.5), 1)
+    axes.text(MARGIN, 0.3, title, size=12, weight="bold", color=INK, va="center")
+    x = MARGIN
+    for outcome in OUTCOMES:
+        if counts[outcome]:
+            text = f"{counts[outcome]} {outcome}"
+            axes.text(
+                x + 0.06, 0.6, text, size=9.5, weight="bold", color="white", va="center",
+                bbox={"boxstyle": "round,pad=0.28", "fc": OUTCOMES[outcome], "ec": "none"},
+            )  # fmt: skip
+            x += 0.105 * len(text) + 0.28
+    axes.text(
+        x + 0.05, 0.6, "   ·   ".join(filter(None, (about[1], part))), size=9.5, color=SOFT, va="center"
+    )
+
+
+def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, size: float) -> None:
+    """A road on its map; the map's y grows upwards, the page's downwards."""
+    x0, y0 = place
+    small = 8.5 if cell > 1.2 else 7
+    axes.add_collection(
+        PatchCollection([Rectangle((x0, y0), cell, cell)], fc=GROUND, ec="#c5cad1", lw=0.8, zorder=1)
+    )
+    colour = OUTCOMES.get(entry.outcome, INK)
+    axes.text(x0, y0 - 0.06, f"{entry.number}", size=small, color=SOFT, va="bottom")
+    axes.text(
+        x0 + cell, y0 - 0.06, entry.outcome, size=small, weight="bold", color=colour, ha="right", va="bottom"
+    )
+    if not len(entry.points):
+        return
+    clip = Rectangle((x0, y0), cell, cell, transform=axes.transData)
+    scaled = entry.points / size * cell * [1, -1] + [x0, y0 + cell]
+    line = LineCollection(
+        [scaled], colors=colour, linewidths=2.2 if cell > 1.2 else 1.5, linestyles=[STYLES[entry.outcome]],
+        zorder=2, capstyle="butt",
+    )  # fmt: skip
+    line.set_clip_path(clip)
+    axes.add_collection(line)
+    (start,) = axes.plot(*scaled[0], "o", ms=3.6 if cell > 1.2 else 2.4, color=INK, zorder=3)
+    start.set_clip_path(clip)
+    if entry.failed_at is not None:
+        x, y = np.asarray(entry.failed_at) / size * cell * [1, -1] + [x0, y0 + cell]
+        axes.plot(x, y, "X", ms=7 if cell > 1.2 else 5, mfc=VERMILLION, mec="white", mew=0.8, zorder=4)

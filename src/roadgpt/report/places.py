@@ -1,0 +1,68 @@
+"""The places of a Run that a picture marks: where the car left its lane, or what a rule objects to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from roadgpt.run import Run
+
+MOST = 3  # findings; more would cover the road
+WORDS = {
+    "out of lane": "left its lane",
+    "fell": "fell off the road",
+    "stuck": "got stuck",
+    "timeout": "time ran out",
+}
+RULES = {
+    "inside_map": "leaves the map",
+    "no_overlap": "overlaps itself",
+    "too_tight": "too tight",
+    "too_steep": "too steep",
+    "below_floor": "below the ground",
+}
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place on the plane and along the road, metres, and what is wrong there."""
+
+    x: float
+    y: float
+    s: float
+    text: str
+    step: int | None = None
+    """Of the drive."""
+
+
+def places_of(run: Run) -> list[Place]:
+    """Of a failed drive one place; of an invalid road its findings that have one."""
+    verdict = run.verdict
+    if verdict is not None and verdict.cause is not None and verdict.at_xy is not None:
+        side = f"\nto the {verdict.side}" if verdict.side else ""
+        text = f"{WORDS.get(verdict.cause, verdict.cause)}{side}"
+        return [Place(*verdict.at_xy, verdict.at_s or 0.0, text, _step(run))]
+    places = []
+    for finding in run.findings:
+        where = _where(run, finding.s, finding.x, finding.y)
+        if where is not None:
+            text = RULES.get(finding.rule, finding.rule.replace("_", " "))
+            places.append(Place(*where, text))
+    return places[:MOST]
+
+
+def _step(run: Run) -> int | None:
+    """Index of the step of the drive at which it failed."""
+    assert run.verdict is not None
+    if run.drive is None or run.verdict.at_time is None:
+        return None
+    return int(np.abs(run.drive["time"] - run.verdict.at_time).argmin())
+
+
+def _where(run: Run, s: float | None, x: float | None, y: float | None) -> tuple[float, float, float] | None:
+    if run.road is None or (s is None and x is None):
+        return None
+    if s is None:
+        s = float(run.road.locate(x or 0.0, y or 0.0)[0])
+    if x is None or y is None:
+        x, y = (float(v) for v in run.road.at(s)[:2])
+    return x, y, s

@@ -1,0 +1,198 @@
+"""The whole flow on one page. Makes a Run, and a folder of Runs. Verbs: ``perform``, ``prove``, ``campaign``.
+
+    words --read--> Brief --draft--> Design --build--> Road --inspect--> Findings --simulate--> Drive
+                               ^                                  |        (none)                 |
+                               '----------- their sentences ------'                  Verdict <--judge
+
+``perform`` goes from words to a Run; ``prove`` from a Design or a Road that exists to a Run.
+"""
+
+import time
+import traceback
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from roadgpt import plugins
+from roadgpt.brief import read
+from roadgpt.brief.model import Brief
+from roadgpt.check import Finding, inspect, rules_of
+from roadgpt.drive import simulate
+from roadgpt.drive.custom import load_driver
+from roadgpt.errors import DesignError, DriverError, UsageError
+from roadgpt.road import Design, Road, World, build
+from roadgpt.run.campaign import Campaign
+from roadgpt.run.folder import Draw, read_run, write_run
+from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
+from roadgpt.run.replay import replay_lines
+from roadgpt.run.seeds import seed_of
+from roadgpt.run.summary import show
+from roadgpt.run.versions import versions_of
+from roadgpt.verdict import judge
+
+__all__ = [
+    "Campaign",
+    "Draw",
+    "Outcome",
+    "Request",
+    "Run",
+    "Seconds",
+    "Setup",
+    "campaign",
+    "perform",
+    "prove",
+    "read_run",
+    "replay_lines",
+    "seed_of",
+    "show",
+    "write_run",
+]
+
+USUAL = World()
+PLAIN = Setup()
+MOST_ROUNDS = 3  # drafts of one road; a designer that rules still object to then will not learn
+
+
+def perform(
+    words: str | Brief,
+    seed: int = 0,
+    world: World = USUAL,
+    setup: Setup = PLAIN,
+    index: int = 1,
+    earlier: Sequence[Design] = (),
+) -> Run:
+    """From words to a Run: read, design until no rule objects, drive, judge.
+
+    Args:
+        words: a description, or the Brief that was read from it.
+        seed: of the campaign; the road's own is drawn from it and its index.
+        world: map, limits of the rules, surface.
+        setup: who does the work, and how.
+        index: number of the road in its campaign, from 1.
+        earlier: designs that the new one should not repeat.
+
+    Raises:
+        BriefError: the words cannot be read.
+        DesignError: nothing could be designed.
+        UsageError: a part is not installed.
+    """
+    begun = time.perf_counter()
+    brief = words if isinstance(words, Brief) else read(words, setup.reader)
+    request = Request(words=brief.words, seed=seed, world=world, setup=setup)
+    own = seed_of(seed, index)
+    design, road, findings, rounds = _designed(brief, request, earlier, own)
+    designing = time.perf_counter() - begun
+    run = Run(request, index, own, brief=brief, design=design, road=road, findings=findings, rounds=rounds)
+    return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(designing)))
+
+
+def prove(
+    blueprint: Design | Road, seed: int = 0, world: World = USUAL, setup: Setup = PLAIN, index: int = 1
+) -> Run:
+    """From a Design or a Road to a Run: check, drive, judge. The seed is handed on as it is.
+
+    Raises:
+        UsageError: a part is not installed.
+    """
+    begun = time.perf_counter()
+    design = blueprint if isinstance(blueprint, Design) else None
+    road = build(blueprint, setup.geometry) if isinstance(blueprint, Design) else blueprint
+    findings = inspect(road, None, world, setup.rules)
+    request = Request(seed=seed, world=world, setup=setup)
+    checking = time.perf_counter() - begun
+    run = Run(request, index, seed, design=design, road=road, findings=findings)
+    return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(checking)))
+
+
+def campaign(
+    words: str | Brief,
+    n: int,
+    seed: int = 0,
+    world: World = USUAL,
+    setup: Setup = PLAIN,
+    out: Path | str | None = None,
+    draw: Draw | None = None,
+) -> Campaign:
+    """Many Runs of one description, each written into one folder as it ends.
+
+    Iterate over it to make it work; ``.folder`` says where. A driver or a simulator that fails costs one Run.
+
+    Args:
+        words, seed, world, setup: as for ``perform``.
+        n: how many roads.
+        out: the folder; an interrupted campaign of the same request is continued there. None makes a new one
+            under ``roadgpt-runs``.
+        draw: puts pictures into the folders, as ``report.drawing()`` does; None draws none.
+
+    Raises:
+        BriefError: the words cannot be read.
+        UsageError: the folder holds something else, or a part is not installed.
+    """
+    brief = words if isinstance(words, Brief) else read(words, setup.reader)
+    request = Request(words=brief.words, seed=seed, world=world, setup=setup)
+    _call_the_roll(setup)
+
+    def one(index: int, earlier: Sequence[Design]) -> Run:
+        return perform(brief, seed, world, setup, index, earlier)
+
+    return Campaign.opened(request, n, out, one, draw)
+
+
+def _call_the_roll(setup: Setup) -> None:
+    """Find every part before a folder is made."""
+    plugins.find("designers", setup.designer)
+    rules_of(setup.rules)
+    if setup.drives:
+        plugins.find("simulators", setup.simulator)
+        load_driver(setup.driver)
+
+
+def _designed(
+    brief: Brief, request: Request, earlier: Sequence[Design], seed: int
+) -> tuple[Design, Road, tuple[Finding, ...], int]:
+    """The first draft that no rule objects to, or the last one, with what they say of it."""
+    designer = plugins.find("designers", request.setup.designer)()
+    world, setup = request.world, request.setup
+    kept: tuple[Design, Road, tuple[Finding, ...], int] | None = None
+    notes: tuple[str, ...] = ()
+    for attempt in range(MOST_ROUNDS):
+        try:
+            # another seed each time, so that a designer that does not read notes draws anew
+            design = designer.draft(brief, world, notes, earlier, seed + attempt)
+        except DesignError:
+            if kept is None:
+                raise
+            break
+        road = build(design, setup.geometry)
+        kept = design, road, inspect(road, brief, world, setup.rules), attempt + 1
+        if not kept[2]:
+            break
+        notes = tuple(finding.sentence for finding in kept[2])
+    assert kept is not None
+    return kept
+
+
+def _driven(run: Run) -> Run:
+    """The Run with its drive and verdict, where the road is valid and is to be driven."""
+    setup = run.request.setup
+    if run.findings:
+        return replace(run, outcome="INVALID", description=run.validation_message)
+    if run.road is None or not setup.drives:
+        return run
+    begun = time.perf_counter()
+    try:
+        driver = load_driver(setup.driver)  # a new one each time: what it learnt on one road stays there
+        drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving)
+        verdict = judge(run.road, drive, run.world)
+    except UsageError:
+        raise
+    except Exception as error:  # whatever a driver or a simulator raises costs this road, not the campaign
+        trace = "" if isinstance(error, DriverError) else traceback.format_exc()
+        said = str(error) if isinstance(error, DriverError) else f"the simulation failed: {error!r}"
+        driving = replace(run.seconds, drive=time.perf_counter() - begun)
+        return replace(run, outcome="ERROR", description=said, trace=trace, seconds=driving)
+    driving = replace(run.seconds, drive=time.perf_counter() - begun)
+    ended: Outcome = verdict.outcome
+    return replace(
+        run, outcome=ended, description=verdict.description, drive=drive, verdict=verdict, seconds=driving
+    )

@@ -1,0 +1,63 @@
+"""Files and folders that are there whole or not at all, whenever the process is killed."""
+
+import json
+import math
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+PART = ".part"  # end of the name of what is not yet whole
+
+
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Write a file beside its place and then move it there."""
+    data = content.encode() if isinstance(content, str) else content
+    draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
+    try:
+        draft.write_bytes(data)
+        draft.replace(path)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def whole_folder(path: Path) -> Iterator[Path]:
+    """A folder to fill; it takes its name when the block ends well, and vanishes when it does not."""
+    draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
+    draft.mkdir(parents=True)
+    try:
+        yield draft
+        if path.exists():
+            shutil.rmtree(path)
+        draft.replace(path)
+    except BaseException:
+        shutil.rmtree(draft, ignore_errors=True)
+        raise
+
+
+def sweep(folder: Path) -> None:
+    """Remove what a killed process left unfinished in a folder."""
+    for path in folder.glob(f"*{PART}"):
+        if path.is_dir():
+            shutil.rmtree(path)
+        else:
+            path.unlink()
+
+
+def json_text(value: Any, indent: int | None = 1) -> str:
+    """JSON that every reader takes: numbers that are not finite become null."""
+    return json.dumps(_finite(value), indent=indent, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    return value

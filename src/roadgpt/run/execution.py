@@ -1,0 +1,126 @@
+"""A Drive as the SBFT competition records it: ``execution_data``, positional lists of 17 fields.
+
+    timer            s
+    pos, dir, vel    [x, y, z]: centre of gravity, m; unit vector ahead; m/s
+    steering         degrees at the steering wheel, left positive
+    steering_input   -1 to 1: share of the lock
+    brake, brake_input, throttle, throttle_input     0 to 1
+    wheelspeed       m/s
+    vel_kmh          whole km/h
+    is_oob           more than the tolerated share of the car's box is outside its lane
+    oob_counter      how often it has left the lane so far
+    max_oob_percentage    0 to 1: largest share while outside
+    oob_distance     m: half a lane less the distance from the middle of the lane; negative outside
+    oob_percentage   0 to 1: share of the car's box outside its lane
+
+Source: the competition's simulation record (2024). Its simulator knows the angle of the steering wheel;
+we know that of the front wheels, and take a common saloon's ratio. The last five: ``verdict.consult``.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.drive import Drive
+from roadgpt.road import World
+from roadgpt.verdict import consult
+
+RATE = 10.0  # Hz, of the records; the Drive itself has 50
+STEERING_RATIO = 15.0  # steering wheel to front wheels
+LOCK = 30.0  # degrees, of the front wheels
+
+FIELDS = (
+    "timer",
+    "pos",
+    "dir",
+    "vel",
+    "steering",
+    "steering_input",
+    "brake",
+    "brake_input",
+    "throttle",
+    "throttle_input",
+    "wheelspeed",
+    "vel_kmh",
+    "is_oob",
+    "oob_counter",
+    "max_oob_percentage",
+    "oob_distance",
+    "oob_percentage",
+)
+
+
+class Record(NamedTuple):
+    """One moment, in the competition's order."""
+
+    timer: float
+    pos: list[float]
+    dir: list[float]
+    vel: list[float]
+    steering: float
+    steering_input: float
+    brake: float
+    brake_input: float
+    throttle: float
+    throttle_input: float
+    wheelspeed: float
+    vel_kmh: int
+    is_oob: bool
+    oob_counter: int
+    max_oob_percentage: float
+    oob_distance: float
+    oob_percentage: float
+
+
+def records_of(drive: Drive, world: World) -> list[Record]:
+    """The Drive at 10 Hz, and at its last step and at every step that leaves the lane."""
+    oracle = consult(drive, world)
+    keep = _steps(drive["time"], np.diff(oracle.oob_counter, prepend=0) > 0)
+    ahead, velocity = _directions(drive)
+    place = np.stack([drive["x"], drive["y"], drive["z"]], axis=-1)
+    wheel = np.degrees(drive["steer"])
+    columns = {
+        "timer": drive["time"],
+        "pos": place,
+        "dir": ahead,
+        "vel": velocity,
+        "steering": wheel * STEERING_RATIO,
+        "steering_input": np.clip(wheel / LOCK, -1, 1),
+        "brake": drive["brake"],
+        "brake_input": drive["brake"],
+        "throttle": drive["throttle"],
+        "throttle_input": drive["throttle"],
+        "wheelspeed": np.abs(drive["vx"]),
+        "vel_kmh": np.round(drive["speed"] * 3.6).astype(int),
+        **oracle._asdict(),
+    }
+    rows = zip(*(_plain(columns[name][keep]) for name in FIELDS), strict=True)
+    return [Record(*row) for row in rows]
+
+
+def _steps(time: NDArray[np.float64], leaves: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Indices of the steps that are recorded."""
+    period = np.floor(time * RATE + 1e-6)
+    is_first = np.r_[True, np.diff(period) > 0]
+    is_first[-1] = True
+    return np.flatnonzero(is_first | leaves)
+
+
+def _directions(drive: Drive) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Where the car looks, and how it moves, in space."""
+    heading, pitch = drive["heading"], drive["pitch"]
+    flat = np.cos(pitch)
+    ahead = np.stack([np.cos(heading) * flat, np.sin(heading) * flat, np.sin(pitch)], axis=-1)
+    vx, vy = drive["vx"], drive["vy"]
+    velocity = ahead * vx[:, None]
+    velocity[:, 0] -= np.sin(heading) * vy
+    velocity[:, 1] += np.cos(heading) * vy
+    return ahead, velocity
+
+
+def _plain(column: NDArray[np.generic]) -> list[object]:
+    if column.dtype.kind == "f":
+        column = np.round(column.astype(float), 4) + 0.0  # no negative zeros
+    listed: list[object] = column.tolist()
+    return listed

@@ -1,0 +1,63 @@
+"""The features that the SBFT competition maps tests by: two of the road, three of the drive.
+
+    MAX_CURV   1/m: of circles through interpolated points i, i+2, i+4, the last window left out
+    DIR_COV    share of directions that occur: angles to north fall into 25 bins of 0 to 360 degrees
+    STD_SA     degrees: standard deviation of the steering wheel's angle
+    MEAN_LP, MAX_LP    m: mean and largest distance from the edge of the lane (``oob_distance``)
+
+Source: the competition's test_analysis.py (2024), after DeepHyperion (ISSTA 2021). Kept with its quirks:
+DIR_COV divides by the 26 edges of the bins, and takes angles by arccos, so that they never pass 180 degrees
+and a full circle scores 0.5.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from roadgpt.run.execution import Record
+
+BINS = 25
+COLLINEAR = 1e-6  # m^2: three points that span less lie on a line
+FEWEST_RECORDS = 3  # with fewer, a drive has no features
+
+
+def features_of(points: ArrayLike, records: Sequence[Record] = ()) -> dict[str, float]:
+    """All features of a test.
+
+    Args:
+        points: interpolated points of the road ``(n, 2)`` or ``(n, 3)``, about one per metre.
+        records: its execution data; fewer than three give no features of the drive.
+    """
+    plan = np.asarray(points, float)[:, :2]
+    found = {"MAX_CURV": max_curvature(plan), "DIR_COV": direction_coverage(plan)}
+    if len(records) >= FEWEST_RECORDS:
+        found["STD_SA"] = float(np.std([record.steering for record in records]))
+        found["MEAN_LP"] = float(np.mean([record.oob_distance for record in records]))
+        found["MAX_LP"] = float(np.max([record.oob_distance for record in records]))
+    return {name: round(value, 6) for name, value in found.items()}
+
+
+def max_curvature(plan: NDArray[np.float64]) -> float:
+    """Largest curvature, 1/m, of points ``(n, 2)``; 0 on a line and for fewer than six points."""
+    p, q, r = plan[:-5], plan[2:-3], plan[4:-1]
+    a, b = p - q, r - q
+    twice_area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    sides = _norm(a) * _norm(b) * _norm(p - r)
+    bends = twice_area >= COLLINEAR
+    # 1/R = 4 * area / (product of the sides)
+    return float((2 * twice_area[bends] / sides[bends]).max(initial=0.0))
+
+
+def direction_coverage(plan: NDArray[np.float64]) -> float:
+    """Share of the 26 edges that bin the directions of points ``(n, 2)``."""
+    step = np.diff(plan, axis=0)
+    length = _norm(step)
+    moves = length > 0
+    angle = np.degrees(np.arccos(np.clip(step[moves, 1] / length[moves], -1, 1)))
+    edges = np.linspace(0.0, 360.0, BINS + 1)
+    return len(np.unique(np.digitize(angle, edges))) / len(edges)
+
+
+def _norm(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.sqrt((vectors**2).sum(axis=-1)))

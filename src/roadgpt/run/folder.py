@@ -1,0 +1,156 @@
+"""The folder of one Run: written whole, and read back as the Run that it was.
+
+campaign/
+  test.0001.json           written last: where it is, the Run is finished
+  runs/0001/
+    brief.json design.json road.json drive.npz verdict.json    the values, each in its own form
+    run.json               outcome, findings, seed, versions, and the whole request
+    seconds.json           what it cost on the clock: the one file that another day changes
+    error.txt              where a simulator or driver failed
+    *.png                  the pictures
+"""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Protocol
+
+from pydantic import ValidationError
+
+from roadgpt.brief.model import Brief
+from roadgpt.check import Finding
+from roadgpt.drive import Drive
+from roadgpt.errors import UsageError
+from roadgpt.road import Road, read_design
+from roadgpt.run.atomic import json_text, whole_folder, write_whole
+from roadgpt.run.model import Request, Run, Seconds
+from roadgpt.run.test_file import test_name, test_text
+from roadgpt.verdict import Verdict
+
+FORMAT = 1
+RUNS = "runs"
+
+
+class Draw(Protocol):
+    """Whoever draws pictures; the room ``report`` does."""
+
+    def of_run(self, run: Run, folder: Path) -> object:
+        """Put the pictures of a Run into its folder."""
+        ...
+
+    def of_campaign(self, folder: Path) -> object:
+        """Put a picture of all roads into a campaign's folder."""
+        ...
+
+
+def run_folder(campaign: Path, index: int) -> Path:
+    """Where road ``index`` of a campaign lies."""
+    return campaign / RUNS / f"{index:04d}"
+
+
+def write_run(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
+    """Write a Run into a campaign's folder, its test file last; gives back the Run's own folder."""
+    folder = run_folder(campaign, run.index)
+    with whole_folder(folder) as draft:
+        for name, content in _files(run):
+            (draft / name).write_bytes(content)
+        if draw is not None:
+            draw.of_run(run, draft)
+    write_whole(campaign / test_name(run.index), test_text(run))
+    return folder
+
+
+def _files(run: Run) -> list[tuple[str, bytes]]:
+    texts = {
+        "brief.json": run.brief and run.brief.model_dump(mode="json", exclude_defaults=True),
+        "design.json": run.design and run.design.to_json(),
+        "road.json": run.road and run.road.to_json(),
+        "verdict.json": run.verdict and run.verdict.to_json(),
+        "run.json": _card(run),
+        "seconds.json": asdict(run.seconds),
+    }
+    files = [(name, json_text(data).encode()) for name, data in texts.items() if data is not None]
+    if run.trace:
+        files.append(("error.txt", run.trace.encode()))
+    if run.drive is not None:
+        files.append(("drive.npz", run.drive.to_bytes()))
+    return files
+
+
+def _card(run: Run) -> dict[str, Any]:
+    return {
+        "format": FORMAT,
+        "index": run.index,
+        "seed": run.seed,
+        "outcome": run.outcome,
+        "description": run.description,
+        "findings": [asdict(finding) for finding in run.findings],
+        "rounds": run.rounds,
+        "request": run.request.model_dump(mode="json"),
+        "versions": dict(run.versions),
+    }
+
+
+def is_run(path: Path) -> bool:
+    """Does a Run lie here?"""
+    return (path / "run.json").is_file()
+
+
+def read_run(path: Path | str) -> Run:
+    """The Run in a folder, or the one that a campaign's test file belongs to.
+
+    Raises:
+        UsageError: there is no Run, or a file of it cannot be read.
+    """
+    folder = _folder_of(Path(path))
+    card = _loaded(folder / "run.json")
+    if not isinstance(card, dict) or card.get("format") != FORMAT:
+        raise UsageError(f"{folder} was written by another version of roadgpt; make the road again")
+    try:
+        return _read(folder, card)
+    except (KeyError, TypeError, ValueError, ValidationError) as error:
+        raise UsageError(f"the run in {folder} cannot be read ({error!r}); make the road again") from error
+
+
+def _folder_of(path: Path) -> Path:
+    if path.is_file():
+        parts = path.name.split(".")
+        beside = path.parent / RUNS / parts[1] if len(parts) == 3 and parts[0] == "test" else path.parent
+        path = beside
+    if is_run(path):
+        return path
+    if (path / RUNS).is_dir():
+        raise UsageError(f"{path} holds many runs; give one of the folders in {path / RUNS}")
+    raise UsageError(f"there is no run in {path}; give a folder like DIR/runs/0001")
+
+
+def _read(folder: Path, card: dict[str, Any]) -> Run:
+    def value(name: str) -> Any:
+        return _loaded(folder / name) if (folder / name).is_file() else None
+
+    brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
+    trace = folder / "error.txt"
+    return Run(
+        request=Request.model_validate(card["request"]),
+        index=card["index"],
+        seed=card["seed"],
+        outcome=card["outcome"],
+        description=card["description"],
+        brief=None if brief is None else Brief.model_validate(brief),
+        design=None if design is None else read_design(design)[0],
+        road=None if road is None else Road.from_json(road),
+        findings=tuple(Finding(**finding) for finding in card["findings"]),
+        drive=Drive.load(folder / "drive.npz") if (folder / "drive.npz").is_file() else None,
+        verdict=None if verdict is None else Verdict.from_json(verdict),
+        rounds=card["rounds"],
+        versions=card["versions"],
+        trace=trace.read_text(encoding="utf-8") if trace.is_file() else "",
+        seconds=Seconds(**(value("seconds.json") or {})),
+    )
+
+
+def _loaded(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise UsageError(f"{path} cannot be read ({error}); make the road again") from error

@@ -1,0 +1,109 @@
+"""The Run: all that came of one road, and the Request that it answers."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from roadgpt.brief.model import Brief, Frozen
+from roadgpt.check import Finding
+from roadgpt.road import Design, Geometry, Road, World
+
+if TYPE_CHECKING:
+    from roadgpt.drive import Drive
+    from roadgpt.verdict import Verdict
+
+Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
+"""VALID: the rules object to nothing, and nobody drove."""
+
+
+class Setup(Frozen):
+    """Who does the work, and how."""
+
+    reader: str = "grammar"
+    designer: str = "planner"
+    rules: Literal["strict", "sbft"] = "strict"
+    driver: str = "beamng_like"
+    """A name on the shelf, or FILE.py:CLASS."""
+    simulator: str = "mujoco"
+    geometry: Geometry = "arcs"
+    keep_driving: bool = False
+    drives: bool = True
+    """False: roads are designed and checked only."""
+
+
+class Request(Frozen):
+    """What a campaign is asked for, all but how often; the same Request gives the same files."""
+
+    words: str = ""
+    """Empty where roads were given."""
+    seed: int = 0
+    world: World = World()
+    setup: Setup = Setup()
+
+
+@dataclass(frozen=True)
+class Seconds:
+    """What a Run cost on the clock; the only part of it that another day changes."""
+
+    design: float = 0.0
+    """Reading, designing and checking."""
+    drive: float = 0.0
+    """Driving and judging."""
+
+    @property
+    def total(self) -> float:
+        """Of both."""
+        return self.design + self.drive
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One road from words to verdict. What it did not come to is None."""
+
+    request: Request
+    index: int
+    """Number of the road in its campaign, from 1."""
+    seed: int
+    """The road's own, drawn from the campaign's; a road that was given has the campaign's itself."""
+    outcome: Outcome = "VALID"
+    description: str = "valid, not driven"
+    """The outcome in a sentence."""
+    brief: Brief | None = None
+    design: Design | None = None
+    road: Road | None = None
+    findings: tuple[Finding, ...] = ()
+    drive: "Drive | None" = None
+    verdict: "Verdict | None" = None
+    rounds: int = 0
+    """Drafts that it took."""
+    versions: Mapping[str, str] = field(default_factory=dict)
+    trace: str = ""
+    """Of a simulator or a driver that failed: where."""
+    seconds: Seconds = Seconds()
+
+    @property
+    def words(self) -> str:
+        """The description that the road was made from."""
+        return self.request.words
+
+    @property
+    def world(self) -> World:
+        """The map, its rules and its surface."""
+        return self.request.world
+
+    @property
+    def is_valid(self) -> bool:
+        """Is there a road that the rules do not object to?"""
+        return self.road is not None and not self.findings
+
+    @property
+    def validation_message(self) -> str:
+        """The first objection; empty for a valid road."""
+        if self.findings:
+            return self.findings[0].sentence
+        return "" if self.road else self.description
+
+    @property
+    def length(self) -> float:
+        """Of the road, metres in plan; 0 where there is none."""
+        return self.road.length if self.road else 0.0

@@ -1,0 +1,37 @@
+"""Names of the folders of campaigns: safe whatever the description says."""
+
+import re
+import unicodedata
+from pathlib import Path
+
+from roadgpt.errors import UsageError
+
+HOME = Path("roadgpt-runs")
+LONGEST = 40  # letters of a description
+
+
+def slug(words: str) -> str:
+    """A description as a part of a path: only a-z, 0-9 and '-', at most 40 of them."""
+    plain = unicodedata.normalize("NFKD", words[:1000]).encode("ascii", "ignore").decode().lower()
+    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:LONGEST].strip("-") or "road"
+
+
+def new_folder(words: str, seed: int, home: Path = HOME) -> Path:
+    """A folder made now that did not exist; a number is added where the name is taken.
+
+    Raises:
+        UsageError: no folder can be made here.
+    """
+    name, number = f"{slug(words)}-{seed}", 1
+    try:
+        home.mkdir(parents=True, exist_ok=True)
+        while True:
+            folder = home / (name if number == 1 else f"{name}-{number}")
+            try:
+                folder.mkdir()
+            except FileExistsError:
+                number += 1
+            else:
+                return folder
+    except OSError as error:
+        raise UsageError(f"cannot make a folder in {home}: {error.strerror}; say --out FOLDER") from error

@@ -1,0 +1,108 @@
+"""The tables of a campaign, with the columns of the SBFT competition.
+
+generation_stats.csv         counts, and seconds on the clock
+oob_stats.csv                failures by side, and how much they differ
+experiment_description.csv   what was asked for: their columns first, then ours
+"""
+
+import csv
+import io
+from collections import Counter
+from pathlib import Path
+
+from roadgpt.run.atomic import write_whole
+from roadgpt.run.model import Request, Run
+from roadgpt.run.sparseness import Spread, failure_segment
+
+DEPARTURES = ("out of lane", "fell")  # causes of failures that have a place and a side
+
+
+class Tally:
+    """Counts of a campaign so far."""
+
+    def __init__(self) -> None:
+        self.outcomes: Counter[str] = Counter()
+        self.sides: Counter[str] = Counter()
+        self.valid = 0
+        self.with_road = 0
+        self.designing = self.driving = self.simulated = 0.0
+        self.spread = Spread()
+
+    def add(self, run: Run) -> None:
+        """Count one more Run."""
+        self.outcomes[run.outcome] += 1
+        self.valid += run.is_valid
+        self.with_road += run.road is not None
+        self.designing += run.seconds.design
+        self.driving += run.seconds.drive
+        self.simulated += run.drive.duration if run.drive is not None else 0.0
+        verdict = run.verdict
+        if run.road is not None and verdict is not None and verdict.cause in DEPARTURES:
+            self.sides[verdict.side or "right"] += 1
+            if verdict.at_s is not None:
+                self.spread.add(failure_segment(run.road, verdict.at_s))
+
+    def write(self, folder: Path) -> None:
+        """Write the tables that change from road to road."""
+        write_whole(folder / "generation_stats.csv", _table([self._generation()]))
+        write_whole(folder / "oob_stats.csv", _table([self._departures()]))
+
+    def _generation(self) -> dict[str, object]:
+        generated = self.outcomes.total()
+        return {
+            "test_generated": generated,
+            "test_valid": self.valid,
+            "test_invalid": generated - self.valid,
+            "test_passed": self.outcomes["PASS"],
+            "test_failed": self.outcomes["FAIL"],
+            "test_in_error": self.outcomes["ERROR"],
+            "real_time_generation": round(self.designing, 4),
+            "real_time_execution": round(self.driving, 4),
+            "simulated_time_execution": round(self.simulated, 4),
+        }
+
+    def _departures(self) -> dict[str, object]:
+        return {
+            "total_oob": self.sides.total(),
+            "left_oob": self.sides["left"],
+            "right_oob": self.sides["right"],
+            "avg_sparseness": f"{self.spread.mean:.3f}",
+            "stdev_sparseness": f"{self.spread.deviation:.3f}",
+        }
+
+
+def write_description(request: Request, roads: int, folder: Path) -> None:
+    """Write the table of what was asked for; the competition's columns that mean nothing here stay empty."""
+    setup, world = request.setup, request.world
+    theirs = {
+        "executor": setup.simulator,
+        "dave2_model": "",
+        "beamng_home": "",
+        "beamng_user": "",
+        "time_budget": "",
+        "map_size": world.map_size,
+        "oob_tolerance": world.oob_tolerance,
+        "speed_limit": round(world.speed_limit * 3.6, 6),
+        "module_name": "roadgpt",
+        "module_path": "",
+        "class_name": setup.designer,
+        "visualize_tests": "",
+        "log_to": "",
+        "debug": "",
+    }
+    ours = {
+        "description": request.words,
+        "roads": roads,
+        "seed": request.seed,
+        **{key: value for key, value in setup.model_dump().items() if key not in ("simulator", "designer")},
+        **{key: value for key, value in world.model_dump().items() if key not in theirs},
+    }
+    write_whole(folder / "experiment_description.csv", _table([theirs | ours]))
+
+
+def _table(rows: list[dict[str, object]]) -> str:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()

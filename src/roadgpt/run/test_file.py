@@ -1,0 +1,49 @@
+"""A Run in the shape of the SBFT competition's ``test.NNNN.json``, which its tools read.
+
+Where theirs leaves a field out (an invalid road has no execution data), ours is there and empty. The
+description of a drive is in their words; ``verdict.json`` has ours. Their interpolated points are [x, y];
+ours carry the height: [x, y, z].
+"""
+
+from typing import Any
+
+import numpy as np
+
+from roadgpt.run.atomic import json_text
+from roadgpt.run.execution import records_of
+from roadgpt.run.features import features_of
+from roadgpt.run.model import Run
+
+DECIMALS = 5
+PER_POINT = 1.0  # m
+
+
+def test_of(run: Run) -> dict[str, Any]:
+    """The test as data, in the competition's order of fields."""
+    points = np.empty((0, 3))
+    control = np.empty((0, 2))
+    if run.road is not None:
+        points = np.round(run.road.centreline(PER_POINT), DECIMALS) + 0.0
+        control = np.round(run.road.control_points(), DECIMALS) + 0.0
+    records = records_of(run.drive, run.world) if run.drive is not None else []
+    return {
+        "is_valid": run.is_valid,
+        "validation_message": run.validation_message,
+        "road_points": control.tolist(),
+        "interpolated_points": points.tolist(),
+        "id": run.index,
+        "execution_data": records,
+        "test_outcome": None if run.outcome == "VALID" else run.outcome,
+        "description": run.verdict.sbft_description if run.verdict else run.description,
+        "features": features_of(points, records) if run.is_valid else {},
+    }
+
+
+def test_name(index: int) -> str:
+    """Name of the file of road ``index``."""
+    return f"test.{index:04d}.json"
+
+
+def test_text(run: Run) -> str:
+    """What stands in the file."""
+    return json_text(test_of(run), indent=None)

@@ -1,0 +1,33 @@
+"""What a Run was made with, so that a difference tomorrow can be explained."""
+
+import platform
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+
+from roadgpt import __version__
+from roadgpt.run.model import Setup
+
+DESIGNING = ("numpy", "scipy", "pydantic")
+DRIVING = ("mujoco-core", "numba")
+
+
+def versions_of(setup: Setup) -> dict[str, str]:
+    """Versions of roadgpt, Python and the libraries that decide on numbers."""
+    return {
+        "roadgpt": __version__,
+        "python": platform.python_version(),
+        "machine": f"{platform.system()} {platform.machine()}",
+        **_libraries(DESIGNING + (DRIVING if setup.drives else ())),
+    }
+
+
+@cache
+def _libraries(names: tuple[str, ...]) -> dict[str, str]:
+    return {name: _version(name) for name in names}
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed"
