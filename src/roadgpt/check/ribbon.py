@@ -53,6 +53,8 @@ def near_pairs(quads: Array, reach: float, apart: int = 2) -> tuple[Indices, Ind
     low, high = quads.min(axis=1) - reach, quads.max(axis=1)
     starts = np.arange(0, len(quads), BLOCK)
     first, second = _meeting(np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts))
+    far = (second - first + 1) * BLOCK > apart
+    first, second = first[far], second[far]
     within = np.arange(BLOCK)
     i = (first[:, None, None] * BLOCK + within[:, None]) + np.zeros(BLOCK, np.intp)
     j = (second[:, None, None] * BLOCK + within) + np.zeros((BLOCK, 1), np.intp)

@@ -65,7 +65,7 @@ def _complaint(nodes: Array, map_size: float) -> str:
     left, right = edges(nodes)
     if not _passes_for_inside(nodes, map_size) or _meets_border(left, right, map_size):
         return OUTSIDE
-    if not _keeps_clear(quads_of(left, right)):
+    if not keeps_clear(quads_of(left, right)):
         return CROSSING
     if not _is_long_enough(nodes):
         return TOO_SHORT
@@ -74,10 +74,10 @@ def _complaint(nodes: Array, map_size: float) -> str:
     return ""
 
 
-def edges(nodes: Array) -> tuple[Array, Array]:
+def edges(nodes: Array, road_width: float = ROAD_WIDTH) -> tuple[Array, Array]:
     """Left and right edge points ``(n, 2)``: across the way to the next node; at the last, the one before."""
     ahead = np.diff(nodes, axis=0, append=nodes[-2:-1])
-    across = ahead / np.sqrt((ahead**2).sum(axis=1, keepdims=True)) * (ROAD_WIDTH / 2)
+    across = ahead / np.sqrt((ahead**2).sum(axis=1, keepdims=True)) * (road_width / 2)
     turned = np.stack((-across[:, 1], across[:, 0]), axis=1)
     turned[-1] *= -1
     return nodes + turned, nodes - turned
@@ -109,7 +109,7 @@ def _doubt(points: Array) -> float:
     return DOUBT * max(1.0, float(np.abs(points).max()))
 
 
-def _keeps_clear(quads: Array) -> bool:
+def keeps_clear(quads: Array) -> bool:
     """Every quad valid; quads apart in the row disjoint; neighbours sharing exactly their common side."""
     plain = is_convex(quads)
     odd = np.flatnonzero(~plain)
@@ -161,7 +161,12 @@ def _is_long_enough(nodes: Array) -> bool:
     apart = nodes[-1] - nodes[0]
     if apart @ apart > (MIN_LENGTH + 1) ** 2:  # no detour can make it shorter than its ends are apart
         return True
-    return walked(interpolate(nodes)) > MIN_LENGTH
+    return measured_length(nodes) > MIN_LENGTH
+
+
+def measured_length(nodes: Array) -> float:
+    """Metres along nodes ``(n, 2)`` that are interpolated once more."""
+    return walked(interpolate(nodes))
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:

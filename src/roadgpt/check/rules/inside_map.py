@@ -2,23 +2,28 @@
 
 Source: RoadGPT's two checks (the furthest points lie no further apart than the map is wide, no part meets the
 border) and the SBFT competition's, whose operators bind so that a road far outside passes; here it does not.
+Near the border its own spline is looked at too: it may run up to a metre beyond the last point.
 """
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
+from roadgpt.check import sbft
 from roadgpt.check.finding import Finding
 from roadgpt.check.ribbon import bulge, sides
+from roadgpt.geometry import interpolate
 from roadgpt.road import Road, World
+
+SPLINE_REACH = 1.5  # m, by which SBFT's spline may leave the road: a node 1 m too far, and some for rounding
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Says where the road's edge first leaves the map, and whether it is too wide for any place on it."""
     half, size = world.road_width / 2, world.map_size
     edges = np.stack(sides(road.sample(), half), axis=1)  # (n, 2 sides, 2)
-    slack = bulge(road.sample(), half)
-    if edges.min() > slack and edges.max() < size - slack:
-        return ()
+    slack, room = bulge(road.sample(), half), min(edges.min(), size - edges.max())
+    if room > slack:
+        return () if room > SPLINE_REACH else _on_sbft_s_spline(road, world)
     out = np.any((edges <= slack) | (edges >= size - slack), axis=2)
     first = int(out.any(axis=1).argmax())
     x, y = (float(v) for v in edges[first, int(out[first].argmax())])
@@ -31,3 +36,16 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
             wide = f"the road spans {extent:.0f} m along {axis}, and the map is only {size:g} m wide"
             found.append(Finding("inside_map", wide))
     return tuple(found)
+
+
+def _on_sbft_s_spline(road: Road, world: World) -> tuple[Finding, ...]:
+    nodes = interpolate(road.control_points())
+    edges = np.stack(sbft.edges(nodes, world.road_width), axis=1)
+    if edges.min() > 0 and edges.max() < world.map_size:
+        return ()
+    node = int(np.any((edges <= 0) | (edges >= world.map_size), axis=(1, 2)).argmax())
+    x, y = (float(v) for v in nodes[node])
+    sentence = (
+        f"near ({x:.0f}, {y:.0f}): the road, as SBFT lays its spline, leaves the map; keep off its border"
+    )
+    return (Finding("inside_map", sentence, float(road.locate(x, y)[0]), x, y),)

@@ -3,10 +3,14 @@
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import sbft_verdict
+from roadgpt.errors import UsageError
 from roadgpt.road import Road, World
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Says what the competition's validator says of the road's control points, if it objects."""
-    is_valid, message = sbft_verdict(road.control_points(), world.map_size)
+    try:
+        is_valid, message = sbft_verdict(road.control_points(), world.map_size)
+    except UsageError as error:  # two points at one place in plan: their code stops
+        is_valid, message = False, str(error)
     return () if is_valid else (Finding("sbft", message),)
