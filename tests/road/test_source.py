@@ -35,6 +35,8 @@ def test_a_test_with_heights_gives_them_back(tmp_path: Path) -> None:
     ours = build(read_design(DESIGN)[0])
     dense = np.round(ours.centreline(), 4).tolist()
     road = read_road(written(tmp_path, {"road_points": POINTS, "interpolated_points": dense}))
+    assert road.control_points().tolist() == POINTS
+    assert Road.from_json(road.to_json()).control_points().tolist() == POINTS
     s = np.linspace(0, min(road.length, ours.length), 100)
     assert road.at(s) == pytest.approx(ours.at(s), abs=2e-3)
 

@@ -50,20 +50,26 @@ class Road:
     plan: PlanCurve
     profile: Profile
     nodes: Array | None = None
+    road_points: Array | None = None
+    """Control points ``(n, 2)`` of the SBFT test that the road was read from, if they are not its nodes."""
     _sampled: dict[float, Samples] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def through(cls, points: ArrayLike) -> Self:
+    def through(cls, points: ArrayLike, road_points: ArrayLike | None = None) -> Self:
         """The road whose centre line is SBFT's spline through points ``(n, 2)`` or ``(n, 3)``, in metres.
+
+        Args:
+            points: what the spline goes through.
+            road_points: control points of the test that it was read from, if they are others.
 
         Raises:
             UsageError: not such points, fewer than two, not finite, or two neighbours are the same.
         """
         nodes = _checked(points)
+        control = None if road_points is None else _checked(road_points)[:, :2]
         plan = SplineCurve.through(nodes)
-        if nodes.shape[1] == 3:
-            return cls(plan, SplineProfile(plan), nodes)
-        return cls(plan, GradeProfile(0.0, (0.0, max(plan.length, 1e-9)), (0.0, 0.0)), nodes)
+        level = GradeProfile(0.0, (0.0, max(plan.length, 1e-9)), (0.0, 0.0))
+        return cls(plan, SplineProfile(plan) if nodes.shape[1] == 3 else level, nodes, control)
 
     @property
     def length(self) -> float:
@@ -122,6 +128,8 @@ class Road:
 
     def control_points(self) -> Array:
         """SBFT's ``road_points`` ``(n, 2)``: our nodes, or points so dense that a spline keeps the radii."""
+        if self.road_points is not None:
+            return self.road_points
         if self.nodes is not None:
             return self.nodes[:, :2]
         count = min(MOST_CONTROL_POINTS, max(4, int(np.ceil(self.length / CONTROL_SPACING)) + 1))
@@ -130,7 +138,8 @@ class Road:
     def to_json(self) -> dict[str, Any]:
         """The exact geometry as data; ``Road.from_json`` gives the road back."""
         if self.nodes is not None:
-            return {"nodes": self.nodes.tolist()}
+            out = {"nodes": self.nodes.tolist()}
+            return out if self.road_points is None else {**out, "road_points": self.road_points.tolist()}
         assert isinstance(self.plan, PieceCurve)
         assert isinstance(self.profile, GradeProfile)
         return {
@@ -149,7 +158,7 @@ class Road:
             UsageError: a field is missing, not a number or not finite.
         """
         if "nodes" in data:
-            return cls.through(data["nodes"])
+            return cls.through(data["nodes"], data.get("road_points"))
         try:
             x, y, heading = (float(v) for v in data["start"])
             pieces = tuple(Piece(*(float(v) for v in row)) for row in data["pieces"])

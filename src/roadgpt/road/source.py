@@ -68,15 +68,14 @@ def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
             return Road.from_json(data)
         if "starting_point" in data:
             return build(read_design(data)[0], geometry)
-        points = _test_points(data)
-        if points is not None:
-            return Road.through(points)
+        if "road_points" in data or "interpolated_points" in data:
+            return _test_road(data)
     raise UsageError(f"there is no road in it; a road file is {SHAPES}")
 
 
-def _test_points(data: dict[str, Any]) -> Any:
-    """Points of an SBFT test: those with heights where it has them, else its control points."""
-    dense = data.get("interpolated_points")
+def _test_road(data: dict[str, Any]) -> Road:
+    """The road of an SBFT test: through its points with heights where it has them, else its control points."""
+    dense, control = data.get("interpolated_points"), data.get("road_points")
     if isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3:
-        return dense
-    return data.get("road_points")
+        return Road.through(dense, control)
+    return Road.through(control if control is not None else dense)
