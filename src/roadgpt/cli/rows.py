@@ -60,7 +60,7 @@ class Row:
         margin = "" if self.margin_m is None else f"margin {self.margin_m:+.2f} m"
         line = f"{self.outcome:<19} {length:>9}  {margin:<15}  {self.seconds:5.2f} s  {self.file}"
         wrong = self.test_outcome in ("INVALID", "ERROR")
-        return f"{line}  {self.description}" if wrong else line
+        return f"{line}  {self.description.removeprefix(f'{self.file}: ')}" if wrong else line
 
 
 def _rounded(number: float | None) -> float | None:

@@ -10,7 +10,8 @@ from roadgpt.cli.rows import row_of
 from roadgpt.cli.screen import Screen
 
 if TYPE_CHECKING:
-    from roadgpt.brief import Brief
+    from roadgpt.brief.model import Brief
+    from roadgpt.report import Scale
     from roadgpt.road import World
     from roadgpt.run import Campaign, Setup
     from roadgpt.run.folder import Draw
@@ -28,7 +29,7 @@ class Wish:
     setup: "Setup"
     seed: int | None = None
     out: Path | None = None
-    axes: str = "equal"
+    axes: "Scale" = "equal"
     has_pictures: bool = True
 
 
@@ -63,7 +64,7 @@ def understood(brief: "Brief") -> str:
 
 
 def _watch(work: "Campaign", screen: Screen) -> None:
-    """Show the roads of a campaign, first those that were there before; close with the table, come what may."""
+    """Show the roads of a campaign, first those that were there before; end with the table in any case."""
     from roadgpt.run.test_file import test_name
 
     try:

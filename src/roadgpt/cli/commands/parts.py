@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import re
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -29,16 +30,17 @@ def installed() -> list[Part]:
 
 def _part(shelf: str, name: str) -> Part:
     try:
-        about, works = _first_line(plugins.find(shelf, name)), True
+        about, works = _first_sentence(plugins.find(shelf, name)), True
     except PartError as error:
         about, works = str(error), False
     return Part(shelf, name, plugins.origin(shelf, name), about, works)
 
 
-def _first_line(part: Any) -> str:
-    """Of the part's documentation; a rule without one is spoken for by its module."""
-    text = inspect.getdoc(part) or inspect.getdoc(inspect.getmodule(part)) or "says nothing about itself"
-    return text.strip().splitlines()[0]
+def _first_sentence(part: Any) -> str:
+    """Of the part's documentation; a part without any is spoken for by its module."""
+    text = inspect.getdoc(part) or inspect.getdoc(inspect.getmodule(part)) or "Says nothing about itself."
+    paragraph = " ".join(text.strip().split("\n\n")[0].split())
+    return re.split(r"(?<=[.;:]) ", paragraph)[0].rstrip(".;:")
 
 
 @click.command()

@@ -44,7 +44,7 @@ def command(
     out: Path | None,
     no_drive: bool,
     no_plot: bool,
-    axes: str,
+    axes: Any,
     as_json: bool,
     quiet: bool,
     verbose: bool,

@@ -1,0 +1,76 @@
+"""``roadgpt plot``: pictures of roads that exist."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from roadgpt.cli.options import axes_option, files_argument, folder, geometry_option, world_of, world_options
+from roadgpt.errors import UsageError
+
+UNREADABLE = 2  # exit status
+
+
+@click.command()
+@files_argument
+@click.option(
+    "--out", type=folder, default=Path("plots"), show_default=True, help="Folder; each road gets one in it."
+)
+@axes_option
+@world_options("map_size")
+@geometry_option
+@click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
+def command(
+    files: tuple[str, ...], out: Path, axes: Any, geometry: Any, quiet: bool, **rest: Any
+) -> int | None:
+    """Draw roads that exist: from above, height over distance, curvature and grade.
+
+    ROAD.json is a RoadGPT design, an SBFT test, a list of points [x, y] or [x, y, z], or the folder of a run,
+    whose drive is drawn as well. Prints the names of the pictures.
+    """
+    from roadgpt.report import draw
+
+    world = world_of(rest)
+    status = None
+    for file in files:
+        try:
+            run = _run_of(file, world, geometry)
+            place = _place(out, Path(file))
+            pictures = draw(run, place, axes)
+        except UsageError as error:
+            click.echo(f"roadgpt: {error}", err=True)
+            status = UNREADABLE
+            continue
+        if not quiet:
+            click.echo("\n".join(str(picture) for picture in pictures))
+    return status
+
+
+def _run_of(file: str, world: Any, geometry: Any) -> Any:
+    """The Run in a folder, or one made of a road that nobody drove."""
+    from roadgpt.road import read_blueprint
+    from roadgpt.run import Setup, prove, read_run
+    from roadgpt.run.folder import is_run
+
+    if is_run(Path(file)):
+        return read_run(file)
+    blueprint, remarks = read_blueprint(file)
+    for remark in remarks:
+        click.echo(f"roadgpt: {file}: {remark}", err=True)
+    return prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
+
+
+def _place(out: Path, file: Path) -> Path:
+    """A new folder for one road's pictures, named after its file."""
+    name = file.resolve().name.removesuffix(".json")
+    number = 1
+    while True:
+        place = out / (name if number == 1 else f"{name}-{number}")
+        try:
+            place.mkdir(parents=True)
+        except FileExistsError:
+            number += 1
+        except OSError as error:
+            raise UsageError(f"cannot make a folder in {out}: {error.strerror}; say --out FOLDER") from error
+        else:
+            return place

@@ -1,0 +1,36 @@
+"""An error that nobody foresaw ends in one sentence, a file with the traceback, and exit status 70."""
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from roadgpt.cli import app, crash
+from roadgpt.cli.commands import parts
+
+
+def broken() -> None:
+    raise ZeroDivisionError("nobody foresaw this\nor that")
+
+
+def test_the_traceback_goes_to_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parts, "installed", broken)
+    monkeypatch.setattr(crash, "_folder", [tmp_path])
+    result = CliRunner().invoke(app, ["parts"])
+    assert result.exit_code == 70
+    (file,) = tmp_path.iterdir()
+    assert str(file) in result.stderr
+    assert "ZeroDivisionError: nobody foresaw this" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert "in broken" in file.read_text()
+
+
+def test_where_no_file_can_be_written_the_traceback_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(text: str) -> Path:
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr(parts, "installed", broken)
+    monkeypatch.setattr(crash, "_write", full)
+    result = CliRunner().invoke(app, ["parts"])
+    assert result.exit_code == 70
+    assert "in broken" in result.stderr

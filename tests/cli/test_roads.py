@@ -1,0 +1,183 @@
+"""check, drive, plot and show on roads that exist, good ones and those that strangers bring."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from roadgpt.cli import app
+
+FIELDS = [
+    "file",
+    "is_valid",
+    "validation_message",
+    "test_outcome",
+    "description",
+    "max_oob",
+    "margin_m",
+    "length_m",
+    "seconds",
+]
+
+STRAIGHT = [[60, 100], [100, 100], [140, 100]]
+ARC = [math.pi / 2 * i / 8 for i in range(9)]
+CORNER = [
+    [60, 60],
+    [75, 60],
+    *([90 + 10 * math.sin(a), 70 - 10 * math.cos(a)] for a in ARC),
+    [100, 85],
+    [100, 110],
+]
+DESIGN = {
+    "starting_point": [60, 100, 0],
+    "theta": 0,
+    "road_segment1": {"distance": 30, "direction": "straight", "incline": 0, "turn_degrees": 0},
+    "road_segment2": {"distance": 40, "direction": "left", "incline": 4, "turn_degrees": -50},
+    "road_segment3": {"distance": 20, "direction": "straight", "incline": 4, "turn_degrees": 0},
+}
+UNREADABLE = {
+    "broken.json": '{"road_points": [[1, 2],',
+    "empty.json": "",
+    "number.json": "7",
+    "words.json": '{"road_points": [["a", "b"], ["c", "d"]]}',
+    "ragged.json": "[[1, 2], [3]]",
+    "nan.json": "[[60, 60], [NaN, 80], [90, 90]]",
+    "infinite.json": "[[60, 60], [Infinity, 80], [90, 90]]",
+    "nothing.json": "[]",
+    "other.json": '{"answer": 42}',
+    "deep.json": "[" * 5000 + "]" * 5000,
+    "image.json": "\x89PNG\r\n\x1a\n\x00\x00",
+}
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder_with_roads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    roads = {"straight.json": STRAIGHT, "corner.json": CORNER, "design.json": DESIGN}
+    roads["test.json"] = {"road_points": STRAIGHT, "interpolated_points": STRAIGHT, "is_valid": True}
+    for name, data in roads.items():
+        Path(name).write_text(json.dumps(data))
+    for name, text in UNREADABLE.items():
+        Path(name).write_text(text, encoding="latin-1")
+    Path("folder").mkdir()
+
+
+def invoke(*words: str) -> Result:
+    result = CliRunner().invoke(app, list(words), prog_name="roadgpt")
+    assert "Traceback" not in result.output
+    assert result.exit_code != 70, result.output
+    return result
+
+
+def rows(result: Result) -> list[dict[str, object]]:
+    found = [json.loads(line) for line in result.stdout.splitlines()]
+    assert all([*row] == FIELDS for row in found)
+    return found
+
+
+@pytest.mark.parametrize("rules", ["strict", "sbft"])
+def test_check_tells_valid_from_invalid_and_ends_with_1(rules: str) -> None:
+    good = invoke("check", "straight.json", "test.json", "design.json", "--json", "--rules", rules)
+    assert good.exit_code == 0
+    assert [row["test_outcome"] for row in rows(good)] == ["VALID"] * 3
+    assert rows(good)[0]["length_m"] == pytest.approx(80, abs=1e-3)
+    bad = invoke("check", "straight.json", "corner.json", "--json", "--rules", rules)
+    assert bad.exit_code == 1
+    assert [row["is_valid"] for row in rows(bad)] == [True, False]
+    assert rows(bad)[1]["validation_message"]
+
+
+def test_check_in_the_official_words() -> None:
+    result = invoke("check", "corner.json", "--rules", "sbft")
+    assert "INVALID" in result.stdout
+    assert "The road is too sharp" in result.stdout
+
+
+def test_check_honours_the_size_of_the_map() -> None:
+    assert invoke("check", "straight.json", "--map-size", "140").exit_code == 1
+    assert invoke("check", "straight.json", "--map-size", "150").exit_code == 0
+
+
+def test_check_reports_the_direction_that_wins() -> None:
+    assert (
+        "segment 2: direction 'left' and turn_degrees -50 disagree" in invoke("check", "design.json").stdout
+    )
+
+
+@pytest.mark.parametrize("command", ["check", "drive", "plot"])
+@pytest.mark.parametrize("name", [*UNREADABLE, "folder", "there is none.json"])
+def test_a_file_that_holds_no_road_gets_one_sentence_and_status_2(command: str, name: str) -> None:
+    result = invoke(command, name)
+    assert result.exit_code == 2
+    assert name.removesuffix(".json") in result.output
+
+
+@pytest.mark.parametrize("command", ["check", "drive"])
+def test_a_file_that_holds_no_road_does_not_stop_the_others(command: str) -> None:
+    result = invoke(command, "broken.json", "straight.json", "--json")
+    assert [row["test_outcome"] == "ERROR" for row in rows(result)] == [True, False]
+    assert result.exit_code == 2
+
+
+def test_drive_gives_the_same_row_twice() -> None:
+    first, second = (rows(invoke("drive", "straight.json", "design.json", "--json")) for _ in range(2))
+    for row in first:
+        assert row["test_outcome"] == "PASS"
+        assert isinstance(row["margin_m"], float)
+        assert 0 <= float(str(row["max_oob"])) <= 0.95
+    assert [{**row, "seconds": 0} for row in first] == [{**row, "seconds": 0} for row in second]
+
+
+def test_drive_does_not_drive_an_invalid_road() -> None:
+    result = invoke("drive", "corner.json", "--json")
+    assert result.exit_code == 0
+    (row,) = rows(result)
+    assert (row["test_outcome"], row["is_valid"], row["max_oob"]) == ("INVALID", False, None)
+    assert row["validation_message"] == row["description"]
+
+
+def test_a_driver_that_never_steers_fails_a_bend_and_says_how() -> None:
+    Path("asleep.py").write_text(
+        "from roadgpt.drive import Command\n\n\nclass Asleep:\n    def steer(self, view):\n"
+        "        return Command(steer=0.0, throttle=0.3 if view.speed < 10 else 0.0)\n"
+    )
+    result = invoke("drive", "design.json", "--driver", "asleep.py:Asleep")
+    assert result.exit_code == 0
+    assert "FAIL (out of lane)" in result.stdout
+
+
+@pytest.mark.parametrize("body", ["raise ValueError('no')", "return 'left'", "return Command(float('nan'))"])
+def test_a_broken_driver_costs_one_error(body: str) -> None:
+    Path("broken.py").write_text(
+        f"from roadgpt.drive import Command\n\n\nclass Broken:\n    def steer(self, view):\n        {body}\n"
+    )
+    result = invoke("drive", "straight.json", "--driver", "broken.py:Broken", "--json")
+    assert result.exit_code == 0
+    assert rows(result)[0]["test_outcome"] == "ERROR"
+
+
+@pytest.mark.parametrize("driver", ["nobody", "none.py:Driver", "empty.py:Driver", "empty.py"])
+def test_a_driver_that_does_not_exist_is_a_usage_error(driver: str) -> None:
+    Path("empty.py").write_text("")
+    result = invoke("drive", "straight.json", "--driver", driver)
+    assert result.exit_code == 2
+    assert result.stderr.startswith("roadgpt: ")
+    assert result.stdout == ""
+
+
+def test_plot_draws_into_a_new_folder_each_time() -> None:
+    for folder in ("straight", "straight-2"):
+        result = invoke("plot", "straight.json", "--out", "here", "--axes", "thesis")
+        pictures = [Path(line) for line in result.stdout.splitlines()]
+        assert result.exit_code == 0
+        assert len(pictures) >= 3
+        assert all(picture.parent == Path("here", folder) for picture in pictures)
+        assert all(picture.read_bytes()[:4] == b"\x89PNG" for picture in pictures)
+
+
+def test_show_of_what_is_no_run() -> None:
+    result = invoke("show", "folder")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("roadgpt: there is no run in folder")

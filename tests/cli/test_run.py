@@ -1,0 +1,196 @@
+"""`roadgpt run`: what it says, what it writes, how it ends."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from roadgpt import run as run_room
+from roadgpt.cli import app
+from roadgpt.errors import DesignError
+
+WORDS = "an uphill road with 3 turns"
+
+
+@pytest.fixture(autouse=True)
+def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def invoke(*words: str) -> Result:
+    result = CliRunner().invoke(app, ["run", *words], prog_name="roadgpt")
+    assert "Traceback" not in result.output
+    assert result.exit_code != 70, result.output
+    return result
+
+
+def test_it_says_what_it_understood_before_the_first_road_and_ends_with_the_place_of_the_pictures() -> None:
+    result = invoke(f"{WORDS}, and it is flurbed", "-n", "2", "--seed", "7", "--out", "here")
+    assert result.exit_code == 0
+    lines = result.stdout.splitlines()
+    assert lines[0].startswith("understood: ")
+    assert "3 turns" in lines[0]
+    assert "not understood: " in lines[0]
+    assert "flurbed" in lines[0]
+    assert [line[:3] for line in lines if line[1:3] == "/2"] == ["1/2", "2/2"]
+    assert "pictures: " in lines[-1]
+    for number in ("0001", "0002"):
+        pictures = [*Path("here", "runs", number).glob("*.png")]
+        assert len(pictures) >= 3
+        assert all(picture.read_bytes()[:4] == b"\x89PNG" for picture in pictures)
+
+
+def test_the_campaign_folder_has_what_the_competition_has() -> None:
+    result = invoke(WORDS, "-n", "2", "--seed", "7", "--out", "here", "--no-plot", "--json")
+    rows = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [row["file"] for row in rows] == [str(Path("here", f"test.000{i}.json")) for i in (1, 2)]
+    for row in rows:
+        test = json.loads(Path(row["file"]).read_text())
+        assert test["test_outcome"] == row["test_outcome"]
+        assert row["is_valid"] is test["is_valid"] is True
+        assert row["seconds"] > 0
+        assert row["length_m"] > 20
+    with Path("here", "generation_stats.csv").open() as file:
+        (stats,) = csv.DictReader(file)
+    assert stats["test_generated"] == "2"
+    for name in ("oob_stats.csv", "experiment_description.csv"):
+        assert Path("here", name).stat().st_size > 0
+
+
+def test_with_json_the_talk_goes_to_standard_error_and_with_quiet_nowhere() -> None:
+    words = (WORDS, "--seed", "1", "--no-drive", "--no-plot")
+    loud = invoke(*words, "--json")
+    assert loud.stdout.count("\n") == 1
+    assert "understood: " in loud.stderr
+    assert invoke(*words, "--json", "--quiet").stderr == ""
+    quiet = invoke(*words, "--quiet")
+    assert (quiet.stdout, quiet.stderr, quiet.exit_code) == ("", "", 0)
+
+
+def test_the_same_seed_gives_the_same_files() -> None:
+    for out in ("first", "second"):
+        invoke(WORDS, "-n", "2", "--seed", "11", "--no-plot", "--quiet", "--out", out)
+    names = sorted(p.relative_to("first") for p in Path("first").rglob("*") if p.is_file())
+    assert any(name.suffix == ".npz" for name in names)
+    for name in names:
+        if name.name not in ("seconds.json", "generation_stats.csv"):  # they tell the time
+            assert Path("first", name).read_bytes() == Path("second", name).read_bytes(), name
+
+
+def test_without_a_seed_one_is_drawn_and_told() -> None:
+    told = [invoke(WORDS, "--no-drive", "--no-plot").stdout.split("seed ")[1].split(",")[0] for _ in range(2)]
+    assert told[0] != told[1]
+    again = invoke(WORDS, "--no-drive", "--no-plot", "--seed", told[0], "--out", "again")
+    assert again.exit_code == 0
+    first = next(Path("roadgpt-runs").glob(f"*-{told[0]}"))
+    assert (first / "test.0001.json").read_bytes() == Path("again", "test.0001.json").read_bytes()
+
+
+def test_no_drive_ends_as_valid() -> None:
+    result = invoke(WORDS, "--no-drive", "--no-plot", "--json")
+    (row,) = (json.loads(line) for line in result.stdout.splitlines())
+    assert (row["test_outcome"], row["max_oob"], row["margin_m"]) == ("VALID", None, None)
+
+
+def test_words_need_no_quotes() -> None:
+    result = invoke(*WORDS.split(), "--no-drive", "--no-plot")
+    assert result.exit_code == 0
+    assert "3 turns" in result.stdout
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "",
+        "   ",
+        "asdf qwer zxcv",
+        "three turns but no turns",
+        "a road climbing 40 %",
+        "60 hairpins",
+        "a" * 20_000,
+    ],
+)
+def test_words_that_cannot_be_a_road_get_one_sentence(words: str) -> None:
+    result = invoke(words, "-n", "2")
+    assert result.exit_code in (2, 3)
+    assert result.stderr.startswith("roadgpt: ")
+    assert len(result.stderr) < 600
+    assert not Path("roadgpt-runs").exists()
+
+
+def test_nothing_that_could_be_designed_ends_with_3(monkeypatch: pytest.MonkeyPatch) -> None:
+    def cannot(*_: object, **__: object) -> None:
+        raise DesignError("no road fits; ask for less")
+
+    monkeypatch.setattr(run_room, "perform", cannot)
+    result = invoke(WORDS, "-n", "5", "--no-plot", "--out", "here")
+    assert result.exit_code == 3
+    assert "roadgpt: no road fits; ask for less" in result.stderr
+    assert "ERROR" in result.stdout
+
+
+def test_one_road_that_could_not_be_designed_does_not_stop_the_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    honest = run_room.perform
+
+    def sometimes(words, seed, world, setup, index, earlier):  # type: ignore[no-untyped-def]
+        if index == 2:
+            raise DesignError("no road fits; ask for less")
+        return honest(words, seed, world, setup, index, earlier)
+
+    monkeypatch.setattr(run_room, "perform", sometimes)
+    result = invoke(WORDS, "-n", "3", "--no-plot", "--no-drive", "--json")
+    assert result.exit_code == 0
+    outcomes = [json.loads(line)["test_outcome"] for line in result.stdout.splitlines()]
+    assert outcomes == ["VALID", "ERROR", "VALID"]
+
+
+def test_an_interrupted_campaign_is_complete_as_far_as_it_went_and_goes_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    honest = run_room.perform
+
+    def stopped(words, seed, world, setup, index, earlier):  # type: ignore[no-untyped-def]
+        if index == 3:
+            raise KeyboardInterrupt
+        return honest(words, seed, world, setup, index, earlier)
+
+    words = (WORDS, "-n", "4", "--seed", "3", "--no-drive", "--no-plot", "--out", "here")
+    with monkeypatch.context() as patched:
+        patched.setattr(run_room, "perform", stopped)
+        result = invoke(*words)
+    assert result.exit_code == 130
+    assert "roadgpt: stopped; 2 of 4 roads are finished and complete" in result.stderr
+    assert "2 of 4 roads in " in result.stdout
+    tests = sorted(Path("here").glob("test.*.json"))
+    assert [test.name for test in tests] == ["test.0001.json", "test.0002.json"]
+    assert all(json.loads(test.read_text())["is_valid"] for test in tests)
+    before = [test.read_bytes() for test in tests]
+
+    result = invoke(*words)
+    assert result.exit_code == 0
+    assert "2 roads were finished before" in result.stdout
+    assert len([*Path("here").glob("test.*.json")]) == 4
+    assert [test.read_bytes() for test in tests] == before
+
+
+def test_a_finished_campaign_is_not_written_over() -> None:
+    words = (WORDS, "--seed", "3", "--no-drive", "--no-plot", "--out", "here")
+    assert invoke(*words).exit_code == 0
+    for again in (words, ("a flat road", *words[1:])):
+        result = invoke(*again)
+        assert result.exit_code == 2
+        assert "name another folder" in result.stderr
+
+
+def test_show_tells_of_a_run_and_of_its_campaign() -> None:
+    invoke(WORDS, "--seed", "7", "--no-plot", "--out", "here")
+    for place in ("here", "here/runs/0001", "here/test.0001.json"):
+        result = CliRunner().invoke(app, ["show", place])
+        assert result.exit_code == 0
+        assert WORDS in result.stdout
+    again = next(line for line in result.stdout.splitlines() if "roadgpt drive" in line)
+    assert "runs/0001/road.json" in again

@@ -1,0 +1,51 @@
+"""`roadgpt` without a command: a conversation that survives every answer."""
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from roadgpt.cli import app, talk
+from roadgpt.run import Setup
+
+
+@pytest.fixture(autouse=True)
+def quick_and_in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    wish = talk.Wish
+    monkeypatch.setattr(
+        talk,
+        "Wish",
+        lambda words, roads, world, _: wish(words, roads, world, Setup(drives=False), has_pictures=False),
+    )
+
+
+def say(*answers: str) -> Result:
+    result = CliRunner().invoke(app, [], input="".join(f"{answer}\n" for answer in answers))
+    assert "Traceback" not in result.output
+    return result
+
+
+@pytest.mark.parametrize("answers", [["exit"], ["quit"], [""], [], ["a road", "exit"]])
+def test_it_can_be_left_at_any_question(answers: list[str]) -> None:
+    result = say(*answers)
+    assert result.exit_code == 0
+    assert "Describe a road" in result.stdout
+    assert not Path("roadgpt-runs").exists()
+
+
+def test_it_goes_on_from_one_description_to_the_next() -> None:
+    result = say("an uphill road with 3 turns", "2", "a flat road", "", "exit")
+    assert result.exit_code == 0
+    assert "2 of 2 roads" in result.stdout
+    assert "3 of 3 roads" in result.stdout
+    assert len([*Path("roadgpt-runs").iterdir()]) == 2
+
+
+def test_a_wrong_answer_is_asked_again() -> None:
+    result = say("a road", "none", "0", "1", "three turns but no turns", "1", "exit")
+    assert result.exit_code == 0
+    assert "'none' is no whole number" in result.stderr
+    assert "0 is not possible" in result.stderr
+    assert "1 of 1 roads" in result.stdout
+    assert result.stderr.count("roadgpt: ") == 3

@@ -1,0 +1,111 @@
+"""The program itself, as a process: in a pipe, on a terminal, interrupted, cut off."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROADGPT = [sys.executable, "-c", "from roadgpt.cli import main; main()"]
+RUN = [*ROADGPT, "run", "an uphill road with 3 turns", "--no-plot", "--no-drive"]
+
+
+@pytest.fixture(autouse=True)
+def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def on_a_terminal(*command: str, stdout_is_a_file: bool = False) -> tuple[str, str]:
+    """What a command shows on a pseudo-terminal, and what it writes to standard output where that is a file."""
+    pty = pytest.importorskip("pty", reason="no pseudo-terminals on this platform")
+    here, there = pty.openpty()
+    file = Path("stdout.txt")
+    with file.open("w") as stdout:
+        process = subprocess.Popen(
+            command,
+            stdin=there,
+            stdout=stdout if stdout_is_a_file else there,
+            stderr=there,
+            env=os.environ | {"TERM": "xterm-256color", "COLUMNS": "120"},
+        )
+        os.close(there)
+        shown = b""
+        while True:
+            try:
+                piece = os.read(here, 65536)
+            except OSError:  # the other end is closed
+                break
+            if not piece:
+                break
+            shown += piece
+        assert process.wait(60) == 0
+    os.close(here)
+    return shown.decode(), file.read_text()
+
+
+def test_a_pipe_gets_plain_lines() -> None:
+    done = subprocess.run([*RUN, "-n", "2"], capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    assert done.stdout.isascii()
+    assert "\x1b" not in done.stdout
+    assert "\r" not in done.stdout
+    assert "2 of 2 roads" in done.stdout
+
+
+def test_a_terminal_gets_a_bar_with_rate_and_time_left() -> None:
+    shown, _ = on_a_terminal(*RUN, "-n", "3")
+    assert "roads/s" in shown
+    assert "ETA" in shown
+    assert "3/3" in shown
+    assert "3 of 3 roads" in shown
+
+
+def test_standard_output_in_a_file_stays_whole_while_the_bar_is_on_the_terminal() -> None:
+    shown, written = on_a_terminal(*RUN, "-n", "3", "--json", stdout_is_a_file=True)
+    assert [json.loads(line)["test_outcome"] for line in written.splitlines()] == ["VALID"] * 3
+    assert "ETA" in shown
+    assert "test_outcome" not in shown
+
+
+def test_it_works_without_any_locale_or_home() -> None:
+    bare = {"PATH": os.environ["PATH"], "LC_ALL": "C", "HOME": "nowhere"}
+    done = subprocess.run([*RUN], capture_output=True, text=True, env=bare, check=True)
+    assert "1 of 1 roads" in done.stdout
+
+
+def test_control_c_leaves_what_is_finished(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [*RUN, "-n", "5000", "--out", "here"],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONUNBUFFERED": "1"},
+    )
+    deadline = time.monotonic() + 60
+    while not Path("here", "test.0003.json").exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    finished = int(said.split("stopped; ")[1].split(" of ")[0])
+    tests = sorted(Path("here").glob("test.*.json"))
+    assert len(tests) == finished >= 3
+    assert all(json.loads(test.read_text())["is_valid"] for test in tests)
+    assert sorted(p.name for p in Path("here", "runs").iterdir()) == [test.name[5:9] for test in tests]
+
+
+def test_a_reader_that_goes_away_is_no_error() -> None:
+    process = subprocess.Popen(
+        [*RUN, "-n", "300", "--json", "--quiet"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert json.loads(process.stdout.readline())
+    process.stdout.close()
+    assert process.wait(60) == 141
+    assert process.stderr is not None
+    assert process.stderr.read() == ""
+    process.stderr.close()
