@@ -111,6 +111,7 @@ def test_words_need_no_quotes() -> None:
         "60 hairpins",
         "a" * 20_000,
     ],
+    ids=lambda words: words[:20],
 )
 def test_words_that_cannot_be_a_road_get_one_sentence(words: str) -> None:
     result = invoke(words, "-n", "2")

@@ -20,7 +20,7 @@ def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def on_a_terminal(*command: str, stdout_is_a_file: bool = False) -> tuple[str, str]:
-    """What a command shows on a pseudo-terminal, and what it writes to standard output where that is a file."""
+    """What a command shows on a pseudo-terminal, and what it writes to standard output, if that is a file."""
     pty = pytest.importorskip("pty", reason="no pseudo-terminals on this platform")
     here, there = pty.openpty()
     file = Path("stdout.txt")
@@ -93,9 +93,10 @@ def test_control_c_leaves_what_is_finished(tmp_path: Path) -> None:
     assert process.returncode == 130
     finished = int(said.split("stopped; ")[1].split(" of ")[0])
     tests = sorted(Path("here").glob("test.*.json"))
-    assert len(tests) == finished >= 3
+    # the last one may have been written and not yet been told of
+    assert 3 <= finished <= len(tests) <= finished + 1
     assert all(json.loads(test.read_text())["is_valid"] for test in tests)
-    assert sorted(p.name for p in Path("here", "runs").iterdir()) == [test.name[5:9] for test in tests]
+    assert {test.name[5:9] for test in tests} <= {run.name for run in Path("here", "runs").iterdir()}
 
 
 def test_a_reader_that_goes_away_is_no_error() -> None:
