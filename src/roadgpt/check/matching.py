@@ -1,0 +1,148 @@
+"""Which turn answers which wish: turns and straights of a road matched with the groups of an Outline.
+
+Turns answer in order, one to one. A straight that was asked for between two turns may be the whole straight
+there or, where several were asked for or its grade changes, a piece of it; pieces answer in order, each once.
+"""
+
+from functools import cache
+from math import inf
+from typing import NamedTuple
+
+from roadgpt.brief.outline import Feature, Group, Outline
+from roadgpt.brief.words import Range
+from roadgpt.check.measures import Measures, Stretch
+
+
+class Complaint(NamedTuple):
+    """What was asked and what came out, and at which station, if at one."""
+
+    sentence: str
+    s: float | None = None
+
+
+class _Cost(NamedTuple):
+    """Wrong features of the best way to share out turns, and what to say of them."""
+
+    wrong: float
+    says: tuple[Complaint, ...]
+
+    def plus(self, other: "_Cost") -> "_Cost":
+        return _Cost(self.wrong + other.wrong, self.says + other.says)
+
+
+RIGHT = _Cost(0.0, ())
+IMPOSSIBLE = _Cost(inf, ())
+
+
+def fits(stretch: Stretch, feature: Feature) -> bool:
+    """Does a measured stretch show a feature?"""
+    return (
+        stretch.kind == feature.kind
+        and feature.side in (None, stretch.side)
+        and (feature.degrees is None or stretch.degrees in feature.degrees)
+        and (feature.radius is None or stretch.radius in feature.radius)
+        and (feature.length is None or stretch.length in feature.length)
+        and (feature.grade is None or stretch.grade in feature.grade)
+    )
+
+
+def turn_complaints(
+    number: int, turn: Stretch, feature: Feature, side: str | None = None
+) -> tuple[Complaint, ...]:
+    """What is wrong with one turn.
+
+    Args:
+        number: of the turn, from 1.
+        turn: as measured.
+        feature: as asked for.
+        side: that the alternation asks for; else the feature's own.
+    """
+    if side is None and fits(turn, feature):
+        return ()
+    side = side or feature.side
+    says = []
+    if side and turn.side != side:
+        says.append(f"turn {number} goes {turn.side}, asked for {side}")
+    if feature.degrees and turn.degrees not in feature.degrees:
+        says.append(f"turn {number} turns {turn.degrees:.0f} degrees, asked for {feature.degrees}")
+    if feature.radius and turn.radius not in feature.radius:
+        says.append(f"turn {number} has a radius of {turn.radius:.1f} m, asked for {feature.radius} m")
+    if feature.length and turn.length not in feature.length:
+        says.append(f"turn {number} is {turn.length:.0f} m long, asked for {feature.length} m")
+    if feature.grade and turn.grade not in feature.grade:
+        says.append(f"turn {number} has a grade of {turn.grade:.1f} %, asked for {feature.grade} %")
+    return tuple(Complaint(text, turn.start) for text in says)
+
+
+def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
+    """What is wrong with the turns and straights in order, under the kindest way to match them."""
+    turns, gaps, groups = found.turns, found.gaps, asked.groups
+    turns_are_free = not asked.names_all_turns
+
+    @cache
+    def best(group: int, turn: int, wanted: tuple[Feature, ...]) -> _Cost:
+        """The groups from here on, with this turn next and these straights wanted before it."""
+        here = _gap_cost(gaps[turn], wanted, turn)
+        if group == len(groups):
+            return here if turns_are_free or turn == len(turns) else IMPOSSIBLE
+        ways = [here.plus(best(group, turn + 1, ()))] if turns_are_free and turn < len(turns) else []
+        now = groups[group]
+        if now.feature.kind == "straight":
+            ways += [best(group + 1, turn, wanted + (now.feature,) * now.lo)]
+            return min(ways, key=lambda cost: cost.wrong)
+        if now.lo == 0:
+            ways += [best(group + 1, turn, wanted)]
+        most = len(turns) - turn if now.hi is None else min(now.hi, len(turns) - turn)
+        for count in range(max(now.lo, 1), most + 1):
+            own = _group_cost(now, turns[turn : turn + count], turn + 1)
+            ways.append(here.plus(own).plus(best(group + 1, turn + count, ())))
+        return min(ways, key=lambda cost: cost.wrong, default=IMPOSSIBLE)
+
+    cost = best(0, 0, ()) if groups else RIGHT
+    if cost.wrong == inf:
+        return (Complaint(f"the {len(turns)} turns cannot be shared out among what was asked for"),)
+    return cost.says
+
+
+def _group_cost(group: Group, turns: tuple[Stretch, ...], first: int) -> _Cost:
+    says: list[Complaint] = []
+    wrong = 0
+    side: str | None = None
+    for number, turn in enumerate(turns, first):
+        if group.alternating:
+            side = {"left": "right", "right": "left"}[side] if side else group.feature.side or turn.side
+        own = turn_complaints(number, turn, group.feature, side)
+        wrong += bool(own)
+        says += own
+    return _Cost(wrong, tuple(says))
+
+
+def _gap_cost(gap: tuple[Stretch, ...], wanted: tuple[Feature, ...], turn: int) -> _Cost:
+    """The wanted straights before a turn, counted from 0: in order among the pieces that are there."""
+    if not wanted or (len(wanted) == 1 and any(fits(straight, wanted[0]) for straight in gap)):
+        return RIGHT
+    pieces = [piece for straight in gap for piece in straight.pieces]
+    at, missing = 0, list[Feature]()
+    for wish in wanted:
+        found = next((i for i in range(at, len(pieces)) if fits(pieces[i], wish)), None)
+        if found is None:
+            missing.append(wish)
+        else:
+            at = found + 1
+    where = f"after turn {turn}" if turn else "at the start"
+    s = gap[0].start if gap else None
+    has = _said(gap[0].pieces) if gap else "none"
+    says = (Complaint(f"asked for a straight {where} with {_asked(wish)}, has {has}", s) for wish in missing)
+    return _Cost(len(missing), tuple(says))
+
+
+def _asked(wish: Feature) -> str:
+    spans: list[tuple[Range | None, str]] = [(wish.length, "{} m"), (wish.grade, "a grade of {} %")]
+    return " and ".join(text.format(span) for span, text in spans if span) or "no turn in it"
+
+
+def _said(pieces: tuple[Stretch, ...]) -> str:
+    return ", then ".join(f"{piece.length:.0f} m at {piece.grade:.1f} %" for piece in pieces)
+
+
+__all__ = ["Complaint", "fits", "sequence_complaints", "turn_complaints"]

@@ -1,0 +1,66 @@
+"""Drafts: makes Designs from Briefs, with geometry and rules at hand. Verb: ``draft``.
+
+A designer is a class without arguments whose objects have one method:
+
+    def draft(self, brief, world, notes, earlier, seed) -> Design
+
+``notes`` are the sentences of rules that objected to a draft before; ``earlier`` are the designs of the
+campaign so far, none of which it repeats. The same arguments give the same Design. It raises DesignError, with
+one sentence of advice, where no road can keep every promise on this map.
+"""
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Protocol, cast
+
+from roadgpt import plugins
+from roadgpt.brief.model import Brief
+from roadgpt.road import Design, World
+
+
+class Designer(Protocol):
+    """Turns what was asked for into a blueprint."""
+
+    def draft(
+        self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
+    ) -> Design:
+        """A Design that keeps every promise of the Brief and is valid on this map.
+
+        Raises:
+            DesignError: there is none, as far as this designer can tell.
+        """
+        ...
+
+
+def draft(
+    brief: Brief,
+    world: World,
+    notes: tuple[str, ...] = (),
+    earlier: Sequence[Design] = (),
+    seed: int = 0,
+    designer: str = "planner",
+) -> Design:
+    """A Design for a Brief, by the designer of that name.
+
+    Args:
+        brief: what was asked for.
+        world: map and limits.
+        notes: sentences of rules that objected to the draft before.
+        earlier: designs of the campaign so far, which are not repeated.
+        seed: of all that is left to chance.
+        designer: name of a part on the shelf ``designers``.
+
+    Raises:
+        DesignError: no road keeps every promise on this map.
+        PartError: there is no designer of that name.
+    """
+    return _designer(designer).draft(brief, world, notes, earlier, seed)
+
+
+@cache
+def _designer(name: str) -> Designer:
+    """The one designer of that name: it remembers the shapes of earlier designs."""
+    return cast(Designer, plugins.find("designers", name)())
+
+
+__all__ = ["Designer", "draft"]

@@ -1,0 +1,62 @@
+"""What to tell someone whose wishes no road on the map can keep."""
+
+from collections import Counter
+from collections.abc import Sequence
+from math import ceil, inf
+
+from roadgpt.brief.outline import Outline
+from roadgpt.road import World
+
+ROUND_MAP = 50.0  # m: sizes of maps are proposed in steps of so many
+LARGEST_MAP = 10_000.0  # m, of a World
+
+
+def advice(outline: Outline, world: World, failed: Counter[str], boxes: Sequence[float]) -> str:
+    """One sentence: which wish stood in the way, and what to do.
+
+    Args:
+        outline: what was asked for.
+        world: the map.
+        failed: why drafts were given up, and how often.
+        boxes: sides in metres of the smallest square around each draft that was too large for the map.
+    """
+    reason = failed.most_common(1)[0][0] if failed else "too large"
+    wishes = wishes_of(outline)
+    if reason in ("too large", "over itself"):
+        size = _roomier(world, boxes)
+        where = f"on a {world.map_size:g} m map" + (" without crossing" if reason == "over itself" else "")
+        return f"{wishes} not fit {where}; ask for less or use --map-size {size:g}"
+    if reason == "longer than was asked for":
+        return f"{wishes} not fit into a road of {outline.length} m; ask for a longer road or for fewer turns"
+    if reason == "like an earlier road":
+        return "every further road is like an earlier one; ask for fewer roads or leave more open"
+    return f"no road could keep every wish ({reason}); leave one of them open or use a larger --map-size"
+
+
+def wishes_of(outline: Outline) -> str:
+    """The turns that were asked for, as the start of a sentence that goes on with 'not fit'."""
+    parts = [
+        _counted(group.lo, group.feature.name) for group in outline.groups if group.feature.kind == "turn"
+    ]
+    if not parts and 1 < outline.turns.lo < inf:
+        parts = [_counted(int(outline.turns.lo), "turn")]
+    if outline.length and outline.length.lo > 0:
+        parts.append(f"a length of {outline.length} m")
+    if outline.climb:
+        parts.append(f"a climb of {outline.climb} m")
+    if not parts:
+        parts = ["the straights that were asked for" if outline.groups else "a road of this kind"]
+    single = len(parts) == 1 and (parts[0].startswith(("1 ", "a ")))
+    listed = ", ".join(parts[:-1]) + (" and " if len(parts) > 1 else "") + parts[-1]
+    return f"{listed} {'does' if single else 'do'}"
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}" + ("s" if number != 1 else "")
+
+
+def _roomier(world: World, boxes: Sequence[float]) -> float:
+    """A map on which most of the drafts that were too large would have fitted."""
+    needed = sorted(boxes)[len(boxes) // 4] + world.road_width if boxes else 0.0
+    size = max(needed, 1.5 * world.map_size)
+    return min(ceil(size / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)

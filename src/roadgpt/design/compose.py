@@ -1,0 +1,193 @@
+"""Puts a draft together: turns, the straights asked for between them, and the straights that make room.
+
+lead-in | turn | joining straight | turn | asked-for straight | turn | lead-out
+"""
+
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.words import Range
+from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, turn_rooms
+from roadgpt.design.heights import Windows
+from roadgpt.design.order import Order
+from roadgpt.design.spans import Span
+from roadgpt.road import World
+
+LEAD_MEAN = 26.0  # m more than the least, of lead-in and lead-out
+JOIN_MEAN = 16.0  # m more than the least, between turns
+LONELY_MEAN = 60.0  # m more than the least, around the only turn of a road
+APPROACH = 35.0  # m more in front of a turn of a hard road: room to gain speed
+DIRECT = 0.35  # chance that turns of opposite hands follow each other with hardly a straight
+HARDLY = 7.0  # m
+CHANGE = 24.0  # m: a straight in which the grade changes from one promise to another
+STEP_ASIDE = (
+    14.0  # m of the neighbour's grade on an asked-for straight's gap, so that the change is not in the turn
+)
+RAMP = 5.0  # m: what a ramp takes off a straight's mean grade, in metres of its full grade
+ALONE = (60.0, 240.0)  # m, of a road without turns whose length nobody said
+HILL = 42.0  # m that one climb or fall of a hilly road takes
+CLIMBS_AT = 12.0  # percent at most, where a road must be long enough for its climb
+EASE = 0.85  # of that grade, on average
+SHORT_LEAD = 5.0  # m, of a lead-in or lead-out that a short road leaves no room for
+FEWEST_METRES = 1.0  # of a straight that is squeezed to make the whole length right
+
+
+def composed(
+    order: Order, outline: Outline, windows: Windows, world: World, rng: np.random.Generator, haste: float
+) -> list[Span] | None:
+    """The spans of a draft in driving order; None where they cannot have the length that was asked for."""
+    rooms = [
+        room._replace(grade=windows.of(turn))
+        for room, turn in zip(turn_rooms(order.turns, outline, world), order.turns, strict=True)
+    ]
+    turns: list[Span | None] = list(drawn_turns(rooms, outline, world, rng, haste))
+    spans: list[Span] = []
+    for before, gap, after in zip([None, *turns], order.gaps, [*turns, None], strict=True):
+        spans += _gap(before, gap, after, outline, windows, rng, haste)
+        if after:
+            spans.append(after)
+    if outline.hills:
+        spans = _with_hills(spans, outline.hills, rng)
+    length = _long_enough(outline, windows)
+    return _with_length(spans, length, rng, haste) if length else spans
+
+
+def _long_enough(outline: Outline, windows: Windows) -> Range | None:
+    """The length that was asked for; else enough to climb as much as was asked, at no extreme grade."""
+    if outline.length or not outline.climb:
+        return outline.length
+    height = max(outline.climb.lo, -outline.climb.hi, 0.0)
+    allowed = windows.base or windows.limit
+    steepest = min(max(allowed.hi, -allowed.lo), CLIMBS_AT)
+    return Range(100 * height / (EASE * max(steepest, 1.0)), inf)
+
+
+def _gap(
+    before: Span | None,
+    wishes: Sequence[Feature],
+    after: Span | None,
+    outline: Outline,
+    windows: Windows,
+    rng: np.random.Generator,
+    haste: float,
+) -> list[Span]:
+    """The straights between two turns, or between a turn and an end."""
+    if wishes:
+        few = outline.turns.hi <= 1 and len(wishes) == 1
+        return _asked_gap(before, wishes, after, windows, rng, haste, LONELY_MEAN if few else JOIN_MEAN)
+    if not before and not after:
+        length = ALONE[0] + rng.random() * (ALONE[1] - ALONE[0]) * (1 - 0.6 * haste)
+        return [Span(length, grade=windows.base)]
+    if not before or not after:
+        mean = LONELY_MEAN if outline.turns.hi == 1 else LEAD_MEAN
+        return [Span(free_straight(rng, haste, LEAD, mean) + _approach(outline, after, rng))]
+    changes = windows.part(before.grade, after.grade)
+    least = CHANGE if changes else 0.0
+    if before.turn * after.turn > 0:
+        least = max(least, SEPARATE)
+    elif not changes and rng.random() < DIRECT:
+        length = HARDLY * rng.random()
+        return [Span(length)] if length > FEWEST_METRES else []
+    return [
+        Span(free_straight(rng, haste, max(least, FEWEST_METRES), JOIN_MEAN) + _approach(outline, after, rng))
+    ]
+
+
+def _approach(outline: Outline, after: Span | None, rng: np.random.Generator) -> float:
+    return APPROACH * (0.4 + rng.random()) if outline.hard and after else 0.0
+
+
+def _asked_gap(
+    before: Span | None,
+    wishes: Sequence[Feature],
+    after: Span | None,
+    windows: Windows,
+    rng: np.random.Generator,
+    haste: float,
+    mean: float,
+) -> list[Span]:
+    """Asked-for straights; where the grade must change next to a turn, it does so a little away from it."""
+    out: list[Span] = []
+    grades = windows.row(wishes)
+    if before and windows.part(before.grade, grades[0]):
+        out.append(Span(STEP_ASIDE, grade=before.grade))
+    for number, (wish, grade) in enumerate(zip(wishes, grades, strict=True)):
+        neighbours = [grades[i] for i in (number - 1, number + 1) if 0 <= i < len(grades)]
+        if number == 0 and before:
+            neighbours.append(before.grade)
+        if number == len(wishes) - 1 and after:
+            neighbours.append(after.grade)
+        changes = sum(windows.part(grade, other) for other in neighbours)
+        least = max(LEAD, changes * _change(grade) * (1 - 0.3 * haste) + 8.0 if changes else 0.0)
+        if number and not windows.part(grades[number - 1], grade):
+            out.append(Span(STEP_ASIDE, grade=windows.other(grade)))
+        out.append(Span(drawn_straight(wish, rng, haste, least, mean), grade=grade, asked=True))
+    if after and windows.part(grades[-1], after.grade):
+        out.append(Span(STEP_ASIDE, grade=after.grade))
+    return out
+
+
+def _change(grade: Range | None) -> float:
+    """Metres of straight for one change of grade at its end: more where a steep one was promised narrowly."""
+    if grade is None:
+        return CHANGE
+    steep, width = max(abs(grade.lo), abs(grade.hi)), max(grade.hi - grade.lo, 0.5)
+    return max(CHANGE, RAMP * steep / width)
+
+
+def _with_hills(spans: list[Span], hills: Range, rng: np.random.Generator) -> list[Span]:
+    """Free straights lengthened until climbs and falls find room."""
+    stretches = int(hills.lo) + 1
+    room = sum(max(int(span.length / HILL), 1) for span in spans if span.length > 0.7 * HILL)
+    free = [i for i, span in enumerate(spans) if not span.turn and not span.asked]
+    out = list(spans)
+    for _ in range(max(stretches - room, 0) if free else 0):
+        i = free[rng.integers(len(free))]
+        out[i] = out[i]._replace(length=out[i].length + HILL)
+    return out
+
+
+def _with_length(
+    spans: list[Span], asked: Range, rng: np.random.Generator, haste: float
+) -> list[Span] | None:
+    """Free straights stretched or squeezed until the road has a length that was asked for."""
+    now = sum(span.length for span in spans)
+    low, high = asked.lo, asked.hi
+    if high == inf:
+        low, high = max(low * 1.01, min(now, low * 1.3)), max(low * 1.3, now)
+    elif low <= 0 or low == -inf:
+        low = min(now, 0.5 * high)
+    target = low + (high - low) * (0.15 + 0.7 * rng.random())
+    if low < now < high:
+        return spans
+    free = [i for i, span in enumerate(spans) if not span.turn and not span.asked]
+    if not free:
+        return spans
+    missing = target - now
+    if missing > 0:
+        shares = rng.dirichlet(np.ones(len(free)))
+        lengths = [spans[i].length + missing * share for i, share in zip(free, shares, strict=True)]
+    else:
+        least = [_least(spans, i, LEAD if haste < 0.5 else SHORT_LEAD) for i in free]
+        slack = sum(spans[i].length - floor for i, floor in zip(free, least, strict=True))
+        if slack < -missing:
+            return None
+        keep = 1 + missing / slack
+        lengths = [floor + keep * (spans[i].length - floor) for i, floor in zip(free, least, strict=True)]
+    out = list(spans)
+    for i, length in zip(free, lengths, strict=True):
+        out[i] = out[i]._replace(length=length)
+    return out
+
+
+def _least(spans: Sequence[Span], index: int, lead: float) -> float:
+    """How short the straight may get."""
+    before = spans[index - 1] if index else None
+    after = spans[index + 1] if index + 1 < len(spans) else None
+    if before is None or after is None:
+        return min(lead, spans[index].length)
+    separate = before.turn * after.turn > 0
+    return min(SEPARATE if separate else FEWEST_METRES, spans[index].length)

@@ -1,0 +1,167 @@
+"""Draws a random Design that keeps every promise of the Brief, is valid, and is like none before.
+
+Drafts are drawn until one passes. Tests are asked in the order of what they cost: does it fit on the map, does
+it keep clear of itself, is it new, does its measured line keep the promises, and do the rules pass the road
+that grows from it. Each draft is a little more hasty than the last: shorter straights, smaller turns. So wishes
+that hardly fit are met in the end, and only those that cannot be are refused.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from roadgpt import check
+from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import Outline
+from roadgpt.check.measures import measure
+from roadgpt.check.rules.promises import complaints, promises_of
+from roadgpt.design.advice import advice
+from roadgpt.design.compose import composed
+from roadgpt.design.heights import Windows, drawn_heights
+from roadgpt.design.layout import Line, Place, keeps_clear, place, smallest_box, walk
+from roadgpt.design.order import drawn_order
+from roadgpt.design.spans import Span, cut
+from roadgpt.design.variety import ENOUGH, Shape, Shapes, apart, shape_of
+from roadgpt.errors import DesignError
+from roadgpt.road import Design, Segment, World, build
+from roadgpt.road.grades import profile_of
+
+DRAFTS = 320  # that are drawn for one road at most
+ALIKE = 120  # drafts like earlier roads, after which the least alike is taken
+ALIKE_STRAIGHTS = 12  # where a road has no turns, so that only its length can differ
+LAST_RESORTS = 20  # drafts like earlier roads that are tried where there are no others
+HEIGHTS = 5  # that are tried on one plan
+NO_HASTE = 16  # drafts that are drawn freely
+VERGES = 0.6  # of the drafts: so long, legs keep off each other's verges as well
+STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
+
+
+class _Draft(NamedTuple):
+    """A plan that fits on the map and keeps clear of itself."""
+
+    spans: list[Span]
+    line: Line
+    place: Place
+    shape: Shape
+
+
+class Planner:
+    """Designs by search; the default designer."""
+
+    def __init__(self) -> None:
+        self._shapes = Shapes()
+
+    def draft(
+        self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
+    ) -> Design:
+        """A Design for the Brief; ``notes`` only move the seed on, as every draft is checked anyway.
+
+        Raises:
+            DesignError: no draft passed; says which wish stood in the way, and what to do.
+        """
+        search = _Search(brief, world, self._shapes.of(earlier), np.random.default_rng([seed, len(notes)]))
+        design, shape = search.run()
+        self._shapes.remember(design, shape)
+        return design
+
+
+class _Search:
+    """The search for one road."""
+
+    def __init__(self, brief: Brief, world: World, others: Shape, rng: np.random.Generator) -> None:
+        self.brief, self.world, self.others, self.rng = brief, world, others, rng
+        self.outline: Outline = promises_of(brief, world)
+        self.windows = Windows(self.outline, world)
+        self.failed: Counter[str] = Counter()
+        self.boxes: list[float] = []
+
+    def run(self) -> tuple[Design, Shape]:
+        """The first draft that passes; where all are like earlier roads, the least alike."""
+        alike: list[tuple[float, int, _Draft]] = []
+        most = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
+        for number in range(DRAFTS):
+            haste = max(0.0, (number - NO_HASTE) / (DRAFTS - NO_HASTE))
+            drafted = self._plan(haste, with_verges=number < VERGES * DRAFTS)
+            if drafted is None:
+                continue
+            nearest = self._nearest(drafted.shape, by_metres=len(alike) < most / 2)
+            if nearest < ENOUGH:
+                self.failed["like an earlier road"] += 1
+                alike.append((-nearest, number, drafted))
+                if len(alike) == most:
+                    break
+                continue
+            design = self._finished(drafted)
+            if design:
+                return design, drafted.shape
+        for _, _, drafted in sorted(alike)[:LAST_RESORTS]:
+            design = self._finished(drafted)
+            if design:
+                return design, drafted.shape
+        raise DesignError(advice(self.outline, self.world, self.failed, self.boxes))
+
+    def _plan(self, haste: float, with_verges: bool) -> _Draft | None:
+        order = drawn_order(self.outline, self.rng, plain=haste > 0.5)
+        spans = composed(order, self.outline, self.windows, self.world, self.rng, haste)
+        if spans is None:
+            self.failed["longer than was asked for"] += 1
+            return None
+        line = walk(spans)
+        where = place(line, self.world, self.rng)
+        if where is None:
+            self.failed["too large"] += 1
+            self.boxes.append(smallest_box(line))
+            return None
+        if not keeps_clear(line, self.world, with_verges):
+            self.failed["over itself"] += 1
+            return None
+        return _Draft(spans, line, where, shape_of(line.s, line.z))
+
+    def _nearest(self, shape: Shape, by_metres: bool) -> float:
+        """Metres to the nearest earlier road; ``by_metres`` also counts those that only start alike."""
+        if not len(self.others.reach):
+            return inf
+        at_shares, at_metres = apart(shape, self.others)
+        nearest = float(at_shares.min())
+        return min(nearest, float(at_metres.min())) if by_metres else nearest
+
+    def _finished(self, drafted: _Draft) -> Design | None:
+        """The Design, where some heights keep the promises and every rule passes its road."""
+        segments = self._with_heights(drafted)
+        if segments is None:
+            return None
+        x, y, theta = drafted.place
+        design = Design(starting_point=(x, y, self._start(segments)), theta=theta, segments=segments)
+        objections = check.inspect(build(design), self.brief, self.world)
+        if objections:
+            self.failed[objections[0].sentence] += 1
+            return None
+        return design
+
+    def _with_heights(self, drafted: _Draft) -> tuple[Segment, ...] | None:
+        s, z = drafted.line
+        for _ in range(HEIGHTS):
+            heights = drawn_heights(drafted.spans, self.outline, self.windows, self.rng)
+            pairs = zip(drafted.spans, heights, strict=True)
+            segments = tuple(segment for span, inclines in pairs for segment in cut(span, inclines))
+            points = np.stack([z.real, z.imag, profile_of(segments, 0.0).height(s)], axis=1)
+            broken = complaints(measure(points), self.outline)
+            if not broken:
+                return segments
+            self.failed[broken[0].sentence] += 1
+            if not any(
+                "grade" in c.sentence or "climb" in c.sentence or "steep" in c.sentence for c in broken
+            ):
+                return None
+        return None
+
+    def _start(self, segments: Sequence[Segment]) -> float:
+        """Height of the start, such that the lowest place lies a little above 0, or above the floor."""
+        profile = profile_of(segments, 0.0)
+        lowest = float(profile.height(np.array(profile.stations)).min())
+        low, high = STARTS_AT
+        ground = max(low, self.world.z_floor + 1) + self.rng.random() * (high - low)
+        return round(ground - lowest, 2)

@@ -1,0 +1,205 @@
+"""Draws the measures that words leave open: angles, radii and transitions of turns, lengths of straights."""
+
+from collections.abc import Sequence
+from math import degrees, exp, inf, log, radians
+from typing import NamedTuple
+
+import numpy as np
+
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.words import KINDS, SHARPNESS, Range
+from roadgpt.check.measures import LEAST_TURN
+from roadgpt.design.order import overlap
+from roadgpt.design.spans import MOST_RAMP, Span, segments_of_turn, turn_span
+from roadgpt.errors import DesignError
+from roadgpt.road import World
+
+ANY_TURN = Range(25, 120)  # degrees, where nothing is said: the table in brief.words
+AIMS = {meaning.said[0]: meaning.aim for meaning in KINDS.values() if meaning.aim}
+SHARPNESS_AIMS = {meaning.degrees: meaning.aim for meaning in SHARPNESS.values() if meaning.aim}
+OVER_LEAST_RADIUS = 1.055  # of the world's least: a spline through control points 2 m apart loses 3 %
+WIDEST = 115.0  # m, of a radius that nobody asked for
+LONGEST_TURN = 170.0  # m along the curve
+SEEN_ARC = 6.5  # m: a shorter arc is not measured with its own radius, which is averaged over some 9 m
+SHORTEST_TURN = 11.0  # m along the arc, where no radius was asked for: less looks like a kink
+RAMPS = (0.12, 0.34)  # of the arc, for each clothoid
+RAMP_LIMITS = (3.0, 16.0)  # m
+LEAD = 16.5  # m: a straight before the first or after the last turn is measured as 10 m or more
+SEPARATE = 17.5  # m: turns of one hand with so much between them are measured as two
+TIGHTER = 1.35  # hard roads: radii are at most so many times the least one
+
+
+class TurnRoom(NamedTuple):
+    """From what a turn is drawn: degrees, metres, metres along the curve, percent."""
+
+    degrees: Range
+    radius: Range
+    length: Range | None
+    grade: Range | None
+    hand: int
+    tight: bool
+    """Was an upper limit of its radius promised?"""
+
+
+def turn_rooms(turns: Sequence[Feature], outline: Outline, world: World) -> list[TurnRoom]:
+    """The ranges for every turn, a little inside what was promised.
+
+    Raises:
+        DesignError: nothing is left of a range, such as a radius that the rules call too tight.
+    """
+    return [_turn_room(turn, outline, world) for turn in turns]
+
+
+def _turn_room(turn: Feature, outline: Outline, world: World) -> TurnRoom:
+    least = max(world.min_radius * OVER_LEAST_RADIUS, 0.8 * world.road_width)
+    promised = overlap(turn.radius, outline.each_turn.radius)
+    radius = overlap(_inside(promised, 0.04), Range(least, inf)) if promised else Range(least, inf)
+    assert radius is not None
+    if radius.lo > radius.hi:
+        raise DesignError(
+            f"a {turn.name} with a radius of {promised} m is tighter than the {world.min_radius:.4g} m "
+            f"that the rules allow; ask for {least + 1:.0f} m or more"
+        )
+    angle = overlap(turn.degrees, outline.each_turn.degrees) or ANY_TURN
+    if angle.lo > angle.hi:
+        raise DesignError(f"no {turn.name} can turn as far as was asked for; leave its degrees open")
+    if angle.hi < LEAST_TURN:
+        raise DesignError(
+            f"a {turn.name} of {angle} degrees is not seen as a turn; ask for {LEAST_TURN + 5:g} or more"
+        )
+    tight = radius.hi < inf
+    hand = -1 if turn.side == "right" else 1
+    drawn = _angles(turn, angle)
+    return TurnRoom(drawn, radius, overlap(turn.length, outline.each_turn.length), None, hand, tight)
+
+
+def _angles(turn: Feature, promised: Range) -> Range:
+    """Degrees to draw from: the middle of a number that was said, the aim of a word, else nearly all."""
+    width = promised.hi - promised.lo
+    if width <= 24:
+        return _inside(promised, 0.25)
+    span = overlap(SHARPNESS_AIMS.get(promised) or AIMS.get(turn.name), promised) or promised
+    if span.lo > span.hi:
+        span = promised
+    margin = min(1.5, 0.1 * (span.hi - span.lo))
+    return Range(span.lo + margin, min(span.hi, span.lo + 110) - margin)
+
+
+def _inside(span: Range, share: float) -> Range:
+    """Drawn in by a share of its width at both ends, or of its bound where it is open."""
+    if span.hi == inf:
+        return Range(span.lo * (1 + share) if span.lo > 0 else span.lo, inf)
+    if span.lo <= 0:
+        return Range(span.lo, span.hi * (1 - share))
+    edge = max(share * (span.hi - span.lo), 0.0)
+    return Range(span.lo + edge, span.hi - edge)
+
+
+def drawn_turns(
+    rooms: Sequence[TurnRoom], outline: Outline, world: World, rng: np.random.Generator, haste: float
+) -> list[Span]:
+    """Turns whose angles, radii and ramps are drawn.
+
+    Args:
+        rooms: what each is drawn from.
+        outline: what was asked for.
+        world: its map bounds the length of a turn.
+        rng: source of chance.
+        haste: 0 draws freely; towards 1 turns get as small as was promised, so that they fit somewhere.
+    """
+    angles = [room.degrees.lo + _share(rng, haste) * (room.degrees.hi - room.degrees.lo) for room in rooms]
+    angles = _uncoiled(angles, rooms, 215 + 115 * rng.random())
+    longest = _longest(len(rooms), outline, world) * (1 - 0.6 * haste)
+    return [
+        _drawn_turn(room, angle, longest, outline.hard, rng, haste)
+        for room, angle in zip(rooms, angles, strict=True)
+    ]
+
+
+def _longest(turns: int, outline: Outline, world: World) -> float:
+    """Metres along the curve that one turn may take, so that all find room."""
+    by_map = min(2.2 * world.map_size / (turns + 1.2), LONGEST_TURN)
+    if outline.length is None or outline.length.hi == inf:
+        return by_map
+    straights = 2 * LEAD + 0.4 * SEPARATE * (turns - 1)
+    return min(by_map, max(1.2 * (0.95 * outline.length.hi - straights) / max(turns, 1), 10.0))
+
+
+def _share(rng: np.random.Generator, haste: float) -> float:
+    return float(rng.random() * (1 - 0.9 * haste))
+
+
+def _uncoiled(angles: list[float], rooms: Sequence[TurnRoom], most: float) -> list[float]:
+    """Angles scaled towards their least until the heading swings through no more than ``most`` degrees."""
+    low = _swing([room.degrees.lo * room.hand for room in rooms])
+    now = _swing([angle * room.hand for angle, room in zip(angles, rooms, strict=True)])
+    if now <= most or now <= low:
+        return angles
+    f = max((most - low) / (now - low), 0.0)
+    return [room.degrees.lo + f * (a - room.degrees.lo) for a, room in zip(angles, rooms, strict=True)]
+
+
+def _swing(signed: Sequence[float]) -> float:
+    heading, low, high = 0.0, 0.0, 0.0
+    for angle in signed:
+        heading += angle
+        low, high = min(low, heading), max(high, heading)
+    return high - low
+
+
+def _drawn_turn(
+    room: TurnRoom, angle: float, longest: float, hard: bool, rng: np.random.Generator, haste: float
+) -> Span:
+    least, most = room.radius.lo, room.radius.hi
+    if hard:
+        most = max(min(most, least * TIGHTER), least)
+    if room.length:
+        length = room.length.lo + (0.35 + 0.3 * rng.random()) * (
+            min(room.length.hi, LONGEST_TURN) - room.length.lo
+        )
+        ramp = 0.1 * length
+        radius = (length - ramp) / radians(angle)
+        if radius < least:
+            angle = max(degrees((length - ramp) / least), room.degrees.lo)
+        return turn_span(angle, room.hand, min(max(radius, least), most), ramp, room.grade)
+    if not room.tight and not hard:
+        least = max(least, SHORTEST_TURN * (1 - haste) / radians(angle))
+    wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
+    if room.tight:  # promised: stay well inside, for short turns measure wider than they are
+        wide = least + 0.85 * (wide - least)
+    radius = exp(log(least) + _share(rng, haste) * (log(wide) - log(least)))
+    if radius * radians(angle) > longest:
+        if rng.random() < 0.7:
+            angle = max(room.degrees.lo, min(angle, degrees(longest / radius)))
+        radius = max(least, min(radius, longest / radians(angle)))
+    return turn_span(angle, room.hand, radius, _ramp(room, angle, radius, rng), room.grade)
+
+
+def _ramp(room: TurnRoom, angle: float, radius: float, rng: np.random.Generator) -> float:
+    """Length of the clothoids; short where a promised radius must still be seen."""
+    arc = radius * radians(angle)
+    share = RAMPS[0] + (RAMPS[1] - RAMPS[0]) * rng.random()
+    ramp = min(max(share * arc, RAMP_LIMITS[0]), RAMP_LIMITS[1])
+    if room.tight:
+        ramp = min(ramp, max(arc - SEEN_ARC, 1.0))
+    return min(ramp, MOST_RAMP * arc / segments_of_turn(angle))
+
+
+def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
+    """Metres of a straight that was asked for, of at least ``least`` where that is allowed."""
+    span = wish.length or Range(10, inf)
+    low, high = span.lo, span.hi
+    if high == inf:
+        low = max(low * 1.05 + 3, 22.0, least)
+        return free_straight(rng, haste, low, mean)
+    low = max(low, 0.0)
+    share = 0.3 + 0.4 * rng.random()
+    return max(low + share * (high - low), min(least, high - 0.15 * (high - low)))
+
+
+def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
+    """Metres of a straight that nobody asked for."""
+    return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)
+
+
+__all__ = ["LEAD", "SEPARATE", "TurnRoom", "drawn_straight", "drawn_turns", "free_straight", "turn_rooms"]

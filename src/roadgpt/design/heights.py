@@ -1,0 +1,246 @@
+"""The heights of a draft: an incline for every turn, and one or more for every straight."""
+
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.words import Range
+from roadgpt.design.order import overlap
+from roadgpt.design.spans import TENTH, Span
+from roadgpt.road import World
+
+UNDER_LIMIT = 0.4  # percentage points kept off the steepest grade allowed
+MARGIN = 0.5  # percentage points kept off a promised grade, at most ...
+MARGIN_SHARE = 0.2  # ... and at most so much of its range
+LEVEL_SHARE, SLOPE_SHARE = (
+    0.22,
+    0.3,
+)  # of roads whose words say nothing of heights: level, one slope; the rest rolls
+GENTLE, STEEP = 1.5, 9.0  # percent, of such roads
+NARROW = 3.0  # percentage points, of a promise that a ramp could break
+STEADY = 0.5  # chance that a feature keeps the grade of the one before, if it may
+FLAT = Range(-1, 1)  # percent
+UP = Range(3, 12)  # percent, where only "not flat" matters
+HILL = 34.0  # m: the shortest climb or fall of a hilly road
+HILL_GRADES = (4.0, 8.5)  # percent
+CREST = (2.5, 4.5)  # percent up to a bend of a hard road, and down in it
+BISECTIONS = 40
+
+Inclines = list[tuple[float, float]]
+"""Lengths in metres and inclines in percent, in order."""
+
+
+class Windows:
+    """The grades, in percent, that every place and every feature of a road may have."""
+
+    def __init__(self, outline: Outline, world: World) -> None:
+        limit = min(100 * world.max_grade, 15.0) - UNDER_LIMIT
+        steepest = (
+            outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi) if outline.steepest else inf
+        )
+        self.limit = Range(-min(limit, steepest), min(limit, steepest))
+        self.base: Range | None = None
+        if outline.grade == "flat":
+            self.base = Range(-0.4, 0.4)
+        elif outline.grade == "up":
+            self.base = drawn_in(outline.grade_range or Range(3, 12))
+        elif outline.grade == "down":
+            self.base = drawn_in(outline.grade_range or Range(-12, -3))
+        elif outline.grade_range:
+            self.base = drawn_in(outline.grade_range)
+        if self.base:
+            self.base = overlap(self.base, self.limit)
+
+    def of(self, feature: Feature) -> Range | None:
+        """What the feature promises, drawn in; else what the whole road does."""
+        if feature.grade is None:
+            return self.base
+        own = overlap(drawn_in(feature.grade), self.limit) or self.limit
+        meets = overlap(own, self.base) or own
+        return meets if meets.lo <= meets.hi else own
+
+    def row(self, straights: Sequence[Feature]) -> list[Range | None]:
+        """Of straights that follow each other: one that promises nothing must differ from its neighbours."""
+        out = [self.of(straight) for straight in straights]
+        for i, straight in enumerate(straights):
+            known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
+            if straight.grade is None and self.base is None and known:
+                out[i] = self.other(known)
+        return out
+
+    def other(self, grade: Range | None) -> Range:
+        """A grade that is seen to differ."""
+        if self.base and not (self.base.lo <= 0 <= self.base.hi):
+            return Range(0, 0)
+        return Range(0, 0) if grade is None or grade.lo > 1 or grade.hi < -1 else Range(3.5, 6)
+
+    @staticmethod
+    def part(one: Range | None, other: Range | None) -> bool:
+        """Must the grade change between features with these promises?"""
+        return bool(one and other and (one.lo > other.hi or other.lo > one.hi))
+
+
+def drawn_in(grade: Range) -> Range:
+    """A promised grade without its edges, where ramps and rounding could break it."""
+    margin = min(MARGIN, MARGIN_SHARE * (grade.hi - grade.lo)) if grade.hi - grade.lo < inf else MARGIN
+    return Range(grade.lo + margin, grade.hi - margin)
+
+
+def drawn_heights(
+    spans: Sequence[Span], outline: Outline, windows: Windows, rng: np.random.Generator
+) -> list[Inclines]:
+    """Inclines of every span, drawn; rounded to a tenth of a percent."""
+    if outline.hills and outline.hills.lo > 0:
+        parts = _hilly(spans, outline.hills, rng)
+        grades = [g for _, g, _ in parts]
+        owners = [(i, length) for i, _, length in parts]
+    else:
+        grades = _grades(spans, outline, windows, rng)
+        owners = [(i, span.length) for i, span in enumerate(spans)]
+    lengths = np.array([length for _, length in owners])
+    limits = [overlap(spans[i].grade or windows.base, windows.limit) or windows.limit for i, _ in owners]
+    values = np.clip(grades, [r.lo for r in limits], [r.hi for r in limits])
+    if outline.steepest and outline.steepest.lo > 0:
+        values = _with_steepest(values, lengths, limits, outline.steepest, rng)
+    if outline.climb:
+        values = _with_climb(values, lengths, limits, outline.climb, rng)
+    return _shared_out(spans, owners, np.round(values * TENTH) / TENTH)
+
+
+def _grades(
+    spans: Sequence[Span], outline: Outline, windows: Windows, rng: np.random.Generator
+) -> list[float]:
+    """One grade per span; joining straights get NaN, and are filled from their neighbours at the end."""
+    if outline.hard and not windows.base and not any(span.grade for span in spans):
+        return [(-1 if span.turn else 1) * _between(Range(*CREST), rng) for span in spans]
+    if not windows.base and not any(span.grade for span in spans):
+        return _free_grades(spans, windows, rng)
+    out: list[float] = []
+    last: tuple[Range | None, float] = (None, 0.0)
+    for span in spans:
+        window = span.grade or (windows.base if span.turn or len(spans) == 1 else None)
+        if window is None:
+            out.append(np.nan)
+            continue
+        keeps = last[0] is not None and last[1] in window and rng.random() < STEADY
+        value = last[1] if keeps else _between(window, rng)
+        if span.asked and not span.turn and window.hi - window.lo < NARROW:
+            value = _far_end(window, rng)
+        out.append(value)
+        last = (window, value)
+    return out
+
+
+def _far_end(window: Range, rng: np.random.Generator) -> float:
+    """The steep end of a narrow promise: the ramps at both ends of a straight take off some of its mean."""
+    share = 0.2 * float(rng.random())
+    if window.lo > 0:
+        return window.hi - share * (window.hi - window.lo)
+    return window.lo + share * (window.hi - window.lo) if window.hi < 0 else _between(window, rng)
+
+
+def _between(window: Range, rng: np.random.Generator) -> float:
+    return window.lo + float(rng.random()) * (window.hi - window.lo)
+
+
+def _free_grades(spans: Sequence[Span], windows: Windows, rng: np.random.Generator) -> list[float]:
+    """Heights nobody asked for: level, one slope, or a different one for every feature."""
+    style, top = rng.random(), min(STEEP, windows.limit.hi)
+    if style < LEVEL_SHARE:
+        return [0.0] * len(spans)
+    low = min(GENTLE, top)
+    if style < LEVEL_SHARE + SLOPE_SHARE:
+        return [float(rng.choice((-1, 1)) * (low + rng.random() * (top - low)))] * len(spans)
+    grade, out = 0.0, []
+    for span in spans:
+        if span.turn or rng.random() < 0.5:
+            grade = float(rng.choice((-1, 0, 1), p=(0.4, 0.2, 0.4)) * (low + rng.random() * (top - low)))
+        out.append(grade)
+    return out
+
+
+def _hilly(spans: Sequence[Span], hills: Range, rng: np.random.Generator) -> list[tuple[int, float, float]]:
+    """Span, grade and length of stretches that climb and fall in turn; promised grades stay.
+
+    Long straights are cut into several; a stretch too short for a hill of its own goes on as the one before.
+    """
+    out: list[tuple[int, float, float]] = []
+    sign, wanted, so_far = float(rng.choice((-1, 1))), 0, 0.0
+    most = hills.hi if hills.hi < inf else hills.lo + 2
+    for index, span in enumerate(spans):
+        parts = 1 if span.turn or span.grade else max(1, int(span.length / HILL))
+        for _ in range(parts):
+            length = span.length / parts
+            if span.grade and not (span.grade.lo < 0 < span.grade.hi):
+                own = float(np.sign(span.grade.lo + span.grade.hi))
+                wanted, sign, so_far = wanted + (own != sign and bool(out)), own or sign, 0.0
+            elif so_far >= HILL and wanted < most:
+                wanted, sign, so_far = wanted + 1, -sign, 0.0
+            so_far += length
+            size = _between(span.grade, rng) if span.grade and span.grade.lo > 0 else None
+            low, high = HILL_GRADES
+            out.append((index, sign * (size or low + rng.random() * (high - low)), length))
+    return out
+
+
+def _with_steepest(
+    values: np.ndarray,
+    lengths: np.ndarray,
+    limits: Sequence[Range],
+    steepest: Range,
+    rng: np.random.Generator,
+) -> np.ndarray:
+    """One long enough stretch made as steep as was asked, if none is."""
+    low = steepest.lo + min(0.5, 0.3 * max(min(steepest.hi, 15) - steepest.lo, 0.0))
+    if np.any((np.abs(values) >= low) & (lengths > HILL)):
+        return values
+    out = values.copy()
+    for index in np.argsort(-lengths):
+        room = limits[index]
+        wants = [side for side in (1, -1) if room.lo <= side * low <= room.hi]
+        if wants:
+            side = (
+                float(np.sign(values[index])) if np.sign(values[index]) in wants else float(rng.choice(wants))
+            )
+            most = room.hi if side > 0 else -room.lo
+            out[index] = side * (low + rng.random() * max(min(most, low + 3) - low, 0.0))
+            break
+    return out
+
+
+def _with_climb(
+    values: np.ndarray, lengths: np.ndarray, limits: Sequence[Range], climb: Range, rng: np.random.Generator
+) -> np.ndarray:
+    """All grades shifted alike, each within its limits, until the road climbs as much as was asked."""
+    known = np.where(np.isnan(values), np.nanmean(values) if np.isfinite(values).any() else 0.0, values)
+    low = climb.lo if climb.lo > -inf else climb.hi - max(0.3 * abs(climb.hi), 2.0)
+    high = climb.hi if climb.hi < inf else climb.lo + max(0.3 * abs(climb.lo), 2.0)
+    target = low + (0.3 + 0.4 * rng.random()) * (high - low)
+    least, most = np.array([r.lo for r in limits]), np.array([r.hi for r in limits])
+    down, up = -40.0, 40.0
+    for _ in range(BISECTIONS):
+        middle = (down + up) / 2
+        climbed = float(np.clip(known + middle, least, most) @ lengths) / 100
+        down, up = (middle, up) if climbed < target else (down, middle)
+    return np.asarray(np.clip(known + down, least, most))
+
+
+def _shared_out(
+    spans: Sequence[Span], owners: Sequence[tuple[int, float]], values: np.ndarray
+) -> list[Inclines]:
+    """Inclines per span; a joining straight takes its neighbours' grades, half each where they differ."""
+    out: list[Inclines] = [[] for _ in spans]
+    for (index, length), value in zip(owners, values, strict=True):
+        out[index].append((length, float(value)))
+    for index, inclines in enumerate(out):
+        if not np.isnan(inclines[0][1]):
+            continue
+        before = next((out[i][-1][1] for i in range(index - 1, -1, -1) if not np.isnan(out[i][-1][1])), None)
+        after = next((o[0][1] for o in out[index + 1 :] if not np.isnan(o[0][1])), None)
+        first, last = (before if before is not None else after), (after if after is not None else before)
+        half, incline = inclines[0][0] / 2, first or 0.0
+        same = first == last
+        out[index] = [(2 * half, incline)] if same else [(half, incline), (half, last or 0.0)]
+    return out

@@ -1,0 +1,107 @@
+"""The plan of a draft, fast and to a centimetre, and its place on the map.
+
+Hundreds of drafts may have to be laid out for one road, so the curve is walked in short steps instead of
+being solved; the road that is built in the end is exact, and is judged again.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.design.spans import Span
+from roadgpt.geometry.curve import Array
+from roadgpt.road import World
+
+STEP = 1.0  # m between points of the walked line
+COARSE = 3  # points of the walked line from one point of the test for overlap to the next
+EDGE = 0.3  # m kept free between ribbon and border of the map, for rounding and the bulge of splines
+NEIGHBOURS = (
+    26.0  # m along the road: places nearer than this cannot meet (half a circle of 14 m radius is 44 m)
+)
+COARSENESS = 0.6  # m that the coarse points may see legs further apart than they are
+SPARE = 0.7  # m that carriageways are kept apart at least, where there is no room for the verges
+HEADINGS = 72  # that are tried on a map where the first one does not fit
+
+Complex = NDArray[np.complex128]
+
+
+class Line(NamedTuple):
+    """A walked centre line that starts at the origin along +x: stations, and points as x + iy."""
+
+    s: Array
+    z: Complex
+
+
+class Place(NamedTuple):
+    """Where a line lies on the map: start in metres, heading in degrees."""
+
+    x: float
+    y: float
+    theta: float
+
+
+def walk(spans: Sequence[Span]) -> Line:
+    """The centre line of spans, in steps of about a metre."""
+    knots, bends, at = [0.0], [0.0], 0.0
+    for span in spans:
+        if span.turn:
+            k = span.curvature
+            knots += [at, at + span.ramp, at + span.length - span.ramp, at + span.length]
+            bends += [0.0, k, k, 0.0]
+        at += span.length
+    s = np.linspace(0.0, at, max(2, round(at / STEP)) + 1)
+    step = s[1]
+    middle = s[:-1] + step / 2
+    heading = np.concatenate([[0.0], np.cumsum(np.interp(middle, knots, bends)) * step])
+    steps = np.exp(0.5j * (heading[1:] + heading[:-1])) * step
+    return Line(s, np.concatenate([[0j], np.cumsum(steps)]))
+
+
+def keeps_clear(line: Line, world: World, with_verges: bool) -> bool:
+    """Do parts of the road stay off each other: carriageways at least, and off each other's verges?"""
+    z = line.z[::COARSE]
+    spacing = COARSE * (line.s[1] - line.s[0])
+    apart = world.road_width + (world.verge if with_verges else SPARE) + COARSENESS
+    first = int(NEIGHBOURS / spacing) + 1
+    if len(z) <= first:
+        return True
+    dx, dy = z.real[:, None] - z.real, z.imag[:, None] - z.imag
+    near = dx * dx + dy * dy < apart * apart
+    return not np.triu(near, first).any()
+
+
+def place(line: Line, world: World, rng: np.random.Generator) -> Place | None:
+    """A random place on the map where the ribbon fits, at a random heading; None where there is none."""
+    room = world.map_size - world.road_width - 2 * EDGE
+    turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
+    chosen = _extent(line.z, turns[:1], room)
+    if chosen is None:
+        rng.shuffle(turns)
+        chosen = _extent(line.z[::2], turns, room - 0.2)
+    if chosen is None:
+        return None
+    theta, left, low, width, height = chosen
+    border = world.road_width / 2 + EDGE
+    x = border - left + rng.random() * max(room - width, 0.0)
+    y = border - low + rng.random() * max(room - height, 0.0)
+    return Place(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)
+
+
+def _extent(z: Complex, thetas: Array, room: float) -> tuple[float, float, float, float, float] | None:
+    """The first heading at which the line is no wider and no higher than ``room``; its box from the start."""
+    turned = np.exp(1j * np.radians(thetas))[:, None] * z
+    left, low = turned.real.min(axis=1), turned.imag.min(axis=1)
+    width, height = turned.real.max(axis=1) - left, turned.imag.max(axis=1) - low
+    fits = np.flatnonzero((width <= room) & (height <= room))
+    if not fits.size:
+        return None
+    i = int(fits[0])
+    return float(thetas[i]), float(left[i]), float(low[i]), float(width[i]), float(height[i])
+
+
+def smallest_box(line: Line) -> float:
+    """Side of the smallest square that holds the line at some heading, metres."""
+    turned = np.exp(1j * np.radians(np.arange(0, 90, 5)))[:, None] * line.z
+    return float(np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1)).min())

@@ -1,0 +1,199 @@
+"""Which turns and straights a draft has, in which order, and to which side every turn goes."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from roadgpt.brief.model import Side
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.words import Range
+from roadgpt.errors import DesignError
+
+USUAL = (0.10, 0.20, 0.26, 0.20, 0.14, 0.10)  # chances of 1, 2, ... turns on a road whose words leave it open
+MORE = (0.45, 0.30, 0.17, 0.08)  # chances of 0, 1, ... turns more than "at least" asks for
+SWITCH = 0.6  # chance that a turn goes the other way than the one before, where that is open
+WIDE = 100.0  # degrees: turns of so many or more would coil up, so they mostly alternate
+SWITCH_WIDE = 0.9
+ROUNDS = 60  # of drawing sides until left and right are as many as asked for
+OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
+
+
+class Turn(NamedTuple):
+    """A turn whose side may still be open."""
+
+    feature: Feature
+    side: Side | None
+    switches: bool
+    """Must it go the other way than the one before?"""
+
+
+class Order(NamedTuple):
+    """Turns with their sides, and the straights asked for before each of them and after the last."""
+
+    turns: tuple[Feature, ...]
+    gaps: tuple[tuple[Feature, ...], ...]
+
+
+def drawn_order(outline: Outline, rng: np.random.Generator, plain: bool) -> Order:
+    """Draws what the Outline leaves open.
+
+    Args:
+        outline: what was asked for.
+        rng: source of chance.
+        plain: take as few turns as may be.
+
+    Raises:
+        DesignError: the counts of left, right and all turns contradict each other.
+    """
+    turns, gaps = _listed(outline, rng, plain) if outline.names_all_turns else _free(outline, rng, plain)
+    _with_ends(outline, turns, gaps)
+    sides = _sides(turns, outline, rng)
+    features = tuple(replace(turn.feature, side=side) for turn, side in zip(turns, sides, strict=True))
+    return Order(features, tuple(map(tuple, gaps)))
+
+
+def _listed(
+    outline: Outline, rng: np.random.Generator, plain: bool
+) -> tuple[list[Turn], list[list[Feature]]]:
+    """The groups, one after another."""
+    turns: list[Turn] = []
+    gaps: list[list[Feature]] = [[]]
+    counts = _group_counts(outline, rng, plain)
+    for group, count in zip(outline.groups, counts, strict=True):
+        feature = group.feature
+        if feature.kind == "straight":
+            gaps[-1] += [feature] * count
+            continue
+        for number in range(count):
+            switches = group.alternating and number > 0
+            turns.append(Turn(feature, None if switches else feature.side, switches))
+            gaps.append([])
+    return turns, gaps
+
+
+def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> list[int]:
+    """Features per group; those of turns add up to a number of turns that was asked for."""
+    groups = outline.groups
+    counts = [group.lo for group in groups]
+    open_ = [i for i, g in enumerate(groups) if g.feature.kind == "turn" and g.hi != g.lo]
+    total = sum(count for count, g in zip(counts, groups, strict=True) if g.feature.kind == "turn")
+    missing = int(max(outline.turns.lo - total, 0))
+    more = 0 if plain or not open_ else int(rng.choice(len(MORE), p=MORE))
+    spare = outline.turns.hi - total
+    for _ in range(int(min(max(missing, more), spare)) if open_ else 0):
+        able = [i for i in open_ if (groups[i].hi is None or counts[i] < (groups[i].hi or 0))]
+        if not able:
+            break
+        counts[able[rng.integers(len(able))]] += 1
+    return counts
+
+
+def _free(outline: Outline, rng: np.random.Generator, plain: bool) -> tuple[list[Turn], list[list[Feature]]]:
+    """Any turns, and the straights that were asked for somewhere between them, in their order."""
+    count = _turn_count(outline, rng, plain)
+    turns = [Turn(Feature("turn", "turn"), None, False)] * count
+    gaps: list[list[Feature]] = [[] for _ in range(count + 1)]
+    straights = [group.feature for group in outline.groups for _ in range(group.lo)]
+    apart = len(straights) <= count + 1
+    where = rng.choice(count + 1, size=len(straights), replace=not apart)
+    for index, feature in zip(sorted(where), straights, strict=True):
+        gaps[index].append(feature)
+    return turns, gaps
+
+
+def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
+    low = int(max(outline.turns.lo, outline.left.lo, 0) if outline.turns.lo > 0 else max(outline.left.lo, 0))
+    low = max(low, int(max(outline.left.lo, 0) + max(outline.right.lo, 0)))
+    high = min(outline.turns.hi, outline.left.hi + outline.right.hi)
+    if low > high:
+        asked = f"{outline.turns} turns, {outline.left} left and {outline.right} right"
+        raise DesignError(f"no road has {asked}; change one of these numbers")
+    if plain:
+        return low
+    if low <= 1:
+        some = 1 + int(rng.choice(len(USUAL), p=USUAL))
+        return int(min(max(some, low), high))
+    return int(min(low + rng.choice(len(MORE), p=MORE), high))
+
+
+def _with_ends(outline: Outline, turns: list[Turn], gaps: list[list[Feature]]) -> None:
+    """Puts what the road must start and end with at its ends."""
+    for feature, index in ((outline.starts, 0), (outline.ends, -1)):
+        if feature is None:
+            continue
+        if feature.kind == "straight":
+            gap = gaps[index]
+            if not gap or not _shares(gap[index], feature):
+                gap.insert(0 if index == 0 else len(gap), feature)
+            else:
+                gap[index] = both(gap[index], feature)
+        elif turns:
+            one = turns[index]
+            turns[index] = one._replace(feature=both(one.feature, feature), side=feature.side or one.side)
+
+
+def _shares(one: Feature, other: Feature) -> bool:
+    """Could one straight be both?"""
+    return all(
+        a.lo <= a.hi for a in (overlap(one.length, other.length), overlap(one.grade, other.grade)) if a
+    )
+
+
+def both(one: Feature, other: Feature) -> Feature:
+    """A feature that keeps the promises of two."""
+    return replace(
+        one,
+        side=one.side or other.side,
+        degrees=overlap(one.degrees, other.degrees),
+        radius=overlap(one.radius, other.radius),
+        length=overlap(one.length, other.length),
+        grade=overlap(one.grade, other.grade),
+    )
+
+
+def overlap(one: Range | None, other: Range | None) -> Range | None:
+    """Where two ranges overlap; None is no limit, and nothing in common has lo above hi."""
+    if one is None or other is None:
+        return one or other
+    return Range(max(one.lo, other.lo), min(one.hi, other.hi))
+
+
+def _sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generator) -> list[Side]:
+    left, right, n = outline.left, outline.right, len(turns)
+    for _ in range(ROUNDS):
+        sides = _drawn_sides(turns, outline, rng)
+        if sides is not None and sides.count("left") in left and n - sides.count("left") in right:
+            return sides
+    asked = f"{n} turns, {left} to the left and {right} to the right"
+    raise DesignError(f"the sides of the turns contradict each other ({asked}); leave one of them open")
+
+
+def _drawn_sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generator) -> list[Side] | None:
+    """Random sides, leaning to those still missing; None where a fixed side breaks an alternation."""
+    sides: list[Side] = []
+    for turn in turns:
+        if sides and (turn.switches or outline.alternating):
+            side = OTHER[sides[-1]]
+            if turn.side not in (None, side) and not turn.switches:
+                return None
+        else:
+            side = turn.side or _free_side(turn, sides, len(turns), outline, rng)
+        sides.append(side)
+    return sides
+
+
+def _free_side(
+    turn: Turn, sides: Sequence[Side], count: int, outline: Outline, rng: np.random.Generator
+) -> Side:
+    rest = count - len(sides)
+    lefts, rights = sides.count("left"), len(sides) - sides.count("left")
+    if lefts >= outline.left.hi or outline.right.lo - rights >= rest:
+        return "right"
+    if rights >= outline.right.hi or outline.left.lo - lefts >= rest:
+        return "left"
+    if not sides:
+        return "left" if rng.random() < 0.5 else "right"
+    wide = turn.feature.degrees is not None and turn.feature.degrees.lo >= WIDE
+    return OTHER[sides[-1]] if rng.random() < (SWITCH_WIDE if wide else SWITCH) else sides[-1]

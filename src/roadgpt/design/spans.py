@@ -1,0 +1,103 @@
+"""Spans: turns and straights with their measures, before they are cut into RoadGPT's segments.
+
+A turn is a clothoid, an arc and a clothoid:   length = radius * angle + ramp
+"""
+
+from math import ceil, degrees, floor, inf, radians
+from typing import NamedTuple
+
+from roadgpt.brief.words import Range
+from roadgpt.road import Segment
+from roadgpt.road.design import MAX_TURN
+
+MILLIMETRE = 1000.0  # per metre: distances are written to the millimetre
+TENTH = 10.0  # per unit: angles, ramps and inclines are written to the tenth
+HUNDREDTH = 100.0  # per metre: radii are written to the centimetre
+MOST_RAMP = 0.55  # of a segment's arc: with more, a segment could not keep its radius (see road.alignment)
+
+
+class Span(NamedTuple):
+    """A turn, or a straight where ``turn`` is 0."""
+
+    length: float
+    """Metres along the plan."""
+    turn: float = 0.0
+    """Degrees, left positive."""
+    radius: float = inf
+    """Metres."""
+    ramp: float = 0.0
+    """Metres, of the clothoid at either end."""
+    grade: Range | None = None
+    """Percent, that its slope as a whole must lie in; None where nothing is promised."""
+    asked: bool = False
+    """Is it a feature that was asked for, rather than one that joins others?"""
+
+    @property
+    def curvature(self) -> float:
+        """Of the arc, 1/m, left positive; 0 of a straight."""
+        return (1 if self.turn > 0 else -1) / self.radius
+
+
+def turn_span(angle: float, hand: int, radius: float, ramp: float, grade: Range | None) -> Span:
+    """A turn with its numbers rounded as they will be written; the ramp is kept as short as segments need.
+
+    Args:
+        angle: degrees, positive.
+        hand: 1 to the left, -1 to the right.
+        radius: metres.
+        ramp: metres, of each clothoid.
+        grade: percent, promised.
+    """
+    parts = segments_of_turn(angle)
+    share = round(angle / parts * TENTH) / TENTH
+    radius = ceil(radius * HUNDREDTH) / HUNDREDTH
+    most = MOST_RAMP * radius * radians(share)
+    ramp = max(floor(min(ramp, most) * TENTH), 1) / TENTH
+    angle = share * parts
+    return Span(radius * radians(angle) + ramp, hand * angle, radius, ramp, grade, True)
+
+
+def segments_of_turn(angle: float) -> int:
+    """How many of RoadGPT's segments a turn of so many degrees takes."""
+    return max(1, ceil(angle / MAX_TURN - 1e-9))
+
+
+def cut(span: Span, inclines: list[tuple[float, float]]) -> list[Segment]:
+    """RoadGPT's segments of a span.
+
+    Args:
+        span: the turn or straight.
+        inclines: lengths in metres and inclines in percent, in order; of a turn just one.
+    """
+    if not span.turn:
+        return [
+            Segment(distance=round(length * MILLIMETRE) / MILLIMETRE, direction="straight", incline=incline)
+            for length, incline in inclines
+        ]
+    incline = inclines[0][1]
+    parts = segments_of_turn(abs(span.turn))
+    share = span.turn / parts
+    arc = span.radius * radians(abs(share))
+    direction = "left" if span.turn > 0 else "right"
+    out = []
+    for part in range(parts):
+        ends = (part == 0) + (part == parts - 1)
+        # outer parts a hair long, inner ones a hair short: so every part can keep the radius
+        exact = (arc + ends * span.ramp / 2) * MILLIMETRE
+        distance = (ceil(exact) if ends else floor(exact)) / MILLIMETRE
+        out.append(
+            Segment(
+                distance=distance,
+                direction=direction,
+                incline=incline,
+                turn_degrees=round(share * TENTH) / TENTH,
+                radius=span.radius if ends else None,
+                transition=span.ramp if ends else None,
+            )
+        )
+    return out
+
+
+def arc_angle(length: float, radius: float, ramp: float) -> float:
+    """Degrees that a turn of this length has."""
+    return degrees((length - ramp) / radius)
