@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.ticker import MultipleLocator
 
-from roadgpt.report.canvas import HEADER, INK, SOFT, VERMILLION, add_axes, header, new_figure
+from roadgpt.report.canvas import HALO, INK, SOFT, VERMILLION, Header, add_axes, new_figure
 from roadgpt.report.labels import Labels
 from roadgpt.report.places import Place, places_of
 from roadgpt.report.scenery import GROUND, Array, Frame, draw_ends, draw_road, stations_of
@@ -21,9 +21,10 @@ Scale = Literal["equal", "thesis"]
 """Axes that fit the road, or those of RoadGPT's plots: x and y from 0 to 220 m."""
 
 THESIS = Frame(0.0, 220.0, 0.0, 220.0)
-SIDE = 6.6  # inches, of the square that shows the road
+SIDE = 6.6  # inches, the longer side of what shows the road
 LEFT, BOTTOM, BAR = 0.75, 0.62, 1.15  # inches
 MARGIN, LEAST = 16.0, 60.0  # m, around the road and across the picture
+BORDER = "border of the map"
 SLOWEST = 10.0  # km/h; the colours span at least so much
 
 # plasma without its lightest end, which asphalt would swallow
@@ -34,18 +35,20 @@ def birds_eye(run: Run, scale: Scale = "equal") -> Figure:
     """The road from above, the driven path coloured by speed, and the place of a departure or a finding."""
     road, world = run.road, run.world
     assert road is not None
-    right = BAR if run.drive is not None else 0.3
-    figure = new_figure(LEFT + SIDE + right, BOTTOM + SIDE + HEADER)
-    axes = add_axes(figure, LEFT, BOTTOM, right, HEADER)
-    header(figure, run)
     centre = road.at(stations_of(road))[:, :2]
     frame = THESIS if scale == "thesis" else _frame(run, centre)
+    across = SIDE * min(1.0, frame.width / frame.height)
+    right = BAR if run.drive is not None else 0.3
+    header = Header.of(run, LEFT + across + right)
+    figure = new_figure(header.width, BOTTOM + across * frame.height / frame.width + header.height)
+    axes = add_axes(figure, LEFT, BOTTOM, right, header.height)
+    header.write(figure)
     _ground(axes, frame, world.map_size)
-    draw_road(axes, road, world)
+    draw_road(axes, road, world, frame.width / across)
     draw_ends(axes, road, world)
     if run.drive is not None:
         _path(figure, axes, run)
-    labels = Labels(axes, frame, frame.width / SIDE, centre, world.lane_width + 1.0)
+    labels = Labels(axes, frame, frame.width / across, centre, world.lane_width + 1.0)
     places = places_of(run)
     for place in places:
         _mark(axes, run, place)
@@ -54,6 +57,11 @@ def birds_eye(run: Run, scale: Scale = "equal") -> Figure:
         heading = float(road.heading(s))
         x, y, _ = road.at(s)
         labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
+    if not all(frame.holds(x, y) for x, y in centre):
+        axes.text(
+            0.98, 0.98, "the road goes on beyond these axes", transform=axes.transAxes, ha="right", va="top",
+            size=9.5, color=SOFT, path_effects=HALO, zorder=12,
+        )  # fmt: skip
     return figure
 
 
@@ -62,7 +70,7 @@ def _frame(run: Run, centre: Array) -> Frame:
     shown = centre
     if run.drive is not None:
         shown = np.concatenate([centre, np.stack([run.drive["x"], run.drive["y"]], axis=-1)])
-    return Frame.around(shown, MARGIN, 1.0, LEAST)
+    return Frame.around(shown, MARGIN, LEAST, run.world.map_size)
 
 
 def _ground(axes: Axes, frame: Frame, size: float) -> None:
@@ -83,20 +91,19 @@ def _ground(axes: Axes, frame: Frame, size: float) -> None:
 
 
 def _name_border(axes: Axes, frame: Frame, size: float) -> None:
-    """Say 'border of the map' along a border that is in view."""
-    inset = frame.width * 0.012
-    middle_x, middle_y = (frame.x0 + frame.x1) / 2, (frame.y0 + frame.y1) / 2
+    """Say 'border of the map' outside a border that is in view, where there is room for it."""
+    gap = frame.width * 0.012
+    room = 4 * gap
     style: dict[str, Any] = {"size": 8.5, "color": SOFT, "zorder": 0.7}
-    for y, va in ((0.0, "top"), (size, "bottom")):
-        if frame.y0 < y < frame.y1:
-            shift = -inset if va == "top" else inset
-            axes.text(middle_x, y + shift, "border of the map", ha="center", va=va, **style)
-            return
-    for x, ha in ((0.0, "right"), (size, "left")):
-        if frame.x0 < x < frame.x1:
-            shift = -inset if ha == "right" else inset
-            axes.text(x + shift, middle_y, "border of the map", ha=ha, va="center", rotation=90, **style)
-            return
+    x, y = (frame.x0 + frame.x1) / 2, (frame.y0 + frame.y1) / 2
+    if frame.y0 + room < 0:
+        axes.text(x, -gap, BORDER, ha="center", va="top", **style)
+    elif frame.y1 - room > size:
+        axes.text(x, size + gap, BORDER, ha="center", va="bottom", **style)
+    elif frame.x0 + room < 0:
+        axes.text(-gap, y, BORDER, ha="right", va="center", rotation=90, **style)
+    elif frame.x1 - room > size:
+        axes.text(size + gap, y, BORDER, ha="left", va="center", rotation=90, **style)
 
 
 def _path(figure: Figure, axes: Axes, run: Run) -> None:
@@ -113,8 +120,9 @@ def _path(figure: Figure, axes: Axes, run: Run) -> None:
     line = LineCollection(list(pieces), cmap=SPEEDS, norm=norm, linewidths=2.6, zorder=7, capstyle="round")
     line.set_array((speed[:-1] + speed[1:]) / 2)
     axes.add_collection(line)
-    wide, high = figure.get_size_inches()
-    box = ((LEFT + SIDE + 0.18) / wide, (BOTTOM + 0.6) / high, 0.16 / wide, (SIDE - 1.2) / high)
+    shown = axes.get_position()
+    inch = 1 / figure.get_figwidth()
+    box = (shown.x1 + 0.18 * inch, shown.y0 + 0.1 * shown.height, 0.16 * inch, 0.8 * shown.height)
     bar = figure.colorbar(line, cax=figure.add_axes(box))
     bar.set_label("speed, km/h", size=10, color=INK)
     bar.ax.tick_params(labelsize=9, colors=SOFT, length=3)
@@ -126,4 +134,4 @@ def _mark(axes: Axes, run: Run, place: Place) -> None:
     if place.step is not None and run.drive is not None:
         car = Polygon(run.drive.corners(place.step), closed=True, fc="none", ec=VERMILLION, lw=1.6, zorder=9)
         axes.add_patch(car)
-    axes.plot(place.x, place.y, "X", ms=12, mfc=VERMILLION, mec="white", mew=1.4, zorder=10)
+    axes.plot(place.x, place.y, "X", ms=10, mfc=VERMILLION, mec="white", mew=1.4, zorder=10)

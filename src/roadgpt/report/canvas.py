@@ -1,7 +1,7 @@
 """What all pictures share: colours, the header, and PNG bytes that depend on nothing but the picture."""
 
 import io
-import textwrap
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
+from roadgpt.report.lettering import fitted, inches
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 
@@ -22,8 +23,10 @@ OUTCOMES = {"PASS": GREEN, "FAIL": VERMILLION, "INVALID": SOFT, "ERROR": PURPLE,
 
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 MARGIN = 0.3  # inches, left and right of the header
-HEADER = 0.98  # inches
-WORDS_LINES = 2
+LINE = 0.19  # inches
+TITLE, TEXT, SMALL = 11, 10, 8.5  # points
+BADGE = 9  # points
+MOST_LINES = 2  # of the description, and of the outcome
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -42,7 +45,7 @@ def add_axes(figure: Figure, left: float, bottom: float, right: float, top: floa
         (wide - left - right) / wide,
         (high - bottom - top) / high,
     )
-    axes: Axes = figure.add_axes(box, **options)
+    axes: Axes = figure.add_axes(box)
     return dress(axes)
 
 
@@ -57,39 +60,60 @@ def dress(axes: Axes) -> Axes:
     return axes
 
 
-def header(figure: Figure, run: Run) -> None:
-    """The description, the outcome in a sentence, the seed and what made the road."""
-    wide, high = figure.get_size_inches()
-    letters = int((wide - 2 * MARGIN) * 11.2)  # bold, 11 points
-    title = clipped(run.words or "a road that was given", letters, WORDS_LINES)
-    lines = title.count("\n") + 1
-    left = MARGIN / wide
-    figure.text(left, 1 - 0.12 / high, title, size=11, weight="bold", color=INK, va="top", linespacing=1.15)
-    below = 0.12 + 0.19 * lines + 0.07
-    badge = figure.text(
-        left + 0.05 / wide, 1 - (below + 0.01) / high, run.outcome, size=9, weight="bold", color="white",
-        va="top", bbox={"boxstyle": "round,pad=0.28", "fc": OUTCOMES[run.outcome], "ec": "none"},
-    )  # fmt: skip
-    start = MARGIN + 0.22 + 0.098 * len(badge.get_text())
-    room = int((wide - start - MARGIN) * 13.2)
-    said = clipped(run.description, room, 1)
-    figure.text(start / wide, 1 - below / high, said, size=10, color=INK, va="top")
-    figure.text(left, 1 - (below + 0.26) / high, origin(run), size=8.5, color=SOFT, va="top")
+@dataclass(frozen=True)
+class Header:
+    """The description, the outcome in a sentence, the seed and what made the road; over every picture."""
+
+    run: Run
+    width: float
+    """Inches."""
+    title: str
+    said: str
+
+    @classmethod
+    def of(cls, run: Run, width: float) -> "Header":
+        """The header of a picture so many inches wide."""
+        room = width - 2 * MARGIN
+        title = fitted(run.words or "a road that was given", room, TITLE, True, MOST_LINES)
+        return cls(run, width, title, fitted(run.description, room - _badge(run), TEXT, lines=MOST_LINES))
+
+    @property
+    def height(self) -> float:
+        """Inches, down to the picture."""
+        return self._below_title + LINE * (self.said.count("\n") + 1) + 0.42
+
+    @property
+    def _below_title(self) -> float:
+        return 0.19 + LINE * (self.title.count("\n") + 1)
+
+    def write(self, figure: Figure) -> None:
+        """Put it at the top of a figure."""
+        high, run = figure.get_figheight(), self.run
+
+        def say(x: float, below: float, text: str, **style: Any) -> None:
+            place = x / self.width, 1 - below / high
+            figure.text(*place, text, va="top", linespacing=1.15, parse_math=False, **style)
+
+        say(MARGIN, 0.12, self.title, size=TITLE, weight="bold", color=INK)
+        badge = {"boxstyle": "round,pad=0.28", "fc": OUTCOMES[run.outcome], "ec": "none"}
+        style = {"size": BADGE, "weight": "bold", "color": "white", "bbox": badge}
+        say(MARGIN + 0.05, self._below_title + 0.01, run.outcome, **style)
+        say(MARGIN + _badge(run), self._below_title, self.said, size=TEXT, color=INK)
+        say(MARGIN, self.height - 0.36, origin(run), size=SMALL, color=SOFT)
+
+
+def _badge(run: Run) -> float:
+    """Width of the coloured outcome, inches."""
+    return 0.24 + inches(run.outcome, BADGE, bold=True)
 
 
 def origin(run: Run) -> str:
-    """Number, seed and length of the road, and who drove it."""
-    said = [f"road {run.index} of seed {run.request.seed}" if run.words else f"seed {run.request.seed}"]
-    said.append(f"{run.length:.0f} m")
+    """Seed, number and length of the road, and who drove it."""
+    seed = f"seed {run.request.seed}"
+    said = [f"{seed}, road {run.index}" if run.words else seed, f"{run.length:.0f} m"]
     if run.drive is not None:
         said.append(f"driven by {run.drive.driver} in {run.drive.simulator}")
     return "   ·   ".join(said)
-
-
-def clipped(text: str, letters: int, lines: int) -> str:
-    """Text in so many lines of so many letters, its end left out where it must be. ``$`` stays a dollar."""
-    rows = textwrap.wrap(" ".join(text.split()), letters, max_lines=lines, placeholder=" …")
-    return "\n".join(rows).replace("$", r"\$")
 
 
 def save(figure: Figure, path: Path) -> Path:

@@ -11,15 +11,14 @@ from roadgpt.report.birds_eye import Scale
 from roadgpt.report.canvas import (
     FAINT,
     HALO,
-    HEADER,
     INK,
     SOFT,
     VERMILLION,
+    Header,
     add_axes,
-    header,
     new_figure,
 )  # fmt: skip
-from roadgpt.report.places import places_of
+from roadgpt.report.places import name_places, places_of
 from roadgpt.report.scenery import Array, stations_of
 from roadgpt.run import Run
 
@@ -39,20 +38,21 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     s = stations_of(run.road)
     z = run.road.at(s)[:, 2]
     across = WIDTH - LEFT - RIGHT
+    header = Header.of(run, WIDTH)
     if scale == "thesis":
-        figure, axes, z, label = _thesis(run, z)
+        figure, axes, z, label = _thesis(run, z, header.height)
     else:
         per_inch = run.length * 1.03 / across
         tall = max(LOWEST, np.ptp(z) / per_inch + 0.9)
-        figure = new_figure(WIDTH, HEADER + tall + BOTTOM)
-        axes = add_axes(figure, LEFT, BOTTOM, RIGHT, HEADER)
+        figure = new_figure(WIDTH, header.height + tall + BOTTOM)
+        axes = add_axes(figure, LEFT, BOTTOM, RIGHT, header.height)
         middle = (z.min() + z.max()) / 2 + 0.1 * per_inch
         axes.set(xlim=(-0.015 * run.length, 1.015 * run.length))
         axes.set_ylim(middle - tall / 2 * per_inch, middle + tall / 2 * per_inch)
         axes.set_aspect("equal")
         axes.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
         label = "height, m"
-    header(figure, run)
+    header.write(figure)
     axes.set_xlabel("distance along the road, m")
     axes.set_ylabel(label)
     axes.grid(color=FAINT, lw=0.8)
@@ -61,18 +61,19 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     axes.fill_between(s, z, low, color=EARTH, lw=0)
     axes.plot(s, z, color=SURFACE, lw=2.4, solid_capstyle="round")
     _slopes(axes, run, s, z)
-    for place in places_of(run):
+    places = places_of(run)
+    for place in places:
         at = float(np.interp(place.s, s, z))
         axes.plot([place.s, place.s], [low, high], color=VERMILLION, lw=1, ls=(0, (4, 3)), zorder=3)
         axes.plot(place.s, at, "X", ms=10, mfc=VERMILLION, mec="white", mew=1.2, zorder=6)
-        _say(axes, place.s, low, place.text.replace("\n", " "))
+    name_places(axes, places, axes.get_xlim()[1])
     return figure
 
 
-def _thesis(run: Run, z: Array) -> tuple[Figure, Axes, Array, str]:
+def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
     """RoadGPT's axes. A road that does not lie between 0 and 20 m is measured from its lowest point."""
-    figure = new_figure(WIDTH, HEADER + THESIS_HEIGHT + BOTTOM)
-    axes = add_axes(figure, LEFT, BOTTOM, RIGHT, HEADER)
+    figure = new_figure(WIDTH, top + THESIS_HEIGHT + BOTTOM)
+    axes = add_axes(figure, LEFT, BOTTOM, RIGHT, top)
     label = "height, m"
     if z.min() < 0 or z.max() > THESIS_Z:
         z, label = z - z.min(), "height above the lowest point, m"
@@ -114,15 +115,3 @@ def _metres_per_inch(axes: Axes) -> float:
     figure = axes.get_figure(root=True)
     assert figure is not None
     return float((high - low) / (axes.get_position().height * figure.get_figheight()))
-
-
-def _say(axes: Axes, s: float, low: float, text: str) -> None:
-    """A word beside the line of a place, on the side where there is room."""
-    left, right = axes.get_xlim()
-    gap = (right - left) * 0.008
-    is_late = s > (left + right) / 2
-    axes.text(
-        s - gap if is_late else s + gap, low + 0.06 * np.ptp(axes.get_ylim()), text,
-        ha="right" if is_late else "left", va="bottom", size=9.5, color=VERMILLION,
-        path_effects=HALO, zorder=7,
-    )  # fmt: skip

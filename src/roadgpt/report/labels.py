@@ -7,11 +7,12 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from roadgpt.report.canvas import HALO, INK
+from roadgpt.report.lettering import inches
 from roadgpt.report.scenery import Frame
 
 Array = NDArray[np.float64]
 
-LETTER, LINE = 0.088, 0.19  # inches that a letter of 10 points is wide, and a line high
+SIZE, LINE = 10, 0.19  # points; inches
 REACHES = (0.34, 0.5, 0.72, 1.0, 1.4)  # inches from the place to the label
 WAYS = 16
 
@@ -34,14 +35,16 @@ class Labels:
         self, place: tuple[float, float], text: str, colour: str = INK, away: Array | None = None
     ) -> None:
         """Label a place, metres; ``away`` is a direction ``(2,)`` to prefer."""
+        if not self.frame.holds(*place):
+            return
         rows = text.split("\n")
-        wide = (max(map(len, rows)) * LETTER + 0.1) * self.per_inch
+        wide = (inches(text, SIZE) + 0.1) * self.per_inch
         high = (len(rows) * LINE + 0.04) * self.per_inch
         best = min(self._offers(place, wide, high, away), key=lambda offer: offer[0])
         _, x, y = best
         self._boxes.append((x - wide / 2, x + wide / 2, y - high / 2, y + high / 2))
         self.axes.annotate(
-            text, place, (x, y), ha="center", va="center", size=10, color=colour, zorder=12,
+            text, place, (x, y), ha="center", va="center", size=SIZE, color=colour, zorder=12,
             path_effects=HALO, linespacing=1.15,
             arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.9, "shrinkA": 0, "shrinkB": 5},
         )  # fmt: skip

@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from roadgpt.errors import UsageError
-from roadgpt.report.canvas import INK, MARGIN, OUTCOMES, SOFT, VERMILLION, clipped, new_figure, save
+from roadgpt.report.canvas import INK, MARGIN, OUTCOMES, SOFT, VERMILLION, new_figure, save
+from roadgpt.report.lettering import fitted, inches
 from roadgpt.report.scenery import GROUND, Array
 from roadgpt.road import World
 
@@ -101,8 +102,7 @@ def page_of(
     axes.set(xlim=(0, width), ylim=(high, 0))
     axes.axis("off")
     _header(axes, about, part, counts, width)
-    left = (width - columns * (cell + GAP) + GAP) / 2
-    for place, entry in zip(_places(len(entries), columns, cell, left), entries, strict=True):
+    for place, entry in zip(_places(len(entries), columns, cell), entries, strict=True):
         _cell(axes, entry, place, cell, size)
     return figure
 
@@ -112,15 +112,15 @@ def _columns(count: int) -> int:
     return min(10, max(1, count if count <= 4 else int(np.ceil(np.sqrt(count * 1.05)))))
 
 
-def _places(count: int, columns: int, cell: float, left: float) -> Iterator[tuple[float, float]]:
+def _places(count: int, columns: int, cell: float) -> Iterator[tuple[float, float]]:
     """Upper left corners of the maps, inches from the page's."""
     for i in range(count):
         row, column = divmod(i, columns)
-        yield left + column * (cell + GAP), HEADER + TITLE + row * (cell + TITLE + GAP)
+        yield MARGIN + column * (cell + GAP), HEADER + TITLE + row * (cell + TITLE + GAP)
 
 
 def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str], width: float) -> None:
-    title = clipped(about[0] or "roads that were given", int((width - 2 * MARGIN) * 10.5), 1)
+    title = fitted(about[0] or "roads that were given", width - 2 * MARGIN, 12, bold=True)
     axes.text(MARGIN, 0.3, title, size=12, weight="bold", color=INK, va="center")
     x = MARGIN
     for outcome in OUTCOMES:
@@ -130,7 +130,7 @@ def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str],
                 x + 0.06, 0.6, text, size=9.5, weight="bold", color="white", va="center",
                 bbox={"boxstyle": "round,pad=0.28", "fc": OUTCOMES[outcome], "ec": "none"},
             )  # fmt: skip
-            x += 0.105 * len(text) + 0.28
+            x += inches(text, 9.5, bold=True) + 0.28
     axes.text(
         x + 0.05, 0.6, "   ·   ".join(filter(None, (about[1], part))), size=9.5, color=SOFT, va="center"
     )
@@ -162,4 +162,4 @@ def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, siz
     start.set_clip_path(clip)
     if entry.failed_at is not None:
         x, y = np.asarray(entry.failed_at) / size * cell * [1, -1] + [x0, y0 + cell]
-        axes.plot(x, y, "X", ms=7 if cell > 1.2 else 5, mfc=VERMILLION, mec="white", mew=0.8, zorder=4)
+        axes.plot(x, y, "X", ms=9 if cell > 1.2 else 6, mfc=VERMILLION, mec="white", mew=0.8, zorder=4)

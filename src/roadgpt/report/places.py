@@ -1,9 +1,12 @@
 """The places of a Run that a picture marks: where the car left its lane, or what a rule objects to."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 
+from roadgpt.report.canvas import HALO, VERMILLION
 from roadgpt.run import Run
 
 MOST = 3  # findings; more would cover the road
@@ -48,6 +51,17 @@ def places_of(run: Run) -> list[Place]:
             text = RULES.get(finding.rule, finding.rule.replace("_", " "))
             places.append(Place(*where, text))
     return places[:MOST]
+
+
+def name_places(axes: Axes, places: Sequence[Place], length: float) -> None:
+    """Name places beside their stations at the foot of axes whose x is the distance along the road."""
+    for number, place in enumerate(places):
+        is_late = place.s > length / 2
+        axes.annotate(
+            place.text.replace("\n", " "), (place.s, 0.05 + 0.12 * number), (-5 if is_late else 5, 0),
+            xycoords=axes.get_xaxis_transform(), textcoords="offset points", size=9.5, color=VERMILLION,
+            ha="right" if is_late else "left", va="bottom", path_effects=HALO, zorder=8, annotation_clip=True,
+        )  # fmt: skip
 
 
 def _step(run: Run) -> int | None:

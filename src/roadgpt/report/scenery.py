@@ -8,13 +8,17 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
+from roadgpt.report.lettering import POINTS
 from roadgpt.road import Road, World
 
 Array = NDArray[np.float64]
 
 GROUND, VERGE, ASPHALT, PAINT = "#eef1ea", "#dcd9c3", "#b9bdc3", "#ffffff"
+BEYOND = 12.0  # m, of what lies outside the map
+NARROWEST, WIDEST = 0.72, 2.0  # width over height of a frame
 MOST_STATIONS = 1500
 FINEST = 0.5  # m
+FAR_ASPHALT, THINNEST_LANE = "#8d939c", 2.5  # points: of a road that is seen from far away
 DASH, GAP = 3.0, 6.0  # m, of the centre line
 
 
@@ -28,18 +32,29 @@ class Frame:
     y1: float
 
     @classmethod
-    def around(cls, points: Array, margin: float, shape: float, least: float) -> "Frame":
-        """The smallest frame of a shape (width over height) around points ``(n, 2)`` and a margin."""
+    def around(cls, points: Array, margin: float, least: float, size: float) -> "Frame":
+        """The smallest frame around points ``(n, 2)`` and a margin; no strip, and on the map if it can be."""
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         width, height = np.maximum(high - low, least)
-        width, height = max(width, height * shape), max(height, width / shape)
-        x, y = (low + high) / 2
-        return cls(x - width / 2, x + width / 2, y - height / 2, y + height / 2)
+        shape = np.array([max(width, height * NARROWEST), max(height, width / WIDEST)])
+        corner = (low + high - shape) / 2
+        corner = np.clip(corner, -BEYOND, np.maximum(size + BEYOND - shape, -BEYOND))
+        corner = np.clip(corner, high - shape, low)
+        return cls(corner[0], corner[0] + shape[0], corner[1], corner[1] + shape[1])
+
+    def holds(self, x: float, y: float) -> bool:
+        """Does it show this point?"""
+        return self.x0 <= x <= self.x1 and self.y0 <= y <= self.y1
 
     @property
     def width(self) -> float:
         """Metres."""
         return self.x1 - self.x0
+
+    @property
+    def height(self) -> float:
+        """Metres."""
+        return self.y1 - self.y0
 
 
 def stations_of(road: Road) -> Array:
@@ -48,13 +63,17 @@ def stations_of(road: Road) -> Array:
     return np.linspace(0.0, road.length, count + 1)
 
 
-def draw_road(axes: Axes, road: Road, world: World) -> None:
-    """Verge, carriageway and paint of a road."""
+def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
+    """Verge, carriageway and, where a lane is wide enough to see it, paint; ``per_inch`` in metres."""
     s = stations_of(road)
     half = world.lane_width
     if world.verge:
         _ribbon(axes, road, s, half + world.verge, VERGE, 1)
     _ribbon(axes, road, s, half, ASPHALT, 2)
+    if half / per_inch * POINTS < THINNEST_LANE:
+        line = road.at(s)
+        axes.plot(line[:, 0], line[:, 1], color=FAR_ASPHALT, lw=THINNEST_LANE, zorder=2)
+        return
     for side in (-half, half):
         edge = road.at(s, side)
         axes.plot(edge[:, 0], edge[:, 1], color=PAINT, lw=1.1, zorder=3, solid_capstyle="butt")

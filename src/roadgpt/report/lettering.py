@@ -1,0 +1,52 @@
+"""How wide letters are, so that text can be broken where it must be and labels know their size."""
+
+from functools import cache
+
+from matplotlib.font_manager import FontProperties, findfont, get_font
+
+UNKNOWN = "□"  # for a letter that the font has not
+POINTS = 72.0  # per inch
+ELLIPSIS = " …"
+
+
+def plain(text: str) -> str:
+    """Text on one line, of letters that the font has; matplotlib would warn of each of the others."""
+    return "".join(letter if _advance(letter, False) else UNKNOWN for letter in " ".join(text.split()))
+
+
+def inches(text: str, size: float, bold: bool = False) -> float:
+    """Width of the longest line at a size in points."""
+    return max(sum(_advance(letter, bold) for letter in row) for row in text.split("\n")) * size / POINTS
+
+
+def fitted(text: str, width: float, size: float, bold: bool = False, lines: int = 1) -> str:
+    """Text in at most so many lines of a width in inches; what does not fit gives way to an ellipsis."""
+    words = plain(text).split(" ")
+    rows: list[str] = []
+    while words and len(rows) < lines:
+        count = 1
+        while count < len(words) and inches(" ".join(words[: count + 1]), size, bold) <= width:
+            count += 1
+        is_last = len(rows) == lines - 1 and count < len(words)
+        rows.append(_shortened(" ".join(words[:count]), width, size, bold, is_last))
+        words = words[count:]
+    return "\n".join(rows)
+
+
+def _shortened(row: str, width: float, size: float, bold: bool, has_more: bool) -> str:
+    """The row, with an ellipsis where it is too wide or not all."""
+    if not has_more and inches(row, size, bold) <= width:
+        return row
+    while row and inches(row + ELLIPSIS, size, bold) > width:
+        row = row[:-1]
+    return row.rstrip() + ELLIPSIS
+
+
+@cache
+def _advance(letter: str, bold: bool) -> float:
+    """How far a letter moves on, in letters' heights; 0 where the font has it not."""
+    font = get_font(findfont(FontProperties("DejaVu Sans", weight="bold" if bold else "normal")))
+    if not font.get_char_index(ord(letter)):
+        return 0.0
+    font.set_size(100.0, POINTS)
+    return float(font.load_char(ord(letter)).linearHoriAdvance) / 65536 / 100
