@@ -13,6 +13,7 @@ Two shelves. ``simulators/`` hold the car and its physics; ``drivers/`` hold tho
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
+from roadgpt.drive.custom import load_driver
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
 from roadgpt.drive.view import Command, View
 
@@ -72,16 +73,17 @@ def simulate(
     """One driver on one road; the same arguments give the same Drive, bit for bit, on one machine.
 
     Args:
-        driver: a driver, its class, or the name of one on the shelf ``drivers``.
+        driver: a driver, its class, the name of one on the shelf ``drivers``, or a user's PATH.py:CLASS.
         seed: handed to the driver and recorded; the car's physics draws no random number.
         simulator: the name of one on the shelf ``simulators``.
         keep_driving: go on after the car has left the lane.
 
     Raises:
         PartError: no simulator or driver of that name.
+        UsageError: the user's file makes no driver.
         DriverError: the driver raised, answered with what is no command, or hung.
     """
-    made: Any = plugins.find("drivers", driver) if isinstance(driver, str) else driver
+    made: Any = load_driver(driver) if isinstance(driver, str) else driver
     if isinstance(made, type):
         made = made()
     engine: Any = plugins.find("simulators", simulator)

@@ -162,7 +162,7 @@ class Drive:
                 columns = Columns({name: archive[name] for name in archive.files if name != "header"})
         except FileNotFoundError as error:
             raise UsageError(f"there is no drive at {path}: check the path") from error
-        except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError) as error:
+        except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError) as error:
             raise UsageError(
                 f"{path} is not a drive saved by roadgpt ({error}): drive the road again"
             ) from error

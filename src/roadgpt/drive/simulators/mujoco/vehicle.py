@@ -119,7 +119,7 @@ class Vehicle:
     def _settle(self) -> None:
         for _ in range(LONGEST_SETTLING):
             self._move(0.0, 0.0, 1.0, STEPS)
-            if np.abs(self._data.qvel).max() < SETTLED:
+            if self.has_fallen or np.abs(self._data.qvel).max() < SETTLED:
                 break
 
     def _row_at(self, s: float) -> FloatArray:

@@ -1,0 +1,193 @@
+"""Laws of the tyre, the road's surface and the lane, each on its own."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt.drive.lane import Lane
+from roadgpt.drive.ribbon import place_on, ribbon_of
+from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, tables
+from roadgpt.drive.simulators.mujoco.systems import stability, valve
+from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
+from roadgpt.road import Design, Road, Segment, World, build
+
+TYRE = ETK_LIKE.front.tyre
+LOAD = ETK_LIKE.load(ETK_LIKE.front)
+_, AXLES = tables(ETK_LIKE)
+
+
+def steady(slip_x, slip_y, load=LOAD, friction=1.0, speed=20.0, camber=0.0):
+    """Forces once the slips have built up; slip_x is (rolling - forward) / forward."""
+    x = y = 0.0
+    for _ in range(2000):
+        fx, fy, x, y = tyre_forces(
+            AXLES[0], friction, load, camber, speed, -slip_y * speed, speed * (1 + slip_x), x, y, 0.002
+        )
+    return fx, fy
+
+
+def magic_formula(slip, stiffness, peak, shape, bend):
+    """The textbook form, Pacejka (4.6): D sin(C atan(Bx - E(Bx - atan Bx)))."""
+    b = stiffness / (shape * peak)
+    return peak * np.sin(shape * np.arctan(b * slip - bend * (b * slip - np.arctan(b * slip))))
+
+
+@pytest.mark.parametrize("slip", [-0.3, -0.05, 0.002, 0.03, 0.1, 0.5])
+def test_pure_slips_follow_the_textbook(slip):
+    fx, fy = steady(slip, 0.0)
+    expected = magic_formula(slip, TYRE.stiffness_x * LOAD, TYRE.grip_x * LOAD, TYRE.shape_x, TYRE.bend_x)
+    assert (fx, fy) == (pytest.approx(expected, rel=1e-6), pytest.approx(0.0, abs=1e-9))
+    fx, fy = steady(0.0, slip)
+    expected = magic_formula(slip, TYRE.stiffness_y * LOAD, TYRE.grip_y * LOAD, TYRE.shape_y, TYRE.bend_y)
+    assert (fx, fy) == (pytest.approx(0.0, abs=1e-9), pytest.approx(expected, rel=1e-6))
+
+
+@given(
+    st.floats(-1.0, 1.0),
+    st.floats(-1.0, 1.0),
+    st.floats(200.0, 9000.0),
+    st.floats(0.2, 1.2),
+    st.floats(3.0, 40.0),
+)
+@settings(max_examples=60, deadline=None)
+def test_no_force_leaves_the_friction_ellipse(slip_x, slip_y, load, friction, speed):
+    fx, fy = steady(slip_x, slip_y, load, friction, speed)
+    fade = 1 - TYRE.grip_fade * (load / LOAD - 1)
+    used = math.hypot(
+        fx / (friction * TYRE.grip_x * fade * load), fy / (friction * TYRE.grip_y * fade * load)
+    )
+    assert used <= 1 + 1e-9
+    if abs(slip_x) > 1e-3:
+        assert fx * slip_x > 0
+    if abs(slip_y) > 1e-3:
+        assert fy * slip_y > 0
+
+
+def test_a_heavier_tyre_grips_more_but_less_than_in_proportion():
+    once, twice = steady(0.0, 0.3, LOAD)[1], steady(0.0, 0.3, 2 * LOAD)[1]
+    assert 1.6 * once < twice < 1.95 * once
+
+
+def test_braking_takes_from_cornering():
+    assert steady(-0.15, 0.06)[1] < 0.75 * steady(0.0, 0.06)[1]
+
+
+def test_a_tyre_in_the_air_does_nothing():
+    assert tyre_forces(AXLES[0], 1.0, 0.0, 0.0, 20.0, 3.0, 0.0, 0.1, 0.1, 0.002) == (0.0, 0.0, 0.0, 0.0)
+
+
+def test_a_slip_builds_up_over_the_relaxation_length():
+    x = y = 0.0
+    speed, dt = 20.0, 0.002
+    steps = round(TYRE.relaxation_y / (speed * dt))
+    for _ in range(steps):
+        _, _, x, y = tyre_forces(AXLES[0], 1.0, LOAD, 0.0, speed, -0.05 * speed, speed, x, y, dt)
+    assert y == pytest.approx(0.05 * (1 - math.exp(-1)), rel=0.05)
+
+
+def test_a_valve_closes_on_slip_and_opens_again():
+    opening = 1.0
+    for _ in range(100):
+        opening = valve(opening, 0.3, 0.1, 0.002)
+    assert opening < 0.2
+    for _ in range(1000):
+        opening = valve(opening, 0.0, 0.1, 0.002)
+    assert opening == 1.0
+    assert valve(0.5, 0.9, 0.0, 0.002) == 1.0
+
+
+def test_esc_brakes_the_wheel_that_turns_the_car_back():
+    car = tables(ETK_LIKE)[0][0]
+    without = tables(replace(ETK_LIKE, esc=0.0))[0][0]
+    left_front, right_front, *_, kept = stability(car, 20.0, 0.6, 0.3)  # oversteer in a left turn
+    assert (left_front, right_front > 0, kept < 1) == (0.0, True, True)
+    left_front, right_front, *_ = stability(car, 20.0, -0.6, -0.3)
+    assert (left_front > 0, right_front) == (True, 0.0)
+    *_, left_rear, right_rear, kept = stability(car, 20.0, 0.1, 0.5)  # understeer in a left turn
+    assert (left_rear > 0, right_rear, kept < 1) == (True, 0.0, True)
+    assert stability(car, 20.0, 0.31, 0.3) == (0.0, 0.0, 0.0, 0.0, 1.0)
+    assert stability(without, 20.0, 2.0, 0.3) == (0.0, 0.0, 0.0, 0.0, 1.0)
+
+
+def winding_road() -> Road:
+    parts = [(40, 0, 6), (30, 60, -4), (25, 0, -12), (35, -70, 9), (45, 50, 15), (30, 0, 0)]
+    segments = tuple(
+        Segment(
+            distance=d,
+            direction="straight" if turn == 0 else "left" if turn > 0 else "right",
+            turn_degrees=turn,
+            incline=grade,
+        )
+        for d, turn, grade in parts
+    )
+    return build(Design(starting_point=(60, 60, 3), theta=25, segments=segments))
+
+
+ROAD = winding_road()
+RIBBON = ribbon_of(ROAD)
+
+
+def on_ribbon(x, y, near):
+    return place_on(RIBBON.table, RIBBON.first, RIBBON.step, x, y, near)
+
+
+@given(st.floats(0.0, 1.0), st.floats(-7.0, 7.0), st.floats(-2.0, 2.0))
+@settings(max_examples=300, deadline=None)
+def test_the_ribbon_knows_the_road(share, t, off):
+    s = share * ROAD.length
+    x, y, z = ROAD.at(s, t).tolist()
+    s_found, t_found, height, slope, heading = place_on(
+        RIBBON.table, RIBBON.first, RIBBON.step, x, y, s + off
+    )
+    assert s_found == pytest.approx(s, abs=5e-4)
+    assert t_found == pytest.approx(t, abs=1e-4)
+    assert height == pytest.approx(z, abs=1e-4)
+    assert math.remainder(heading - float(ROAD.heading(s)), math.tau) == pytest.approx(0.0, abs=1e-3)
+    # The slope along a line beside the centre line: the same rise over a shorter or longer way.
+    crowd = 1 - float(ROAD.curvature(s_found)) * t
+    assert slope * crowd == pytest.approx(float(ROAD.grade(s)), abs=2e-3)
+
+
+def test_the_ribbon_has_no_seams():
+    s = np.linspace(1.0, ROAD.length - 1.0, 20_000)
+    points = ROAD.at(s, -2.0)
+    found = np.array([on_ribbon(x, y, at) for (x, y, _), at in zip(points, s, strict=True)])
+    step = s[1] - s[0]
+    jumps = np.abs(np.diff(found[:, 2]) - np.diff(points[:, 2]))
+    assert jumps.max() < 3e-6  # m
+    # No step of the slope beyond what the sharpest vertical curve explains.
+    assert np.abs(np.diff(found[:, 3])).max() < 3 * step * 0.15
+
+
+def test_the_ribbon_goes_straight_on_at_both_ends():
+    for s, along in ((0.0, -10.0), (ROAD.length, 10.0)):
+        heading, grade = float(ROAD.heading(s)), float(ROAD.grade(s))
+        x, y, z = ROAD.at(s).tolist()
+        place = on_ribbon(x + along * math.cos(heading), y + along * math.sin(heading), s + along / 2)
+        assert place[:3] == pytest.approx((s + along, 0.0, z + along * grade), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("t", "expected"),
+    [(-2.0, 0.0), (-2.0 + 1.07 + 0.93, 0.5), (0.93, 1.0), (-4.0, 0.5), (-4.93, 1.0), (-6.0, 1.0)],
+)
+def test_the_share_outside_on_a_straight_is_plain_geometry(t, expected):
+    road = build(
+        Design(starting_point=(50, 50, 0), theta=0, segments=(Segment(distance=60, direction="straight"),))
+    )
+    lane = Lane.along(road, World())
+    box = np.array([[-2.35, -0.93], [2.35, -0.93], [2.35, 0.93], [-2.35, 0.93]]) + [80.0, 50.0 + t]
+    assert lane.outside(box, 30.0) == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_lane_ends_with_the_road():
+    road = build(
+        Design(starting_point=(50, 50, 0), theta=0, segments=(Segment(distance=60, direction="straight"),))
+    )
+    lane = Lane.along(road, World())
+    box = np.array([[-2.35, -0.93], [2.35, -0.93], [2.35, 0.93], [-2.35, 0.93]]) + [110.0, 48.0]
+    assert lane.outside(box, 60.0) == pytest.approx(0.5, abs=1e-9)
