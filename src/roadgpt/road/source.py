@@ -74,8 +74,9 @@ def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
 
 
 def _test_road(data: dict[str, Any]) -> Road:
-    """The road of an SBFT test: through its points with heights where it has them, else its control points."""
+    """The road of an SBFT test: through its points with heights where it has them, else its others."""
     dense, control = data.get("interpolated_points"), data.get("road_points")
     if isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3:
         return Road.through(dense, control)
-    return Road.through(control if control is not None else dense)
+    points: Any = dense if control is None else control
+    return Road.through(points)
