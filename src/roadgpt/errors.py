@@ -27,5 +27,13 @@ class DriverError(RoadGPTError):
     """A driver raised, returned something that is not a command, or hung."""
 
 
+class SimulationError(RoadGPTError):
+    """The physics of a drive broke down: numbers that are not finite."""
+
+
 class PartError(UsageError):
     """A part was asked for by a name that no installed package registers."""
+
+
+class LearnError(UsageError):
+    """Training pairs, a grammar of phrases or a checkpoint that cannot be used."""

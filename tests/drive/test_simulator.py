@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ import pytest
 import roadgpt
 from roadgpt.drive import COLUMNS, Command, Drive, Simulator, simulate
 from roadgpt.drive.simulators.mujoco import ETK_LIKE, MujocoSimulator, Vehicle
-from roadgpt.errors import DriverError, PartError
+from roadgpt.errors import DriverError, PartError, SimulationError
 from roadgpt.road import Design, Road, Segment, World, build
 
 WORLD = World()
@@ -283,6 +284,12 @@ def test_a_driver_that_hangs_on_the_way_costs_one_driver_error():
 
     with pytest.raises(DriverError, match=r"no answer within 2 s at 0.52 s"):
         drive(BEND, Hangs())
+
+
+def test_a_car_that_makes_no_sense_is_told_so():
+    broken = MujocoSimulator(replace(ETK_LIKE, drag_area=math.nan))
+    with pytest.raises(SimulationError, match="the physics broke down at"):
+        broken.simulate(BEND, WORLD, Follows(), seed=0)
 
 
 def test_the_driver_is_told_road_world_and_seed_before_it_starts():

@@ -58,6 +58,7 @@ class Simulator(Protocol):
 
         Raises:
             DriverError: the driver raised, answered with what is no command, or hung.
+            SimulationError: the physics broke down.
         """
         ...
 

@@ -10,6 +10,7 @@ from roadgpt.drive.seat import Seat
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import View
+from roadgpt.errors import SimulationError
 
 if TYPE_CHECKING:
     from roadgpt.drive import Driver
@@ -63,6 +64,11 @@ def _drive(
     since, (from_x, from_y) = 0, row[1:3]
     for step in range(limit):
         x, y, z, heading, speed, yaw_rate, s, t, steer, vx, vy, outside = (row[i] for i in _SEEN)
+        if not math.isfinite(x + y + z + speed + outside):
+            raise SimulationError(
+                f"the physics broke down at {step * CONTROL:.2f} s: check the road and the car for numbers "
+                "that make no sense"
+            )
         if outside > tolerance:
             return log.rows(), "out_of_lane"
         if vehicle.has_fallen:
