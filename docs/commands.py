@@ -9,19 +9,20 @@ from roadgpt.cli.app import COMMANDS, app
 PAGE = Path(__file__).parent / "reference" / "commands.md"
 
 
-def help_of(command: click.Command, words: str) -> str:
+def help_of(command: click.Command, name: str, parent: click.Context | None = None) -> str:
     """The help of a command as a person sees it."""
-    context = click.Context(command, info_name=words, terminal_width=100)
-    return f"```\n{command.get_help(context)}\n```\n"
+    settings = command.context_settings | {"terminal_width": 100, "max_content_width": 100}
+    return f"```\n{command.get_help(click.Context(command, parent, name, **settings))}\n```\n"
 
 
 def page() -> str:
     """The whole page."""
     parts = ["# Commands\n", "Written by `make docs` from the commands' own help.\n", help_of(app, "roadgpt")]
+    group = click.Context(app, info_name="roadgpt", **app.context_settings)
     for name in COMMANDS:
-        command = app.get_command(click.Context(app), name)
+        command = app.get_command(group, name)
         if command is not None:
-            parts += [f"## roadgpt {name}\n", help_of(command, f"roadgpt {name}")]
+            parts += [f"## roadgpt {name}\n", help_of(command, name, group)]
     return "\n".join(parts)
 
 

@@ -50,7 +50,7 @@ def command(
     verbose: bool,
     **rest: Any,
 ) -> None:
-    r"""Design, check, drive and judge roads from a description.
+    """Design, check, drive and judge roads from a description.
 
     The exit status is 0 when all roads were worked off, whatever became of them, 2 when something that was
     typed cannot be used, 3 when nothing could be designed.

@@ -1,0 +1,98 @@
+"""The documents run: examples are executed, the page of commands is current, links lead somewhere."""
+
+import importlib.util
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from click.testing import CliRunner
+
+from roadgpt.cli import app
+from roadgpt.road import build, read_design
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """The code in a page's fenced blocks of one language."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return re.findall(rf"^```{language}\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
+
+
+def writer() -> ModuleType:
+    """The script that writes the page of commands."""
+    spec = importlib.util.spec_from_file_location("commands_page", ROOT / "docs" / "commands.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_page_of_commands_is_current() -> None:
+    module = writer()
+    assert module.PAGE.read_text(encoding="utf-8") == module.page(), "run: make docs"
+
+
+def test_the_driver_in_the_docs_drives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (code,) = blocks("docs/how-to/own-driver.md", "python")
+    monkeypatch.chdir(tmp_path)
+    Path("my_driver.py").write_text(code)
+    Path("road.json").write_text(json.dumps([[60, 100], [100, 100], [130, 110], [150, 140]]))
+    result = CliRunner().invoke(app, ["drive", "road.json", "--driver", "my_driver.py:MyDriver", "--json"])
+    assert json.loads(result.stdout)["test_outcome"] == "PASS"
+
+
+def test_the_rule_in_the_docs_objects_to_a_straight_road() -> None:
+    from roadgpt.road import Road, World
+
+    (code,) = blocks("docs/how-to/add-a-part.md", "python")
+    names: dict[str, object] = {}
+    exec(compile(code, "add-a-part.md", "exec"), names)
+    inspect = names["inspect"]
+    assert callable(inspect)
+    (finding,) = inspect(Road.through([[0, 0], [50, 0], [100, 0]]), None, World())
+    assert finding.rule == "not_boring"
+    assert inspect(Road.through([[0, 0], [30, 0], [45, 15]]), None, World()) == ()
+
+
+def test_the_design_in_the_docs_is_one() -> None:
+    (text,) = blocks("docs/reference/design-format.md", "json")
+    design, remarks = read_design(json.loads(text))
+    assert build(design).length == pytest.approx(40 + 35 + 30)
+    assert remarks == ()
+
+
+def test_the_python_in_the_readme_runs() -> None:
+    (code,) = blocks("README.md", "python")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_to_pages_that_exist(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+        if "://" not in target:
+            assert (page.parent / target).exists(), target
+
+
+def test_every_command_line_in_the_docs_is_understood() -> None:
+    """Its command exists, and so does each of its options."""
+    lines = [
+        line.split("#")[0].split(">")[0].strip()
+        for page in PAGES
+        for line in page.read_text(encoding="utf-8").splitlines()
+        if line.startswith("roadgpt ")
+    ]
+    assert len(lines) > 10
+    for line in lines:
+        name, *rest = line.removeprefix("roadgpt ").split(" ")
+        command = app.get_command(app.make_context("roadgpt", ["parts"]), name)
+        assert command is not None, line
+        known = {option for parameter in command.params for option in parameter.opts}
+        assert {word for word in rest if re.match(r"--?[a-z]", word)} <= known, line
