@@ -1,0 +1,317 @@
+"""Contradictions and impossible wishes: found before anybody designs, and said with a way out."""
+
+from math import inf, radians, sqrt
+
+from roadgpt.brief.model import Amount, Brief, Clause, exactly
+from roadgpt.brief.normal import SINGLE, STRAIGHT, total, turns_of
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, ROAD_LENGTH_SLACK, SHARPNESS, SIZES, SLOPES, Range
+from roadgpt.errors import BriefError
+
+STEEPEST = 15.0  # percent, RoadGPT's limit in both directions
+SMALLEST_RADIUS = 14.326  # metres, 47 ft, SBFT's limit
+LARGEST_ANGLE = 240.0  # degrees; a turn that goes on would cross its own beginning
+SMALLEST_ANGLE = 10.0  # degrees; less is measured as straight
+SHORTEST_ROAD = 20.0  # metres
+WAY_OF_A_TURN = 30.0  # metres that a turn and the straight behind it take at least
+GAP = 16.0  # metres of straight between two turns of one hand
+WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, verges, and the bow of the turn itself
+MOST_TURNS = 200.0
+RISING = ("up", "gently_up", "steeply_up")
+FALLING = ("down", "gently_down", "steeply_down")
+LEVEL = ("flat", "nearly_flat")
+
+
+def check(brief: Brief, map_size: float | None = 250.0) -> None:
+    """Passes a Brief that some road can keep, as far as numbers alone can tell.
+
+    Args:
+        brief: in any form.
+        map_size: metres along one side of the square map; None: do not ask whether it fits.
+
+    Raises:
+        BriefError: one sentence on the first contradiction or impossible wish.
+    """
+    for clause in brief.clauses:
+        _counts(clause)
+    for clause in (*brief.clauses, *(c for c in (brief.starts, brief.ends) if c)):
+        _shape(clause)
+    _shape(Clause(kind="turn", sharpness=brief.sharpness, degrees=brief.degrees, radius=brief.radius))
+    _whole_counts(brief)
+    _number_of_turns(brief)
+    _sides(brief)
+    _slopes(brief)
+    _length(brief)
+    if map_size is not None:
+        _on_the_map(brief, map_size)
+
+
+def least_length(brief: Brief) -> float:
+    """Metres that the clauses and the number of turns need at least."""
+    metres = sum(_way(clause) for clause in brief.clauses)
+    extra = (brief.turns.lo or 0) - (total(brief.clauses).lo or 0) if brief.turns else 0
+    return metres + max(extra, 0) * WAY_OF_A_TURN
+
+
+def _counts(clause: Clause) -> None:
+    for number in (clause.count.lo, clause.count.hi):
+        if number is not None and (number < 0 or number != int(number)):
+            raise BriefError(f"a road cannot have {number:g} {_noun(clause)}s; ask for a whole number")
+    if clause.count.hi == 0 or clause.count.lo == 0:
+        raise BriefError(f"{_noun(clause)}s with a number of 0 say nothing; leave them out")
+
+
+def _whole_counts(brief: Brief) -> None:
+    for amount, noun in ((brief.turns, "turns"), (brief.left, "left turns"), (brief.right, "right turns")):
+        for number in (amount.lo, amount.hi) if amount else ():
+            if number is not None and (number < 0 or number != int(number)):
+                raise BriefError(f"a road cannot have {number:g} {noun}; ask for a whole number")
+
+
+def _shape(clause: Clause) -> None:
+    noun = _noun(clause)
+    if clause.radius and clause.radius.hi is not None and clause.radius.hi * 1.15 < SMALLEST_RADIUS:
+        raise BriefError(
+            f"a radius of {clause.radius.hi:g} m is too tight to drive; ask for {SMALLEST_RADIUS:g} m or more"
+        )
+    if clause.degrees:
+        _angle(clause, noun)
+    _radius(clause, noun)
+    _incline(clause.slope, clause.incline)
+    if clause.length and clause.length.hi is not None and clause.length.hi < 1:
+        raise BriefError(
+            f"a {noun} of {clause.length.hi:g} m is no {noun}; ask for {LEAST_STRAIGHT:g} m or more"
+        )
+
+
+def _angle(clause: Clause, noun: str) -> None:
+    degrees = clause.degrees or exactly(90)
+    if degrees.lo is not None and degrees.lo > LARGEST_ANGLE:
+        raise BriefError(
+            f"a turn of {degrees.lo:g} degrees would cross itself; ask for {LARGEST_ANGLE:g} or less"
+        )
+    if degrees.hi is not None and degrees.hi < SMALLEST_ANGLE:
+        raise BriefError(
+            f"a turn of {degrees.hi:g} degrees is as good as straight; ask for {SMALLEST_ANGLE:g} degrees or more"
+        )
+    own = KINDS[clause.kind].degrees
+    if clause.kind in ("hairpin", "switchback", "u_turn") and own:
+        if degrees.hi is not None and degrees.hi * 1.1 < own.lo:
+            raise BriefError(
+                f"a {noun} turns {own.lo:g} degrees or more; ask for a sharp turn of {degrees.hi:g} degrees instead"
+            )
+
+
+def _radius(clause: Clause, noun: str) -> None:
+    radius, sharpness = clause.radius, clause.sharpness
+    limits = SHARPNESS[sharpness].radius if sharpness else None
+    if radius and limits and not _overlaps(radius, limits, 0.15):
+        raise BriefError(
+            f"a {sharpness} turn has a radius of {limits} m; leave out '{sharpness}', or the number"
+        )
+    own = KINDS[clause.kind].radius
+    if radius and own and not _overlaps(radius, own, 0.15):
+        raise BriefError(f"a {noun} has a radius of {own} m; ask for a turn with this radius instead")
+    if own and limits and max(own.lo, limits.lo) > min(own.hi, limits.hi):
+        raise BriefError(
+            f"a {noun} has a radius of {own} m and is never {sharpness}; leave out '{sharpness}'"
+        )
+
+
+def _overlaps(amount: Amount, limits: Range, slack: float) -> bool:
+    low = amount.lo * (1 - slack) if amount.lo is not None else -inf
+    high = amount.hi * (1 + slack) if amount.hi is not None else inf
+    return low <= limits.hi and high >= limits.lo
+
+
+def _incline(slope: str | None, incline: Amount | None) -> None:
+    if incline is None:
+        return
+    if incline.lo is not None and incline.lo > STEEPEST:
+        raise BriefError(
+            f"a slope of {incline.lo:g} percent is too steep; ask for {STEEPEST:g} percent or less"
+        )
+    if slope in LEVEL and (incline.lo or 0) > (1 if slope == "flat" else 3.5):
+        raise BriefError(f"a level road has no slope of {incline.lo:g} percent; leave out one of the two")
+
+
+def _number_of_turns(brief: Brief) -> None:
+    said = total(brief.clauses)
+    if any(clause.kind not in STRAIGHT for clause in brief.clauses) and brief.turns:
+        if brief.turns.hi == 0:
+            raise BriefError(f"{_figure(said)} turns but no turns: leave out one of the two")
+        if not _meet(said, brief.turns):
+            raise BriefError(
+                f"the things named have {_figure(said)} turns, but {_figure(brief.turns)} are asked for in all;"
+                " make the numbers agree"
+            )
+    if brief.turns and brief.turns.hi == 0:
+        ends = any(c and c.kind not in STRAIGHT for c in (brief.starts, brief.ends))
+        sided = any(a and (a.lo or 0) > 0 for a in (brief.left, brief.right))
+        if ends or sided or brief.alternating:
+            raise BriefError("turns are asked for, but also no turns: leave out one of the two")
+    if max(said.lo or 0, (brief.turns.lo or 0) if brief.turns else 0) > MOST_TURNS:
+        raise BriefError(f"no map holds so many turns; ask for {MOST_TURNS:g} or fewer")
+
+
+def _sides(brief: Brief) -> None:
+    turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
+    for side in ("left", "right"):
+        wished: Amount | None = getattr(brief, side)
+        if wished is None:
+            continue
+        sure = sum(_sure(clause, side) for clause in turning)
+        if wished.hi is not None and sure > wished.hi:
+            raise BriefError(
+                f"{sure:g} {side} turns are asked for, but also {_figure(wished)} {side} turns in all"
+            )
+        most = total(brief.clauses) if turning else brief.turns
+        if most and most.hi is not None and (wished.lo or 0) > most.hi:
+            raise BriefError(f"{wished.lo:g} {side} turns are more than the {most.hi:g} turns in all")
+    both = [amount for amount in (brief.left, brief.right) if amount]
+    if brief.turns and len(both) == 2 and not turning and brief.turns.lo is not None:
+        most_sides = sum(inf if amount.hi is None else amount.hi for amount in both)
+        if most_sides < brief.turns.lo:
+            raise BriefError(f"{most_sides:g} left and right turns do not make {brief.turns.lo:g} turns")
+    if (
+        len(both) == 2
+        and all(amount.hi == 0 for amount in both)
+        and (turning or (brief.turns and brief.turns.lo))
+    ):
+        if turning or (brief.turns and (brief.turns.lo or 0) > 1):
+            raise BriefError("a turn goes left or right: allow one of the two")
+
+
+def _sure(clause: Clause, side: str) -> float:
+    """Turns of a clause that surely go to this side."""
+    least, _ = turns_of(clause)
+    if (KINDS[clause.kind].alternating and clause.kind != "switchback") or clause.alternating:
+        return least // 2
+    if clause.kind == "switchback" and least > 1:
+        return least // 2
+    return least if clause.side == side and clause.kind in SINGLE | {"winding"} else 0
+
+
+def _slopes(brief: Brief) -> None:
+    _incline(brief.slope, brief.incline)
+    if brief.steepest and brief.steepest.lo is not None and brief.steepest.lo > STEEPEST:
+        raise BriefError(
+            f"a slope of {brief.steepest.lo:g} percent is too steep; ask for {STEEPEST:g} percent or less"
+        )
+    for clause in brief.clauses:
+        _slope_within(brief, clause)
+    if brief.slope and brief.hills and (brief.hills.lo or 0) > 0:
+        raise BriefError("a hilly road climbs and falls; leave out that it is all uphill, downhill or flat")
+    rises, falls = brief.slope in RISING, brief.slope in FALLING
+    climb = brief.climb
+    if climb and ((rises and climb.hi is not None and climb.hi < 0) or (falls and (climb.lo or 0) > 0)):
+        raise BriefError("the road goes one way and its end lies the other; make slope and height agree")
+    if (
+        climb
+        and brief.slope == "flat"
+        and ((climb.lo or 0) > 10 or (climb.hi is not None and climb.hi < -10))
+    ):
+        raise BriefError("a flat road gains or loses no such height; leave out one of the two")
+    steepest, grade = brief.steepest, SLOPES[brief.slope].grade if brief.slope else None
+    if steepest and grade and not brief.incline:
+        least = 0.0 if grade.lo <= 0 <= grade.hi else min(abs(grade.lo), abs(grade.hi))
+        if steepest.hi is not None and steepest.hi < least - 1:
+            raise BriefError(
+                f"a road that steep climbs or falls {least:g} percent or more; allow it to be steeper"
+            )
+        if (steepest.lo or 0) > 4 and brief.slope in LEVEL:
+            raise BriefError("a level road has no steep place; leave out one of the two")
+
+
+def _slope_within(brief: Brief, clause: Clause) -> None:
+    whole, slope = brief.slope, clause.slope
+    if whole is None:
+        return
+    name = clause.kind.replace("_", "-")
+    if clause.kind in ("crest", "dip"):
+        raise BriefError(f"a {name} climbs and falls; leave out that the whole road is {_said(whole)}")
+    if slope is None:
+        return
+    up_and_down = (whole in RISING and slope in FALLING) or (whole in FALLING and slope in RISING)
+    if up_and_down or (whole in LEVEL and slope in (*RISING, *FALLING)):
+        raise BriefError(
+            f"the whole road is {_said(whole)}, but a {name} is {_said(slope)}; say the slope of each part instead"
+        )
+
+
+def _length(brief: Brief) -> None:
+    if brief.length is None:
+        return
+    longest = inf if brief.length.hi is None else brief.length.hi * (1 + ROAD_LENGTH_SLACK)
+    if longest < SHORTEST_ROAD:
+        raise BriefError(f"a road of {brief.length.hi:g} m is too short; ask for {SHORTEST_ROAD:g} m or more")
+    if least_length(brief) > longest:
+        raise BriefError(
+            f"{brief.length.hi:g} m cannot hold all that; ask for about {least_length(brief):.0f} m or fewer turns"
+        )
+    if brief.climb and brief.climb.lo is not None and brief.climb.lo > longest * STEEPEST / 100:
+        raise BriefError(
+            f"{brief.length.hi:g} m cannot climb {brief.climb.lo:g} m at {STEEPEST:g} percent at most"
+        )
+
+
+def _way(clause: Clause) -> float:
+    """Metres that a clause takes at least."""
+    if clause.kind in STRAIGHT:
+        if clause.length and clause.length.lo is not None:
+            return 0.85 * clause.length.lo
+        size = SIZES[clause.size].length if clause.size else None
+        return size.lo if size else LEAST_STRAIGHT
+    least, _ = turns_of(clause)
+    own, sharp = KINDS[clause.kind].degrees, SHARPNESS[clause.sharpness] if clause.sharpness else None
+    angle = clause.degrees.lo if clause.degrees and clause.degrees.lo else own.lo if own else 25.0
+    if sharp and sharp.degrees and not clause.degrees and clause.kind == "turn":
+        angle = sharp.degrees.lo
+    radius = sharp.radius.lo if sharp and sharp.radius else 0.0
+    if clause.radius and clause.radius.lo:
+        radius = 0.85 * clause.radius.lo
+    arc = radians(angle) * max(radius, SMALLEST_RADIUS)
+    return least * max(arc + (0 if clause.kind in ("s_bend", "chicane") else GAP), WAY_OF_A_TURN * 0.8)
+
+
+def _on_the_map(brief: Brief, map_size: float) -> None:
+    metres = least_length(brief)
+    if brief.length and brief.length.lo is not None:
+        metres = max(metres, brief.length.lo * (1 - ROAD_LENGTH_SLACK))
+    room = map_size * map_size / WIDTH_OF_A_TURN
+    if metres > room:
+        raise BriefError(
+            f"a map of {map_size:g} m has no room for {metres:.0f} m of such road; ask for {room:.0f} m, fewer turns"
+            " or a larger map"
+        )
+    diagonal = sqrt(2) * (map_size - 10)
+    for clause in brief.clauses:
+        if clause.kind == "straight" and clause.length and (clause.length.lo or 0) * 0.85 > diagonal:
+            raise BriefError(
+                f"a straight of {clause.length.lo:g} m is longer than the map; ask for {diagonal:.0f} m"
+            )
+        if clause.radius and (clause.radius.lo or 0) > map_size:
+            raise BriefError(
+                f"a radius of {clause.radius.lo:g} m is wider than the map; ask for {map_size / 2:g} m"
+            )
+
+
+def _meet(one: Amount, other: Amount) -> bool:
+    low = max(one.lo or 0, other.lo or 0)
+    high = min(inf if one.hi is None else one.hi, inf if other.hi is None else other.hi)
+    return low <= high
+
+
+def _figure(amount: Amount) -> str:
+    if amount.exact:
+        return f"{amount.lo:g}"
+    if amount.lo is None:
+        return f"at most {amount.hi:g}"
+    return f"at least {amount.lo:g}" if amount.hi is None else f"{amount.lo:g} to {amount.hi:g}"
+
+
+def _noun(clause: Clause) -> str:
+    return KINDS[clause.kind].said[0]
+
+
+def _said(slope: str) -> str:
+    return SLOPES[slope].said[0]  # type: ignore[index]

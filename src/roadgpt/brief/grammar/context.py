@@ -1,0 +1,144 @@
+"""Settles words that mean one thing here and another there, by their neighbours."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+from roadgpt.brief.grammar.quantities import Item
+
+SKIPPED = frozenset({"-", "a", "the", "too", "hyphen"})
+SIDES = frozenset({"left", "right"})
+TURNING = frozenset(
+    {
+        "turn",
+        "turn+",
+        "turn~",
+        "hairpin",
+        "hairpin+",
+        "switchback",
+        "switchback+",
+        "u_turn",
+        "u_turn+",
+        "s_bend",
+    }
+    | {
+        "s_bend+",
+        "chicane",
+        "chicane+",
+        "slalom",
+        "serpentine",
+        "zigzag",
+        "winding",
+        "kink",
+        "dogleg",
+        "spiral",
+    }
+)
+MANY = frozenset({name for name in TURNING if name.endswith("+")})
+BOTH_WAYS = frozenset({"s_bend", "s_bend+", "chicane", "chicane+", "slalom", "serpentine", "zigzag"})
+MANNERS = frozenset({"gentle", "sharp", "sweeping", "long", "short", "hard"})
+CLIMBING = frozenset({"up~", "down~", "slope", "flat~"})
+SLOPING = CLIMBING | {"up", "down", "hill"}
+BEFORE_A_VERB = frozenset({"", "that", "road", "and", "then", ",", "stop", "first_of_all", "start", "end"})
+
+
+def settle(items: Sequence[Item]) -> list[Item]:
+    """The same items, each with one meaning left."""
+    out = list[Item]()
+    at = 0
+    while at < len(items):
+        size, name = _sides(items, at)
+        if size:
+            out.append(replace(items[at], name=name, stop=items[at + size - 1].stop))
+            at += size
+            continue
+        item = items[at]
+        before = _name(items, at, -1)
+        after = _name(items, at, +1)
+        out.append(replace(item, name=_settled(items, at, item, before, after)))
+        at += 1
+    return out
+
+
+def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str) -> str:
+    match item.name:
+        case "hard":
+            return "sharp" if after in TURNING | SIDES | {"sharp"} else "hard_road"
+        case "gentle":
+            return _gentle(items, at, item, before, after)
+        case "sharp":
+            steep = (item.text.endswith("ly") and {before, after} & SLOPING) or after in CLIMBING
+            return "steep" if steep else "sharp"
+        case "turn+" | "crest+":
+            return _noun_or_verb(items, at, item, before)
+        case "nearly":
+            return "nearly" if after in ("flat", "flat~") else "-"
+        case "for" | "into" if at + 1 < len(items) and items[at + 1].name in ("m", "whole"):
+            return "-"
+        case "hill":
+            return (
+                "-"
+                if {before, _name(items, at, -1, {"steep", "mild", "gentle", "long"})} & SLOPING
+                else "crest"
+            )
+        case _:
+            return item.name
+
+
+def _gentle(items: Sequence[Item], at: int, item: Item, before: str, after: str) -> str:
+    adverb = item.text.endswith("ly")
+    if after in CLIMBING | {"hill"} or (adverb and after in SLOPING):
+        return "mild"
+    if after in SLOPING:  # 'a gentle uphill turn' is a gentle turn, 'a gentle uphill' a gentle slope
+        return "gentle" if _name(items, at, +1, SLOPING | SIDES) in TURNING else "mild"
+    return "mild" if before in SLOPING and after not in TURNING | SIDES else "gentle"
+
+
+def _noun_or_verb(items: Sequence[Item], at: int, item: Item, before: str) -> str:
+    """'the road turns left' has one turn, 'a road with left turns' several."""
+    verb = item.name.removesuffix("+") + "~"
+    if item.name == "crest+":
+        return "crest" if before in BEFORE_A_VERB - {""} and item.text == "crests" else item.name
+    follows = _name(items, at, +1, MANNERS | {"-"})
+    if before in BEFORE_A_VERB and follows in SIDES | {"deg", "deg90"}:
+        return verb
+    return verb if before in ("that", "road") else item.name
+
+
+def _sides(items: Sequence[Item], at: int) -> tuple[int, str]:
+    """'left and right' as one meaning, where it is: 'left and right turns', 'alternating left and right'."""
+    if items[at].name not in SIDES:
+        return 0, ""
+    joint = at + 1
+    while joint < len(items) and items[joint].name in SKIPPED | {"and", "or", "/"}:
+        joint += 1
+    if joint >= len(items) or items[joint].name not in SIDES - {items[at].name}:
+        return 0, ""
+    joints = {item.name for item in items[at + 1 : joint]}
+    after = _name(items, joint, +1, MANNERS)
+    before = {item.name for item in items[max(at - 3, 0) : at]}
+    if "or" in joints:
+        return joint - at + 1, "free_side"
+    if "a" in joints:
+        return 0, ""
+    if after in BOTH_WAYS:
+        return joint - at + 1, items[at].name
+    counted = items[at - 1].name == "a" if at else False
+    if "and" in joints or "/" in joints:
+        if after in MANY and not counted:
+            return joint - at + 1, "both_sides"
+        if before & {"alternating", "between"} or after == "alternating" or _whole_of(items, at, joint):
+            return joint - at + 1, "both_sides"
+    return 0, ""
+
+
+def _whole_of(items: Sequence[Item], at: int, joint: int) -> bool:
+    """'turns to both left and right'."""
+    return at > 0 and items[at - 1].name == "both"
+
+
+def _name(items: Sequence[Item], at: int, step: int, also: Collection[str] = ()) -> str:
+    """The next name that is not skipped, '' at the ends."""
+    at += step
+    while 0 <= at < len(items) and (items[at].name in SKIPPED or items[at].name in also):
+        at += step
+    return items[at].name if 0 <= at < len(items) else ""

@@ -1,0 +1,216 @@
+"""Numbers with their bounds and units: 'no more than 3', 'between 40 and 60 metres', '1:8', 'one in ten'."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from roadgpt.brief.grammar.lexicon import Lexeme
+from roadgpt.brief.model import Amount
+
+UNITS: dict[str, tuple[str, float]] = {
+    "m": ("m", 1.0),
+    "km": ("m", 1000.0),
+    "ft": ("m", 0.3048),
+    "yd": ("m", 0.9144),
+    "mile": ("m", 1609.344),
+    "%": ("%", 1.0),
+    "deg": ("deg", 1.0),
+    "speed": ("speed", 1.0),
+    "times": ("times", 1.0),
+}
+"""Our unit, and how many of it one of theirs is."""
+BEFORE = frozenset({">=", "<=", ">", "<", "exact"})
+RANGE_WORDS = frozenset({"to", "bis", "a", "till", "until", "-"})
+LOOK_BACK = 3  # items between a bound and its number: 'a minimum radius of 20 m'
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A meaning; or a quantity: then ``amount`` is set, and ``name`` is 'count' or its unit."""
+
+    name: str
+    start: int
+    stop: int
+    text: str = ""
+    amount: Amount | None = None
+    exact: bool = True
+    """Was a number said, rather than 'several'?"""
+
+
+@dataclass(frozen=True, slots=True)
+class _Read:
+    """A number, or a range of numbers, up to the lexeme ``stop``."""
+
+    lo: float | None
+    hi: float | None
+    stop: int
+    exact: bool = True
+
+
+def quantities(lexemes: Sequence[Lexeme]) -> list[Item]:
+    """The same description with its numbers put together."""
+    out, at = list[Item](), 0
+    while at < len(lexemes):
+        lexeme = lexemes[at]
+        if lexeme.name == "1:n":
+            out.append(Item("%", lexeme.start, lexeme.stop, amount=_amount(lexeme.value, lexeme.value)))
+            at += 1
+        elif lexeme.name.startswith("#"):
+            at = _quantity(lexemes, at, out)
+        else:
+            out.append(Item(lexeme.name, lexeme.start, lexeme.stop, lexeme.text))
+            at += 1
+    return _bounded(out)
+
+
+def _quantity(lexemes: Sequence[Lexeme], at: int, out: list[Item]) -> int:
+    read = _number(lexemes, at)
+    if (slope := _one_in(lexemes, read)) is not None:
+        out.append(
+            Item("%", lexemes[at].start, lexemes[slope[1] - 1].stop, amount=_amount(slope[0], slope[0]))
+        )
+        return slope[1]
+    unit, stop = _unit(lexemes, read.stop)
+    first = read
+    if (second := _second(lexemes, stop, read)) is not None:
+        unit_after, stop = _unit(lexemes, second.stop)
+        unit = unit_after or unit
+        low, high = sorted((first.lo or 0.0, second.hi or 0.0))
+        read = replace(second, lo=low, hi=high)
+    name, factor = UNITS[unit] if unit else ("count", 1.0)
+    lo, hi = (None if x is None else x * factor for x in (read.lo, read.hi))
+    item = Item(name, lexemes[at].start, lexemes[stop - 1].stop, "#", _amount(lo, hi), read.exact)
+    out.append(item)
+    return stop
+
+
+def _amount(lo: float | None, hi: float | None) -> Amount:
+    lo, hi = (None if x is None else round(x, 4) for x in (lo, hi))
+    return Amount(lo=lo, hi=hi)
+
+
+def _number(lexemes: Sequence[Lexeme], at: int) -> _Read:
+    """The number that begins here: digits, or words as in 'three hundred and fifty'."""
+    name = lexemes[at].name
+    if name == "#":
+        return _Read(lexemes[at].value, lexemes[at].value, at + 1)
+    if name.endswith("+"):
+        return _Read(float(name[1:-1]), None, at + 1, exact=False)
+    if "-" in name:
+        low, high = name[1:].split("-")
+        return _Read(float(low), float(high), at + 1, exact=False)
+    total, at = _words(lexemes, at)
+    return _Read(total, total, at)
+
+
+def _words(lexemes: Sequence[Lexeme], at: int) -> tuple[float, int]:
+    total, last = float(lexemes[at].name[1:]), at + 1
+    while last < len(lexemes):
+        step = 1 if lexemes[last].text in ("and", "hyphen", "-") and total >= 100 else 0
+        if last + step >= len(lexemes):
+            break
+        name = lexemes[last + step].name
+        if not name[1:].isdigit():
+            break
+        more = float(name[1:])
+        if more in (100, 1000) and total < more and not step:
+            total *= more
+        elif (20 <= total % 100 <= 90 and total % 10 == 0 and more < 10) or (total >= 100 and more < 100):
+            total += more
+        else:
+            break
+        last += step + 1
+    return total, last
+
+
+def _one_in(lexemes: Sequence[Lexeme], read: _Read) -> tuple[float, int] | None:
+    """'one in ten' as percent."""
+    at = read.stop
+    if read.lo != 1 or at + 1 >= len(lexemes) or lexemes[at].name != "in_ten":
+        return None
+    if not lexemes[at + 1].name.startswith("#"):
+        return None
+    run = _number(lexemes, at + 1)
+    return (100.0 / run.lo, run.stop) if run.lo else None
+
+
+def _unit(lexemes: Sequence[Lexeme], at: int) -> tuple[str, int]:
+    step = 1 if at < len(lexemes) and lexemes[at].name == "hyphen" else 0
+    if at + step < len(lexemes) and lexemes[at + step].name in UNITS:
+        name, stop = lexemes[at + step].name, at + step + 1
+        per_hour = [lexeme.text for lexeme in lexemes[stop : stop + 2]] == ["/", "h"]
+        return ("speed", stop + 2) if per_hour else (name, stop)
+    return "", at
+
+
+def _second(lexemes: Sequence[Lexeme], at: int, first: _Read) -> _Read | None:
+    """The other end of a range: '3 to 5', '3-5', 'between 3 and 5', 'two or three'."""
+    if at + 1 >= len(lexemes) or not first.exact or not lexemes[at + 1].name.startswith("#"):
+        return None
+    joint = lexemes[at]
+    before = [lexeme.name for lexeme in lexemes[max(at - 4, 0) : at]]
+    if (
+        joint.text in RANGE_WORDS
+        or joint.name in ("or", "hyphen")
+        or (joint.name == "and" and "between" in before)
+    ):
+        second = _number(lexemes, at + 1)
+        return second if second.exact else None
+    return None
+
+
+def _bounded(items: list[Item]) -> list[Item]:
+    """Bounds put into the amounts beside them, and left out themselves."""
+    out = list[Item]()
+    waiting: Item | None = None
+    for item in items:
+        if item.amount is not None:
+            if waiting is not None:
+                item = _with(item, waiting.name)
+                waiting = None
+            out.append(_without_between(out, item))
+        elif item.name in ("or_more", "or_less") and out and out[-1].amount is not None:
+            out[-1] = _with(out[-1], ">=" if item.name == "or_more" else "<=")
+        elif item.name in BEFORE:
+            waiting = item
+        else:
+            if waiting is not None and item.name in (",", "stop", "and", "then", "end"):
+                _bound_behind(out, waiting)
+                waiting = None
+            if waiting is not None and item.name == "a":  # 'at least a left turn'
+                out.append(_with(Item("count", item.start, item.stop, "#", _amount(1, 1)), waiting.name))
+                waiting = None
+            else:
+                out.append(item)
+    if waiting is not None:
+        _bound_behind(out, waiting)
+    return out
+
+
+def _without_between(out: list[Item], item: Item) -> Item:
+    if out and out[-1].name == "between" and item.amount and not item.amount.exact:
+        out.pop()
+    return item
+
+
+def _bound_behind(out: list[Item], bound: Item) -> None:
+    """'3 turns minimum': the bound stands behind its number."""
+    for at in range(len(out) - 1, max(len(out) - 1 - LOOK_BACK, -1), -1):
+        if out[at].amount is not None:
+            out[at] = _with(out[at], bound.name)
+            return
+
+
+def _with(item: Item, bound: str) -> Item:
+    """The item with 'at least' and the like applied; whole numbers step over the number that was said."""
+    amount = item.amount
+    number = amount.lo if amount and amount.lo is not None else amount.hi if amount else None
+    if amount is None or number is None:
+        return item
+    step = 1.0 if item.name == "count" else 0.0
+    bounds: dict[str, Callable[[], Amount]] = {
+        ">=": lambda: Amount(lo=number),
+        ">": lambda: Amount(lo=number + step),
+        "<=": lambda: Amount(hi=number if amount.hi is None else amount.hi),
+        "<": lambda: Amount(hi=max(number - step, 0.0)),
+    }
+    return replace(item, amount=bounds[bound]()) if bound in bounds else item

@@ -1,0 +1,204 @@
+"""Words about things said before: 'both to the right', 'the last one sharp', 'two of them', 'no turns'."""
+
+from dataclasses import replace
+
+from roadgpt.brief.grammar.phrases import STRAIGHT, Phrase
+from roadgpt.brief.grammar.slopes import slope_of
+from roadgpt.brief.grammar.units import Units, how_many, overlay, turns
+from roadgpt.brief.model import Amount, at_least, at_most, exactly
+from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
+
+ATTRIBUTES = ("side", "sharpness", "degrees", "radius", "incline")
+
+
+def select(units: Units, phrase: Phrase, after: Phrase | None) -> bool:
+    """Gives what the phrase says to the things that it points to."""
+    if phrase.pick is not None:
+        return _pick(units, phrase)
+    if (
+        (phrase.kind in STRAIGHT
+        and phrase.scope == "each")
+        or (phrase.scope and phrase.turning and _said_nothing(phrase) and after and after.kind in STRAIGHT)
+    ):
+        if after is not None and after.kind in STRAIGHT:  # 'each turn followed by a straight'
+            after.in_between = True
+        return True
+    if phrase.count and phrase.kind and units.last_turn is None:  # 'all 3 turns to the left'
+        units.things.append(replace(phrase, scope=""))
+        return True
+    targets = _targets(units, phrase)
+    if not targets:
+        return _wish(units, phrase)
+    if (
+        phrase.slope
+        and not phrase.turning
+        and phrase.scope == "all"
+        and not any(t.slope for t in units.things)
+    ):
+        units.wishes.slope, units.wishes.incline = slope_of(phrase), phrase.incline
+        phrase.slope, phrase.incline = "", None
+    for thing in targets:
+        _give(thing, phrase)
+    return True
+
+
+def _said_nothing(phrase: Phrase) -> bool:
+    return not (
+        any(getattr(phrase, name) is not None for name in ATTRIBUTES) or phrase.slope or phrase.alternating
+    )
+
+
+def _targets(units: Units, phrase: Phrase) -> list[Phrase]:
+    if phrase.scope == "both":
+        last = units.last_turn
+        if last is not None and how_many(last) == 2:
+            return [last]
+        return [thing for thing in units.things if turns(thing)][-2:]
+    if phrase.scope == "rest":
+        units.expand()
+        wanted = [name for name in (*ATTRIBUTES, "slope") if getattr(phrase, name)]
+        return [t for t in units.things if turns(t) and not any(getattr(t, name) for name in wanted)]
+    return [thing for thing in units.things if turns(thing)]
+
+
+def _give(thing: Phrase, phrase: Phrase) -> None:
+    if phrase.kind not in (None, "turn"):
+        thing.kind = phrase.kind
+    for name in ATTRIBUTES:
+        value = getattr(phrase, name)
+        if value is not None:
+            setattr(thing, name, value)
+    thing.alternating |= phrase.alternating
+    if phrase.both_sides and phrase.alternating:
+        thing.alternating = True
+    if phrase.slope:
+        thing.slope, thing.steep, thing.mild, thing.nearly = (
+            phrase.slope,
+            phrase.steep,
+            phrase.mild,
+            phrase.nearly,
+        )
+
+
+def _wish(units: Units, phrase: Phrase) -> bool:
+    """'every bend is sharp', where no bend was named: a wish for the road."""
+    wishes = units.wishes
+    for name in ("sharpness", "degrees", "radius"):
+        if getattr(phrase, name) is not None:
+            setattr(wishes, name, getattr(phrase, name))
+    if phrase.side:
+        setattr(wishes, "right" if phrase.side == "left" else "left", exactly(0))
+    if phrase.slope:
+        wishes.slope, wishes.incline = slope_of(phrase), phrase.incline
+    wishes.alternating |= phrase.alternating
+    if phrase.turning and phrase.kind != "turn":
+        units.things.append(replace(phrase, scope=""))
+    return True
+
+
+def _pick(units: Units, phrase: Phrase) -> bool:
+    """'the first two uphill', 'the last one is a hairpin'; with nothing to pick from, it is a thing itself."""
+    first, number = phrase.pick or (0, 1)
+    units.expand()
+    places = [at for at, thing in enumerate(units.things) if turns(thing) and thing.pick is None]
+    if phrase.kind in STRAIGHT:
+        places = [at for at, thing in enumerate(units.things) if thing.kind in STRAIGHT]
+    picked = places[first : first + number] if first >= 0 else places[first:][:number]
+    if not picked:
+        kind = phrase.kind or ("turn" if phrase.side or phrase.sharpness or phrase.degrees else None)
+        if kind is None:
+            return False
+        count = exactly(number) if number > 1 else None
+        units.things.append(replace(phrase, kind=kind, count=count, joint="then"))
+        return True
+    for at in picked:
+        _give(units.things[at], phrase)
+    return True
+
+
+def take_some(units: Units, phrase: Phrase) -> bool:
+    """'two of them to the left', 'one of which is a hairpin'."""
+    whole = units.last_turn
+    if whole is None:
+        return False
+    amount = phrase.count or exactly(1)
+    if (
+        phrase.kind in (None, "turn")
+        and phrase.side
+        and not (phrase.sharpness or phrase.degrees or phrase.slope)
+    ):
+        setattr(units.wishes, phrase.side, amount)
+        return True
+    units.expand()
+    number = how_many(replace(phrase, count=amount))
+    plain = [
+        thing for thing in units.things if turns(thing) and thing.kind == whole.kind and not thing.of_them
+    ]
+    for thing in plain[len(plain) - number :] if number else []:
+        _give(thing, phrase)
+        thing.of_them = True
+    return True
+
+
+def negate(units: Units, phrase: Phrase) -> bool:
+    """'no left turns', 'not steep', 'without hairpins'; False where a Brief cannot say it."""
+    wishes = units.wishes
+    if phrase.hilly or phrase.slope_noun:
+        wishes.slope = wishes.slope or "flat"
+    elif phrase.mountain or phrase.hard or phrase.highway:
+        return False
+    elif phrase.steep:
+        wishes.steepest = wishes.steepest or at_most((SLOPES["steeply_up"].grade or Range(8)).lo)
+    elif phrase.slope == "flat":
+        wishes.steepest = wishes.steepest or at_least((SLOPES["up"].grade or Range(3)).lo)
+    elif phrase.slope:
+        return False
+    elif phrase.side:
+        setattr(wishes, phrase.side, exactly(0))
+    elif phrase.sharpness or phrase.degrees or phrase.radius:
+        _negate_shape(units, phrase)
+    elif phrase.kind is not None:
+        return _negate_kind(units, phrase)
+    else:
+        return False
+    return True
+
+
+def _negate_shape(units: Units, phrase: Phrase) -> None:
+    target = units.last_turn if phrase.kind is None and units.last_turn is not None else units.wishes
+    if phrase.degrees:
+        target.degrees = _other_side(phrase.degrees)
+    elif phrase.radius:
+        target.radius = _other_side(phrase.radius)
+    elif phrase.sharpness == "sharp":
+        target.radius = at_least((SHARPNESS["sharp"].radius or Range(0, 30)).hi)
+    else:
+        target.radius = at_most((SHARPNESS["gentle"].radius or Range(40)).lo)
+
+
+def _other_side(amount: Amount) -> Amount:
+    """'no turn over 90 degrees' is 90 degrees at most."""
+    if amount.lo is None and amount.hi is not None:
+        return at_least(amount.hi)
+    return at_most(amount.lo if amount.lo is not None else 0)
+
+
+def _negate_kind(units: Units, phrase: Phrase) -> bool:
+    wishes, kind = units.wishes, phrase.kind
+    if kind == "turn":
+        wishes.turns = exactly(0)
+    elif kind == "winding":
+        wishes.turns = wishes.turns or at_most(2)
+    elif kind == "straight" and not phrase.many:
+        wishes.turns = wishes.turns or at_least(1)
+    elif kind in ("hairpin", "switchback", "u_turn"):
+        least = KINDS[kind].degrees
+        wishes.degrees = wishes.degrees or at_most((least.lo if least else 100) - 10)
+    elif kind in ("crest", "dip"):
+        wishes.hills = wishes.hills or at_most(0)
+    else:
+        return False
+    return True
+
+
+__all__ = ["negate", "overlay", "select", "take_some"]

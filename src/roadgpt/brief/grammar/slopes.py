@@ -1,0 +1,169 @@
+"""Slopes: which things a slope said alone belongs to, and which hold for the whole road."""
+
+from dataclasses import replace
+
+from roadgpt.brief.grammar.phrases import STRAIGHT, Phrase
+from roadgpt.brief.grammar.units import Units, Wishes, turns
+from roadgpt.brief.model import Slope, exactly
+
+SCOPED = ("with", "for", "into", "(", "colon", "")
+_WORDS: dict[tuple[str, str], Slope] = {
+    ("up", ""): "up", ("up", "steep"): "steeply_up", ("up", "mild"): "gently_up", ("flat", ""): "flat",
+    ("down", ""): "down", ("down", "steep"): "steeply_down", ("down", "mild"): "gently_down",
+    ("flat", "nearly"): "nearly_flat",
+}  # fmt: skip
+
+
+def slope_of(phrase: Phrase) -> Slope | None:
+    """The slope of a phrase, as a Brief has it; a number says more than 'steeply'."""
+    if not phrase.slope:
+        return None
+    if phrase.slope == "flat":
+        return "nearly_flat" if phrase.nearly else "flat"
+    manner = "" if phrase.incline else "steep" if phrase.steep else "mild" if phrase.mild else ""
+    return _WORDS[phrase.slope, manner]
+
+
+def settle_slopes(units: Units) -> None:
+    """Gives every slope that was said alone to its things, or to the road, or makes it a straight."""
+    alone = [thing for thing in units.things if _alone(thing)]
+    if alone:
+        only = len({_said(thing) for thing in units.things if thing.slope}) == 1 and not _rises_and_falls(
+            units
+        )
+        if only and _of_the_road(units, alone):
+            _to_the_road(units, alone)
+        else:
+            _along_the_road(units, only)
+    _all_alike(units)
+
+
+def _alone(thing: Phrase) -> bool:
+    return thing.kind is None and thing.side is None and thing.slope != ""
+
+
+def _said(thing: Phrase) -> tuple[str, bool]:
+    return thing.slope, thing.nearly
+
+
+def _rises_and_falls(units: Units) -> bool:
+    return any(thing.kind in ("crest", "dip") for thing in units.things)
+
+
+def _of_the_road(units: Units, alone: list[Phrase]) -> bool:
+    """One slope only, and not as one leg of several: 'climbing, with 3 turns', '3 turns, uphill'."""
+    slope, things = alone[0], units.things
+    if len(alone) > 1 or slope.joint in ("start", "end") or slope.place:
+        return False
+    at = next(i for i, thing in enumerate(things) if thing is slope)
+    if len(things) == 1:
+        return True
+    if at == len(things) - 1:
+        return slope.joint != "then" and not slope.article
+    follows = things[at + 1]
+    return (slope.after_road or follows.joint in ("with", ",")) and follows.joint not in (
+        "for",
+        "then",
+        "into",
+        "and",
+    )
+
+
+def _to_the_road(units: Units, alone: list[Phrase]) -> None:
+    slope, wishes = alone[0], units.wishes
+    units.things = [thing for thing in units.things if thing is not slope]
+    for thing in units.things:
+        if thing.kind in STRAIGHT and thing.slope == "" and thing.joint == "" and thing.incline:
+            thing.slope = slope.slope
+    _wish(wishes, slope)
+
+
+def _wish(wishes: Wishes, slope: Phrase) -> None:
+    if slope.length is not None and wishes.length is None:
+        wishes.length = slope.length
+    if wishes.slope is None:
+        wishes.slope, wishes.incline = slope_of(slope), slope.incline
+
+
+def _along_the_road(units: Units, only: bool) -> None:
+    out, carried = list[Phrase](), None
+    things = units.things
+    for at, thing in enumerate(things):
+        after = things[at + 1] if at + 1 < len(things) else None
+        if not _alone(thing):
+            carried = _carry(thing, carried)
+            out.append(thing)
+        elif after is not None and _belongs(thing, after):
+            carried = thing
+            after.joint = (
+                thing.joint if after.joint in SCOPED or thing.joint in ("start", "end") else after.joint
+            )
+            if after.kind in ("crest", "dip"):
+                carried = None
+            else:
+                _give(after, thing, with_number=True)
+                if thing.length is not None and after.length is None and after.kind in STRAIGHT:
+                    after.length = thing.length
+        elif _describes_the_one_before(thing, after, out):
+            _give(out[-1], thing, with_number=True)
+            carried = None
+        else:
+            out.append(replace(thing, kind="straight", count=None))
+            carried = thing if thing.climbs and not thing.article else None
+    units.things = out
+
+
+def _carry(thing: Phrase, carried: Phrase | None) -> Phrase | None:
+    """'climbs through a left and a right turn': the second climbs too; a slope of its own ends that."""
+    if carried is None or thing.kind in ("crest", "dip") or (thing.slope and not _alike(thing, carried)):
+        return None
+    if thing.slope == "":
+        if thing.joint in ("then", "end", "stop") and not carried.climbs:
+            return None
+        _give(thing, carried, with_number=thing.joint in ("and", ","))
+    return carried
+
+
+def _alike(thing: Phrase, carried: Phrase) -> bool:
+    return thing.slope == carried.slope
+
+
+def _give(thing: Phrase, slope: Phrase, with_number: bool) -> None:
+    thing.slope, thing.nearly = slope.slope, slope.nearly
+    if with_number:
+        thing.steep, thing.mild, thing.incline = slope.steep, slope.mild, thing.incline or slope.incline
+
+
+def _belongs(slope: Phrase, after: Phrase) -> bool:
+    """Is the next thing what the slope was said of: 'uphill for 3 turns', 'climbs, straight'?"""
+    if _alone(after) or after.slope:
+        return False
+    if after.joint in SCOPED:
+        return not (after.joint == "" and slope.article and slope.stretch)
+    bare = after.kind == "straight" and not after.article and after.count is None
+    return bare and after.joint == ","
+
+
+def _describes_the_one_before(slope: Phrase, after: Phrase | None, out: list[Phrase]) -> bool:
+    """'2 turns, uphill, then 2 turns, downhill'."""
+    if not out or not turns(out[-1]) or out[-1].slope or slope.article or slope.joint not in (",", "(", ""):
+        return False
+    return not slope.climbs and (after is None or after.joint in ("then", "stop", "and", ")"))
+
+
+def _all_alike(units: Units) -> None:
+    """Where everything that was named has one slope, the road has it."""
+    things, wishes = units.things, units.wishes
+    if not things or wishes.slope or wishes.hills or _rises_and_falls(units):
+        return
+    first = things[0]
+    said = {(slope_of(thing), thing.incline) for thing in things}
+    if len(said) == 1 and first.slope:
+        if any(thing.joint in ("start", "end") and len(things) == 1 for thing in things):
+            return
+        wishes.slope, wishes.incline = slope_of(first), first.incline
+        for thing in things:
+            thing.slope, thing.incline = "", None
+
+
+__all__ = ["exactly", "settle_slopes", "slope_of"]

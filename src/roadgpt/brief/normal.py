@@ -1,0 +1,240 @@
+"""The normal form of a Brief: two Briefs that mean the same road compare equal in it.
+
+- ``words``, ``unused`` and ``confidence`` tell where the Brief came from, not what it means: they are empty.
+- A slope with a number is plain: 'steeply up' at 12 percent is up at 12 percent. A number alone is uphill.
+- Straights, crests and dips stand one by one; so do turns that alternate from a known side. Other neighbours
+  that are alike are counted together.
+- A serpentine 'of 4 turns or more' is a serpentine. Alternating is not said of what always alternates.
+- What holds for every turn (sharpness, degrees, radius) stands on the clauses where they name the turns.
+- What only repeats the clauses (number of turns, left or right, the slope, first and last thing) goes.
+- 'N turns' and nothing more is one clause; 'N or more turns' and nothing more is a wish for the road.
+- Where nothing is said of turns, at least one is meant.
+"""
+
+from math import inf
+
+from roadgpt.brief.model import Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly
+from roadgpt.brief.words import KINDS
+
+STRAIGHT: frozenset[Kind] = frozenset({"straight", "crest", "dip"})
+SINGLE: frozenset[Kind] = frozenset({"turn", "hairpin", "switchback", "u_turn"})
+SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", "zigzag"})
+"""Kinds whose sharpness is open."""
+MOST_SINGLE = 60
+OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
+PLAIN: dict[Slope, Slope] = {
+    "steeply_up": "up", "steeply_down": "down", "gently_up": "up", "gently_down": "down",
+}  # fmt: skip
+
+
+def normal(brief: Brief) -> Brief:
+    """The Brief in normal form."""
+    clauses = [one for clause in brief.clauses for one in _singles(_plain(clause))]
+    whole = _plain_slope(brief).model_copy(update={"words": "", "unused": (), "confidence": 1.0})
+    whole, clauses = _ends(whole, clauses)
+    whole, clauses = _turns_as_clause(whole, clauses)
+    whole, clauses = _pushed_down(whole, clauses)
+    clauses = _merged([_without_slope_of(whole, clause) for clause in clauses])
+    whole = _without_repeats(whole, clauses)
+    whole, clauses = _turns_as_wish(whole, clauses)
+    if not clauses and whole.turns is None and not (whole.left or whole.right):
+        whole = whole.model_copy(update={"turns": at_least(1)})
+    return whole.model_copy(update={"clauses": tuple(clauses)})
+
+
+def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:
+    """How many turns the clauses have in all; 0 where none turns."""
+    lo, hi = 0.0, 0.0
+    for clause in clauses:
+        if clause.kind not in STRAIGHT:
+            least, most = turns_of(clause)
+            lo, hi = lo + least, hi + most
+    return Amount(lo=lo, hi=None if hi == inf else hi)
+
+
+def turns_of(clause: Clause) -> tuple[float, float]:
+    """Least and largest number of turns of a clause that turns; infinite where there is no upper bound."""
+    own = KINDS[clause.kind].turns
+    least, most = (own.lo, own.hi) if own else (1.0, 1.0)
+    lo, hi = clause.count.lo or 0.0, inf if clause.count.hi is None else clause.count.hi
+    if clause.kind in ("s_bend", "chicane"):
+        return lo * least, hi * most
+    return (least, most) if clause.count == exactly(1) else (lo, hi)
+
+
+def _plain(clause: Clause) -> Clause:
+    kind, count = clause.kind, clause.count
+    said = {"slope": clause.slope, "incline": clause.incline, **_slope(clause.slope, clause.incline)}
+    if kind in STRAIGHT:
+        return Clause(
+            kind=kind,
+            count=count,
+            length=clause.length if kind == "straight" else None,
+            size=clause.size if kind == "straight" and not clause.length else None,
+            **(said if kind == "straight" else {}),
+        )
+    own = KINDS[kind]
+    if (
+        own.turns
+        and own.turns.lo > 1
+        and kind not in ("s_bend", "chicane")
+        and count == at_least(own.turns.lo)
+    ):
+        count = exactly(1)
+    one = count == exactly(1) and (own.turns is None or own.turns.hi == 1)
+    alternating = clause.alternating and not own.alternating and not one
+    return clause.model_copy(update={**said, "count": count, "alternating": alternating, "size": None})
+
+
+def _slope(slope: Slope | None, incline: Amount | None) -> dict[str, Slope]:
+    if incline is None:
+        return {}
+    if slope in (None, "flat", "nearly_flat"):
+        return {} if slope else {"slope": "up"}
+    return {"slope": PLAIN.get(slope, slope)} if slope else {}
+
+
+def _plain_slope(brief: Brief) -> Brief:
+    return brief.model_copy(update=_slope(brief.slope, brief.incline))
+
+
+def _singles(clause: Clause) -> list[Clause]:
+    """Straights one by one, and turns that alternate from a known side."""
+    number = int(clause.count.lo or 1) if clause.count.exact or clause.kind in STRAIGHT else 0
+    if clause.kind in STRAIGHT:
+        return [clause.model_copy(update={"count": exactly(1)})] * min(max(number, 1), MOST_SINGLE)
+    alternates = clause.alternating or KINDS[clause.kind].alternating
+    if clause.kind in SINGLE and alternates and clause.side and 1 < number <= MOST_SINGLE:
+        one = clause.model_copy(update={"count": exactly(1), "alternating": False})
+        sides = [clause.side if at % 2 == 0 else OTHER[clause.side] for at in range(number)]
+        return [one.model_copy(update={"side": side}) for side in sides]
+    return [clause]
+
+
+def _ends(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+    """First and last thing as clauses, where they can be."""
+    starts, ends = (None if c is None else _plain(c) for c in (whole.starts, whole.ends))
+    if not clauses and (whole.turns is None or whole.turns == at_least(1)):
+        return whole.model_copy(update={"starts": starts, "ends": ends}), clauses
+    if not clauses and whole.turns and (whole.turns.lo or 0) >= 1 and (starts or ends):
+        clauses = [Clause(kind="turn", count=whole.turns)]
+        whole = whole.model_copy(update={"turns": None})
+    if starts and (folded := _folded(clauses[:1], starts)) is not None:
+        clauses, starts = folded + clauses[1:], None
+    if ends and (folded := _folded(clauses[-1:], ends)) is not None:
+        clauses, ends = clauses[:-1] + folded[::-1], None
+    return whole.model_copy(update={"starts": starts, "ends": ends}), clauses
+
+
+def _folded(edge: list[Clause], thing: Clause) -> list[Clause] | None:
+    """The thing, and what is left of the clause at that edge; None where that cannot be said."""
+    if not edge or edge[0] == thing:
+        return edge or None
+    if thing.kind in STRAIGHT:
+        return [thing, *edge]
+    first = edge[0]
+    more = (first.count.lo or 0) > 1 and thing.count == exactly(1)
+    if first.kind != "turn" or not more or first.alternating or (first.side and first.side != thing.side):
+        return None
+    count = Amount(lo=(first.count.lo or 1) - 1, hi=None if first.count.hi is None else first.count.hi - 1)
+    return [thing, first.model_copy(update={"count": count})]
+
+
+def _is_plain(clause: Clause) -> bool:
+    return clause.kind == "turn" and not any((clause.side, clause.slope, clause.length))
+
+
+def _turns_as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+    """'Exactly 3 turns' as a clause."""
+    turns = whole.turns
+    if clauses or not turns or not turns.exact or not turns.lo or whole.starts or whole.ends:
+        return whole, clauses
+    return whole.model_copy(update={"turns": None}), [Clause(kind="turn", count=turns)]
+
+
+def _turns_as_wish(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+    """'3 turns or more' as a wish."""
+    if len(clauses) != 1 or not _is_plain(clauses[0]) or clauses[0].count.exact or whole.turns:
+        return whole, clauses
+    only = clauses[0]
+    update = {"turns": only.count, "alternating": whole.alternating or only.alternating}
+    shape = {"sharpness": only.sharpness, "degrees": only.degrees, "radius": only.radius}
+    return whole.model_copy(update={**update, **shape}), []
+
+
+def _pushed_down(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+    """What is said of every turn, said of the clauses that turn."""
+    turning = [clause for clause in clauses if clause.kind not in STRAIGHT]
+    if not turning:
+        return whole, clauses
+    pushed = [_shaped(whole, clause) if clause.kind in SHAPED else clause for clause in clauses]
+    if whole.alternating and len(turning) == 1:
+        pushed = [one for c in pushed for one in _singles(_plain(c.model_copy(update={"alternating": True})))]
+    alternating = whole.alternating and len(turning) > 1
+    update = {"sharpness": None, "degrees": None, "radius": None, "alternating": alternating}
+    return whole.model_copy(update=update), pushed
+
+
+def _shaped(whole: Brief, clause: Clause) -> Clause:
+    said = {
+        name: getattr(clause, name) or getattr(whole, name) for name in ("sharpness", "degrees", "radius")
+    }
+    if clause.radius or clause.sharpness:  # its own shape is not mixed with that of the road
+        said["sharpness"], said["radius"] = clause.sharpness, clause.radius
+    return clause.model_copy(update=said)
+
+
+def _without_slope_of(whole: Brief, clause: Clause) -> Clause:
+    if clause.slope and clause.slope == whole.slope and clause.incline in (None, whole.incline):
+        return clause.model_copy(update={"slope": None, "incline": None})
+    return clause
+
+
+def _merged(clauses: list[Clause]) -> list[Clause]:
+    out: list[Clause] = []
+    for clause in clauses:
+        last = out[-1] if out else None
+        if last is not None and _like(last, clause):
+            count = exactly((last.count.lo or 0) + (clause.count.lo or 0))
+            out[-1] = last.model_copy(update={"count": count})
+        else:
+            out.append(clause)
+    return out
+
+
+def _like(one: Clause, other: Clause) -> bool:
+    if one.kind not in (*SINGLE, "s_bend", "chicane") or one.kind != other.kind or one.alternating:
+        return False
+    if KINDS[one.kind].alternating and one.side:
+        return False
+    both_exact = one.count.exact and other.count.exact
+    return both_exact and one.model_copy(update={"count": other.count}) == other
+
+
+def _without_repeats(whole: Brief, clauses: list[Clause]) -> Brief:
+    turning = [clause for clause in clauses if clause.kind not in STRAIGHT]
+    if not turning:
+        return whole
+    gone: list[str] = []
+    if whole.turns and _within(total(clauses), whole.turns):
+        gone.append("turns")
+    sides: tuple[Side, Side] = ("left", "right")
+    for side in sides:
+        wished: Amount | None = getattr(whole, side)
+        told = all(
+            c.kind in SINGLE and c.side and not (c.alternating and c.count != exactly(1)) for c in turning
+        )
+        if wished and told and _within(total([c for c in turning if c.side == side]), wished):
+            gone.append(side)
+    if whole.starts == clauses[0]:
+        gone.append("starts")
+    if whole.ends == clauses[-1]:
+        gone.append("ends")
+    return whole.model_copy(update=dict.fromkeys(gone))
+
+
+def _within(one: Amount, other: Amount) -> bool:
+    """Is every number of one allowed by the other?"""
+    low = other.lo is None or (one.lo is not None and one.lo >= other.lo)
+    high = other.hi is None or (one.hi is not None and one.hi <= other.hi)
+    return low and high

@@ -1,0 +1,154 @@
+"""Says a Brief as one plain English sentence, in words that the grammar reads back."""
+
+from collections.abc import Callable
+
+from roadgpt.brief.model import Amount, Brief, Clause, Slope, at_least, exactly
+from roadgpt.brief.normal import STRAIGHT, normal
+
+SLOPE_WORDS: dict[Slope, str] = {
+    "up": "uphill", "down": "downhill", "flat": "flat", "nearly_flat": "nearly flat", "gently_up": "gently uphill",
+    "gently_down": "gently downhill", "steeply_up": "steeply uphill", "steeply_down": "steeply downhill",
+}  # fmt: skip
+NOUNS = {"u_turn": "U-turn", "s_bend": "S-bend", "zigzag": "zig-zag", "winding": "winding stretch"}
+WAVY = ("serpentine", "zigzag", "winding", "slalom")
+
+
+def sentence(brief: Brief) -> str:
+    """What was understood: 'An uphill road with 3 turns.'"""
+    said = normal(brief)
+    adjectives = [_exact_metres(said.length)]
+    if said.slope and not said.incline:
+        adjectives.append(SLOPE_WORDS[said.slope])
+    road = " ".join(word for word in [*adjectives, "road"] if word)
+    if said.clauses:
+        road += " with " + ", then ".join(clause_text(clause) for clause in said.clauses)
+    elif said.turns and said.turns not in (at_least(1), exactly(0)):
+        road += f" with {_count(said.turns)} {_plural('turn', said.turns)}"
+    text = "; ".join([_article(road) + road, *_wishes(said)])
+    return text[0].upper() + text[1:] + "."
+
+
+def _wishes(brief: Brief) -> list[str]:
+    out: list[str | None] = [
+        _turns(brief),
+        _side_count(brief.left, "left"),
+        _side_count(brief.right, "right"),
+        "all turns alternating" if brief.alternating else None,
+        f"every turn {brief.sharpness}" if brief.sharpness else None,
+        _if(brief.degrees, lambda a: f"every turn of {_number(a)} degrees"),
+        _if(brief.radius, lambda a: f"every turn radius {_number(a)} metres"),
+        _slope(brief),
+        _if(brief.steepest, lambda a: f"steepest {_number(a)} percent"),
+        _if(brief.climb, _climb),
+        _if(brief.hills, lambda a: f"{_number(a)} changes of slope"),
+        None
+        if _exact_metres(brief.length)
+        else _if(brief.length, lambda a: f"{_number(a)} metres long in all"),
+        _if_clause("it starts with", brief.starts),
+        _if_clause("it ends with", brief.ends),
+        "hard for a lane keeper" if brief.hard else None,
+    ]
+    return [wish for wish in out if wish]
+
+
+def _turns(brief: Brief) -> str | None:
+    if brief.turns == exactly(0):
+        return "no turns"
+    if brief.turns and brief.clauses:
+        return f"{_count(brief.turns)} {_plural('turn', brief.turns)} in all"
+    return None
+
+
+def _side_count(amount: Amount | None, side: str) -> str | None:
+    if amount is None:
+        return None
+    return (
+        f"no {side} turns"
+        if amount == exactly(0)
+        else f"{_count(amount)} {side} {_plural('turn', amount)} in all"
+    )
+
+
+def _slope(brief: Brief) -> str | None:
+    if brief.incline is None:
+        return None
+    return f"{SLOPE_WORDS[brief.slope or 'up']} at {_number(brief.incline)} percent all the way"
+
+
+def _climb(amount: Amount) -> str:
+    if (amount.hi is None and (amount.lo or 0) < 0) or (amount.hi is not None and amount.hi <= 0):
+        fall = Amount(lo=_minus(amount.hi), hi=_minus(amount.lo))
+        return f"a net drop of {_number(fall)} metres"
+    return f"a net climb of {_number(amount)} metres"
+
+
+def _minus(number: float | None) -> float | None:
+    return None if number is None else 0.0 - number
+
+
+def clause_text(clause: Clause) -> str:
+    """One clause: 'a sharp left turn of 90 degrees uphill at 5 percent'."""
+    counted = clause.kind not in WAVY
+    count = clause.count if counted else exactly(1)
+    noun = NOUNS.get(clause.kind, clause.kind)
+    words = ["alternating" if clause.alternating else "", clause.sharpness or "", clause.size or ""]
+    if clause.slope and not clause.incline:
+        words.append(SLOPE_WORDS[clause.slope])
+    leading = clause.side if not (clause.alternating and clause.kind not in STRAIGHT) else None
+    words += [leading or "", _plural(noun, count)]
+    text = " ".join(word for word in words if word)
+    text = (_article(text) if count == exactly(1) else f"{_count(count)} ") + text
+    return text + _tail(clause)
+
+
+def _tail(clause: Clause) -> str:
+    tail = ""
+    if clause.degrees:
+        tail += f" of {_number(clause.degrees)} degrees"
+    if clause.length:
+        tail += f" of {_number(clause.length)} metres"
+    if clause.slope and clause.incline:
+        tail += f" {SLOPE_WORDS[clause.slope]} at {_number(clause.incline)} percent"
+    if clause.radius:
+        tail += f" with a radius of {_number(clause.radius)} metres"
+    if clause.kind in WAVY and clause.count != exactly(1):
+        tail += f" with {_count(clause.count)} {_plural('turn', clause.count)}"
+    if clause.alternating and clause.side:
+        tail += f" starting to the {clause.side}"
+    return tail
+
+
+def _if(amount: Amount | None, say: Callable[[Amount], str]) -> str | None:
+    return None if amount is None else say(amount)
+
+
+def _if_clause(lead: str, clause: Clause | None) -> str | None:
+    return None if clause is None else f"{lead} {clause_text(clause)}"
+
+
+def _exact_metres(amount: Amount | None) -> str:
+    return f"{_figure(amount.lo or 0)} metre" if amount and amount.exact else ""
+
+
+def _figure(number: float) -> str:
+    return f"{number:.4f}".rstrip("0").rstrip(".")
+
+
+def _number(amount: Amount) -> str:
+    lo, hi = amount.lo, amount.hi
+    if lo is not None and hi is not None:
+        return _figure(lo) if lo == hi else f"{_figure(lo)} to {_figure(hi)}"
+    return f"at least {_figure(lo)}" if lo is not None else f"at most {_figure(hi or 0)}"
+
+
+def _count(amount: Amount) -> str:
+    return _number(amount)
+
+
+def _plural(noun: str, amount: Amount) -> str:
+    return noun if amount.lo == amount.hi == 1 else noun + ("es" if noun.endswith("ch") else "s")
+
+
+def _article(text: str) -> str:
+    vowel = text[:1].lower() in "aei" or text.startswith(("up", "S-", "8", "11 ", "18 ", "11.", "18."))
+    return "an " if vowel else "a "
