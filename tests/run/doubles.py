@@ -1,0 +1,74 @@
+"""Small stand-ins for parts: designers that can be told what to do, and roads that cost nothing."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import pytest
+
+from roadgpt import plugins
+from roadgpt.brief.model import Brief
+from roadgpt.errors import DesignError
+from roadgpt.road import Design, Segment, World
+
+STRAIGHT = Segment(distance=50, direction="straight", incline=2)
+
+
+def a_design(seed: int = 0, segments: Sequence[Segment] = ()) -> Design:
+    """A valid road: two straights and a left turn of a size that depends on the seed."""
+    turn = Segment(distance=40 + seed % 7, direction="left", incline=1, turn_degrees=30 + seed % 31)
+    return Design(starting_point=(60, 60, 0), theta=seed % 90, segments=(STRAIGHT, turn, STRAIGHT, *segments))
+
+
+TOO_STEEP = Segment(distance=60, direction="straight", incline=22)
+
+
+class Designer:
+    """Drafts a fresh valid road each time, and keeps what it was told."""
+
+    def __init__(self) -> None:
+        self.calls: list[tuple[tuple[str, ...], int, int]] = []
+
+    def draft(
+        self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
+    ) -> Design:
+        self.calls.append((notes, len(earlier), seed))
+        return a_design(seed)
+
+
+class Learner(Designer):
+    """Builds too steeply until it is told so."""
+
+    def draft(self, brief: Any, world: Any, notes: tuple[str, ...], earlier: Any, seed: int) -> Design:
+        super().draft(brief, world, notes, earlier, seed)
+        return a_design(seed, () if any("steep" in note for note in notes) else (TOO_STEEP,))
+
+
+class Stubborn(Designer):
+    """Builds too steeply, whatever it is told."""
+
+    def draft(self, brief: Any, world: Any, notes: tuple[str, ...], earlier: Any, seed: int) -> Design:
+        super().draft(brief, world, notes, earlier, seed)
+        return a_design(seed, (TOO_STEEP,))
+
+
+class Unable(Designer):
+    """Can design nothing, or nothing but some roads."""
+
+    def __init__(self, able: Callable[[int], bool] = lambda seed: False) -> None:
+        super().__init__()
+        self.able = able
+
+    def draft(self, brief: Any, world: Any, notes: tuple[str, ...], earlier: Any, seed: int) -> Design:
+        if not self.able(seed):
+            raise DesignError("no road of 9 hairpins fits on this map; ask for fewer")
+        return super().draft(brief, world, notes, earlier, seed)
+
+
+def put_on_shelf(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> None:
+    """Let ``plugins.find`` find these designers (one object each) besides what is installed."""
+    installed = plugins.find
+
+    def find(shelf: str, name: str) -> Any:
+        return (lambda: parts[name]) if shelf == "designers" and name in parts else installed(shelf, name)
+
+    monkeypatch.setattr(plugins, "find", find)

@@ -1,0 +1,73 @@
+"""Whole or not at all."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from roadgpt.run.atomic import json_text, sweep, whole_folder, write_whole
+
+
+def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    write_whole(path, "old")
+    write_whole(path, b"new")
+    assert path.read_text() == "new"
+    assert [file.name for file in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.txt"
+    write_whole(path, "old")
+
+    def half(self: Path, data: bytes) -> int:
+        with self.open("wb") as file:
+            file.write(data[:2])
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "write_bytes", half)
+    with pytest.raises(KeyboardInterrupt):
+        write_whole(path, "newer")
+    assert path.read_text() == "old"
+    assert [file.name for file in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_a_folder_takes_its_name_when_it_is_full(tmp_path: Path) -> None:
+    place = tmp_path / "runs" / "0001"
+    with whole_folder(place) as draft:
+        (draft / "a").write_text("1")
+        assert not place.exists()
+    assert (place / "a").read_text() == "1"
+    with whole_folder(place) as draft:
+        (draft / "b").write_text("2")
+    assert [file.name for file in place.iterdir()] == ["b"]
+
+
+def test_a_folder_that_is_given_up_vanishes(tmp_path: Path) -> None:
+    place = tmp_path / "0001"
+
+    def give_up() -> None:
+        with whole_folder(place) as draft:
+            (draft / "a").write_text("1")
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError):
+        give_up()
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_a_killed_process_left_is_swept_away(tmp_path: Path) -> None:
+    (tmp_path / "0002.4711.part").mkdir()
+    (tmp_path / "0002.4711.part" / "road.json").write_text("{")
+    (tmp_path / "a.json.4711.part").write_text("{")
+    (tmp_path / "kept.json").write_text("{}")
+    sweep(tmp_path)
+    assert [file.name for file in tmp_path.iterdir()] == ["kept.json"]
+
+
+def test_numbers_that_are_not_finite_become_null() -> None:
+    text = json_text({"a": math.inf, "b": [math.nan, 1.5, (2, -math.inf)], "c": "ü"})
+    assert json.loads(text) == {"a": None, "b": [None, 1.5, [2, None]], "c": "ü"}

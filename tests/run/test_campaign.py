@@ -1,0 +1,272 @@
+"""Campaigns: one folder, whatever happens on the way."""
+
+import csv
+import json
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from roadgpt.brief.model import Brief
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.run import Request, Setup, campaign, read_run, seed_of, show
+from roadgpt.run.campaign import GIVE_UP, Campaign
+from run.campaign_worker import Drawing
+from run.doubles import Designer, Unable, a_design, put_on_shelf
+
+TESTS = Path(__file__).resolve().parents[1]
+BRIEF = Brief(words="A road with a turn!")
+NO_DRIVE = Setup(designer="double", drives=False)
+ON_THE_CLOCK = {"seconds.json", "generation_stats.csv"}
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """All files but those that another day changes."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name not in ON_THE_CLOCK
+    }
+
+
+def table(folder: Path, name: str) -> dict[str, str]:
+    (row,) = csv.DictReader((folder / name).open())
+    return row
+
+
+@pytest.fixture
+def designer(monkeypatch: pytest.MonkeyPatch) -> Designer:
+    double = Designer()
+    put_on_shelf(monkeypatch, double=double)
+    return double
+
+
+def test_every_run_is_on_the_disk_when_it_is_handed_out(designer: Designer, tmp_path: Path) -> None:
+    work = campaign(BRIEF, 4, 7, setup=NO_DRIVE, out=tmp_path / "c", draw=Drawing())
+    assert work.folder == tmp_path / "c"
+    for number, run in enumerate(work, 1):
+        assert run.index == number
+        assert read_run(work.folder / "runs" / f"{number:04d}").design == run.design
+        assert json.loads((work.folder / f"test.{number:04d}.json").read_text())["id"] == number
+        assert table(work.folder, "generation_stats.csv")["test_generated"] == str(number)
+    assert [earlier for _, earlier, _ in designer.calls] == [0, 1, 2, 3]
+    assert len({run_seed for _, _, run_seed in designer.calls}) == 4
+    assert (work.folder / "overview.png").is_file()
+    assert json.loads((work.folder / "campaign.json").read_text())["is_finished"] is True
+    assert "4 VALID" in show(work.folder)
+
+
+def test_without_a_folder_a_new_one_is_made(
+    designer: Designer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = []
+    for _ in range(2):
+        work = campaign(BRIEF, 1, 7, setup=NO_DRIVE)
+        list(work)
+        names.append(str(work.folder))
+    assert names == ["roadgpt-runs/a-road-with-a-turn-7", "roadgpt-runs/a-road-with-a-turn-7-2"]
+
+
+def test_the_same_seed_gives_the_same_files_and_another_does_not(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    put_on_shelf(monkeypatch, double=Designer())
+    setup = Setup(designer="double")
+    for name, seed in (("a", 3), ("b", 3), ("c", 4)):
+        assert len(list(campaign(BRIEF, 2, seed, setup=setup, out=tmp_path / name))) == 2
+    one, other, third = (contents(tmp_path / name) for name in "abc")
+    assert one == other
+    assert "runs/0001/drive.npz" in one
+    assert one["runs/0001/road.json"] != third["runs/0001/road.json"]
+
+
+def test_a_campaign_that_was_left_goes_on(designer: Designer, tmp_path: Path) -> None:
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    list(campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=whole, draw=Drawing()))
+    for run in campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=parts, draw=Drawing()):
+        if run.index == 2:
+            break
+    again = campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=parts, draw=Drawing())
+    assert again.kept == (1, 2)
+    assert [run.index for run in again.earlier_runs()] == [1, 2]
+    assert [run.index for run in again] == [3, 4, 5]
+    assert contents(whole) == contents(parts)
+    assert table(parts, "generation_stats.csv")["test_generated"] == "5"
+
+
+def test_a_road_that_was_taken_away_is_made_again(designer: Designer, tmp_path: Path) -> None:
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    for place, n in ((whole, 4), (parts, 3)):
+        list(campaign(BRIEF, n, 7, setup=NO_DRIVE, out=place))
+    (parts / "test.0002.json").unlink()
+    again = campaign(BRIEF, 4, 7, setup=NO_DRIVE, out=parts)
+    assert [run.index for run in again] == [2, 4]
+    assert contents(whole) == contents(parts)
+
+
+def test_a_finished_campaign_is_not_made_again_but_can_grow(designer: Designer, tmp_path: Path) -> None:
+    list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path))
+    with pytest.raises(UsageError, match="finished with 2 roads"):
+        campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path)
+    assert [run.index for run in campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path)] == [3]
+
+
+@pytest.mark.parametrize(
+    ("other", "what"),
+    [
+        ({"seed": 8}, "other seed"),
+        ({"words": Brief(words="another road")}, "other words"),
+        ({"setup": Setup(designer="double", drives=False, geometry="spline")}, "other setup"),
+    ],
+)
+def test_another_campaign_is_left_alone(
+    designer: Designer, tmp_path: Path, other: dict[str, object], what: str
+) -> None:
+    asked = {"words": BRIEF, "n": 2, "seed": 7, "setup": NO_DRIVE, "out": tmp_path}
+    list(campaign(**asked))  # type: ignore[arg-type]
+    before = contents(tmp_path)
+    with pytest.raises(UsageError, match=what):
+        campaign(**(asked | other))  # type: ignore[arg-type]
+    assert contents(tmp_path) == before
+
+
+def test_a_folder_with_something_else_is_left_alone(designer: Designer, tmp_path: Path) -> None:
+    (tmp_path / "thesis.docx").write_text("three years of work")
+    with pytest.raises(UsageError, match="not empty"):
+        campaign(BRIEF, 1, setup=NO_DRIVE, out=tmp_path)
+    with pytest.raises(UsageError, match="name another folder"):
+        campaign(BRIEF, 1, setup=NO_DRIVE, out=tmp_path / "thesis.docx")
+    assert contents(tmp_path) == {"thesis.docx": b"three years of work"}
+
+
+@pytest.mark.parametrize(
+    "setup", [Setup(designer="gtp"), Setup(driver="nobody"), Setup(simulator="beam"), Setup(driver="no.py:X")]
+)
+def test_a_missing_part_is_told_before_a_folder_is_made(setup: Setup, tmp_path: Path) -> None:
+    with pytest.raises(UsageError):
+        campaign(BRIEF, 1, setup=setup, out=tmp_path / "c")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_road_that_cannot_be_designed_costs_one_error(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    bad = {seed_of(7, 2)}
+    put_on_shelf(monkeypatch, double=Unable(lambda seed: seed not in bad))
+    runs = list(campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path, draw=Drawing()))
+    assert [run.outcome for run in runs] == ["VALID", "ERROR", "VALID"]
+    assert "9 hairpins" in runs[1].description
+    assert table(tmp_path, "generation_stats.csv")["test_in_error"] == "1"
+
+
+@pytest.mark.parametrize(("asked", "tried"), [(1, 1), (2, 2), (50, GIVE_UP)])
+def test_where_no_road_can_be_designed_the_campaign_ends(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, asked: int, tried: int
+) -> None:
+    put_on_shelf(monkeypatch, double=Unable())
+    runs = []
+    with pytest.raises(DesignError, match="9 hairpins"):
+        runs.extend(campaign(BRIEF, asked, 7, setup=NO_DRIVE, out=tmp_path))
+    assert len(list(tmp_path.glob("test.*.json"))) == tried
+
+
+def test_a_failure_in_the_middle_leaves_whole_runs_only(designer: Designer, tmp_path: Path) -> None:
+    class Breaks(Drawing):
+        def of_run(self, run, folder):  # type: ignore[no-untyped-def]
+            if run.index == 3:
+                raise KeyboardInterrupt
+            super().of_run(run, folder)
+
+    with pytest.raises(KeyboardInterrupt):
+        list(campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=tmp_path, draw=Breaks()))
+    assert [path.name for path in sorted((tmp_path / "runs").iterdir())] == ["0001", "0002"]
+    assert table(tmp_path, "generation_stats.csv")["test_generated"] == "2"
+    assert not list(tmp_path.rglob("*.part"))
+
+
+def start(folder: Path, roads: int, *more: str) -> subprocess.Popen[str]:
+    worker = TESTS / "run" / "campaign_worker.py"
+    command = [sys.executable, str(worker), str(folder), str(roads), *more]
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={"PYTHONPATH": str(TESTS)}
+    )
+
+
+def look(folder: Path) -> int:
+    """How many roads are there: all whole, and told of by the tables but for the last one at most."""
+    tests = sorted(folder.glob("test.*.json"))
+    for number, path in enumerate(tests, 1):
+        assert json.loads(path.read_text())["id"] == number
+        run = read_run(path)
+        assert run.index == number
+        assert run.design is not None
+        assert (folder / "runs" / f"{number:04d}" / "birds_eye.png").stat().st_size == 1_024_000
+    if tests:
+        stats = folder / "generation_stats.csv"
+        told = int(table(folder, stats.name)["test_generated"]) if stats.exists() else 0
+        assert told in (len(tests) - 1, len(tests))
+        assert len(list(csv.DictReader((folder / "experiment_description.csv").open()))) == 1
+    return len(tests)
+
+
+def test_kill_9_at_random_moments_loses_at_most_the_road_in_flight(tmp_path: Path) -> None:
+    roads, folder, whole = 60, tmp_path / "killed", tmp_path / "whole"
+    clock = random.Random(1)
+    before, kills = 0, 0
+    while True:
+        process = start(folder, roads)
+        assert process.stdout is not None
+        process.stdout.readline()  # it has begun to work
+        time.sleep(clock.uniform(0, 0.15))
+        process.kill()
+        said = process.communicate()[0].split()
+        there = look(folder)
+        assert there >= before
+        if said:
+            assert there >= int(said[-1])  # what was said to be done is there
+        before = there
+        kills += process.returncode == -signal.SIGKILL
+        if there == roads or kills >= 6:
+            break
+    assert kills >= 3
+    if before < roads:
+        assert start(folder, roads).wait(60) == 0
+    assert start(whole, roads).wait(60) == 0
+    assert look(folder) == roads
+    assert contents(folder) == contents(whole)
+
+
+def test_ctrl_c_leaves_a_campaign_that_is_told_of_completely(tmp_path: Path) -> None:
+    process = start(tmp_path, 500, "--slow")
+    assert process.stdout is not None
+    process.stdout.readline()
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=30)
+    assert process.returncode != 0
+    count = look(tmp_path)
+    assert 1 <= count < 500
+    assert table(tmp_path, "generation_stats.csv")["test_generated"] == str(count)
+    assert not list(tmp_path.rglob("*.part"))
+    assert not (tmp_path / "overview.png").exists()
+
+
+def test_leftovers_of_a_killed_process_are_swept_away(tmp_path: Path) -> None:
+    request = Request(words="a road", seed=1, setup=Setup(drives=False))
+
+    def never(index: int, earlier: object) -> None:
+        raise KeyboardInterrupt
+
+    (tmp_path / "runs").mkdir()
+    work = Campaign(tmp_path, request, 1, never)  # type: ignore[arg-type]
+    (tmp_path / "runs" / "0001.99.part").mkdir()
+    (tmp_path / "runs" / "0001.99.part" / "road.json").write_text(json.dumps(a_design().to_json()))
+    (tmp_path / "test.0001.json.99.part").write_text("{")
+    with pytest.raises(KeyboardInterrupt):
+        list(work)
+    assert not list(tmp_path.rglob("*.part"))

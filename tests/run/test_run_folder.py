@@ -1,0 +1,217 @@
+"""Runs on the disk: what is written is read back, and is what the competition's tools expect."""
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roadgpt.brief.model import Brief, Clause
+from roadgpt.errors import UsageError
+from roadgpt.road import Road, World
+from roadgpt.run import Request, Run, Setup, prove, read_run, replay_lines, show, write_run
+from roadgpt.run.tables import Tally, write_description
+from roadgpt.run.test_file import test_of as as_test
+from run.doubles import TOO_STEEP, a_design
+
+NEVER = """
+from roadgpt.drive import Command
+
+class Never:
+    name = "never"
+
+    def steer(self, view):
+        return Command(0.0, 0.6, 0.0)
+"""
+WORDS = "a road with 'quotes', $money & 3 turns"
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
+    file = tmp_path_factory.mktemp("driver") / "never.py"
+    file.write_text(NEVER)
+    brief = Brief(words=WORDS, clauses=(Clause(kind="turn"),))
+    made = {
+        "PASS": prove(a_design(3), 11),
+        "FAIL": prove(a_design(25), 12, World(speed_limit=30.0), Setup(driver=f"{file}:Never"), 2),
+        "INVALID": prove(a_design(0, (TOO_STEEP,)), 13, index=3),
+        "VALID": prove(
+            Road.through([[40, 100, 1], [90, 101, 2], [140, 120, 3]]), 14, World(), Setup(drives=False)
+        ),
+        "ERROR": Run(Request(), 5, 1, "ERROR", "no road of 9 hairpins fits on this map", brief),
+    }
+    named = made["PASS"].request.model_copy(update={"words": WORDS})
+    made["PASS"] = replace(made["PASS"], request=named, brief=brief, rounds=2)
+    return made
+
+
+@pytest.mark.parametrize("outcome", ["PASS", "FAIL", "INVALID", "VALID", "ERROR"])
+def test_a_run_is_read_back_as_it_was(runs: dict[str, Run], outcome: str, tmp_path: Path) -> None:
+    run = runs[outcome]
+    assert run.outcome == outcome
+    folder = write_run(run, tmp_path)
+    for path in (folder, tmp_path / f"test.{run.index:04d}.json"):
+        again = read_run(path)
+        for name in ("request", "index", "seed", "outcome", "description", "brief", "design", "findings"):
+            assert getattr(again, name) == getattr(run, name)
+        assert (again.verdict, again.rounds, again.versions) == (run.verdict, run.rounds, run.versions)
+        assert again.seconds == run.seconds
+        assert (again.drive is None) == (run.drive is None)
+        if run.drive is not None and again.drive is not None:
+            assert again.drive.to_bytes() == run.drive.to_bytes()
+        if run.road is not None and again.road is not None:
+            s = np.linspace(0, run.length, 50)
+            assert np.array_equal(again.road.at(s), run.road.at(s))
+
+
+def test_nothing_unfinished_is_left(runs: dict[str, Run], tmp_path: Path) -> None:
+    for run in runs.values():
+        write_run(run, tmp_path)
+        write_run(run, tmp_path)
+    assert not list(tmp_path.rglob("*.part"))
+    assert len(list(tmp_path.glob("test.*.json"))) == len({run.index for run in runs.values()})
+
+
+def test_a_driven_test_has_the_competition_s_shape(runs: dict[str, Run]) -> None:
+    test = json.loads(json.dumps(as_test(runs["PASS"])))
+    assert list(test) == [
+        "is_valid",
+        "validation_message",
+        "road_points",
+        "interpolated_points",
+        "id",
+        "execution_data",
+        "test_outcome",
+        "description",
+        "features",
+    ]
+    assert test["is_valid"] is True
+    assert test["validation_message"] == ""
+    assert (test["test_outcome"], test["description"]) == ("PASS", "Successful test")
+    assert set(test["features"]) == {"MAX_CURV", "DIR_COV", "STD_SA", "MEAN_LP", "MAX_LP"}
+    assert all(len(record) == 17 for record in test["execution_data"])
+    assert all(len(point) == 2 for point in test["road_points"])
+
+
+def test_interpolated_points_are_the_road_about_every_metre(runs: dict[str, Run]) -> None:
+    run = runs["PASS"]
+    assert run.road is not None
+    points = np.array(as_test(run)["interpolated_points"])
+    gaps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
+    assert gaps == pytest.approx(1.0, abs=0.02)
+    assert len(points) == round(run.length) + 1
+    assert points[[0, -1]] == pytest.approx(run.road.at([0.0, run.length]), abs=1e-5)
+    assert np.ptp(points[:, 2]) > 1
+
+
+def test_a_departure_is_told_in_the_competition_s_words(runs: dict[str, Run]) -> None:
+    test = as_test(runs["FAIL"])
+    assert test["test_outcome"] == "FAIL"
+    assert test["description"].startswith("Car drove out of the lane")
+    assert [record.is_oob for record in test["execution_data"]].index(True) == len(test["execution_data"]) - 1
+
+
+def test_what_was_not_driven_has_no_outcome_of_a_drive(runs: dict[str, Run]) -> None:
+    valid, invalid, error = (as_test(runs[name]) for name in ("VALID", "INVALID", "ERROR"))
+    assert valid["test_outcome"] is None
+    assert set(valid["features"]) == {"MAX_CURV", "DIR_COV"}
+    assert invalid["is_valid"] is False
+    assert invalid["validation_message"] == invalid["description"] == runs["INVALID"].findings[0].sentence
+    assert invalid["execution_data"] == []
+    assert (error["road_points"], error["is_valid"]) == ([], False)
+    assert "9 hairpins" in error["validation_message"]
+
+
+def test_tables_have_the_competition_s_columns_and_count(runs: dict[str, Run], tmp_path: Path) -> None:
+    tally = Tally()
+    for run in (*runs.values(), runs["FAIL"]):
+        tally.add(run)
+    tally.write(tmp_path)
+    write_description(runs["PASS"].request, 6, tmp_path)
+    (generation,) = csv.DictReader((tmp_path / "generation_stats.csv").open())
+    assert ",".join(generation) == (
+        "test_generated,test_valid,test_invalid,test_passed,test_failed,test_in_error,"
+        "real_time_generation,real_time_execution,simulated_time_execution"
+    )
+    assert [int(generation[name]) for name in list(generation)[:6]] == [6, 4, 2, 1, 2, 1]
+    driven = [runs["PASS"].drive, runs["FAIL"].drive, runs["FAIL"].drive]
+    simulated = sum(drive.duration for drive in driven if drive is not None)
+    assert float(generation["simulated_time_execution"]) == pytest.approx(simulated, abs=1e-3)
+    (departures,) = csv.DictReader((tmp_path / "oob_stats.csv").open())
+    assert list(departures) == ["total_oob", "left_oob", "right_oob", "avg_sparseness", "stdev_sparseness"]
+    verdict = runs["FAIL"].verdict
+    assert verdict is not None
+    assert departures["total_oob"] == departures[f"{verdict.side}_oob"] == "2"
+    assert float(departures["avg_sparseness"]) == 0.0  # twice the same
+    (asked,) = csv.DictReader((tmp_path / "experiment_description.csv").open())
+    assert (asked["description"], asked["roads"], asked["executor"]) == (WORDS, "6", "mujoco")
+    assert {"map_size", "oob_tolerance", "speed_limit", "time_budget", "seed"} <= set(asked)
+    assert float(asked["speed_limit"]) == pytest.approx(70)
+
+
+def test_an_empty_campaign_has_tables_too(tmp_path: Path) -> None:
+    Tally().write(tmp_path)
+    assert (tmp_path / "oob_stats.csv").read_text().splitlines()[1] == "0,0,0,nan,nan"
+
+
+def test_show_tells_what_happened_and_how_to_make_it_again(runs: dict[str, Run], tmp_path: Path) -> None:
+    for name in ("PASS", "FAIL", "INVALID"):
+        text = show(write_run(runs[name], tmp_path))
+        assert text.startswith(f"{name}: {runs[name].description}")
+    passed = show(tmp_path / "test.0001.json")
+    assert "2 drafts" in passed
+    assert "roadgpt drive" in passed
+    assert "--seed 11" in passed
+
+
+def test_the_line_that_replays_names_only_what_differs(runs: dict[str, Run]) -> None:
+    (plain,) = replay_lines(runs["PASS"])
+    assert plain.startswith("roadgpt run 'a road with '")
+    assert plain.endswith("-n 1 --seed 11")
+    odd = Request(
+        words="a road",
+        seed=2,
+        world=World(speed_limit=100 / 3.6, friction=0.35, verge=0),
+        setup=Setup(designer="thesis", driver="a b.py:D", geometry="spline", keep_driving=True),
+    )
+    line, again = replay_lines(replace(runs["PASS"], request=odd, index=4), Path("x/runs/0004"))
+    assert line == (
+        "roadgpt run 'a road' -n 4 --seed 2 --designer thesis --geometry spline --driver 'a b.py:D' "
+        "--speed-limit 100 --verge 0 --friction 0.35 --keep-driving"
+    )
+    assert again.startswith(
+        "roadgpt drive x/runs/0004/road.json --seed 11 --driver 'a b.py:D' --speed-limit 100"
+    )
+
+
+@pytest.mark.parametrize(
+    ("damage", "complaint"),
+    [
+        (lambda folder: (folder / "run.json").unlink(), "there is no run"),
+        (lambda folder: (folder / "run.json").write_text("{"), "cannot be read"),
+        (lambda folder: (folder / "run.json").write_text('{"format": 99}'), "another version"),
+        (lambda folder: (folder / "road.json").write_text("{}"), "cannot be read"),
+        (lambda folder: (folder / "drive.npz").write_bytes(b"no"), "drive the road again"),
+        (lambda folder: (folder / "verdict.json").write_text("[1"), "cannot be read"),
+    ],
+)
+def test_a_damaged_run_is_told_in_a_sentence(
+    runs: dict[str, Run],
+    tmp_path: Path,
+    damage,
+    complaint: str,  # type: ignore[no-untyped-def]
+) -> None:
+    folder = write_run(runs["PASS"], tmp_path)
+    damage(folder)
+    with pytest.raises(UsageError, match=complaint):
+        read_run(folder)
+
+
+def test_a_campaign_is_no_run(runs: dict[str, Run], tmp_path: Path) -> None:
+    write_run(runs["PASS"], tmp_path)
+    with pytest.raises(UsageError, match="holds many runs"):
+        read_run(tmp_path)
+    with pytest.raises(UsageError, match="there is no run"):
+        read_run(tmp_path / "runs" / "0009")
