@@ -25,7 +25,7 @@ COMMANDS = {
 }
 
 INTERRUPTED = 130  # exit status after Ctrl-C, as shells have it: 128 + SIGINT
-NO_READER = 141  # 128 + SIGPIPE: whoever read the output went away
+NO_READER = 1  # whoever read the output went away; what click answers too
 INTERNAL = 70  # EX_SOFTWARE of sysexits.h
 
 

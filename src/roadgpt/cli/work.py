@@ -43,7 +43,7 @@ def work_off(wish: Wish, screen: Screen) -> None:
     from roadgpt.brief import read
     from roadgpt.run import campaign
 
-    brief = read(wish.words, wish.setup.reader)
+    brief = read(wish.words, wish.setup.reader, wish.world.map_size)
     screen.say(understood(brief))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     seed = secrets.randbelow(SEEDS) if wish.seed is None else wish.seed
@@ -59,8 +59,9 @@ def understood(brief: "Brief") -> str:
     """What was understood of the words, and which of them were not."""
     from roadgpt.brief import sentence
 
+    said = sentence(brief).removesuffix(".")
     unused = ", ".join(f"'{word}'" for word in brief.unused)
-    return f"understood: {sentence(brief)}" + (f"; not understood: {unused}" if unused else "")
+    return f"understood: {said[:1].lower()}{said[1:]}" + (f"; not understood: {unused}" if unused else "")
 
 
 def _watch(work: "Campaign", screen: Screen) -> None:
@@ -78,7 +79,7 @@ def _watch(work: "Campaign", screen: Screen) -> None:
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
             if work.draw is not None:
-                screen.say(f"pictures: {work.folder / 'runs'}/*/*.png")
+                screen.say(f"pictures: {work.folder / 'overview.png'} and {work.folder / 'runs'}/*/*.png")
 
 
 def _pictures(wish: Wish) -> "Draw | None":
