@@ -65,10 +65,17 @@ class Unable(Designer):
 
 
 def put_on_shelf(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> None:
-    """Let ``plugins.find`` find these designers (one object each) besides what is installed."""
+    """Let these designers (one object each) be found and asked besides what is installed."""
     installed = plugins.find
 
     def find(shelf: str, name: str) -> Any:
         return (lambda: parts[name]) if shelf == "designers" and name in parts else installed(shelf, name)
 
+    def draft(
+        brief: Brief, world: World, notes: tuple[str, ...], earlier: Any, seed: int, designer: str
+    ) -> Design:
+        drafted: Design = parts[designer].draft(brief, world, notes, earlier, seed)
+        return drafted
+
     monkeypatch.setattr(plugins, "find", find)
+    monkeypatch.setattr("roadgpt.run.draft", draft)

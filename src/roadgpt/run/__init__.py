@@ -17,6 +17,7 @@ from roadgpt import plugins
 from roadgpt.brief import read
 from roadgpt.brief.model import Brief
 from roadgpt.check import Finding, inspect, rules_of
+from roadgpt.design import draft
 from roadgpt.drive import simulate
 from roadgpt.drive.custom import load_driver
 from roadgpt.errors import DesignError, DriverError, UsageError
@@ -151,14 +152,13 @@ def _designed(
     brief: Brief, request: Request, earlier: Sequence[Design], seed: int
 ) -> tuple[Design, Road, tuple[Finding, ...], int]:
     """The first draft that no rule objects to, or the last one, with what they say of it."""
-    designer = plugins.find("designers", request.setup.designer)()
     world, setup = request.world, request.setup
     kept: tuple[Design, Road, tuple[Finding, ...], int] | None = None
     notes: tuple[str, ...] = ()
     for attempt in range(MOST_ROUNDS):
         try:
             # another seed each time, so that a designer that does not read notes draws anew
-            design = designer.draft(brief, world, notes, earlier, seed + attempt)
+            design = draft(brief, world, notes, earlier, seed + attempt, setup.designer)
         except DesignError:
             if kept is None:
                 raise

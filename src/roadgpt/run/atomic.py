@@ -50,7 +50,10 @@ def sweep(folder: Path) -> None:
 
 def json_text(value: Any, indent: int | None = 1) -> str:
     """JSON that every reader takes: numbers that are not finite become null."""
-    return json.dumps(_finite(value), indent=indent, allow_nan=False, ensure_ascii=False) + "\n"
+    try:
+        return json.dumps(value, indent=indent, allow_nan=False, ensure_ascii=False) + "\n"
+    except ValueError:
+        return json.dumps(_finite(value), indent=indent, allow_nan=False, ensure_ascii=False) + "\n"
 
 
 def _finite(value: Any) -> Any:
