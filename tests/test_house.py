@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import zipfile
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -168,3 +169,17 @@ def test_the_pins_cover_every_dependency_and_name_no_place() -> None:
     assert len(wanted) > 15
     assert wanted <= pinned
     assert "://" not in pins
+
+
+def test_the_wheel_holds_the_package_its_types_its_parts_and_its_licence(tmp_path: Path) -> None:
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
+    subprocess.run(build, cwd=ROOT, capture_output=True, check=True)
+    (wheel,) = tmp_path.glob("roadgpt-*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        inside = {*archive.namelist()}
+        (points,) = [archive.read(name).decode() for name in inside if name.endswith("entry_points.txt")]
+    assert {f"roadgpt/{path.relative_to(SOURCE).as_posix()}" for path in sources()} <= inside
+    assert "roadgpt/py.typed" in inside
+    assert any(name.endswith("licenses/LICENSE") for name in inside)
+    assert all(f"[roadgpt.{shelf}]" in points for shelf in plugins.SHELVES)
+    assert not {name.split("/")[0] for name in inside} & {"tests", "docs", "benchmarks"}

@@ -62,6 +62,9 @@ def test_a_terminal_gets_a_bar_with_rate_and_time_left() -> None:
     assert "ETA" in shown
     assert "3/3" in shown
     assert "3 of 3 roads" in shown
+    # the bar is wiped from its line before a road is written there
+    before = [shown[: shown.index(f"{number}/3  ")].splitlines()[-1] for number in (1, 2, 3)]
+    assert not any("roads" in line.split("\x1b[2K")[-1] for line in before)
 
 
 def test_standard_output_in_a_file_stays_whole_while_the_bar_is_on_the_terminal() -> None:

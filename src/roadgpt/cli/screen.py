@@ -1,5 +1,6 @@
 """How a command talks while it works: a bar on a terminal, plain lines in a pipe, JSON, or nothing."""
 
+import os
 import sys
 import time
 from types import TracebackType
@@ -42,7 +43,7 @@ class Screen:
             self._bar.stop()
         if isinstance(error, KeyboardInterrupt):
             finished = f"{len(self.rows)} of {self.total} roads are finished and complete"
-            click.echo(f"roadgpt: stopped; {finished}", err=True)
+            _show(f"roadgpt: stopped; {finished}", on_stderr=True)
 
     @property
     def seconds(self) -> float:
@@ -52,7 +53,7 @@ class Screen:
     def say(self, sentence: str) -> None:
         """Something for the person who waits."""
         if not self.quiet:
-            click.echo(sentence, err=self.as_json)
+            _show(sentence, on_stderr=self.as_json)
 
     def detail(self, sentence: str) -> None:
         """Something for the person who asked for more."""
@@ -63,10 +64,10 @@ class Screen:
         """A road has ended."""
         self.rows.append(row)
         if self.as_json:
-            click.echo(row.to_json())
+            _show(row.to_json())
         elif not self.quiet:
             done = f"{len(self.rows):>{len(str(self.total))}}/{self.total}"
-            click.echo(f"{done}  {_coloured(row)}")
+            _show(f"{done}  {_coloured(row)}")
         if self._bar is not None and self._task is not None:
             rate = f"{len(self.rows) / max(self.seconds, 1e-9):.1f} roads/s"
             self._bar.update(self._task, completed=len(self.rows), rate=rate)
@@ -75,13 +76,20 @@ class Screen:
         """The table of outcomes."""
         if self.quiet or self.as_json or not self.rows:
             return
-        click.echo()
-        click.echo(f"{'outcome':<19} {'roads':>7} {'share':>7}  {'least margin':>12}")
+        _show("")
+        _show(f"{'outcome':<19} {'roads':>7} {'share':>7}  {'least margin':>12}")
         for outcome, count, share, least in summary(self.rows):
             colour = COLOURS[outcome.split(" ")[0]]
-            click.echo(click.style(f"{outcome:<19}", fg=colour) + f" {count:>7} {share:>7}  {least:>12}")
+            _show(click.style(f"{outcome:<19}", fg=colour) + f" {count:>7} {share:>7}  {least:>12}")
         rate = len(self.rows) / max(self.seconds, 1e-9)
-        click.echo(f"{len(self.rows)} of {self.total} roads in {self.seconds:.1f} s ({rate:.1f} roads/s)")
+        _show(f"{len(self.rows)} of {self.total} roads in {self.seconds:.1f} s ({rate:.1f} roads/s)")
+
+
+def _show(line: str, on_stderr: bool = False) -> None:
+    """Print a line, in colour only where someone sees it; click.echo would go past the bar and garble it."""
+    stream = sys.stderr if on_stderr else sys.stdout
+    in_colour = stream.isatty() and not os.environ.get("NO_COLOR")
+    print(line if in_colour else click.unstyle(line), file=stream, flush=True)
 
 
 def _coloured(row: Row) -> str:
