@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadgpt.report.birds_eye import Scale, birds_eye
-from roadgpt.report.canvas import save
+from roadgpt.report.canvas import in_our_style, save
 from roadgpt.report.height import height_profile
 from roadgpt.report.overview import overview
 from roadgpt.report.strip import strip
@@ -19,6 +19,7 @@ from roadgpt.run import Run
 __all__ = ["Drawing", "Scale", "birds_eye", "draw", "drawing", "height_profile", "overview", "strip"]
 
 
+@in_our_style
 def draw(run: Run, folder: Path | str, axes: Scale = "equal") -> list[Path]:
     """Draw all pictures of a Run into a folder that exists; none of a Run that has no road.
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from matplotlib import rc_context, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -27,6 +28,10 @@ LINE = 0.19  # inches
 TITLE, TEXT, SMALL = 11, 10, 8.5  # points
 BADGE = 9  # points
 MOST_LINES = 2  # of the description, and of the outcome
+
+
+# A user's matplotlibrc would otherwise change our pictures.
+in_our_style = rc_context({name: value for name, value in rcParamsDefault.items() if name != "backend"})
 
 
 def new_figure(width: float, height: float) -> Figure:

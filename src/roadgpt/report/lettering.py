@@ -45,7 +45,7 @@ def _shortened(row: str, width: float, size: float, bold: bool, has_more: bool) 
 @cache
 def _advance(letter: str, bold: bool) -> float:
     """How far a letter moves on, in letters' heights; 0 where the font has it not."""
-    font = get_font(findfont(FontProperties("DejaVu Sans", weight="bold" if bold else "normal")))
+    font = get_font(findfont(FontProperties(family="DejaVu Sans", weight="bold" if bold else "normal")))
     if not font.get_char_index(ord(letter)):
         return 0.0
     font.set_size(100.0, POINTS)

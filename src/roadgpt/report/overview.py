@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from roadgpt.errors import UsageError
-from roadgpt.report.canvas import INK, MARGIN, OUTCOMES, SOFT, VERMILLION, new_figure, save
+from roadgpt.report.canvas import INK, MARGIN, OUTCOMES, SOFT, VERMILLION, in_our_style, new_figure, save
 from roadgpt.report.lettering import fitted, inches
 from roadgpt.report.scenery import GROUND, Array
 from roadgpt.road import World
@@ -36,6 +36,7 @@ class Entry:
     failed_at: tuple[float, float] | None
 
 
+@in_our_style
 def overview(folder: Path | str) -> list[Path]:
     """Draw ``overview.png`` of a campaign's folder (and ``overview-2.png`` and so on beyond 100 roads).
 

@@ -1,0 +1,256 @@
+"""Pictures of Runs: what they say, where they mark it, and that the same Run gives the same bytes."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation, Text
+
+from roadgpt.report import birds_eye, draw, drawing, height_profile, strip
+from roadgpt.report.canvas import Header
+from roadgpt.report.lettering import fitted, inches
+from roadgpt.road import Design, Road, Segment, World
+from roadgpt.run import Run, Setup, prove
+
+NEVER = """
+from roadgpt.drive import Command
+
+class Never:
+    name = "never"
+
+    def steer(self, view):
+        return Command(0.0, 0.6, 0.0)
+"""
+WORDS = "an uphill road with 2 turns"
+NAMES = ["birds_eye.png", "height.png", "curvature_grade.png"]
+
+
+def design(x: float = 60, y: float = 60, theta: float = 20, incline: float = 5, turn: float = 65) -> Design:
+    hand = "left" if turn > 0 else "right"
+    return Design(
+        starting_point=(x, y, 0),
+        theta=theta,
+        segments=(
+            Segment(distance=60, direction="straight", incline=incline),
+            Segment(distance=45, direction=hand, incline=2, turn_degrees=turn),
+            Segment(distance=50, direction="straight", incline=incline),
+            Segment(distance=55, direction="right", incline=0, turn_degrees=-60),
+        ),
+    )
+
+
+def named(run: Run, words: str = WORDS) -> Run:
+    return replace(run, request=run.request.model_copy(update={"words": words}))
+
+
+@pytest.fixture(scope="module")
+def passed() -> Run:
+    return named(prove(design(), 7))
+
+
+@pytest.fixture(scope="module")
+def failed(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    file = tmp_path_factory.mktemp("driver") / "never.py"
+    file.write_text(NEVER)
+    return named(prove(design(), 8, setup=Setup(driver=f"{file}:Never", keep_driving=True)))
+
+
+@pytest.fixture(scope="module")
+def invalid() -> Run:
+    return named(prove(design(incline=18), 9))
+
+
+def texts(figure: Figure) -> list[str]:
+    return [text.get_text() for text in figure.findobj(Text) if text.get_text().strip()]
+
+
+def flat(figure: Figure) -> str:
+    return " ".join(" ".join(texts(figure)).split())
+
+
+@pytest.mark.parametrize("picture", [birds_eye, height_profile, strip])
+def test_every_picture_tells_words_outcome_and_seed(picture, passed: Run, failed: Run, invalid: Run) -> None:  # type: ignore[no-untyped-def]
+    for run in (passed, failed, invalid):
+        said = flat(picture(run))
+        assert WORDS in said
+        assert run.outcome in said
+        assert run.description in said
+        assert f"seed {run.request.seed}, road {run.index}" in said
+
+
+def test_axes_have_names_and_units(passed: Run) -> None:
+    for figure, named_axes in ((birds_eye(passed), 2), (height_profile(passed), 1), (strip(passed), 4)):
+        labels = [axes.get_ylabel() for axes in figure.axes]
+        assert len([label for label in labels if "," in label]) == len(labels) == named_axes
+        assert any(", m" in axes.get_xlabel() for axes in figure.axes)
+
+
+def test_the_driven_path_is_coloured_by_its_speed(passed: Run) -> None:
+    axes = birds_eye(passed).axes[0]
+    (line,) = [c for c in axes.findobj(LineCollection) if c.get_array() is not None]
+    assert passed.drive is not None
+    ends = np.array([segment[0] for segment in line.get_segments()])
+    track = np.stack([passed.drive["x"], passed.drive["y"]], axis=-1)
+    nearest = np.linalg.norm(ends[:, None] - track[None], axis=-1)
+    assert nearest.min(axis=1).max() < 1e-9
+    shown = passed.drive["speed"][nearest.argmin(axis=1)] * 3.6
+    assert np.abs(line.get_array() - shown).max() < 3  # km/h, of a stretch against its start
+
+
+def test_the_place_where_the_car_left_its_lane_is_marked_and_named(failed: Run) -> None:
+    assert failed.verdict is not None
+    assert failed.verdict.at_xy is not None
+    axes = birds_eye(failed).axes[0]
+    crosses = [line.get_xydata()[0] for line in axes.lines if line.get_marker() == "X"]
+    assert np.array(crosses) == pytest.approx(np.array([failed.verdict.at_xy]))
+    assert f"left its lane\nto the {failed.verdict.side}" in texts(birds_eye(failed))
+    for figure in (height_profile(failed), strip(failed)):
+        assert f"left its lane to the {failed.verdict.side}" in texts(figure)
+
+
+def test_an_invalid_road_is_drawn_with_the_place_of_the_finding(invalid: Run) -> None:
+    places = [(f.x, f.y) for f in invalid.findings if f.x is not None]
+    axes = birds_eye(invalid).axes[0]
+    crosses = [tuple(line.get_xydata()[0]) for line in axes.lines if line.get_marker() == "X"]
+    assert crosses[0] == pytest.approx(places[0])
+    assert "too steep" in texts(birds_eye(invalid))
+    assert invalid.drive is None
+
+
+def test_equal_axes_show_a_metre_as_a_metre(passed: Run) -> None:
+    for figure in (birds_eye(passed), height_profile(passed)):
+        axes = figure.axes[0]
+        figure.canvas.draw()
+        across, along = axes.transData.transform([(0, 0), (1, 1)])[1] - axes.transData.transform((0, 0))
+        assert across == pytest.approx(along, rel=0.02)
+
+
+def test_the_thesis_axes_are_roadgpt_s(passed: Run) -> None:
+    axes = birds_eye(passed, "thesis").axes[0]
+    assert (axes.get_xlim(), axes.get_ylim()) == ((0, 220), (0, 220))
+    axes = height_profile(passed, "thesis").axes[0]
+    assert (axes.get_xlim(), axes.get_ylim()) == ((0, 200), (0, 20))
+
+
+def test_thesis_heights_below_zero_count_from_the_lowest_point() -> None:
+    run = prove(design(incline=-9), setup=Setup(drives=False))
+    axes = height_profile(run, "thesis").axes[0]
+    heights = max((line.get_ydata() for line in axes.lines), key=len)
+    assert min(heights) == pytest.approx(0)
+    assert axes.get_ylabel() == "height above the lowest point, m"
+
+
+def test_the_road_is_drawn_to_scale(passed: Run) -> None:
+    axes = birds_eye(passed).axes[0]
+    assert passed.road is not None
+    widths = []
+    for patch in axes.patches:
+        outline = patch.get_path().vertices
+        if len(outline) > 100:
+            s, t = passed.road.locate(*outline.T)
+            inner = (s > 1) & (s < passed.length - 1)
+            widths.append(np.ptp(t[inner]))
+    assert sorted(widths) == pytest.approx([8.0, 14.0], abs=0.01)  # carriageway; with 3 m of verge
+
+
+@settings(max_examples=12, deadline=None)
+@given(
+    st.floats(0, 360),
+    st.floats(-70, 70).filter(lambda turn: abs(turn) > 5),
+    st.floats(20, 200),
+    st.floats(20, 200),
+)
+def test_labels_lie_inside_and_apart(theta: float, turn: float, x: float, y: float) -> None:
+    run = prove(design(x, y, theta, turn=turn), setup=Setup(drives=False))
+    figure = birds_eye(run)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    notes = [note for note in axes.texts if isinstance(note, Annotation)]
+    assert {"start", "end"} <= {note.get_text() for note in notes}
+    boxes = [Text.get_window_extent(note) for note in notes]
+    frame = axes.get_window_extent()
+    for i, box in enumerate(boxes):
+        assert frame.x0 <= box.x0
+        assert box.x1 <= frame.x1
+        assert frame.y0 <= box.y0
+        assert box.y1 <= frame.y1
+        assert not any(box.overlaps(other) for other in boxes[:i])
+
+
+def test_the_same_run_gives_the_same_bytes(passed: Run, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        drawing().of_run(passed, tmp_path / name)
+    for name in NAMES:
+        data = (tmp_path / "a" / name).read_bytes()
+        assert data == (tmp_path / "b" / name).read_bytes()
+        assert data.startswith(b"\x89PNG")
+        assert b"Software" not in data
+        assert b"tEXt" not in data
+    assert sorted(path.name for path in (tmp_path / "a").iterdir()) == sorted(NAMES)
+
+
+def test_a_user_s_own_style_changes_nothing(passed: Run, tmp_path: Path) -> None:
+    draw(passed, tmp_path)
+    before = (tmp_path / "height.png").read_bytes()
+    with rc_context({"font.size": 31, "axes.facecolor": "red", "savefig.bbox": "tight"}):
+        draw(passed, tmp_path)
+    assert (tmp_path / "height.png").read_bytes() == before
+
+
+def test_a_run_without_a_road_has_no_picture(passed: Run, tmp_path: Path) -> None:
+    assert draw(replace(passed, road=None, drive=None, verdict=None, outcome="ERROR"), tmp_path) == []
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "points",
+    [[[10, 10], [31, 10]], [[-50, 30], [400, 30], [900, 800]], [[100, 100, 5], [103, 104, 9], [100, 108, 2]]],
+)
+def test_odd_roads_are_drawn_too(points: list[list[float]], tmp_path: Path) -> None:
+    run = prove(Road.through(points), world=World(verge=0))
+    for scale in ("equal", "thesis"):
+        assert [path.name for path in draw(run, tmp_path, scale)] == NAMES  # type: ignore[arg-type]
+
+
+@settings(max_examples=60)
+@given(st.text(max_size=400), st.floats(1, 9), st.integers(1, 3), st.booleans())
+def test_text_is_fitted_whatever_it_is(text: str, width: float, lines: int, bold: bool) -> None:
+    rows = fitted(text, width, 11, bold, lines).split("\n")
+    assert len(rows) <= lines
+    assert inches("\n".join(rows), 11, bold) <= width
+
+
+def test_the_width_of_text_is_that_which_is_drawn() -> None:
+    figure = Figure(dpi=100)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    for text in ("left its lane to the right after 78 m", "iiiill", "WWWW"):
+        for bold in (False, True):
+            drawn = figure.text(0, 0, text, size=20, weight="bold" if bold else "normal")
+            width = drawn.get_window_extent(renderer).width / 100
+            assert inches(text, 20, bold) == pytest.approx(width, rel=0.06)
+
+
+def test_strange_words_are_no_formula_and_warn_of_nothing(passed: Run, tmp_path: Path) -> None:
+    words = "a $road$ of \\alpha^2 with 道 turns \x00 and {braces} _" * 30
+    strange = named(passed, words)
+    assert "$road$" in Header.of(strange, 8).title
+    assert "道" not in Header.of(strange, 8).title
+    assert len(draw(strange, tmp_path)) == 3
+
+
+def test_pyplot_is_never_imported() -> None:
+    code = (
+        "import roadgpt.report, sys; print('matplotlib.pyplot' in sys.modules, 'matplotlib' in sys.modules)"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert out.split() == ["False", "True"]
