@@ -283,7 +283,8 @@ def _stretch(
     degrees: float = 0.0,
     pieces: tuple[Stretch, ...] = (),
 ) -> Stretch:
-    last = max(last, first + 1)
+    last = min(max(last, first + 1), len(line.s) - 1)
+    first = min(first, last - 1)
     if kind == "straight":
         inner = min(SMOOTHED, (last - first) // 2)
         degrees = abs(float(np.degrees(line.heading[last - inner] - line.heading[first + inner])))

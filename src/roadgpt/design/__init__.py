@@ -5,8 +5,8 @@ A designer is a class without arguments whose objects have one method:
     def draft(self, brief, world, notes, earlier, seed) -> Design
 
 ``notes`` are the sentences of rules that objected to a draft before; ``earlier`` are the designs of the
-campaign so far, none of which it repeats. The same arguments give the same Design. It raises DesignError, with
-one sentence of advice, where no road can keep every promise on this map.
+campaign so far, none of which it repeats. The same arguments give the same Design. It raises DesignError,
+with one sentence of advice, where no road can keep every promise on this map.
 """
 
 from collections.abc import Sequence

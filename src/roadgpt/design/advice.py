@@ -7,6 +7,8 @@ from math import ceil, inf
 from roadgpt.brief.outline import Outline
 from roadgpt.road import World
 
+OF_THE_PLAN = ("too large", "over itself", "longer than was asked for", "like an earlier road")
+MANY = 60  # drafts that fitted on the map and broke a promise: then the map was not what stood in the way
 ROUND_MAP = 50.0  # m: sizes of maps are proposed in steps of so many
 LARGEST_MAP = 10_000.0  # m, of a World
 
@@ -20,7 +22,9 @@ def advice(outline: Outline, world: World, failed: Counter[str], boxes: Sequence
         failed: why drafts were given up, and how often.
         boxes: sides in metres of the smallest square around each draft that was too large for the map.
     """
-    reason = failed.most_common(1)[0][0] if failed else "too large"
+    broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
+    fitted = broken.total() >= MANY
+    reason = (broken if fitted else failed or Counter(["too large"])).most_common(1)[0][0]
     wishes = wishes_of(outline)
     if reason in ("too large", "over itself"):
         size = _roomier(world, boxes)

@@ -124,7 +124,10 @@ def _asked_gap(
         least = max(LEAD, changes * _change(grade) * (1 - 0.3 * haste) + 8.0 if changes else 0.0)
         if number and not windows.part(grades[number - 1], grade):
             out.append(Span(STEP_ASIDE, grade=windows.other(grade)))
-        out.append(Span(drawn_straight(wish, rng, haste, least, mean), grade=grade, asked=True))
+        length = drawn_straight(wish, rng, haste, least, mean)
+        if wish.length and wish.length.hi < inf:
+            length = max(length - changes * RAMP, 0.8 * length)
+        out.append(Span(length, grade=grade, asked=True))
     if after and windows.part(grades[-1], after.grade):
         out.append(Span(STEP_ASIDE, grade=after.grade))
     return out
@@ -155,14 +158,11 @@ def _with_length(
 ) -> list[Span] | None:
     """Free straights stretched or squeezed until the road has a length that was asked for."""
     now = sum(span.length for span in spans)
-    low, high = asked.lo, asked.hi
-    if high == inf:
-        low, high = max(low * 1.01, min(now, low * 1.3)), max(low * 1.3, now)
-    elif low <= 0 or low == -inf:
-        low = min(now, 0.5 * high)
-    target = low + (high - low) * (0.15 + 0.7 * rng.random())
-    if low < now < high:
+    if asked.lo + 1 < now < asked.hi - 1:
         return spans
+    low = asked.lo if asked.lo > 0 else 0.7 * asked.hi
+    high = asked.hi if asked.hi < inf else 1.3 * asked.lo
+    target = low + (high - low) * (0.15 + 0.7 * rng.random())
     free = [i for i, span in enumerate(spans) if not span.turn and not span.asked]
     if not free:
         return spans

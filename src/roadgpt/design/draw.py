@@ -55,6 +55,8 @@ def _turn_room(turn: Feature, outline: Outline, world: World) -> TurnRoom:
     promised = overlap(turn.radius, outline.each_turn.radius)
     radius = overlap(_inside(promised, 0.04), Range(least, inf)) if promised else Range(least, inf)
     assert radius is not None
+    if promised and promised.lo > promised.hi:
+        raise DesignError(f"the radius asked for does not go with a {turn.name}; leave one of them out")
     if radius.lo > radius.hi:
         raise DesignError(
             f"a {turn.name} with a radius of {promised} m is tighter than the {world.min_radius:.4g} m "
@@ -154,9 +156,9 @@ def _drawn_turn(
     if hard:
         most = max(min(most, least * TIGHTER), least)
     if room.length:
-        length = room.length.lo + (0.35 + 0.3 * rng.random()) * (
-            min(room.length.hi, LONGEST_TURN) - room.length.lo
-        )
+        low, high = room.length.lo, min(room.length.hi, max(LONGEST_TURN, 1.2 * room.length.lo))
+        low = low if low > 0 else 0.5 * high
+        length = low + (0.35 + 0.3 * rng.random()) * (high - low)
         ramp = 0.1 * length
         radius = (length - ramp) / radians(angle)
         if radius < least:
@@ -194,7 +196,7 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
         return free_straight(rng, haste, low, mean)
     low = max(low, 0.0)
     share = 0.3 + 0.4 * rng.random()
-    return max(low + share * (high - low), min(least, high - 0.15 * (high - low)))
+    return max(low + share * (high - low), min(least, low + 0.6 * (high - low)))
 
 
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:

@@ -7,8 +7,10 @@ import numpy as np
 
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range
+from roadgpt.check.measures import LEVEL
 from roadgpt.design.order import overlap
 from roadgpt.design.spans import TENTH, Span
+from roadgpt.errors import DesignError
 from roadgpt.road import World
 
 UNDER_LIMIT = 0.4  # percentage points kept off the steepest grade allowed
@@ -21,8 +23,7 @@ LEVEL_SHARE, SLOPE_SHARE = (
 GENTLE, STEEP = 1.5, 9.0  # percent, of such roads
 NARROW = 3.0  # percentage points, of a promise that a ramp could break
 STEADY = 0.5  # chance that a feature keeps the grade of the one before, if it may
-FLAT = Range(-1, 1)  # percent
-UP = Range(3, 12)  # percent, where only "not flat" matters
+UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
 HILL = 34.0  # m: the shortest climb or fall of a hilly road
 HILL_GRADES = (4.0, 8.5)  # percent
 CREST = (2.5, 4.5)  # percent up to a bend of a hard road, and down in it
@@ -42,6 +43,10 @@ class Windows:
         )
         self.limit = Range(-min(limit, steepest), min(limit, steepest))
         self.base: Range | None = None
+        self.way = {"up": "uphill", "down": "downhill"}.get(outline.grade or "", "flat")
+        self.allowed = {"up": Range(-1, inf), "down": Range(-inf, 1), "flat": Range(-1, 1)}.get(
+            outline.grade or "", self.limit
+        )
         if outline.grade == "flat":
             self.base = Range(-0.4, 0.4)
         elif outline.grade == "up":
@@ -58,8 +63,20 @@ class Windows:
         if feature.grade is None:
             return self.base
         own = overlap(drawn_in(feature.grade), self.limit) or self.limit
+        if own.lo > own.hi:
+            most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that the road may have"
+            raise DesignError(
+                f"a {feature.name} of {feature.grade} % is steeper than {most}; change one of them"
+            )
         meets = overlap(own, self.base) or own
-        return meets if meets.lo <= meets.hi else own
+        if meets.lo <= meets.hi:
+            return meets
+        if own.hi <= self.allowed.lo or own.lo >= self.allowed.hi:
+            whole = f"a road that is {self.way} all the way"
+            raise DesignError(
+                f"a {feature.name} of {feature.grade} % contradicts {whole}; change one of them"
+            )
+        return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
         """Of straights that follow each other: one that promises nothing must differ from its neighbours."""
@@ -106,7 +123,15 @@ def drawn_heights(
         values = _with_steepest(values, lengths, limits, outline.steepest, rng)
     if outline.climb:
         values = _with_climb(values, lengths, limits, outline.climb, rng)
-    return _shared_out(spans, owners, np.round(values * TENTH) / TENTH)
+    return _shared_out(spans, owners, _rounded(values))
+
+
+def _rounded(values: np.ndarray) -> np.ndarray:
+    """To a tenth of a percent, and clearly on one side of what is called flat."""
+    steep = np.abs(values)
+    near = np.abs(steep - LEVEL) < UNCLEAR
+    clear = np.where(near, LEVEL + np.where(steep < LEVEL, -UNCLEAR, UNCLEAR), steep)
+    return np.asarray(np.round(np.copysign(clear, values) * TENTH) / TENTH)
 
 
 def _grades(

@@ -108,8 +108,9 @@ def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
     low = max(low, int(max(outline.left.lo, 0) + max(outline.right.lo, 0)))
     high = min(outline.turns.hi, outline.left.hi + outline.right.hi)
     if low > high:
-        asked = f"{outline.turns} turns, {outline.left} left and {outline.right} right"
-        raise DesignError(f"no road has {asked}; change one of these numbers")
+        sides = {"left": outline.left, "right": outline.right}
+        asked = " and ".join(f"{span} to the {side}" for side, span in sides.items() if span != Range())
+        raise DesignError(f"no road has turns {outline.turns} in all, {asked}; change one of these numbers")
     if plain:
         return low
     if low <= 1:
@@ -166,8 +167,7 @@ def _sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generator) ->
         sides = _drawn_sides(turns, outline, rng)
         if sides is not None and sides.count("left") in left and n - sides.count("left") in right:
             return sides
-    asked = f"{n} turns, {left} to the left and {right} to the right"
-    raise DesignError(f"the sides of the turns contradict each other ({asked}); leave one of them open")
+    raise DesignError(f"the sides asked for the {n} turns contradict each other; leave one of them open")
 
 
 def _drawn_sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generator) -> list[Side] | None:

@@ -1,9 +1,9 @@
 """Draws a random Design that keeps every promise of the Brief, is valid, and is like none before.
 
-Drafts are drawn until one passes. Tests are asked in the order of what they cost: does it fit on the map, does
-it keep clear of itself, is it new, does its measured line keep the promises, and do the rules pass the road
-that grows from it. Each draft is a little more hasty than the last: shorter straights, smaller turns. So wishes
-that hardly fit are met in the end, and only those that cannot be are refused.
+Drafts are drawn until one passes. Tests are asked in the order of what they cost: does it fit on the map,
+does it keep clear of itself, is it new, does its measured line keep the promises, and do the rules pass the
+road that grows from it. Each draft is a little more hasty than the last: shorter straights, smaller turns. So
+wishes that hardly fit are met in the end, and only those that cannot be are refused.
 """
 
 from collections import Counter
@@ -32,6 +32,7 @@ from roadgpt.road.grades import profile_of
 DRAFTS = 320  # that are drawn for one road at most
 ALIKE = 120  # drafts like earlier roads, after which the least alike is taken
 ALIKE_STRAIGHTS = 12  # where a road has no turns, so that only its length can differ
+FINISHED = 100  # drafts that fit, of which none keeps every promise, before the search is given up
 LAST_RESORTS = 20  # drafts like earlier roads that are tried where there are no others
 HEIGHTS = 5  # that are tried on one plan
 NO_HASTE = 16  # drafts that are drawn freely
@@ -74,6 +75,11 @@ class _Search:
     def __init__(self, brief: Brief, world: World, others: Shape, rng: np.random.Generator) -> None:
         self.brief, self.world, self.others, self.rng = brief, world, others, rng
         self.outline: Outline = promises_of(brief, world)
+        if self.outline.turns.lo > self.outline.turns.hi:
+            low, high = self.outline.turns.lo, self.outline.turns.hi
+            raise DesignError(
+                f"asked for {low:g} turns, and for {high:g} at most; change one of these numbers"
+            )
         self.windows = Windows(self.outline, world)
         self.failed: Counter[str] = Counter()
         self.boxes: list[float] = []
@@ -81,22 +87,26 @@ class _Search:
     def run(self) -> tuple[Design, Shape]:
         """The first draft that passes; where all are like earlier roads, the least alike."""
         alike: list[tuple[float, int, _Draft]] = []
+        finished = 0
         most = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
         for number in range(DRAFTS):
             haste = max(0.0, (number - NO_HASTE) / (DRAFTS - NO_HASTE))
             drafted = self._plan(haste, with_verges=number < VERGES * DRAFTS)
             if drafted is None:
                 continue
-            nearest = self._nearest(drafted.shape, by_metres=len(alike) < most / 2)
-            if nearest < ENOUGH:
+            nearest = self._nearest(drafted.shape, by_metres=len(alike) < most / 8)
+            if nearest < ENOUGH * min(1.0, 1.5 * (1 - len(alike) / most)):
                 self.failed["like an earlier road"] += 1
                 alike.append((-nearest, number, drafted))
                 if len(alike) == most:
                     break
                 continue
+            finished += 1
             design = self._finished(drafted)
             if design:
                 return design, drafted.shape
+            if finished == FINISHED:
+                break
         for _, _, drafted in sorted(alike)[:LAST_RESORTS]:
             design = self._finished(drafted)
             if design:
