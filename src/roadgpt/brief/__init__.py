@@ -5,8 +5,8 @@ A reader is a part on the shelf ``readers``: an object, or a class of objects wi
     read(words: str) -> Brief
 
 It raises BriefError, with one sentence of advice, where the words make no Brief: they are empty, not about
-a road, in contradiction with each other or ask for the impossible. It lists the words that it did not understand
-in ``Brief.unused``. What the words mean is one table for all readers: ``words.py``.
+a road, in contradiction with each other or ask for the impossible. It lists the words that it did not
+understand in ``Brief.unused``. What the words mean is one table for all readers: ``words.py``.
 """
 
 from typing import Protocol

@@ -1,19 +1,17 @@
 """Contradictions and impossible wishes: found before anybody designs, and said with a way out."""
 
-from math import inf, radians, sqrt
+from math import inf, sqrt
 
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
+from roadgpt.brief.need import SMALLEST_RADIUS, least_length
 from roadgpt.brief.normal import SINGLE, STRAIGHT, total, turns_of
-from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, ROAD_LENGTH_SLACK, SHARPNESS, SIZES, SLOPES, Range
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, ROAD_LENGTH_SLACK, SHARPNESS, SLOPES, Range
 from roadgpt.errors import BriefError
 
 STEEPEST = 15.0  # percent, RoadGPT's limit in both directions
-SMALLEST_RADIUS = 14.326  # metres, 47 ft, SBFT's limit
 LARGEST_ANGLE = 240.0  # degrees; a turn that goes on would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; less is measured as straight
 SHORTEST_ROAD = 20.0  # metres
-WAY_OF_A_TURN = 30.0  # metres that a turn and the straight behind it take at least
-GAP = 16.0  # metres of straight between two turns of one hand
 WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, verges, and the bow of the turn itself
 MOST_TURNS = 200.0
 RISING = ("up", "gently_up", "steeply_up")
@@ -43,13 +41,6 @@ def check(brief: Brief, map_size: float | None = 250.0) -> None:
     _length(brief)
     if map_size is not None:
         _on_the_map(brief, map_size)
-
-
-def least_length(brief: Brief) -> float:
-    """Metres that the clauses and the number of turns need at least."""
-    metres = sum(_way(clause) for clause in brief.clauses)
-    extra = (brief.turns.lo or 0) - (total(brief.clauses).lo or 0) if brief.turns else 0
-    return metres + max(extra, 0) * WAY_OF_A_TURN
 
 
 def _counts(clause: Clause) -> None:
@@ -91,14 +82,14 @@ def _angle(clause: Clause, noun: str) -> None:
         )
     if degrees.hi is not None and degrees.hi < SMALLEST_ANGLE:
         raise BriefError(
-            f"a turn of {degrees.hi:g} degrees is as good as straight; ask for {SMALLEST_ANGLE:g} degrees or more"
+            f"a turn of {degrees.hi:g} degrees is as good as straight; ask for {SMALLEST_ANGLE:g} or more"
         )
     own = KINDS[clause.kind].degrees
-    if clause.kind in ("hairpin", "switchback", "u_turn") and own:
-        if degrees.hi is not None and degrees.hi * 1.1 < own.lo:
-            raise BriefError(
-                f"a {noun} turns {own.lo:g} degrees or more; ask for a sharp turn of {degrees.hi:g} degrees instead"
-            )
+    bends_back = clause.kind in ("hairpin", "switchback", "u_turn")
+    if bends_back and own and degrees.hi is not None and degrees.hi * 1.1 < own.lo:
+        raise BriefError(
+            f"a {noun} turns {own.lo:g} degrees or more; ask for a turn of {degrees.hi:g} degrees instead"
+        )
 
 
 def _radius(clause: Clause, noun: str) -> None:
@@ -141,7 +132,7 @@ def _number_of_turns(brief: Brief) -> None:
             raise BriefError(f"{_figure(said)} turns but no turns: leave out one of the two")
         if not _meet(said, brief.turns):
             raise BriefError(
-                f"the things named have {_figure(said)} turns, but {_figure(brief.turns)} are asked for in all;"
+                f"what is named has {_figure(said)} turns, but {_figure(brief.turns)} are asked for in all;"
                 " make the numbers agree"
             )
     if brief.turns and brief.turns.hi == 0:
@@ -172,13 +163,9 @@ def _sides(brief: Brief) -> None:
         most_sides = sum(inf if amount.hi is None else amount.hi for amount in both)
         if most_sides < brief.turns.lo:
             raise BriefError(f"{most_sides:g} left and right turns do not make {brief.turns.lo:g} turns")
-    if (
-        len(both) == 2
-        and all(amount.hi == 0 for amount in both)
-        and (turning or (brief.turns and brief.turns.lo))
-    ):
-        if turning or (brief.turns and (brief.turns.lo or 0) > 1):
-            raise BriefError("a turn goes left or right: allow one of the two")
+    neither = len(both) == 2 and all(amount.hi == 0 for amount in both)
+    if neither and (turning or (brief.turns and (brief.turns.lo or 0) > 1)):
+        raise BriefError("a turn goes left or right: allow one of the two")
 
 
 def _sure(clause: Clause, side: str) -> float:
@@ -234,7 +221,7 @@ def _slope_within(brief: Brief, clause: Clause) -> None:
     up_and_down = (whole in RISING and slope in FALLING) or (whole in FALLING and slope in RISING)
     if up_and_down or (whole in LEVEL and slope in (*RISING, *FALLING)):
         raise BriefError(
-            f"the whole road is {_said(whole)}, but a {name} is {_said(slope)}; say the slope of each part instead"
+            f"the whole road is {_said(whole)}, but a {name} is {_said(slope)}; say it of each part instead"
         )
 
 
@@ -246,31 +233,12 @@ def _length(brief: Brief) -> None:
         raise BriefError(f"a road of {brief.length.hi:g} m is too short; ask for {SHORTEST_ROAD:g} m or more")
     if least_length(brief) > longest:
         raise BriefError(
-            f"{brief.length.hi:g} m cannot hold all that; ask for about {least_length(brief):.0f} m or fewer turns"
+            f"{brief.length.hi:g} m cannot hold all that; ask for {least_length(brief):.0f} m or fewer turns"
         )
     if brief.climb and brief.climb.lo is not None and brief.climb.lo > longest * STEEPEST / 100:
         raise BriefError(
             f"{brief.length.hi:g} m cannot climb {brief.climb.lo:g} m at {STEEPEST:g} percent at most"
         )
-
-
-def _way(clause: Clause) -> float:
-    """Metres that a clause takes at least."""
-    if clause.kind in STRAIGHT:
-        if clause.length and clause.length.lo is not None:
-            return 0.85 * clause.length.lo
-        size = SIZES[clause.size].length if clause.size else None
-        return size.lo if size else LEAST_STRAIGHT
-    least, _ = turns_of(clause)
-    own, sharp = KINDS[clause.kind].degrees, SHARPNESS[clause.sharpness] if clause.sharpness else None
-    angle = clause.degrees.lo if clause.degrees and clause.degrees.lo else own.lo if own else 25.0
-    if sharp and sharp.degrees and not clause.degrees and clause.kind == "turn":
-        angle = sharp.degrees.lo
-    radius = sharp.radius.lo if sharp and sharp.radius else 0.0
-    if clause.radius and clause.radius.lo:
-        radius = 0.85 * clause.radius.lo
-    arc = radians(angle) * max(radius, SMALLEST_RADIUS)
-    return least * max(arc + (0 if clause.kind in ("s_bend", "chicane") else GAP), WAY_OF_A_TURN * 0.8)
 
 
 def _on_the_map(brief: Brief, map_size: float) -> None:
@@ -280,8 +248,8 @@ def _on_the_map(brief: Brief, map_size: float) -> None:
     room = map_size * map_size / WIDTH_OF_A_TURN
     if metres > room:
         raise BriefError(
-            f"a map of {map_size:g} m has no room for {metres:.0f} m of such road; ask for {room:.0f} m, fewer turns"
-            " or a larger map"
+            f"a map of {map_size:g} m has no room for {metres:.0f} m of such road; ask for {room:.0f} m,"
+            " fewer turns or a larger map"
         )
     diagonal = sqrt(2) * (map_size - 10)
     for clause in brief.clauses:

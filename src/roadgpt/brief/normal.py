@@ -8,7 +8,7 @@
 - What holds for every turn (sharpness, degrees, radius) stands on the clauses where they name the turns.
 - What only repeats the clauses (number of turns, left or right, the slope, first and last thing) goes.
 - 'N turns' and nothing more is one clause; 'N or more turns' and nothing more is a wish for the road.
-- Where nothing is said of turns, at least one is meant.
+- Where nothing is said of turns, at least one is meant; where only straights are named, none.
 """
 
 from math import inf
@@ -23,8 +23,11 @@ SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", 
 MOST_SINGLE = 60
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 PLAIN: dict[Slope, Slope] = {
-    "steeply_up": "up", "steeply_down": "down", "gently_up": "up", "gently_down": "down",
-}  # fmt: skip
+    "steeply_up": "up",
+    "steeply_down": "down",
+    "gently_up": "up",
+    "gently_down": "down",
+}
 
 
 def normal(brief: Brief) -> Brief:
@@ -37,9 +40,16 @@ def normal(brief: Brief) -> Brief:
     clauses = _merged([_without_slope_of(whole, clause) for clause in clauses])
     whole = _without_repeats(whole, clauses)
     whole, clauses = _turns_as_wish(whole, clauses)
-    if not clauses and whole.turns is None and not (whole.left or whole.right):
-        whole = whole.model_copy(update={"turns": at_least(1)})
+    if whole.turns is None and not (whole.left or whole.right):
+        if not clauses:
+            whole = whole.model_copy(update={"turns": at_least(1)})
+        elif total(clauses) == exactly(0) and not (whole.hard or _turns(whole.starts) or _turns(whole.ends)):
+            whole = whole.model_copy(update={"turns": exactly(0)})
     return whole.model_copy(update={"clauses": tuple(clauses)})
+
+
+def _turns(clause: Clause | None) -> bool:
+    return clause is not None and clause.kind not in STRAIGHT
 
 
 def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:

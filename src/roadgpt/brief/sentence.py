@@ -6,9 +6,15 @@ from roadgpt.brief.model import Amount, Brief, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal
 
 SLOPE_WORDS: dict[Slope, str] = {
-    "up": "uphill", "down": "downhill", "flat": "flat", "nearly_flat": "nearly flat", "gently_up": "gently uphill",
-    "gently_down": "gently downhill", "steeply_up": "steeply uphill", "steeply_down": "steeply downhill",
-}  # fmt: skip
+    "up": "uphill",
+    "down": "downhill",
+    "flat": "flat",
+    "nearly_flat": "nearly flat",
+    "gently_up": "gently uphill",
+    "gently_down": "gently downhill",
+    "steeply_up": "steeply uphill",
+    "steeply_down": "steeply downhill",
+}
 NOUNS = {"u_turn": "U-turn", "s_bend": "S-bend", "zigzag": "zig-zag", "winding": "winding stretch"}
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
 
@@ -40,7 +46,7 @@ def _wishes(brief: Brief) -> list[str]:
         _slope(brief),
         _if(brief.steepest, lambda a: f"steepest {_number(a)} percent"),
         _if(brief.climb, _climb),
-        _if(brief.hills, lambda a: f"{_number(a)} changes of slope"),
+        _if(brief.hills, lambda a: f"{_number(a)} {_plural('change', a)} of slope"),
         None
         if _exact_metres(brief.length)
         else _if(brief.length, lambda a: f"{_number(a)} metres long in all"),
@@ -72,7 +78,11 @@ def _side_count(amount: Amount | None, side: str) -> str | None:
 def _slope(brief: Brief) -> str | None:
     if brief.incline is None:
         return None
-    return f"{SLOPE_WORDS[brief.slope or 'up']} at {_number(brief.incline)} percent all the way"
+    return f"{SLOPE_WORDS[brief.slope or 'up']} {_percent(brief.incline)} all the way"
+
+
+def _percent(amount: Amount) -> str:
+    return f"{'by' if amount.lo is None or amount.hi is None else 'at'} {_number(amount)} percent"
 
 
 def _climb(amount: Amount) -> str:
@@ -107,8 +117,9 @@ def _tail(clause: Clause) -> str:
         tail += f" of {_number(clause.degrees)} degrees"
     if clause.length:
         tail += f" of {_number(clause.length)} metres"
+        tail += " each" if clause.count != exactly(1) else ""
     if clause.slope and clause.incline:
-        tail += f" {SLOPE_WORDS[clause.slope]} at {_number(clause.incline)} percent"
+        tail += f" {SLOPE_WORDS[clause.slope]} {_percent(clause.incline)}"
     if clause.radius:
         tail += f" with a radius of {_number(clause.radius)} metres"
     if clause.kind in WAVY and clause.count != exactly(1):
@@ -146,7 +157,9 @@ def _count(amount: Amount) -> str:
 
 
 def _plural(noun: str, amount: Amount) -> str:
-    return noun if amount.lo == amount.hi == 1 else noun + ("es" if noun.endswith("ch") else "s")
+    return (
+        noun if amount.lo == 1 and amount.hi in (1, None) else noun + ("es" if noun.endswith("ch") else "s")
+    )
 
 
 def _article(text: str) -> str:

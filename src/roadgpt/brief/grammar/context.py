@@ -38,6 +38,9 @@ BOTH_WAYS = frozenset({"s_bend", "s_bend+", "chicane", "chicane+", "slalom", "se
 MANNERS = frozenset({"gentle", "sharp", "sweeping", "long", "short", "hard"})
 CLIMBING = frozenset({"up~", "down~", "slope", "flat~"})
 SLOPING = CLIMBING | {"up", "down", "hill"}
+VERBS = frozenset({"twists", "twist", "winds", "wind", "snakes", "weaves", "meanders"})
+HILLS = frozenset({"climbs", "ascents", "descents", "inclines", "declines", "drops", "rises"})
+"""Nouns in 'with steep climbs', verbs elsewhere."""
 BEFORE_A_VERB = frozenset({"", "that", "road", "and", "then", ",", "stop", "first_of_all", "start", "end"})
 
 
@@ -68,12 +71,26 @@ def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str
         case "sharp":
             steep = (item.text.endswith("ly") and {before, after} & SLOPING) or after in CLIMBING
             return "steep" if steep else "sharp"
+        case "winding" if after in SIDES and item.text in VERBS and not _sides(items, _at(items, at))[0]:
+            return "turn~"
         case "turn+" | "crest+":
             return _noun_or_verb(items, at, item, before)
+        case "between" if after in ("", ",", "stop", "then", ")"):
+            return "in_between"
+        case "then" if item.text == "before" and before in ("", "stop"):
+            return "ahead"
+        case "nearly" if after in SIDES | {"to"}:
+            return "mostly"
         case "nearly":
             return "nearly" if after in ("flat", "flat~") else "-"
-        case "for" | "into" if at + 1 < len(items) and items[at + 1].name in ("m", "whole"):
+        case "for" | "into" | "enter" if at + 1 < len(items) and items[at + 1].name in ("m", "whole"):
             return "-"
+        case "hill" if before in ("steep", "mild"):
+            return "up~" if _name(items, at, -1, {"steep", "mild"}) not in SLOPING else "-"
+        case "up~" | "down~" if item.text in HILLS:
+            return (
+                "hills" if _name(items, at, -1, MANNERS | {"steep", "mild", "count"}) == "with" else item.name
+            )
         case "hill":
             return (
                 "-"
@@ -134,6 +151,14 @@ def _sides(items: Sequence[Item], at: int) -> tuple[int, str]:
 def _whole_of(items: Sequence[Item], at: int, joint: int) -> bool:
     """'turns to both left and right'."""
     return at > 0 and items[at - 1].name == "both"
+
+
+def _at(items: Sequence[Item], at: int) -> int:
+    """Where the next item that is not skipped stands."""
+    at += 1
+    while at < len(items) - 1 and items[at].name in SKIPPED:
+        at += 1
+    return min(at, len(items) - 1)
 
 
 def _name(items: Sequence[Item], at: int, step: int, also: Collection[str] = ()) -> str:

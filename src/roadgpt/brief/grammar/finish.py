@@ -1,11 +1,13 @@
 """The last steps from things along the road to a Brief."""
 
 from dataclasses import replace
+from itertools import pairwise
 
-from roadgpt.brief.grammar.phrases import STRAIGHT, WAVY, Phrase
+from roadgpt.brief.grammar.phrase import WAVY, Phrase
 from roadgpt.brief.grammar.slopes import settle_slopes, slope_of
 from roadgpt.brief.grammar.units import Units, how_many, plural, turns
 from roadgpt.brief.model import Amount, Brief, Clause, Kind, at_least, at_most, between, exactly
+from roadgpt.brief.normal import SINGLE, STRAIGHT
 from roadgpt.brief.words import KINDS, SIZES
 from roadgpt.errors import BriefError
 
@@ -35,13 +37,7 @@ def finish(units: Units, road_said: bool) -> Brief:
             wishes.ends, clauses = clauses[0], []
     if not clauses and wishes.turns is None and not (wishes.left and wishes.left.lo):
         wishes.turns = at_least(1)
-    if clauses and wishes.turns is None and any(t.road for t in units.things) and not _any_turn(clauses):
-        wishes.turns = exactly(0)
     return Brief(clauses=tuple(clauses), **{name: getattr(wishes, name) for name in wishes.__slots__})
-
-
-def _any_turn(clauses: list[Clause]) -> bool:
-    return any(clause.kind not in STRAIGHT for clause in clauses)
 
 
 def _spell_out(units: Units) -> None:
@@ -108,7 +104,7 @@ def _inherit(thing: Phrase, whole: Phrase) -> None:
 
 
 def _sides_of(whole: Phrase, sides: list[Phrase]) -> None:
-    if any(one.side == other.side for one, other in zip(sides, sides[1:], strict=False) if one.side):
+    if any(one.side == other.side for one, other in pairwise(sides) if one.side):
         raise BriefError(
             f"the turns of a {whole.kind} go to both sides; write them out as single turns instead"
         )
@@ -124,12 +120,12 @@ def _name_sides(units: Units) -> None:
         before = next((t for t in reversed(things[:at]) if t.turning), None)
         after = next((t for t in things[at + 1 :] if t.turning), None)
         kind: Kind = "turn"
-        if thing.article or thing.count is not None or thing.joint in ("and", ","):
-            model = before or after
-            kind = model.kind if model and model.kind and model.kind not in WAVY else "turn"
-        if before is None and after is not None and after.joint in ("and", "or") and not thing.sharpness:
-            thing.sharpness = None
-        thing.kind = kind if kind not in ("s_bend", "chicane") else "turn"
+        elliptic = thing.article or thing.count is not None or thing.joint in ("and", ",")
+        if elliptic and not thing.sharpness:  # 'a left and a right hairpin', 'one left hairpin and two right'
+            spoken = after if after is not None and after.joint in ("and", "or") else None
+            model = before or spoken
+            kind = model.kind if model and model.kind in SINGLE else "turn"
+        thing.kind = kind
 
 
 def _move_to_ends(units: Units) -> None:
@@ -198,7 +194,9 @@ def _clause(thing: Phrase, units: Units) -> Clause:
     if length is None and thing.size and thing.sharpness != "sharp" and kind == "turn":
         limits = SIZES[thing.size].length
         length = (at_least(limits.lo) if thing.size == "long" else at_most(limits.hi)) if limits else None
-    if length is not None and kind in WAVY | {"s_bend", "chicane"}:
+    if length is not None and (
+        kind in WAVY | {"s_bend", "chicane"} or (count != exactly(1) and not thing.each)
+    ):
         units.wishes.length = units.wishes.length or length
         length = None
     clause = Clause(
@@ -217,7 +215,7 @@ def _clause(thing: Phrase, units: Units) -> Clause:
 
 
 def _possible(clause: Clause) -> Clause:
-    """Says in other words what the words mean together: a wide hairpin is tight, a gentle chicane an S-bend."""
+    """What the words mean together: a wide hairpin is a hairpin still, a gentle chicane an S-bend."""
     if clause.sharpness in ("gentle", "sweeping"):
         if clause.kind == "hairpin":
             radius = clause.radius or ROUND_BUT_TIGHT

@@ -30,18 +30,20 @@ GERMAN: dict[str, str] = {
     "stretch": "abschnitt | stuck | teilstuck | abschnitte | passage",
     "left": "links | linke | linker | linken | nach links | linksherum",
     "right": "rechts | rechte | rechter | rechten | nach rechts | rechtsherum",
-    "gentle": "sanft | sanfte | sanften | sanfter | sanftes | leicht | leichte | leichten | leichter | weich"
-    " | weiche | leichtes",
-    "sweeping": "weit | weite | weiten | weiter bogen | langgezogen | langgezogene | langgezogenen | schnelle",
+    "gentle": "sanft | sanfte | sanften | sanfter | sanftes | leicht | leichte | leichten | leichter"
+    " | weich | weiche | leichtes",
+    "sweeping": "weit | weite | weiten | weiter bogen | langgezogen | langgezogene | langgezogenen"
+    " | schnelle",
     "sharp": "scharf | scharfe | scharfen | scharfer | eng | enge | engen | enger | spitz | scharfes",
     "long": "lang | lange | langen | langer | langes",
     "short": "kurz | kurze | kurzen | kurzer | kurzes",
-    "up": "bergauf | hinauf | aufwarts | hoch | bergauf fuhrend | bergauf fuhrende",
-    "up~": "steigt | steigt an | ansteigend | ansteigende | steigend | steigende | anstieg | klettert"
-    " | steigung | ansteigen | bergaufstrecke | aufstieg",
-    "down": "bergab | hinab | abwarts | hinunter | runter | herunter | bergab fuhrende",
-    "down~": "fallt | fallt ab | abfallend | abfallende | fallend | fallende | abstieg | gefalle | sinkt"
-    " | abfahrt",
+    "up": "bergauf | berg hinauf | berg hoch | hinauf | aufwarts | hoch | bergauf fuhrend | bergauf fuhrende",
+    "up~": "steigt | steigt an | ansteigend | ansteigende | steigend | steigende | anstieg"
+    " | klettert | steigung | ansteigen | bergaufstrecke | bergan | aufstieg",
+    "down": "bergab | berg hinunter | berg hinab | berg runter | hinab | abwarts | hinunter | runter"
+    " | herunter | bergab fuhrende",
+    "down~": "fallt | fallt ab | abfallend | abfallende | fallend | fallende | abstieg | gefalle"
+    " | sinkt | abfahrt | bergabstrecke | gefallstrecke",
     "flat": "flach | flache | flachen | flacher | flaches | eben | ebene | ebenen | ebener | ebenes"
     " | waagerecht | waagrecht",
     "flat~": "wird flach | flacht ab | wird eben",
@@ -94,8 +96,8 @@ GERMAN: dict[str, str] = {
     "for": "fur",
     "first_of_all": "zuerst | zunachst | erst",
     "start": "beginnt mit | startet mit | beginnend mit | beginnt | am anfang | anfangs",
-    "end": "endet mit | endet in | endet | endend mit | zum schluss | schliesslich | am ende | zuletzt"
-    " | endet mit einer | endet in einer",
+    "end": "endet mit | endet in | endet | endend mit | zum schluss | schliesslich | am ende"
+    " | zuletzt | endet mit einer | endet in einer",
     "after": "nach einer | nach einem",
     "a": "ein | eine | einer | einen | einem | eines",
     "the": "der | die | das | den | dem | des",
@@ -112,9 +114,9 @@ GERMAN: dict[str, str] = {
     "road": "strasse | strecke | weg | landstrasse | fahrbahn | piste | nebenstrasse | fahrstrecke",
     "highway": "schnellstrasse",
     "hard_road": "schwierig | schwierige | anspruchsvoll | anspruchsvolle | herausfordernd | herausfordernde",
-    "-": "fuhrt | fuhrende | fuhrend | verlauft | geht | gehend | macht | im | am | an | auf | zu | zum"
-    " | zur | von | vom | nach | ist | sein | soll | bitte | ich | mochte | hatte | gerne | fur | aus"
-    " | als | so | sehr | ganz | ab | wird | sich | gelande | dabei | noch | eher | ziemlich | etwas"
-    " | verlaufend | fuhren | bis | fahrt | erstelle | gib mir | stets | wechsel | immer | kommt"
-    " | es gibt | land | wieder | ihr | ihrem",
+    "-": "fuhrt | fuhrende | fuhrend | verlauft | geht | gehend | macht | im | am | an | auf | zu"
+    " | zum | zur | von | vom | nach | ist | sein | soll | bitte | ich | mochte | hatte | gerne"
+    " | fur | aus | als | so | sehr | ganz | ab | wird | sich | gelande | dabei | noch | eher"
+    " | ziemlich | etwas | verlaufend | fuhren | bis | fahrt | erstelle | gib mir | stets"
+    " | wechsel | immer | kommt | es gibt | land | wieder | ihr | ihrem",
 }

@@ -93,13 +93,15 @@ def _longest(
 def _reading(
     readings: tuple[Meanings, ...], found: Sequence[Token], stop: int, before: Sequence[Lexeme]
 ) -> Meanings:
-    """The first reading, but 'over' is a bound just where a number follows, 'minimum' where one stands before."""
+    """The first reading; but 'over' is a bound where a number follows, 'or more' where one stands before."""
+    number_near = any(lexeme.name.startswith("#") for lexeme in before[-2:])  # '3 turns or more'
     number_before = bool(before) and (before[-1].name.startswith("#") or before[-1].name in UNITS)
     number_after = stop < len(found) and _is_number(found[stop])
     for meanings in readings:
         if meanings[-1] in NEED_A_NUMBER_AFTER and number_after:
             return meanings
-        if meanings[-1] in NEED_A_NUMBER_BEFORE and number_before and not number_after:
+        near = number_before or (number_near and found[stop - 1].text in ("more", "fewer", "less"))
+        if meanings[-1] in NEED_A_NUMBER_BEFORE and near and not number_after:
             return meanings
         if meanings[-1] == "in_ten" and number_before and number_after:
             return meanings

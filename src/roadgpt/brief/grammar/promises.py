@@ -4,16 +4,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from roadgpt.brief.grammar.finish import finish
-from roadgpt.brief.grammar.phrases import ROAD_LIKE, STRAIGHT, WAVY, Phrase
+from roadgpt.brief.grammar.modifiers import modify
+from roadgpt.brief.grammar.phrase import WAVY, Phrase
 from roadgpt.brief.grammar.quantities import Item
-from roadgpt.brief.grammar.scope import negate, select, take_some
+from roadgpt.brief.grammar.scope import halve, negate, select, take_some
 from roadgpt.brief.grammar.slopes import slope_of
-from roadgpt.brief.grammar.units import Units, default_count, overlay, plural, turns
+from roadgpt.brief.grammar.units import Units, default_count, how_many, overlay, plural, turns
 from roadgpt.brief.model import Amount, Brief, at_least, at_most, exactly
+from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.words import HILLS, MOUNTAIN, ROAD_SIZES, SLOPES, Range
 from roadgpt.errors import BriefError
 
-SCOPED = ("with", "into", "for")
+SCOPED = ("with", "into", "enter", "for")
 
 
 def promises(found: Sequence[Phrase]) -> tuple[Brief, list[Item]]:
@@ -51,16 +53,20 @@ class _Builder:
             return negate(self.units, phrase)
         if phrase.only and phrase.side:
             setattr(self.units.wishes, "right" if phrase.side == "left" else "left", exactly(0))
-            if phrase.count in (None, at_least(2)) and self.units.last_turn is None:
+            if phrase.kind is None or phrase.count in (None, at_least(2)):
                 return True
         if _is_pick(phrase) and after and after.joint == "" and (after.kind or after.article):
             after.pick, after.kind = phrase.pick, after.kind or phrase.kind  # 'the last turn is | a hairpin'
             return True
+        if phrase.mostly and phrase.side:
+            return self._mostly(phrase)
+        if phrase.half and phrase.slope:
+            return halve(self.units, phrase)
         if phrase.of_them:
             return take_some(self.units, phrase)
         if phrase.pick is not None or phrase.scope:
             return select(self.units, phrase, after)
-        if phrase.total and phrase.count and (phrase.kind in (None, "turn")):
+        if phrase.total and phrase.count and not phrase.degrees and phrase.kind in (None, "turn"):
             return self._total(phrase)
         if phrase.road and not self._road(phrase):
             return True
@@ -71,7 +77,7 @@ class _Builder:
             return self._both_sides(phrase)
         if phrase.slope:
             return self._slope(phrase, after)
-        return self._modifiers(phrase, after)
+        return modify(self.units, phrase, self.before, after)
 
     def _flags(self, phrase: Phrase) -> None:
         wishes = self.units.wishes
@@ -82,6 +88,10 @@ class _Builder:
         wishes.hard |= phrase.hard and not phrase.negated
         if phrase.hilly and not phrase.negated:
             wishes.hills = wishes.hills or at_least(HILLS)
+        if phrase.climbs_said and not phrase.negated:
+            wishes.hills = wishes.hills or at_least(1)
+        if phrase.more:
+            self._more(phrase.more)
         if phrase.changes and not phrase.negated:
             wishes.hills, phrase.count = phrase.count or at_least(1), None
         if phrase.mountain and not phrase.negated:
@@ -108,6 +118,26 @@ class _Builder:
             wishes.right = phrase.count
         else:
             wishes.turns = phrase.count
+        return True
+
+    def _more(self, side: str) -> None:
+        """'more left than right turns'; with the same number of both, it is half the number, or two."""
+        wishes, last = self.units.wishes, self.units.last_turn
+        if side == "same":
+            half = exactly(max(how_many(last) // 2, 1) if last and plural(last) else 2)
+            wishes.left, wishes.right = half, half
+        else:
+            number = how_many(last) // 2 + 1 if last else 2
+            setattr(wishes, side, at_least(number))
+            setattr(wishes, "right" if side == "left" else "left", at_most(number - 1))
+
+    def _mostly(self, phrase: Phrase) -> bool:
+        """'5 turns, mostly to the right'."""
+        last = phrase if phrase.kind else self.units.last_turn
+        number = how_many(last) if last else 0
+        setattr(self.units.wishes, phrase.side or "left", at_least(number // 2 + 1))
+        if phrase.kind:
+            self.units.add(replace(phrase, side=None), leading=False)
         return True
 
     def _road(self, phrase: Phrase) -> bool:
@@ -146,6 +176,12 @@ class _Builder:
             phrase.slope = "up"
         if phrase.whole and phrase.slope:
             self._whole_slope(phrase)
+        if (
+            phrase.total and phrase.degrees and phrase.degrees.exact and plural(phrase)
+        ):  # 'totalling 360 degrees'
+            phrase.degrees = exactly(round((phrase.degrees.lo or 0) / how_many(phrase), 2))
+        if phrase.kind is None and not phrase.counted:  # 'a series of left, right, left'
+            phrase.count, phrase.article = None, False
         if phrase.spiral:
             phrase.count = phrase.count or at_least(3)
             phrase.side = phrase.side or "left"
@@ -169,9 +205,10 @@ class _Builder:
 
     def _both_sides(self, phrase: Phrase) -> bool:
         last, wishes = self.units.last_turn, self.units.wishes
-        if (last is not None and (last.alternating or phrase.alternating)) or (last is not None and self.before is not None and self.before.alternating):
+        alternating = phrase.alternating or (self.before is not None and self.before.alternating)
+        if last is not None and (last.alternating or alternating):
             last.alternating = True
-        elif phrase.alternating or (self.before is not None and self.before.alternating):
+        elif alternating:
             wishes.alternating = True
         else:
             wishes.left, wishes.right = wishes.left or at_least(1), wishes.right or at_least(1)
@@ -205,83 +242,6 @@ class _Builder:
         wishes.slope, wishes.incline = slope_of(phrase), phrase.incline or wishes.incline
         phrase.slope, phrase.incline = "", None
 
-    def _modifiers(self, phrase: Phrase, after: Phrase | None) -> bool:
-        """A phrase that names no thing: it tells more about the one before, or about the road."""
-        last, turn, wishes = self.units.last, self.units.last_turn, self.units.wishes
-        used = phrase.height is not None or phrase.hilly or phrase.mountain or phrase.hard or phrase.highest or phrase.changes
-        if phrase.length is not None:
-            used |= self._length(phrase, after)
-        if phrase.incline is not None or phrase.slope_noun:
-            used |= self._incline(phrase)
-        on_turn = turn is not None and (self.before is turn or phrase.joint in ("with", "", "(", ","))
-        for name in ("degrees", "radius", "sharpness"):
-            value = getattr(phrase, name)
-            if value is not None:
-                target = turn if on_turn and turn is not None else wishes
-                setattr(target, name, getattr(target, name) or value)
-                used = True
-        if phrase.alternating:
-            used = True
-            if turn is not None and plural(turn):
-                turn.alternating = True
-            else:
-                wishes.alternating = True
-        if phrase.size and last is not None and last.kind in STRAIGHT and last.size is None:
-            last.size, used = phrase.size, True
-        if phrase.count and turn is not None and turn.many and turn.count == at_least(2):
-            turn.count, used = phrase.count, True
-        if (phrase.times or phrase.repeat) and self.units.things:
-            self._repeat(phrase)
-            used = True
-        if phrase.again and last is not None and last.kind and phrase.joint in ("then", "and"):
-            self.units.things.append(replace(last, joint="then", count=phrase.count))
-            used = True
-        return used or phrase.steep or phrase.only or not (phrase.count or phrase.length or phrase.degrees)
-
-    def _length(self, phrase: Phrase, after: Phrase | None) -> bool:
-        last, wishes = self.units.last, self.units.wishes
-        leads = phrase.joint in ("after", "then") or (
-            phrase.fresh and after is not None and after.joint == "then"
-        )
-        if leads and not phrase.length_said:
-            self.units.things.append(replace(phrase, kind="straight", joint="then"))
-            return True
-        on_thing = last is not None and last is self.before and not phrase.total and last.length is None
-        if on_thing and last is not None and (last.kind in STRAIGHT or (last.kind is None and last.slope)):
-            if not (last.kind is None and last.after_road and phrase.length_said):
-                last.length = phrase.length
-                return True
-        if wishes.length is None:
-            wishes.length = phrase.length
-            return True
-        return False
-
-    def _incline(self, phrase: Phrase) -> bool:
-        last, wishes = self.units.last, self.units.wishes
-        if last is not None and self.before is last:
-            last.incline = last.incline or phrase.incline
-            last.slope = last.slope or ("" if wishes.slope else "up")
-            last.steep |= phrase.steep
-            last.mild |= phrase.mild
-        else:
-            wishes.incline = wishes.incline or phrase.incline
-            phrase.slope = "up"
-            wishes.slope = wishes.slope or slope_of(phrase)
-        return True
-
-    def _repeat(self, phrase: Phrase) -> None:
-        times = phrase.times or phrase.count or exactly(2)
-        number = int(times.lo or times.hi or 2)
-        if number * len(self.units.things) > 100:
-            raise BriefError("so many repetitions fit on no map; ask for fewer")
-        last = self.units.last
-        if len(self.units.things) == 1 and last is not None and last.count is None and turns(last):
-            last.count = exactly(number)
-            return
-        once = list(self.units.things)
-        for _ in range(number - 1):
-            self.units.things += [replace(thing, joint="then") for thing in once]
-
 
 def _is_pick(phrase: Phrase) -> bool:
     """'the last turn', with nothing said about it yet."""
@@ -304,4 +264,3 @@ def _minus(number: float | None) -> float | None:
 _UNCOUNTED = frozenset(
     {"a", "stretch", "again", "all", "each", "both", "whole", "total", "only", "too", "place"}
 )
-__all__ = ["ROAD_LIKE", "promises"]

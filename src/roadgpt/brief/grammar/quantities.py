@@ -164,12 +164,12 @@ def _bounded(items: list[Item]) -> list[Item]:
     waiting: Item | None = None
     for item in items:
         if item.amount is not None:
-            if waiting is not None:
+            if waiting is not None and not (waiting.text == "over" and _measured(out)):
                 item = _with(item, waiting.name)
-                waiting = None
+            waiting = None
             out.append(_without_between(out, item))
-        elif item.name in ("or_more", "or_less") and out and out[-1].amount is not None:
-            out[-1] = _with(out[-1], ">=" if item.name == "or_more" else "<=")
+        elif item.name in ("or_more", "or_less"):
+            _bound_behind(out, replace(item, name=">=" if item.name == "or_more" else "<="))
         elif item.name in BEFORE:
             waiting = item
         else:
@@ -184,6 +184,11 @@ def _bounded(items: list[Item]) -> list[Item]:
     if waiting is not None:
         _bound_behind(out, waiting)
     return out
+
+
+def _measured(out: list[Item]) -> bool:
+    """'climbs 10 m over 200 m', '3 turns over 200 m': a way, and no bound."""
+    return any(item.amount is not None for item in out[-LOOK_BACK - 1 :])
 
 
 def _without_between(out: list[Item], item: Item) -> Item:

@@ -2,7 +2,7 @@
 
 ROMANCE: dict[str, str] = {
     # French
-    "turn": "virage | tournant | courbe | courba | viraje | giro | svolta",
+    "turn": "virage | tournant | courbe | curva | viraje | giro | svolta",
     "turn+": "virages | tournants | courbes | curvas | virajes | giros | svolte",
     "turn~": "tourne | gira | dobla",
     "straight": "ligne droite | tout droit | droite ligne | rectiligne | recta | recto | rettilineo"
@@ -17,22 +17,22 @@ ROMANCE: dict[str, str] = {
     "u_turn": "demi tour | media vuelta | inversione a u",
     "crest": "bosse | colina | dosso | sommet",
     "dip": "creux | cunetta",
-    "left": "gauche | a gauche | izquierda | a la izquierda | hacia la izquierda | sinistra | a sinistra"
-    " | vers la gauche",
+    "left": "gauche | a gauche | izquierda | a la izquierda | hacia la izquierda | sinistra"
+    " | a sinistra | vers la gauche",
     "right": "droite | a droite | derecha | a la derecha | hacia la derecha | destra | a destra"
     " | vers la droite",
-    "gentle": "doux | douce | leger | legere | suave | suaves | dolce | dolci | leggera | legers | legeres"
-    " | larghe",
+    "gentle": "doux | douce | leger | legere | suave | suaves | dolce | dolci | leggera | legers"
+    " | legeres | larghe",
     "sharp": "serre | serree | serres | serrees | cerrada | cerradas | stretta | strette | brusque | cerrado",
     "sweeping": "ample | amplia | amplias | ampia | ampie",
     "long": "longue | larga | largo | lunga | lungo",
     "short": "court | courte | corta | corto | breve",
     "up": "en montee | cuesta arriba | in salita | vers le haut",
-    "up~": "montee | monte | montant | montante | grimpe | subida | sube | ascendente | salita | sale"
-    " | che sale | qui monte | que sube",
+    "up~": "montee | monte | montant | montante | grimpe | subida | sube | ascendente | salita"
+    " | sale | che sale | qui monte | que sube",
     "down": "en descente | cuesta abajo | in discesa | vers le bas",
-    "down~": "descente | descendant | descendante | descend | bajada | baja | descendente | discesa | scende"
-    " | qui descend | que baja | che scende",
+    "down~": "descente | descendant | descendante | descend | bajada | baja | descendente | discesa"
+    " | scende | qui descend | que baja | che scende",
     "flat": "plat | plate | plats | llana | llano | plana | plano | piana | piano | pianeggiante",
     "nearly": "presque | casi | quasi",
     "steep": "raide | empinada | empinado | ripida | ripido",
@@ -68,7 +68,7 @@ ROMANCE: dict[str, str] = {
     "all": "tous | toutes | todos | todas | tutte | tutti",
     "alternating": "alternes | alternees | alternados | alternadas | alternate",
     "road": "route | carretera | camino | strada | rue | chemin | carrera | via",
-    "-": "de | du | des | d'une | d'un | en | qui | que | che | di | da | del | della | vers | au | aux"
-    " | dans | por | par | per | se | su | sur | pour | va | avec une | es | est | tiene | ha | hacia"
-    " | verso | fait | une seule | al",
+    "-": "de | du | des | d'une | d'un | en | qui | que | che | di | da | del | della | vers | au"
+    " | aux | dans | por | par | per | se | su | sur | pour | va | avec une | es | est | tiene"
+    " | ha | hacia | verso | fait | une seule | al",
 }

@@ -2,10 +2,11 @@
 
 from dataclasses import replace
 
-from roadgpt.brief.grammar.phrases import STRAIGHT, Phrase
+from roadgpt.brief.grammar.phrase import Phrase
 from roadgpt.brief.grammar.slopes import slope_of
-from roadgpt.brief.grammar.units import Units, how_many, overlay, turns
-from roadgpt.brief.model import Amount, at_least, at_most, exactly
+from roadgpt.brief.grammar.units import Units, how_many, turns
+from roadgpt.brief.model import Amount, at_least, at_most, between, exactly
+from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
 
 ATTRIBUTES = ("side", "sharpness", "degrees", "radius", "incline")
@@ -15,10 +16,8 @@ def select(units: Units, phrase: Phrase, after: Phrase | None) -> bool:
     """Gives what the phrase says to the things that it points to."""
     if phrase.pick is not None:
         return _pick(units, phrase)
-    if (
-        (phrase.kind in STRAIGHT
-        and phrase.scope == "each")
-        or (phrase.scope and phrase.turning and _said_nothing(phrase) and after and after.kind in STRAIGHT)
+    if (phrase.kind in STRAIGHT and phrase.scope == "each") or (
+        phrase.scope and phrase.turning and _said_nothing(phrase) and after and after.kind in STRAIGHT
     ):
         if after is not None and after.kind in STRAIGHT:  # 'each turn followed by a straight'
             after.in_between = True
@@ -97,7 +96,7 @@ def _wish(units: Units, phrase: Phrase) -> bool:
 
 
 def _pick(units: Units, phrase: Phrase) -> bool:
-    """'the first two uphill', 'the last one is a hairpin'; with nothing to pick from, it is a thing itself."""
+    """'the first two uphill', 'the last is a hairpin'; with nothing to pick from, it is a thing itself."""
     first, number = phrase.pick or (0, 1)
     units.expand()
     places = [at for at, thing in enumerate(units.things) if turns(thing) and thing.pick is None]
@@ -116,11 +115,27 @@ def _pick(units: Units, phrase: Phrase) -> bool:
     return True
 
 
+def halve(units: Units, phrase: Phrase) -> bool:
+    """'the first half uphill': the slope goes to that half of the turns, or is a straight."""
+    units.expand()
+    turning = [thing for thing in units.things if turns(thing)]
+    if not turning:
+        units.things.append(replace(phrase, kind="straight", joint="then"))
+        return True
+    middle = (len(turning) + 1) // 2
+    for thing in turning[:middle] if phrase.half == 1 else turning[middle:]:
+        _give(thing, phrase)
+    return True
+
+
 def take_some(units: Units, phrase: Phrase) -> bool:
     """'two of them to the left', 'one of which is a hairpin'."""
     whole = units.last_turn
     if whole is None:
         return False
+    if phrase.count and _said_nothing(phrase) and phrase.kind is None:  # 'sharp turns, 5 of them'
+        whole.count = phrase.count
+        return True
     amount = phrase.count or exactly(1)
     if (
         phrase.kind in (None, "turn")
@@ -193,12 +208,11 @@ def _negate_kind(units: Units, phrase: Phrase) -> bool:
         wishes.turns = wishes.turns or at_least(1)
     elif kind in ("hairpin", "switchback", "u_turn"):
         least = KINDS[kind].degrees
-        wishes.degrees = wishes.degrees or at_most((least.lo if least else 100) - 10)
+        plain = KINDS["turn"].degrees or Range(25, 120)
+        most = min(plain.hi, (least.lo if least else 100) - 10)
+        wishes.degrees = wishes.degrees or between(plain.lo, most)
     elif kind in ("crest", "dip"):
         wishes.hills = wishes.hills or at_most(0)
     else:
         return False
     return True
-
-
-__all__ = ["negate", "overlay", "select", "take_some"]

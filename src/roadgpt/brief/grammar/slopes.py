@@ -2,16 +2,24 @@
 
 from dataclasses import replace
 
-from roadgpt.brief.grammar.phrases import STRAIGHT, Phrase
-from roadgpt.brief.grammar.units import Units, Wishes, turns
+from roadgpt.brief.grammar.phrase import Phrase
+from roadgpt.brief.grammar.units import Units, Wishes, how_many, turns
 from roadgpt.brief.model import Slope, exactly
+from roadgpt.brief.normal import SINGLE, STRAIGHT
+from roadgpt.errors import BriefError
 
-SCOPED = ("with", "for", "into", "(", "colon", "")
+SCOPED = ("with", "for", "into", "enter", "(", "colon", "")
+ONE_LEG = ("for", "then", "into", "enter", "and")
 _WORDS: dict[tuple[str, str], Slope] = {
-    ("up", ""): "up", ("up", "steep"): "steeply_up", ("up", "mild"): "gently_up", ("flat", ""): "flat",
-    ("down", ""): "down", ("down", "steep"): "steeply_down", ("down", "mild"): "gently_down",
+    ("up", ""): "up",
+    ("up", "steep"): "steeply_up",
+    ("up", "mild"): "gently_up",
+    ("flat", ""): "flat",
+    ("down", ""): "down",
+    ("down", "steep"): "steeply_down",
+    ("down", "mild"): "gently_down",
     ("flat", "nearly"): "nearly_flat",
-}  # fmt: skip
+}
 
 
 def slope_of(phrase: Phrase) -> Slope | None:
@@ -27,7 +35,7 @@ def slope_of(phrase: Phrase) -> Slope | None:
 def settle_slopes(units: Units) -> None:
     """Gives every slope that was said alone to its things, or to the road, or makes it a straight."""
     alone = [thing for thing in units.things if _alone(thing)]
-    if alone:
+    if alone and not _shared_out(units, alone):
         only = len({_said(thing) for thing in units.things if thing.slope}) == 1 and not _rises_and_falls(
             units
         )
@@ -36,6 +44,28 @@ def settle_slopes(units: Units) -> None:
         else:
             _along_the_road(units, only)
     _all_alike(units)
+
+
+def _shared_out(units: Units, alone: list[Phrase]) -> bool:
+    """'3 turns, first uphill, then downhill': each slope gets its share of the turns."""
+    things = [thing for thing in units.things if not _alone(thing)]
+    if len(alone) < 2 or len(things) != 1 or not turns(things[0]) or things[0].slope:
+        return False
+    turn, first = things[0], units.things[0] is things[0]
+    if (not first and (units.things[-1] is not turn or turn.joint != "with")) or any(a.length for a in alone):
+        return False
+    if turn.alternating or (turn.count and not turn.count.exact) or turn.kind not in SINGLE:
+        return False
+    number, out = how_many(turn), list[Phrase]()
+    if number < len(alone):
+        return False
+    for at, slope in enumerate(alone):
+        share = number // len(alone) + (1 if at < number % len(alone) else 0)
+        part = replace(turn, count=exactly(share), joint="then" if at else turn.joint)
+        _give(part, slope, with_number=True)
+        out.append(part)
+    units.things = out
+    return True
 
 
 def _alone(thing: Phrase) -> bool:
@@ -59,14 +89,9 @@ def _of_the_road(units: Units, alone: list[Phrase]) -> bool:
     if len(things) == 1:
         return True
     if at == len(things) - 1:
-        return slope.joint != "then" and not slope.article
+        return slope.joint != "then" and not (slope.article and slope.joint in (",", "and"))
     follows = things[at + 1]
-    return (slope.after_road or follows.joint in ("with", ",")) and follows.joint not in (
-        "for",
-        "then",
-        "into",
-        "and",
-    )
+    return (slope.after_road or follows.joint in ("with", ",", "stop")) and follows.joint not in ONE_LEG
 
 
 def _to_the_road(units: Units, alone: list[Phrase]) -> None:
@@ -81,8 +106,11 @@ def _to_the_road(units: Units, alone: list[Phrase]) -> None:
 def _wish(wishes: Wishes, slope: Phrase) -> None:
     if slope.length is not None and wishes.length is None:
         wishes.length = slope.length
-    if wishes.slope is None:
-        wishes.slope, wishes.incline = slope_of(slope), slope.incline
+    said = slope_of(slope)
+    if wishes.slope is None or (said and said.endswith(wishes.slope)):  # 'an uphill road that climbs steeply'
+        wishes.slope, wishes.incline = said, slope.incline or wishes.incline
+    elif said and {said.split("_")[-1], wishes.slope.split("_")[-1]} == {"up", "down"}:
+        raise BriefError("the road is said to go uphill and downhill; say the slope of each part instead")
 
 
 def _along_the_road(units: Units, only: bool) -> None:
@@ -139,6 +167,8 @@ def _belongs(slope: Phrase, after: Phrase) -> bool:
     if _alone(after) or after.slope:
         return False
     if after.joint in SCOPED:
+        if after.joint == "enter" and slope.article:  # 'a descent into a hairpin'
+            return False
         return not (after.joint == "" and slope.article and slope.stretch)
     bare = after.kind == "straight" and not after.article and after.count is None
     return bare and after.joint == ","
@@ -164,6 +194,3 @@ def _all_alike(units: Units) -> None:
         wishes.slope, wishes.incline = slope_of(first), first.incline
         for thing in things:
             thing.slope, thing.incline = "", None
-
-
-__all__ = ["exactly", "settle_slopes", "slope_of"]

@@ -3,8 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from roadgpt.brief.grammar.phrases import STRAIGHT, WAVY, Phrase
+from roadgpt.brief.grammar.phrase import WAVY, Phrase
 from roadgpt.brief.model import Amount, Clause, Kind, Sharpness, Slope, at_least, exactly
+from roadgpt.brief.normal import STRAIGHT
 from roadgpt.errors import BriefError
 
 MOST = 200
@@ -40,7 +41,7 @@ class Units:
     things: list[Phrase] = field(default_factory=list)
     wishes: Wishes = field(default_factory=Wishes)
     lists: list[tuple[Phrase, int]] = field(default_factory=list)
-    """Things that are spelled out behind: 'three turns: left, right, left', and how many stood before that."""
+    """Things that are spelled out: 'three turns: left, right, left', and how many stood before that."""
 
     @property
     def last(self) -> Phrase | None:
@@ -61,12 +62,19 @@ class Units:
         """
         if self._joins(thing):
             return
+        last = self.last
+        if last and last.kind is None and last.side and last.count is None and thing.count == at_least(2):
+            thing.count = None  # 'left, right and left turns' are three
         if thing.joint == "after" and not leading and self.things:
             self.things.insert(len(self.things) - 1, thing)
         elif (thing.in_between or thing.joint == "between") and thing.kind in STRAIGHT and self.last_turn:
             self._weave(thing, lambda other: turns(other))
         elif thing.joint == "between" and turns(thing) and self.last and self.last.kind in STRAIGHT:
             self._surround(thing)
+        elif self.last and "middle" in (thing.place, self.last.place) and self._in_the_straight(thing):
+            return
+        elif self.last and self.last.joint == "ahead" and thing.joint in ("", ",", "with"):
+            self.things.insert(len(self.things) - 1, thing)
         elif thing.place == "start" and self.things:
             self.things.insert(0, thing)
         elif thing.place == "middle" and self.things:
@@ -83,7 +91,9 @@ class Units:
         if thing.joint == "start" and (last.alternating or last.kind in WAVY) and thing.side:
             last.side = thing.side
             return True
-        if thing.joint in ("with", "for", "into", "(") and last.count is None and last.kind in WAVY:
+        of_it = thing.joint in ("with", "for", "into", "(")
+        of_it |= thing.joint == "" and not thing.fresh and thing.count is not None and thing.kind == "turn"
+        if of_it and last.count is None and last.kind in WAVY:
             _specify(last, thing)
             return True
         if thing.joint == "with" and last.kind in ("s_bend", "chicane") and thing.kind == "turn":
@@ -97,7 +107,7 @@ class Units:
 
     def _note_list(self, thing: Phrase) -> None:
         last = self.last
-        if last is None or not turns(last) or not turns(thing):
+        if last is None or last.kind is None or last.side or not turns(last) or not turns(thing):
             return
         spelled = thing.joint in ("colon", "(", "start") or (thing.kind is None and thing.joint in (",", ""))
         if spelled and (plural(last) or last.kind in ("s_bend", "chicane") or thing.kind is None):
@@ -128,6 +138,25 @@ class Units:
         self.things.append(middle)
         if number > 1:
             self.things.append(replace(thing, count=exactly(number - number // 2), joint="then"))
+
+    def _in_the_straight(self, thing: Phrase) -> bool:
+        """'a straight with a chicane in the middle', 'a chicane in the middle of a straight'."""
+        last = self.things[-1]
+        middle, straight = (last, thing) if last.place == "middle" else (thing, last)
+        if straight.kind != "straight" or not turns(middle) or len(self.things) > 1:
+            return False
+        half = straight.length
+        if half is not None:
+            half = Amount(
+                lo=None if half.lo is None else half.lo / 2, hi=None if half.hi is None else half.hi / 2
+            )
+        behind = replace(straight, length=half, joint="then", road=False)
+        self.things = [
+            replace(straight, length=half, place=""),
+            replace(middle, place="", joint="then"),
+            behind,
+        ]
+        return True
 
     def _insert_in_the_middle(self, thing: Phrase) -> None:
         self.expand()
@@ -178,6 +207,8 @@ def default_count(thing: Phrase) -> None:
     if thing.times and thing.times.lo and thing.times.exact:
         lo = how_many(thing) * thing.times.lo
         thing.count = exactly(lo)
+    if thing.count == exactly(0) and thing.kind is not None:
+        thing.count, thing.negated = None, True
     if thing.count is None and thing.many and thing.kind not in WAVY and thing.kind not in STRAIGHT:
         thing.count = at_least(2)
     if thing.count and thing.count.lo is not None and thing.count.lo > MOST:

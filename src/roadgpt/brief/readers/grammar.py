@@ -13,12 +13,23 @@ from roadgpt.errors import BriefError
 
 MOST_CHARACTERS = 2000
 EXAMPLE = "say for example 'an uphill road with 3 turns'"
-SURE = TURNING | {"road", "straight+", "crest+", "dip+", "hilly", "highway", "mountain"}
+SURE = TURNING | {
+    "road",
+    "straight+",
+    "crest+",
+    "dip+",
+    "hilly",
+    "highway",
+    "mountain",
+    "more_left",
+    "more_right",
+    "same_sides",
+}
 """Words that speak of roads and of little else."""
 LIKELY = frozenset(
     {"straight", "crest", "dip", "hill", "left", "right", "up", "down", "up~", "down~", "flat", "flat~"}
 )
-LIKELY_SHARE = 0.34  # of words not understood, above which such words alone are taken for chance
+LIKELY_SHARE = 0.2  # of words not understood, above which such words alone are taken for chance
 SURE_SHARE = 0.75  # above which even one word about roads is
 
 
@@ -29,7 +40,7 @@ class GrammarReader:
         """The Brief of a description, in normal form.
 
         Raises:
-            BriefError: empty, longer than 2,000 characters, not about a road, or in contradiction with itself.
+            BriefError: empty, too long, not about a road, or in contradiction with itself.
         """
         if not words.strip():
             raise BriefError(f"the description is empty; {EXAMPLE}")

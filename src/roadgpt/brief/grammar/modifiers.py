@@ -1,0 +1,108 @@
+"""Phrases that name no thing: they tell more about the one before, or about the road."""
+
+from dataclasses import replace
+
+from roadgpt.brief.grammar.phrase import Phrase
+from roadgpt.brief.grammar.slopes import slope_of
+from roadgpt.brief.grammar.units import Units, plural, turns
+from roadgpt.brief.model import at_least, exactly
+from roadgpt.brief.normal import STRAIGHT
+from roadgpt.errors import BriefError
+
+
+def modify(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
+    """A phrase that names no thing: it tells more about the one before, or about the road."""
+    last, turn, wishes = units.last, units.last_turn, units.wishes
+    used = (
+        phrase.height is not None
+        or phrase.hilly
+        or phrase.climbs_said
+        or phrase.more != ""
+        or phrase.mountain
+        or phrase.hard
+        or phrase.highest
+        or phrase.changes
+    )
+    if phrase.length is not None:
+        used |= _length(units, phrase, before, after)
+    if phrase.incline is not None or phrase.slope_noun:
+        used |= _incline(units, phrase, before)
+    on_turn = turn is not None and (before is turn or phrase.joint in ("with", "", "(", ","))
+    for name in ("degrees", "radius", "sharpness"):
+        value = getattr(phrase, name)
+        if value is not None:
+            target = turn if on_turn and turn is not None else wishes
+            setattr(target, name, getattr(target, name) or value)
+            used = True
+    if phrase.alternating:
+        used = True
+        if turn is not None and plural(turn):
+            turn.alternating = True
+        else:
+            wishes.alternating = True
+    if phrase.size and last is not None and last.kind in STRAIGHT and last.size is None:
+        last.size, used = phrase.size, True
+    if phrase.count and turn is not None and turn.many and turn.count == at_least(2):
+        turn.count, used = phrase.count, True
+    if (phrase.times or phrase.repeat) and units.things:
+        _repeat(units, phrase)
+        used = True
+    if phrase.again and last is not None and last.kind and phrase.joint in ("then", "and"):
+        units.things.append(replace(last, joint="then", count=phrase.count))
+        used = True
+    return used or phrase.steep or phrase.only or not (phrase.count or phrase.length or phrase.degrees)
+
+
+def _length(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
+    last, wishes = units.last, units.wishes
+    leads = phrase.joint in ("after", "then") or (
+        phrase.fresh and after is not None and after.joint == "then"
+    )
+    if phrase.joint == "after" and not phrase.fresh and turns(last or phrase):
+        units.things.insert(-1, replace(phrase, kind="straight"))
+        return True
+    if leads and not phrase.length_said:
+        units.things.append(replace(phrase, kind="straight", joint="then"))
+        return True
+    on_thing = last is not None and last is before and not phrase.total and last.length is None
+    if on_thing and last is not None and _has_a_length(last, phrase):
+        last.length = phrase.length
+        return True
+    if wishes.length is None:
+        wishes.length = phrase.length
+        return True
+    return False
+
+
+def _incline(units: Units, phrase: Phrase, before: Phrase | None) -> bool:
+    last, wishes = units.last, units.wishes
+    if last is not None and before is last:
+        last.incline = last.incline or phrase.incline
+        last.slope = last.slope or ("" if wishes.slope else "up")
+        last.steep |= phrase.steep
+        last.mild |= phrase.mild
+    else:
+        wishes.incline = wishes.incline or phrase.incline
+        phrase.slope = "up"
+        wishes.slope = wishes.slope or slope_of(phrase)
+    return True
+
+
+def _repeat(units: Units, phrase: Phrase) -> None:
+    times = phrase.times or phrase.count or exactly(2)
+    number = int(times.lo or times.hi or 2)
+    if number * len(units.things) > 100:
+        raise BriefError("so many repetitions fit on no map; ask for fewer")
+    last = units.last
+    if len(units.things) == 1 and last is not None and last.count is None and turns(last):
+        last.count = exactly(number)
+        return
+    once = list(units.things)
+    for _ in range(number - 1):
+        units.things += [replace(thing, joint="then") for thing in once]
+
+
+def _has_a_length(thing: Phrase, phrase: Phrase) -> bool:
+    """Is it a straight, or a slope that is not that of the whole road?"""
+    of_the_road = thing.after_road and phrase.length_said
+    return thing.kind in STRAIGHT or (thing.kind is None and thing.slope != "" and not of_the_road)
