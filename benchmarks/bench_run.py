@@ -87,9 +87,8 @@ def _bytes_and_pictures() -> None:
         for path in (path for path in Path(home).rglob("*") if path.is_file()):
             kind = "test.NNNN.json" if path.name.startswith("test.") else path.name
             sizes.setdefault(kind, []).append(path.stat().st_size)
-    print(
-        f"files of a driven road: {median(written) * 1e3:.1f} ms; its pictures: {median(drawn):.2f} s (target 1.2 s)"
-    )
+    print(f"files of a driven road: {median(written) * 1e3:.1f} ms on the clock")
+    print(f"its pictures: {median(drawn):.2f} s on the clock (target 1.2 s)")
     total = sum(sum(each) for each in sizes.values()) / PICTURES
     largest = sorted(sizes.items(), key=lambda item: -sum(item[1]))[:6]
     print(f"a driven road on disk: {total / 1000:.0f} kB, of which")
