@@ -52,11 +52,18 @@ def walk(spans: Sequence[Span]) -> Line:
             bends += [0.0, k, k, 0.0]
         at += span.length
     s = np.linspace(0.0, at, max(2, round(at / STEP)) + 1)
-    step = s[1]
-    middle = s[:-1] + step / 2
-    heading = np.concatenate([[0.0], np.cumsum(np.interp(middle, knots, bends)) * step])
-    steps = np.exp(0.5j * (heading[1:] + heading[:-1])) * step
+    steps = np.exp(1j * _headings(s[:-1] + s[1] / 2, np.array(knots), np.array(bends))) * s[1]
     return Line(s, np.concatenate([[0j], np.cumsum(steps)]))
+
+
+def _headings(s: Array, knots: Array, bends: Array) -> Array:
+    """Radians at stations, where the curvature runs linearly from knot to knot, and is 0 after the last."""
+    spans = np.diff(knots)
+    reached = np.concatenate([[0.0], np.cumsum(spans * (bends[1:] + bends[:-1]) / 2)])
+    slopes = np.append(np.diff(bends) / np.maximum(spans, 1e-9), 0.0)
+    i = np.searchsorted(knots, s, side="right") - 1
+    u = s - knots[i]
+    return np.asarray(reached[i] + u * (bends[i] + u * slopes[i] / 2))
 
 
 def keeps_clear(line: Line, world: World, with_verges: bool) -> bool:

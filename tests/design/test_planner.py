@@ -1,0 +1,193 @@
+from math import inf, radians
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt import check
+from roadgpt.brief.model import Brief, Clause, at_least, exactly
+from roadgpt.check.measures import measure
+from roadgpt.design import draft
+from roadgpt.design.designers.planner import Planner
+from roadgpt.errors import DesignError, PartError
+from roadgpt.road import Design, World, build, read_design
+from strategies import briefs, sensible_briefs, worlds
+
+planner = Planner()
+WORLD = World()
+
+
+def turns(count: int, kind: str = "turn", **promises) -> Clause:
+    return Clause(kind=kind, count=exactly(count), **promises)
+
+
+A_ROAD = Brief()
+UPHILL = Brief(clauses=(turns(3),), slope="up")
+ENDS_LEFT = Brief(
+    clauses=(turns(2, slope="up"), Clause(kind="straight", slope="down"), turns(1, side="left"))
+)
+EVALUATION = {"a road": A_ROAD, "uphill": UPHILL, "ends left": ENDS_LEFT}
+
+
+def campaign(brief: Brief, count: int, world: World = WORLD) -> list[Design]:
+    out: list[Design] = []
+    for number in range(count):
+        out.append(planner.draft(brief, world, (), out, 7 + number))
+    return out
+
+
+def attempt(brief: Brief, world: World, seed: int) -> Design | str:
+    """A Design, or the sentence that says why there is none."""
+    try:
+        return planner.draft(brief, world, (), (), seed)
+    except DesignError as error:
+        return str(error)
+
+
+def assert_fine(design: Design, brief: Brief, world: World) -> None:
+    road = build(design)
+    assert check.inspect(road, brief, world) == ()
+    assert check.sbft_verdict(road.control_points(), world.map_size) == (True, "")
+    assert all(abs(segment.turn_degrees) <= 70 for segment in design.segments)
+    assert all(abs(segment.incline) <= 15 for segment in design.segments)
+    assert read_design(design.to_json()) == (design, ())
+
+
+@settings(max_examples=150, deadline=None)
+@given(sensible_briefs(), st.integers(0, 10**9))
+def test_what_can_be_had_is_drafted(brief: Brief, seed: int) -> None:
+    assert_fine(planner.draft(brief, WORLD, (), (), seed), brief, WORLD)
+
+
+@settings(max_examples=100, deadline=None)
+@given(briefs(), worlds(), st.integers(0, 1000))
+def test_any_brief_gives_a_fine_road_or_one_sentence_of_advice(brief: Brief, world: World, seed: int) -> None:
+    drafted = attempt(brief, world, seed)
+    if isinstance(drafted, Design):
+        assert_fine(drafted, brief, world)
+    else:
+        assert "; " in drafted
+        assert "\n" not in drafted
+        assert not any(odd in drafted.split() for odd in ("inf", "-inf", "nan", "None"))
+
+
+@pytest.mark.parametrize("name", EVALUATION)
+def test_roads_of_one_prompt_are_fine_and_look_every_way(name: str) -> None:
+    brief = EVALUATION[name]
+    designs = campaign(brief, 60)
+    for design in designs:
+        assert_fine(design, brief, WORLD)
+    assert {int(design.theta // 45) for design in designs} == set(range(8))
+    starts = np.array([design.starting_point[:2] for design in designs])
+    assert (np.ptp(starts, axis=0) > WORLD.map_size / 2).all()
+
+
+def test_what_words_leave_open_is_drawn_widely() -> None:
+    found = [
+        measure(build(design).centreline()) for brief in EVALUATION.values() for design in campaign(brief, 40)
+    ]
+    drawn = [turn for one in found for turn in one.turns]
+    radii = np.quantile([turn.radius for turn in drawn], [0, 0.1, 0.5, 0.9])
+    assert radii[0] < 17
+    assert radii[1] < 22
+    assert 25 < radii[2] < 50
+    assert radii[3] > 70
+    angles = np.array([turn.degrees for turn in drawn])
+    assert angles.min() < 33
+    assert angles.max() > 110
+    assert len({len(one.turns) for one in found[:40]}) >= 4
+    assert 0.35 < np.mean([turn.side == "left" for turn in drawn]) < 0.65
+    assert all(3 <= one.grade <= 12 for one in found[40:80])
+
+
+def test_the_same_arguments_give_the_same_design() -> None:
+    earlier = campaign(UPHILL, 3)
+    one, other = (Planner().draft(UPHILL, WORLD, (), earlier, 99) for _ in range(2))
+    assert one == other
+    assert Planner().draft(UPHILL, WORLD, (), earlier, 100) != one
+    assert Planner().draft(UPHILL, WORLD, ("turn 1 is too tight",), earlier, 99) != one
+
+
+def test_the_verb_finds_designers_by_name() -> None:
+    assert draft(UPHILL, WORLD, seed=5) == Planner().draft(UPHILL, WORLD, (), (), 5)
+    with pytest.raises(PartError, match="planner"):
+        draft(UPHILL, WORLD, designer="planer")
+
+
+def test_roads_begin_and_end_straight() -> None:
+    for design in campaign(Brief(clauses=(turns(4),)), 30):
+        features = measure(build(design).centreline()).features
+        assert features[0].kind == features[-1].kind == "straight"
+        assert min(features[0].length, features[-1].length) >= 10
+
+
+def test_roads_stay_above_the_floor() -> None:
+    deep = World(z_floor=30.0)
+    for seed in range(10):
+        design = planner.draft(Brief(slope="down"), deep, (), (), seed)
+        assert build(design).centreline()[:, 2].min() > 30
+
+
+def test_hard_roads_are_tight_and_crest_before_bends() -> None:
+    easy, hard = (campaign(Brief(turns=exactly(3), hard=hard), 15) for hard in (False, True))
+    tightest = [np.median([measure(build(d).centreline()).radius for d in some]) for some in (easy, hard)]
+    assert tightest[1] < tightest[0]
+    for design in hard:
+        road = build(design)
+        first = measure(road.centreline()).turns[0]
+        assert road.grade(first.start / 2) > 0.02
+        assert road.vertical_curvature(np.arange(first.start - 12, first.start + 8)).min() < 0
+
+
+ADVICE = [
+    (Brief(clauses=(turns(40, "hairpin"),)), "40 hairpins do not fit on a 250 m map.*--map-size"),
+    (Brief(clauses=(turns(4, "hairpin", side="left"),)), "4 hairpins do not fit"),
+    (Brief(clauses=(turns(6),), length=exactly(60)), "do not fit into a road of 54 to 66 m"),
+    (Brief(length=exactly(2000)), "a length of 1800 to 2200 m does not fit on a 250 m map"),
+    (Brief(climb=exactly(150)), "a climb of 127.5 to 172.5 m does not fit"),
+    (Brief(clauses=(turns(1, radius=exactly(8)),)), "tighter than the 14.33 m"),
+    (
+        Brief(clauses=(turns(1, "hairpin"),), radius=at_least(50)),
+        "radius asked for does not go with a hairpin",
+    ),
+    (Brief(turns=exactly(2), left=exactly(2), right=exactly(1)), "2 to the left and 1 to the right"),
+    (Brief(clauses=(turns(2, side="left"),), right=exactly(1)), "sides asked for the 2 turns contradict"),
+    (Brief(clauses=(turns(1, slope="down"),), slope="up"), "contradicts a road that is uphill all the way"),
+    (Brief(clauses=(turns(1, slope="steeply_up"),), steepest=exactly(3)), "steeper than the 4 % that"),
+    (Brief(clauses=(turns(2),), turns=exactly(3)), "asked for 3 turns, and for 2 at most"),
+    (Brief(clauses=(turns(1, degrees=exactly(5)),)), "not seen as a turn"),
+]
+
+
+@pytest.mark.parametrize(("brief", "sentence"), ADVICE)
+def test_wishes_that_cannot_be_met_get_advice(brief: Brief, sentence: str) -> None:
+    with pytest.raises(DesignError, match=sentence):
+        planner.draft(brief, WORLD, (), (), 1)
+
+
+def test_the_map_that_is_advised_is_large_enough() -> None:
+    brief = Brief(length=exactly(900))
+    with pytest.raises(DesignError, match="--map-size") as caught:
+        planner.draft(brief, WORLD, (), (), 1)
+    world = World(map_size=float(str(caught.value).split("--map-size ")[1]))
+    assert_fine(planner.draft(brief, world, (), (), 1), brief, world)
+
+
+def test_many_turns_still_fit() -> None:
+    for count in (10, 15):
+        brief = Brief(clauses=(turns(count),))
+        assert_fine(planner.draft(brief, WORLD, (), (), count), brief, WORLD)
+
+
+def test_the_longest_turns_keep_one_radius_through_all_their_segments() -> None:
+    design = planner.draft(Brief(clauses=(turns(1, "u_turn", side="left"),)), WORLD, (), (), 3)
+    parts = [segment for segment in design.segments if segment.turn_degrees]
+    assert len(parts) == 3
+    radius = parts[0].radius or inf
+    s = np.arange(0.0, build(design).length, 0.25)
+    bend = build(design).curvature(s)
+    assert bend.max() == pytest.approx(1 / radius, rel=1e-3)
+    arc = (bend > 0.999 / radius).sum() * 0.25
+    swept = radians(sum(part.turn_degrees for part in parts))
+    assert arc == pytest.approx(radius * swept - (parts[0].transition or 0), abs=1.0)

@@ -1,0 +1,79 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt.brief.model import Brief
+from roadgpt.design.designers.planner import Planner
+from roadgpt.design.variety import Shape, Shapes, apart, shape_of
+from roadgpt.road import Design, World, build
+
+
+def lines(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Random smooth lines: stations and points."""
+    rng = np.random.default_rng(seed)
+    out = []
+    for _ in range(count):
+        s = np.arange(0.0, rng.uniform(80, 300))
+        heading = np.cumsum(np.convolve(rng.normal(0, 0.1, len(s)), np.ones(20) / 20, "same"))
+        out.append((s, np.cumsum(np.exp(1j * heading))))
+    return out
+
+
+def stacked(shapes: list[Shape]) -> Shape:
+    return Shape(*(np.array(column) for column in zip(*shapes, strict=True)))
+
+
+def moved(z: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    z = z * np.exp(1j * rng.uniform(0, 6)) + complex(*rng.uniform(-90, 90, 2))
+    return z.conj() if rng.random() < 0.5 else z
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.integers(0, 10**6))
+def test_a_shifted_turned_mirrored_road_is_the_same(seed: int) -> None:
+    ((s, z),) = lines(seed, 1)
+    copy = moved(z, np.random.default_rng(seed))
+    by_share, by_metres = apart(shape_of(s, z), stacked([shape_of(s, copy)]))
+    assert by_share[0] == pytest.approx(0, abs=1e-4)
+    assert by_metres[0] == pytest.approx(0, abs=1e-4)
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.integers(0, 10**6))
+def test_a_road_that_only_goes_on_further_is_the_same_by_metres(seed: int) -> None:
+    ((s, z),) = lines(seed, 1)
+    half = len(s) // 2
+    by_share, by_metres = apart(shape_of(s, z), stacked([shape_of(s[:half], z[:half])]))
+    assert by_metres[0] == pytest.approx(0, abs=1e-4)
+    assert by_share[0] > 5
+
+
+def test_a_campaign_never_repeats_itself() -> None:
+    planner, earlier = Planner(), list[Design]()
+    for seed in range(40):
+        earlier.append(planner.draft(Brief(), World(), (), earlier, seed))
+    shapes = Shapes().of(earlier)
+    for i in range(1, len(earlier)):
+        own = Shape(*(column[i] for column in shapes))
+        by_share, by_metres = apart(own, Shape(*(column[:i] for column in shapes)))
+        assert by_share.min() > 5
+        assert by_metres.min() > 5
+
+
+def test_even_straight_roads_go_on_being_found() -> None:
+    planner, earlier = Planner(), list[Design]()
+    brief = Brief(turns={"lo": 0, "hi": 0})
+    for seed in range(30):
+        earlier.append(planner.draft(brief, World(), (), earlier, seed))
+    lengths = sorted(build(design).length for design in earlier)
+    assert len({round(length, 1) for length in lengths}) == 30
+
+
+def test_shapes_are_remembered_by_design_and_do_not_depend_on_what_came_before() -> None:
+    planner = Planner()
+    designs = [planner.draft(Brief(), World(), (), (), seed) for seed in range(5)]
+    fresh, used = Shapes(), Shapes()
+    used.of(designs[::-1])
+    for one, other in zip(fresh.of(designs), used.of(designs), strict=True):
+        assert np.array_equal(one, other)
