@@ -15,7 +15,7 @@ from roadgpt.road import Road, World
 
 A, B, MASS, INERTIA = 1.36, 1.47, 1700.0, 2800.0  # m, m, kg, kg m^2
 STIFFNESS, SHAPE = 14.0, 1.35  # 1/rad over load; C of the magic formula
-STEPS, DT = 8, 0.0025  # of physics per control step
+STEPS, DT = 5, 0.004  # of physics per control step
 BOX = Box(4.7, 1.86, -0.1)
 START, GOAL, STUCK, LONGEST = 2.5, 8.0, 10.0, 90.0
 
@@ -34,13 +34,15 @@ class SlipperyBicycle:
             driver.start(road, world, seed)
         stations = np.arange(0.0, road.length + 20.0, 0.25)
         bend = np.where(stations > road.length, 0.0, road.curvature(stations)).tolist()
+        ways = road.heading(np.minimum(stations, road.length)).tolist()
         slope = road.grade(np.minimum(stations, road.length)).tolist()
         middle = -world.lane_width / 2
         s, t, psi, vx, vy, r, steer, time = START, middle, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         rows: list[dict[str, float]] = []
         ended, still_since, still_at = "", 0.0, s
         while not ended:
-            k, heading = bend[int(s / 0.25)], float(road.heading(min(s, road.length)))
+            i, f = int(s / 0.25), s / 0.25 % 1
+            k, heading = bend[i], ways[i] + f * (ways[i + 1] - ways[i])
             x, y, z = (float(v) for v in road.at(min(s, road.length), t))
             yaw = math.remainder(heading + psi, 2 * math.pi)
             speed = math.hypot(vx, vy)

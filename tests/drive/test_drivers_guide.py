@@ -1,0 +1,41 @@
+"""The guide runs: its driver is copied out of the page, saved, loaded by path and driven."""
+
+import re
+from pathlib import Path
+
+from drive.slippery_bicycle import SlipperyBicycle
+from roadgpt.drive import View
+from roadgpt.drive.custom import load_driver
+from roadgpt.road import Design, Segment, World, build
+from roadgpt.verdict import judge
+
+GUIDE = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "own-driver.md"
+
+
+def test_the_driver_of_the_guide_keeps_its_lane(tmp_path: Path) -> None:
+    text = GUIDE.read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    lines = [line for line in code.splitlines() if line.strip()]
+    assert len(lines) <= 15
+    (spec,) = set(re.findall(r"--driver (\S+)", text))
+    (tmp_path / spec.split(":")[0]).write_text(code)
+    bends = [(20.0, 60.0), (15.0, 0.0), (40.0, -69.0), (30.0, 0.0)]
+    segments = [
+        Segment(
+            distance=distance,
+            direction="left" if turn > 0 else "right" if turn < 0 else "straight",
+            turn_degrees=turn,
+            incline=6,
+        )
+        for distance, turn in [(25.0, 0.0), *bends]
+    ]
+    road = build(Design(starting_point=(20, 20, 0), theta=160, segments=tuple(segments)))
+    driver = load_driver(str(tmp_path / spec))
+    verdict = judge(road, SlipperyBicycle().simulate(road, World(), driver, 0), World())
+    assert verdict.kept, verdict.description
+
+
+def test_the_guide_names_every_field_of_the_view() -> None:
+    text = GUIDE.read_text(encoding="utf-8")
+    missing = [name for name in View._fields if f"`{name}`" not in text]
+    assert not missing

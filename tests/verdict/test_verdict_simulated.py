@@ -1,0 +1,111 @@
+"""Verdicts on drives of the real simulator: they agree with how it ended, whoever drove."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from roadgpt.drive import Command, View, simulate
+from roadgpt.drive.drivers.beamng_like import BeamngLike
+from roadgpt.drive.drivers.pure_pursuit import PurePursuit
+from roadgpt.drive.drivers.reference import Reference
+from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.verdict import consult, judge
+
+
+class NeverSteers:
+    def steer(self, view: View) -> Command:
+        return Command(0.0, 0.3)
+
+
+class Sleeps:
+    def steer(self, view: View) -> Command:
+        return Command(0.0, 0.0, 1.0)
+
+
+class Crawls:
+    """Half a metre per second: too fast to be stuck, too slow to arrive."""
+
+    def start(self, road: Road, world: World, seed: int) -> None:
+        self.kept = Reference()
+        self.kept.start(road, world, seed)
+
+    def steer(self, view: View) -> Command:
+        wheels = self.kept.steer(view).steer
+        return Command(wheels, 0.15, 0.0) if view.speed < 0.5 else Command(wheels, 0.0, 0.05)
+
+
+def road_of(*bends: tuple[float, float]) -> Road:
+    """A straight, then bends of so many degrees and metres of radius, 20 m apart."""
+    straight = Segment(distance=25, direction="straight", incline=4)
+    segments = [straight]
+    for degrees, radius in bends:
+        turn: Any = {"direction": "left" if degrees > 0 else "right", "turn_degrees": degrees}
+        length = abs(math.radians(degrees)) * radius * 1.25
+        segments += [Segment(distance=length, incline=4, **turn), straight]
+    return build(Design(starting_point=(100, 100, 0), theta=200, segments=tuple(segments)))
+
+
+ROADS = [road_of((60, 30), (-50, 25)), road_of((-65, 16), (-40, 40))]
+WORLDS = [World(), World(verge=0.0, friction=0.5), World(oob_tolerance=0.5)]
+CAUSE = {"goal": None, "out_of_lane": "out of lane", "fell": "fell", "stuck": "stuck", "timeout": "timeout"}
+
+
+@pytest.mark.parametrize("driver", [BeamngLike, PurePursuit, Reference, NeverSteers])
+def test_the_verdict_agrees_with_how_the_drive_ended(driver: type[Any]) -> None:
+    for road in ROADS:
+        for world in WORLDS:
+            drive = simulate(road, world, driver())
+            verdict = judge(road, drive, world)
+            assert verdict.cause == CAUSE[drive.ended]
+            assert verdict.kept == (drive.ended == "goal")
+            assert (verdict.margin < 0) == (drive.ended in ("out_of_lane", "fell"))
+            assert verdict.max_oob == drive["outside"].max()
+            assert verdict.oob_counter == (1 if drive.ended == "out_of_lane" else 0)
+            if drive.ended == "out_of_lane":  # it ended at the first step outside, where it hardly is outside
+                assert verdict.at_s == drive["s"][-1]
+                assert (drive["outside"][:-1] <= world.oob_tolerance).all()
+                assert verdict.margin > -0.3
+            if driver is NeverSteers:
+                assert verdict.side == ("right" if road is ROADS[0] else "left") or drive.ended == "fell"
+
+
+def test_told_to_keep_driving_it_fails_at_the_same_place() -> None:
+    for road in ROADS:
+        once = simulate(road, World(), NeverSteers())
+        on = simulate(road, World(), NeverSteers(), keep_driving=True)
+        first, last = judge(road, once, World()), judge(road, on, World())
+        assert len(on) > len(once)
+        assert (first.cause, first.at_s, first.side) == (last.cause, last.at_s, last.side)
+        assert last.max_oob >= first.max_oob
+        assert last.margin <= first.margin
+        assert consult(on, World()).oob_counter[-1] == last.oob_counter
+
+
+def test_a_car_that_stands_is_stuck_and_one_that_crawls_runs_out_of_time() -> None:
+    stuck = judge(ROADS[0], simulate(ROADS[0], World(), Sleeps()), World())
+    assert (stuck.cause, stuck.side) == ("stuck", None)
+    assert stuck.at_time == pytest.approx(10.0, abs=0.5)
+    late = judge(ROADS[0], simulate(ROADS[0], World(), Crawls()), World())
+    assert late.cause == "timeout"
+    assert late.margin > 0.5
+
+
+def test_without_a_verge_a_car_that_runs_wide_falls() -> None:
+    world = World(verge=0.0, oob_tolerance=0.99)
+    road = road_of((69, 25))
+    drive = simulate(road, world, NeverSteers())
+    verdict = judge(road, drive, world)
+    assert (verdict.cause, verdict.side) == (CAUSE[drive.ended], "right")
+    assert verdict.cause in ("fell", "out of lane")
+    assert drive["z"].min() < np.min(road.at([0.0, 30.0, road.length])[:, 2]) + 1
+    assert verdict.margin < 0
+
+
+def test_the_reference_keeps_its_lane_where_a_car_can() -> None:
+    for road in ROADS:
+        for world in (World(speed_limit=40 / 3.6, verge=0), World(verge=0), World(friction=0.35)):
+            verdict = judge(road, simulate(road, world, Reference()), world)
+            assert verdict.kept
+            assert verdict.margin > (0.7 if world.verge == 0 else 2.5)
