@@ -62,7 +62,7 @@ bench: $(VENV)/.installed-test
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/python docs/commands.py
-	$(BIN)/python -m mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 	@echo "make docs: site/index.html, $(SECONDS_SO_FAR) s"
 
 format: $(VENV)/.installed-test
