@@ -68,6 +68,12 @@ def test_what_a_killed_process_left_is_swept_away(tmp_path: Path) -> None:
     assert [file.name for file in tmp_path.iterdir()] == ["kept.json"]
 
 
+def test_half_a_letter_from_a_broken_terminal_is_kept(tmp_path: Path) -> None:
+    words = b"a road \x80".decode("utf-8", "surrogateescape")
+    write_whole(tmp_path / "a.json", json_text({"words": words}))
+    assert json.loads((tmp_path / "a.json").read_text())["words"] == words
+
+
 def test_numbers_that_are_not_finite_become_null() -> None:
     text = json_text({"a": math.inf, "b": [math.nan, 1.5, (2, -math.inf)], "c": "ü"})
     assert json.loads(text) == {"a": None, "b": [None, 1.5, [2, None]], "c": "ü"}

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from roadgpt.brief.model import Brief
-from roadgpt.errors import DesignError, UsageError
+from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.run import Request, Setup, campaign, read_run, seed_of, show
 from roadgpt.run.campaign import GIVE_UP, Campaign
 from run.campaign_worker import Drawing
@@ -254,6 +254,45 @@ def test_ctrl_c_leaves_a_campaign_that_is_told_of_completely(tmp_path: Path) -> 
     assert table(tmp_path, "generation_stats.csv")["test_generated"] == str(count)
     assert not list(tmp_path.rglob("*.part"))
     assert not (tmp_path / "overview.png").exists()
+
+
+def test_two_processes_do_not_work_in_one_folder(tmp_path: Path) -> None:
+    process = start(tmp_path, 500, "--slow")
+    assert process.stdout is not None
+    process.stdout.readline()
+    second = start(tmp_path, 500)
+    assert "another process is at work" in second.communicate(timeout=60)[1]
+    assert second.returncode != 0
+    assert process.poll() is None
+    process.kill()
+    process.communicate()
+    assert start(tmp_path, look(tmp_path) + 1).wait(60) == 0
+
+
+def test_a_full_disk_is_told_in_a_sentence_and_leaves_whole_runs(designer: Designer, tmp_path: Path) -> None:
+    class Full(Drawing):
+        def of_run(self, run, folder):  # type: ignore[no-untyped-def]
+            if run.index == 2:
+                raise OSError(28, "No space left on device")
+
+    with pytest.raises(RoadGPTError, match="No space left on device; make room"):
+        list(campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path, draw=Full()))
+    assert [path.name for path in (tmp_path / "runs").iterdir()] == ["0001"]
+    assert not (tmp_path / "campaign.lock").exists()
+
+
+def test_a_second_pass_makes_nothing_again(designer: Designer, tmp_path: Path) -> None:
+    work = campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path)
+    assert len(list(work)) == 2
+    assert not list(work)
+    assert work.kept == (1, 2)
+    assert table(tmp_path, "generation_stats.csv")["test_generated"] == "2"
+
+
+@pytest.mark.parametrize(("n", "seed"), [(0, 1), (-3, 1), (1, -1)])
+def test_impossible_numbers_are_told(designer: Designer, tmp_path: Path, n: int, seed: int) -> None:
+    with pytest.raises(UsageError, match=r"ask for 1 or more|no seed"):
+        list(campaign(BRIEF, n, seed, setup=NO_DRIVE, out=tmp_path))
 
 
 def test_leftovers_of_a_killed_process_are_swept_away(tmp_path: Path) -> None:

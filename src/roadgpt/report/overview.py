@@ -19,7 +19,7 @@ from roadgpt.report.lettering import fitted, inches
 from roadgpt.report.scenery import GROUND, Array
 from roadgpt.road import World
 
-PER_PAGE = 100
+PER_PAGE, MOST_PAGES = 100, 10
 WIDEST = 11.0  # inches
 LARGEST, TITLE, GAP = 2.4, 0.24, 0.12  # inches: of a map, over it, and between maps
 HEADER = 0.9  # inches
@@ -38,7 +38,8 @@ class Entry:
 
 @in_our_style
 def overview(folder: Path | str) -> list[Path]:
-    """Draw ``overview.png`` of a campaign's folder (and ``overview-2.png`` and so on beyond 100 roads).
+    """Draw ``overview.png`` of a campaign's folder (and ``overview-2.png`` and so on beyond 100 roads; the
+    first 1,000 are drawn).
 
     Reads the folder's ``test.NNNN.json``, so folders of the SBFT competition's own tools can be drawn too.
 
@@ -51,13 +52,13 @@ def overview(folder: Path | str) -> list[Path]:
         raise UsageError(f"{folder} holds no test.0001.json; give the folder of a campaign")
     about, size = _about(folder)
     outcomes = Counter[str]()
-    pages = [names[i : i + PER_PAGE] for i in range(0, len(names), PER_PAGE)]
+    pages = [names[i : i + PER_PAGE] for i in range(0, len(names), PER_PAGE)][:MOST_PAGES]
     drawn = []
     for number, page in enumerate(pages, 1):
         entries = [_entry(path) for path in page]
         outcomes.update(entry.outcome for entry in entries)
         counts = outcomes if len(pages) == 1 else Counter(entry.outcome for entry in entries)
-        part = f"page {number} of {len(pages)}" if len(pages) > 1 else ""
+        part = f"page {number} of {len(pages)}, of {len(names)} roads" if len(pages) > 1 else ""
         figure = page_of(entries, about, part, counts, size)
         drawn.append(save(figure, folder / f"overview{'' if number == 1 else f'-{number}'}.png"))
     return drawn

@@ -9,12 +9,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+try:
+    import fcntl
+except ImportError:  # Windows has no such locks, and does without
+    fcntl = None  # type: ignore[assignment]
+
 PART = ".part"  # end of the name of what is not yet whole
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
     """Write a file beside its place and then move it there."""
-    data = content.encode() if isinstance(content, str) else content
+    data = to_bytes(content) if isinstance(content, str) else content
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
         draft.write_bytes(data)
@@ -22,6 +27,22 @@ def write_whole(path: Path, content: str | bytes) -> None:
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+
+
+@contextmanager
+def held(path: Path) -> Iterator[None]:
+    """Hold a lock file while the block runs; a process that is killed lets go of it.
+
+    Raises:
+        BlockingIOError: another process holds it.
+    """
+    with path.open("w") as file:
+        if fcntl is not None:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -46,6 +67,11 @@ def sweep(folder: Path) -> None:
             shutil.rmtree(path)
         else:
             path.unlink()
+
+
+def to_bytes(text: str) -> bytes:
+    """As UTF-8; what a broken terminal put into words is written as an escape, which JSON reads back."""
+    return text.encode("utf-8", "backslashreplace")
 
 
 def json_text(value: Any, indent: int | None = 1) -> str:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import DesignError, UsageError
+from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design
-from roadgpt.run.atomic import json_text, sweep, write_whole
+from roadgpt.run.atomic import held, json_text, sweep, write_whole
 from roadgpt.run.folder import RUNS, Draw, read_run, run_folder, write_run
 from roadgpt.run.model import Request, Run
 from roadgpt.run.naming import new_folder
@@ -18,6 +18,7 @@ from roadgpt.run.test_file import test_name
 
 FORMAT = 1
 CARD = "campaign.json"
+LOCK = "campaign.lock"
 GIVE_UP = 3  # roads that cannot be designed, before any that could
 
 Perform = Callable[[int, Sequence[Design]], Run]
@@ -35,7 +36,7 @@ class Campaign:
     perform: Perform
     draw: Draw | None = None
     kept: tuple[int, ...] = ()
-    """Roads that an earlier, interrupted call finished."""
+    """Numbers of the roads that are finished."""
     _tally: Tally = field(default_factory=Tally)
     _designs: dict[int, Design] = field(default_factory=dict)
 
@@ -48,6 +49,8 @@ class Campaign:
         Raises:
             UsageError: the folder holds something else, or cannot be made.
         """
+        if roads < 1:
+            raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
         if out is None:
             return cls(new_folder(request.words, request.seed), request, roads, perform, draw)
         folder = Path(out)
@@ -66,23 +69,35 @@ class Campaign:
 
         Raises:
             DesignError: no road could be designed.
-            UsageError: a part is not installed.
+            UsageError: a part is not installed, or another process is at work in the folder.
+            RoadGPTError: a file cannot be written.
         """
-        self._begin()
-        refusal: DesignError | None = None
         try:
-            for index in range(1, self.roads + 1):
-                if index in self.kept:
-                    continue
+            with held(self.folder / LOCK):
+                self._begin()
+                yield from self._work()
+        except BlockingIOError as error:
+            raise UsageError(
+                f"another process is at work in {self.folder}; wait for it or name another folder"
+            ) from error
+        except OSError as error:
+            raise RoadGPTError(
+                f"cannot write into {self.folder}: {error.strerror or error}; make room there and go on "
+                "with the same command and --out"
+            ) from error
+
+    def _work(self) -> Iterator[Run]:
+        """Road after road, each written and counted before it is handed out."""
+        try:
+            for index in (index for index in range(1, self.roads + 1) if index not in self.kept):
                 run = self._one(index)
                 write_run(run, self.folder, self.draw)
                 self._count(run)
+                self.kept += (index,)
                 self._tally.write(self.folder)
                 yield run
-                if run.road is None:
-                    refusal = DesignError(run.description)
-                    if not self._tally.with_road and index >= min(GIVE_UP, self.roads):
-                        raise refusal
+                if not self._tally.with_road and index >= min(GIVE_UP, self.roads):
+                    raise DesignError(run.description)
         finally:
             # however it ends, the tables tell of every road that is there
             self._tally.write(self.folder)

@@ -22,7 +22,7 @@ from roadgpt.check import Finding
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.road import Road, read_design
-from roadgpt.run.atomic import json_text, whole_folder, write_whole
+from roadgpt.run.atomic import json_text, to_bytes, whole_folder, write_whole
 from roadgpt.run.model import Request, Run, Seconds
 from roadgpt.run.test_file import test_name, test_text
 from roadgpt.verdict import Verdict
@@ -69,9 +69,9 @@ def _files(run: Run) -> list[tuple[str, bytes]]:
         "run.json": _card(run),
         "seconds.json": asdict(run.seconds),
     }
-    files = [(name, json_text(data).encode()) for name, data in texts.items() if data is not None]
+    files = [(name, to_bytes(json_text(data))) for name, data in texts.items() if data is not None]
     if run.trace:
-        files.append(("error.txt", run.trace.encode()))
+        files.append(("error.txt", to_bytes(run.trace)))
     if run.drive is not None:
         files.append(("drive.npz", run.drive.to_bytes()))
     return files
