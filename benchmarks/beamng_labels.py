@@ -10,6 +10,7 @@ cut was chosen on; the other half is the test.
 import argparse
 import csv
 import gzip
+import itertools
 import math
 
 import numpy as np
@@ -28,7 +29,7 @@ def road_of(curvatures: list[float]) -> Road:
     """The control points as the recorded generator made them: the trapezoid rule, twice."""
     x = y = 0.0
     heading, points = HEADING, [(0.0, 0.0)]
-    for k0, k1 in zip(curvatures, curvatures[1:], strict=False):
+    for k0, k1 in itertools.pairwise(curvatures):
         turned = heading + (k0 + k1) * STEP / 2
         x += (math.cos(heading) + math.cos(turned)) * STEP / 2
         y += (math.sin(heading) + math.sin(turned)) * STEP / 2

@@ -92,9 +92,17 @@ def test_each_load_reads_the_file_anew(folder: Path) -> None:
 def test_every_mistake_is_one_sentence(folder: Path, text: str | None, spec: str, says: str) -> None:
     if text is not None:
         (folder / "f.py").write_text(text)
-    before = set(sys.modules)
     with pytest.raises(UsageError, match=says) as caught:
         load_driver(f"{folder}/{spec}")
     assert "\n" not in str(caught.value)
     sys.modules.pop("neighbour", None)
-    assert not [name for name in set(sys.modules) - before if name.startswith("f_") and text == "\n\n1 / 0\n"]
+
+
+def test_a_file_that_cannot_be_run_leaves_nothing_behind(folder: Path) -> None:
+    before, paths = set(sys.modules), list(sys.path)
+    (folder / "broken.py").write_text("import neighbour\n1 / 0\n")
+    with pytest.raises(UsageError):
+        load_driver(f"{folder}/broken.py:D")
+    assert set(sys.modules) - before == {"neighbour"}
+    assert sys.path == paths
+    del sys.modules["neighbour"]

@@ -26,7 +26,7 @@ class Reference:
         risk: lateral acceleration in bends, in g; at most 0.72 of the friction is used.
         wheelbase: metres; to_rear: metres from the centre of gravity to the rear axle.
         understeer: s^2/m, steer per lateral acceleration beyond Ackermann's; slip: s^2/m, slip angle of the
-            rear axle per lateral acceleration. Both belong to the car, and were fitted to ours.
+            rear axle per lateral acceleration. Both belong to the car; measured on ours at a steady 0.3 g.
         gain: rad of steer per metre of lateral error ahead; ahead, headway: the point lies
             ``ahead + headway * speed`` metres before the car.
         lag: seconds that the steering needs; the bend is looked up that far ahead.
