@@ -132,6 +132,12 @@ def test_a_campaign_that_was_interrupted_ends_as_if_it_had_not_been(tmp_path: Pa
     assert contents(whole) == contents(parts)
 
 
+def test_a_description_from_a_broken_terminal_is_read(tmp_path: Path) -> None:
+    words = b"a road with 2 turns \x80".decode("utf-8", "surrogateescape")
+    (line,) = roadgpt(tmp_path, "run", words, "--seed", "1", "--no-drive", "--no-plot")
+    assert line["is_valid"]
+
+
 def test_a_run_can_be_had_without_a_folder() -> None:
     run = perform("a straight road of 120 m", seed=3)
     assert run.outcome in ("PASS", "FAIL")

@@ -79,6 +79,7 @@ def read(words: str, reader: str = "grammar", map_size: float | None = 250.0) ->
         PartError: no such reader.
     """
     part = plugins.find("readers", reader)
+    words = words.encode("utf-8", "replace").decode()  # half letters from a broken terminal fit into no file
     brief: Brief = (part() if isinstance(part, type) else part).read(words)
     check(brief, map_size)
     return brief

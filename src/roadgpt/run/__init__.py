@@ -78,7 +78,7 @@ def perform(
         UsageError: a part is not installed.
     """
     begun = time.perf_counter()
-    brief = words if isinstance(words, Brief) else read(words, setup.reader)
+    brief = words if isinstance(words, Brief) else read(words, setup.reader, world.map_size)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     own = seed_of(seed, index)
     design, road, findings, rounds = _designed(brief, request, earlier, own)
@@ -129,7 +129,7 @@ def campaign(
         BriefError: the words cannot be read.
         UsageError: the folder holds something else, or a part is not installed.
     """
-    brief = words if isinstance(words, Brief) else read(words, setup.reader)
+    brief = words if isinstance(words, Brief) else read(words, setup.reader, world.map_size)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     _call_the_roll(setup)
 
