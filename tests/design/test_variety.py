@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from roadgpt.brief.model import Brief
 from roadgpt.design.designers.planner import Planner
-from roadgpt.design.variety import Shape, Shapes, apart, shape_of
+from roadgpt.design.variety import Shape, Shapes, apart, apart_by_metres, shape_of
 from roadgpt.road import Design, World, build
 
 
@@ -34,7 +34,8 @@ def moved(z: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 def test_a_shifted_turned_mirrored_road_is_the_same(seed: int) -> None:
     ((s, z),) = lines(seed, 1)
     copy = moved(z, np.random.default_rng(seed))
-    by_share, by_metres = apart(shape_of(s, z), stacked([shape_of(s, copy)]))
+    shapes = shape_of(s, z), stacked([shape_of(s, copy)])
+    by_share, by_metres = apart(*shapes), apart_by_metres(*shapes)
     assert by_share[0] == pytest.approx(0, abs=1e-4)
     assert by_metres[0] == pytest.approx(0, abs=1e-4)
 
@@ -44,7 +45,8 @@ def test_a_shifted_turned_mirrored_road_is_the_same(seed: int) -> None:
 def test_a_road_that_only_goes_on_further_is_the_same_by_metres(seed: int) -> None:
     ((s, z),) = lines(seed, 1)
     half = len(s) // 2
-    by_share, by_metres = apart(shape_of(s, z), stacked([shape_of(s[:half], z[:half])]))
+    shapes = shape_of(s, z), stacked([shape_of(s[:half], z[:half])])
+    by_share, by_metres = apart(*shapes), apart_by_metres(*shapes)
     assert by_metres[0] == pytest.approx(0, abs=1e-4)
     assert by_share[0] > 5
 
@@ -56,7 +58,8 @@ def test_a_campaign_never_repeats_itself() -> None:
     shapes = Shapes().of(earlier)
     for i in range(1, len(earlier)):
         own = Shape(*(column[i] for column in shapes))
-        by_share, by_metres = apart(own, Shape(*(column[:i] for column in shapes)))
+        before = Shape(*(column[:i] for column in shapes))
+        by_share, by_metres = apart(own, before), apart_by_metres(own, before)
         assert by_share.min() > 5
         assert by_metres.min() > 5
 

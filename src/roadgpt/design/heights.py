@@ -138,8 +138,8 @@ def _grades(
     spans: Sequence[Span], outline: Outline, windows: Windows, rng: np.random.Generator
 ) -> list[float]:
     """One grade per span; joining straights get NaN, and are filled from their neighbours at the end."""
-    if outline.hard and not windows.base and not any(span.grade for span in spans):
-        return [(-1 if span.turn else 1) * _between(Range(*CREST), rng) for span in spans]
+    if outline.hard and all(span.grade in (None, windows.base) for span in spans):
+        return _crests(spans, windows, rng)
     if not windows.base and not any(span.grade for span in spans):
         return _free_grades(spans, windows, rng)
     out: list[float] = []
@@ -156,6 +156,15 @@ def _grades(
         out.append(value)
         last = (window, value)
     return out
+
+
+def _crests(spans: Sequence[Span], windows: Windows, rng: np.random.Generator) -> list[float]:
+    """Every straight climbs more, or falls less, than the bends at its ends: those are taken over a crest."""
+    if windows.base is None:
+        return [(-1 if span.turn else 1) * _between(Range(*CREST), rng) for span in spans]
+    middle = (windows.base.lo + windows.base.hi) / 2
+    halves = Range(windows.base.lo, middle), Range(middle, windows.base.hi)
+    return [_between(halves[0] if span.turn else halves[1], rng) for span in spans]
 
 
 def _far_end(window: Range, rng: np.random.Generator) -> float:

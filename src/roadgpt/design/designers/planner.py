@@ -24,7 +24,7 @@ from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.layout import Line, Place, keeps_clear, place, smallest_box, walk
 from roadgpt.design.order import drawn_order
 from roadgpt.design.spans import Span, cut
-from roadgpt.design.variety import ENOUGH, Shape, Shapes, apart, shape_of
+from roadgpt.design.variety import ENOUGH, Shape, Shapes, apart, apart_by_metres, shape_of
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Segment, World, build
 from roadgpt.road.grades import profile_of
@@ -134,9 +134,10 @@ class _Search:
         """Metres to the nearest earlier road; ``by_metres`` also counts those that only start alike."""
         if not len(self.others.reach):
             return inf
-        at_shares, at_metres = apart(shape, self.others)
-        nearest = float(at_shares.min())
-        return min(nearest, float(at_metres.min())) if by_metres else nearest
+        nearest = float(apart(shape, self.others).min())
+        if not by_metres or nearest < ENOUGH:
+            return nearest
+        return min(nearest, float(apart_by_metres(shape, self.others).min()))
 
     def _finished(self, drafted: _Draft) -> Design | None:
         """The Design, where some heights keep the promises and every rule passes its road."""
