@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt import check
-from roadgpt.brief.model import Brief, Clause, at_least, exactly
+from roadgpt.brief.model import Brief, Clause, at_least, at_most, exactly
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.designers.planner import Planner
@@ -155,6 +155,7 @@ ADVICE = [
     (Brief(clauses=(turns(2, side="left"),), right=exactly(1)), "sides asked for the 2 turns contradict"),
     (Brief(clauses=(turns(1, slope="down"),), slope="up"), "contradicts a road that is uphill all the way"),
     (Brief(clauses=(turns(1, slope="steeply_up"),), steepest=exactly(3)), "steeper than the 4 % that"),
+    (Brief(slope="up", steepest=at_most(2)), "a road of 3 to 12 % is steeper than the 2 % that it may have"),
     (Brief(clauses=(turns(2),), turns=exactly(3)), "asked for 3 turns, and for 2 at most"),
     (Brief(clauses=(turns(1, degrees=exactly(5)),)), "not seen as a turn"),
 ]
@@ -164,6 +165,25 @@ ADVICE = [
 def test_wishes_that_cannot_be_met_get_advice(brief: Brief, sentence: str) -> None:
     with pytest.raises(DesignError, match=sentence):
         planner.draft(brief, WORLD, (), (), 1)
+
+
+ODD_WORLDS = [
+    World(map_size=60),
+    World(map_size=2000),
+    World(lane_width=6),
+    World(lane_width=2.5, verge=0),
+    World(min_radius=40),
+    World(max_grade=0.06),
+    World(z_floor=100),
+    World(min_length=150),
+]
+
+
+@pytest.mark.parametrize("world", ODD_WORLDS)
+def test_other_worlds_have_roads_too(world: World) -> None:
+    for brief in (A_ROAD, Brief(clauses=(turns(2),), slope="gently_up")):
+        for seed in range(5):
+            assert_fine(planner.draft(brief, world, (), (), seed), brief, world)
 
 
 def test_the_map_that_is_advised_is_large_enough() -> None:

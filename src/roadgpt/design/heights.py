@@ -56,7 +56,12 @@ class Windows:
         elif outline.grade_range:
             self.base = drawn_in(outline.grade_range)
         if self.base:
-            self.base = overlap(self.base, self.limit)
+            self.base = overlap(self.base, self.limit) or self.base
+            if self.base.lo > self.base.hi:
+                most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that it may have"
+                raise DesignError(
+                    f"a road of {outline.grade_range} % is steeper than {most}; change one of them"
+                )
 
     def of(self, feature: Feature) -> Range | None:
         """What the feature promises, drawn in; else what the whole road does."""
