@@ -4,7 +4,7 @@ from math import inf, sqrt
 
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.need import SMALLEST_RADIUS, least_length
-from roadgpt.brief.normal import SINGLE, STRAIGHT, total, turns_of
+from roadgpt.brief.normal import SINGLE, STRAIGHT, normal, total, turns_of
 from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, ROAD_LENGTH_SLACK, SHARPNESS, SLOPES, Range
 from roadgpt.errors import BriefError
 
@@ -31,10 +31,11 @@ def check(brief: Brief, map_size: float | None = 250.0) -> None:
     """
     for clause in brief.clauses:
         _counts(clause)
+    _whole_counts(brief)
+    brief = normal(brief)
     for clause in (*brief.clauses, *(c for c in (brief.starts, brief.ends) if c)):
         _shape(clause)
     _shape(Clause(kind="turn", sharpness=brief.sharpness, degrees=brief.degrees, radius=brief.radius))
-    _whole_counts(brief)
     _number_of_turns(brief)
     _sides(brief)
     _slopes(brief)
@@ -153,16 +154,20 @@ def _sides(brief: Brief) -> None:
         sure = sum(_sure(clause, side) for clause in turning)
         if wished.hi is not None and sure > wished.hi:
             raise BriefError(
-                f"{sure:g} {side} turns are asked for, but also {_figure(wished)} {side} turns in all"
+                f"{sure:g} {side} turns are named, but {_figure(wished)} asked for in all; make the numbers agree"
             )
         most = total(brief.clauses) if turning else brief.turns
         if most and most.hi is not None and (wished.lo or 0) > most.hi:
-            raise BriefError(f"{wished.lo:g} {side} turns are more than the {most.hi:g} turns in all")
+            raise BriefError(
+                f"{wished.lo:g} {side} turns are more than the {most.hi:g} turns in all; ask for fewer"
+            )
     both = [amount for amount in (brief.left, brief.right) if amount]
     if brief.turns and len(both) == 2 and not turning and brief.turns.lo is not None:
         most_sides = sum(inf if amount.hi is None else amount.hi for amount in both)
         if most_sides < brief.turns.lo:
-            raise BriefError(f"{most_sides:g} left and right turns do not make {brief.turns.lo:g} turns")
+            raise BriefError(
+                f"{most_sides:g} left and right turns do not make {brief.turns.lo:g} turns; ask for more"
+            )
     neither = len(both) == 2 and all(amount.hi == 0 for amount in both)
     if neither and (turning or (brief.turns and (brief.turns.lo or 0) > 1)):
         raise BriefError("a turn goes left or right: allow one of the two")
@@ -237,7 +242,7 @@ def _length(brief: Brief) -> None:
         )
     if brief.climb and brief.climb.lo is not None and brief.climb.lo > longest * STEEPEST / 100:
         raise BriefError(
-            f"{brief.length.hi:g} m cannot climb {brief.climb.lo:g} m at {STEEPEST:g} percent at most"
+            f"{brief.length.hi:g} m of road cannot climb {brief.climb.lo:g} m; ask for a longer road"
         )
 
 

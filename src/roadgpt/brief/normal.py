@@ -6,6 +6,7 @@
   that are alike are counted together.
 - A serpentine 'of 4 turns or more' is a serpentine. Alternating is not said of what always alternates.
 - What holds for every turn (sharpness, degrees, radius) stands on the clauses where they name the turns.
+- Where everything that is named has one slope, the whole road has it.
 - What only repeats the clauses (number of turns, left or right, the slope, first and last thing) goes.
 - 'N turns' and nothing more is one clause; 'N or more turns' and nothing more is a wish for the road.
 - Where nothing is said of turns, at least one is meant; where only straights are named, none.
@@ -21,6 +22,7 @@ SINGLE: frozenset[Kind] = frozenset({"turn", "hairpin", "switchback", "u_turn"})
 SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", "zigzag"})
 """Kinds whose sharpness is open."""
 MOST_SINGLE = 60
+MOST_STEPS = 8  # one step may make room for another; contradictory Briefs take the most
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 PLAIN: dict[Slope, Slope] = {
     "steeply_up": "up",
@@ -31,21 +33,56 @@ PLAIN: dict[Slope, Slope] = {
 
 
 def normal(brief: Brief) -> Brief:
-    """The Brief in normal form."""
+    """The Brief in normal form; that of a normal form is itself."""
+    before, after = brief, _simpler(brief)
+    for _ in range(MOST_STEPS):
+        if after == before:
+            break
+        before, after = after, _simpler(after)
+    return after
+
+
+def _simpler(brief: Brief) -> Brief:
     clauses = [one for clause in brief.clauses for one in _singles(_plain(clause))]
-    whole = _plain_slope(brief).model_copy(update={"words": "", "unused": (), "confidence": 1.0})
+    whole = _plain_slope(_without_empty_bounds(brief))
+    whole = whole.model_copy(update={"words": "", "unused": (), "confidence": 1.0})
     whole, clauses = _ends(whole, clauses)
     whole, clauses = _turns_as_clause(whole, clauses)
     whole, clauses = _pushed_down(whole, clauses)
+    whole = _with_one_slope(whole, clauses)
     clauses = _merged([_without_slope_of(whole, clause) for clause in clauses])
     whole = _without_repeats(whole, clauses)
     whole, clauses = _turns_as_wish(whole, clauses)
-    if whole.turns is None and not (whole.left or whole.right):
-        if not clauses:
-            whole = whole.model_copy(update={"turns": at_least(1)})
-        elif total(clauses) == exactly(0) and not (whole.hard or _turns(whole.starts) or _turns(whole.ends)):
-            whole = whole.model_copy(update={"turns": exactly(0)})
+    if whole.turns is None:
+        whole = whole.model_copy(update={"turns": _unsaid_turns(whole, clauses)})
+    if whole.turns == exactly(0) and not clauses_turn(clauses):
+        whole = whole.model_copy(update={"alternating": False})
     return whole.model_copy(update={"clauses": tuple(clauses)})
+
+
+def clauses_turn(clauses: list[Clause] | tuple[Clause, ...]) -> bool:
+    """Does any clause turn?"""
+    return any(clause.kind not in STRAIGHT for clause in clauses)
+
+
+def _unsaid_turns(whole: Brief, clauses: list[Clause]) -> Amount | None:
+    neither = all(side == exactly(0) for side in (whole.left, whole.right))
+    if not clauses:
+        return exactly(0) if neither else at_least(1)
+    turning = whole.hard or whole.left or whole.right or _turns(whole.starts) or _turns(whole.ends)
+    return exactly(0) if total(clauses) == exactly(0) and not turning else None
+
+
+def _without_empty_bounds(brief: Brief) -> Brief:
+    """'0 to 4 turns' is at most 4; '0 or more' says nothing."""
+    update: dict[str, Amount | None] = {}
+    for name in ("turns", "left", "right", "hills"):
+        amount: Amount | None = getattr(brief, name)
+        if amount and amount.hi == 0:
+            update[name] = exactly(0)
+        elif amount and amount.lo == 0:
+            update[name] = None if amount.hi is None else Amount(hi=amount.hi)
+    return brief.model_copy(update=update)
 
 
 def _turns(clause: Clause | None) -> bool:
@@ -126,7 +163,9 @@ def _ends(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
     starts, ends = (None if c is None else _plain(c) for c in (whole.starts, whole.ends))
     if not clauses and (whole.turns is None or whole.turns == at_least(1)):
         return whole.model_copy(update={"starts": starts, "ends": ends}), clauses
-    if not clauses and whole.turns and (whole.turns.lo or 0) >= 1 and (starts or ends):
+    if not clauses and whole.turns and (starts or ends):
+        if whole.turns == exactly(0):
+            return _ends_of_a_straight(whole, [c for c in (starts, ends) if c])
         clauses = [Clause(kind="turn", count=whole.turns)]
         whole = whole.model_copy(update={"turns": None})
     if starts and (folded := _folded(clauses[:1], starts)) is not None:
@@ -136,6 +175,12 @@ def _ends(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
     return whole.model_copy(update={"starts": starts, "ends": ends}), clauses
 
 
+def _ends_of_a_straight(whole: Brief, things: list[Clause]) -> tuple[Brief, list[Clause]]:
+    if clauses_turn(things):  # a contradiction, and to be seen as such
+        return whole, []
+    return whole.model_copy(update={"starts": None, "ends": None}), things
+
+
 def _folded(edge: list[Clause], thing: Clause) -> list[Clause] | None:
     """The thing, and what is left of the clause at that edge; None where that cannot be said."""
     if not edge or edge[0] == thing:
@@ -143,10 +188,13 @@ def _folded(edge: list[Clause], thing: Clause) -> list[Clause] | None:
     if thing.kind in STRAIGHT:
         return [thing, *edge]
     first = edge[0]
-    more = (first.count.lo or 0) > 1 and thing.count == exactly(1)
+    number = thing.count.lo or 1
+    more = (first.count.lo or 0) > number and thing.count.exact
     if first.kind != "turn" or not more or first.alternating or (first.side and first.side != thing.side):
         return None
-    count = Amount(lo=(first.count.lo or 1) - 1, hi=None if first.count.hi is None else first.count.hi - 1)
+    count = Amount(
+        lo=(first.count.lo or 1) - number, hi=None if first.count.hi is None else first.count.hi - number
+    )
     return [thing, first.model_copy(update={"count": count})]
 
 
@@ -192,6 +240,15 @@ def _shaped(whole: Brief, clause: Clause) -> Clause:
     if clause.radius or clause.sharpness:  # its own shape is not mixed with that of the road
         said["sharpness"], said["radius"] = clause.sharpness, clause.radius
     return clause.model_copy(update=said)
+
+
+def _with_one_slope(whole: Brief, clauses: list[Clause]) -> Brief:
+    said = {(clause.slope, clause.incline) for clause in clauses}
+    rises_and_falls = any(clause.kind in ("crest", "dip") for clause in clauses)
+    if whole.slope or whole.hills or whole.starts or whole.ends or len(said) != 1 or rises_and_falls:
+        return whole
+    slope, incline = said.pop()
+    return whole.model_copy(update={"slope": slope, "incline": incline or whole.incline})
 
 
 def _without_slope_of(whole: Brief, clause: Clause) -> Clause:

@@ -86,7 +86,8 @@ def _percent(amount: Amount) -> str:
 
 
 def _climb(amount: Amount) -> str:
-    if (amount.hi is None and (amount.lo or 0) < 0) or (amount.hi is not None and amount.hi <= 0):
+    falls = amount.hi is not None and amount.hi <= 0 and amount.lo != 0
+    if falls or (amount.hi is None and (amount.lo or 0) < 0):
         fall = Amount(lo=_minus(amount.hi), hi=_minus(amount.lo))
         return f"a net drop of {_number(fall)} metres"
     return f"a net climb of {_number(amount)} metres"

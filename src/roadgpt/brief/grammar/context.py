@@ -75,6 +75,8 @@ def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str
             return "turn~"
         case "turn+" | "crest+":
             return _noun_or_verb(items, at, item, before)
+        case "sweeping" if before == "m":  # 'an 8 m wide road'
+            return "across"
         case "between" if after in ("", ",", "stop", "then", ")"):
             return "in_between"
         case "then" if item.text == "before" and before in ("", "stop"):

@@ -29,7 +29,7 @@ def finish(units: Units, road_said: bool) -> Brief:
     _fill_up(units)
     wishes = units.wishes
     clauses = [_clause(thing, units) for thing in units.things if thing.kind is not None]
-    if len(units.things) == 1 and not wishes.turns and clauses[0].kind not in WAVY:
+    if len(units.things) == 1 and not wishes.turns:
         joint = units.things[0].joint if not units.things[0].place else units.things[0].place
         if joint == "start" and road_said:
             wishes.starts, clauses = clauses[0], []
@@ -129,10 +129,17 @@ def _name_sides(units: Units) -> None:
 
 
 def _move_to_ends(units: Units) -> None:
+    for thing in [thing for thing in units.things[1:] if thing.joint == "start" and thing.kind in STRAIGHT]:
+        if all(turns(other) and other.joint != "then" for other in units.things[: _place(units, thing)]):
+            units.things = [thing, *(other for other in units.things if other is not thing)]
     for thing in [thing for thing in units.things if thing.place == "end"]:
         units.things = [other for other in units.things if other is not thing]
         thing.joint = "end"
         units.things.append(thing)
+
+
+def _place(units: Units, thing: Phrase) -> int:
+    return next(at for at, other in enumerate(units.things) if other is thing)
 
 
 def _part_of_the_number(units: Units) -> None:
@@ -203,7 +210,7 @@ def _clause(thing: Phrase, units: Units) -> Clause:
         kind=kind,
         count=count,
         side=None if thing.free_side else thing.side,
-        alternating=thing.alternating and count != exactly(1),
+        alternating=thing.alternating and (count != exactly(1) or kind in WAVY),
         sharpness=thing.sharpness,
         degrees=thing.degrees,
         radius=thing.radius,

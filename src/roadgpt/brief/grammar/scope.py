@@ -36,6 +36,8 @@ def select(units: Units, phrase: Phrase, after: Phrase | None) -> bool:
     ):
         units.wishes.slope, units.wishes.incline = slope_of(phrase), phrase.incline
         phrase.slope, phrase.incline = "", None
+    if phrase.alternating and len(targets) > 1:
+        units.wishes.alternating, phrase.alternating = True, False
     for thing in targets:
         _give(thing, phrase)
     return True

@@ -43,7 +43,6 @@ def settle_slopes(units: Units) -> None:
             _to_the_road(units, alone)
         else:
             _along_the_road(units, only)
-    _all_alike(units)
 
 
 def _shared_out(units: Units, alone: list[Phrase]) -> bool:
@@ -179,18 +178,3 @@ def _describes_the_one_before(slope: Phrase, after: Phrase | None, out: list[Phr
     if not out or not turns(out[-1]) or out[-1].slope or slope.article or slope.joint not in (",", "(", ""):
         return False
     return not slope.climbs and (after is None or after.joint in ("then", "stop", "and", ")"))
-
-
-def _all_alike(units: Units) -> None:
-    """Where everything that was named has one slope, the road has it."""
-    things, wishes = units.things, units.wishes
-    if not things or wishes.slope or wishes.hills or _rises_and_falls(units):
-        return
-    first = things[0]
-    said = {(slope_of(thing), thing.incline) for thing in things}
-    if len(said) == 1 and first.slope:
-        if any(thing.joint in ("start", "end") and len(things) == 1 for thing in things):
-            return
-        wishes.slope, wishes.incline = slope_of(first), first.incline
-        for thing in things:
-            thing.slope, thing.incline = "", None
