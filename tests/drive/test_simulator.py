@@ -286,10 +286,12 @@ def test_a_driver_that_hangs_on_the_way_costs_one_driver_error():
         drive(BEND, Hangs())
 
 
-def test_a_car_that_makes_no_sense_is_told_so():
+def test_a_car_that_makes_no_sense_is_told_so_and_leaves_no_log(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     broken = MujocoSimulator(replace(ETK_LIKE, drag_area=math.nan))
     with pytest.raises(SimulationError, match="the physics broke down at"):
         broken.simulate(BEND, WORLD, Follows(), seed=0)
+    assert not list(tmp_path.iterdir())
 
 
 def test_the_driver_is_told_road_world_and_seed_before_it_starts():

@@ -44,6 +44,8 @@ call: Any = _by_address() if COMPILES else _by_bindings
 @functools.cache
 def functions() -> tuple[Any, Any, Any]:
     """MuJoCo's two half steps, and its kinematics alone, as `call` takes them."""
+    # MuJoCo would log warnings in a file where the user stands; our simulator says what broke down.
+    mujoco.set_mju_user_warning(lambda _: None)
     if not COMPILES:
         return mujoco.mj_step1, mujoco.mj_step2, mujoco.mj_kinematics
     library = ctypes.CDLL(str(_library()))
