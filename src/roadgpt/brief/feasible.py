@@ -154,7 +154,7 @@ def _sides(brief: Brief) -> None:
         sure = sum(_sure(clause, side) for clause in turning)
         if wished.hi is not None and sure > wished.hi:
             raise BriefError(
-                f"{sure:g} {side} turns are named, but {_figure(wished)} asked for in all; make the numbers agree"
+                f"{sure:g} {side} turns are named, but {_figure(wished)} asked for; make the numbers agree"
             )
         most = total(brief.clauses) if turning else brief.turns
         if most and most.hi is not None and (wished.lo or 0) > most.hi:

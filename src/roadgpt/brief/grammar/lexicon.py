@@ -87,7 +87,8 @@ def _longest(
         readings = known.phrases.get(tuple(token.text for token in found[at : at + size]))
         if readings and (meanings := _reading(readings, found, at + size, before)):
             return size, meanings
-    return 1, ()
+    bound = known.phrases.get((found[at].text,))
+    return 1, ("-",) if bound else ()
 
 
 def _reading(
@@ -106,7 +107,7 @@ def _reading(
         if meanings[-1] == "in_ten" and number_before and number_after:
             return meanings
     plain = [meanings for meanings in readings if meanings[-1] not in BOUNDS and meanings != ("in_ten",)]
-    return plain[0] if plain else ("-",)
+    return plain[0] if plain else ()
 
 
 UNITS = frozenset({"m", "km", "ft", "yd", "mile", "%", "deg"})

@@ -52,7 +52,7 @@ class Phrase:
     each: bool = False
     """'of 40 m each': the number is that of every single one."""
     half: int = 0
-    """1 or 2: the first or the second half of the road."""
+    """1 or 2: the first or the second half of the road; 3: half of the things said before."""
     nearly: bool = False
     degrees: Amount | None = None
     radius: Amount | None = None

@@ -135,13 +135,13 @@ def _next(items: Sequence[Item], at: int) -> str:
     return items[at].name if at < len(items) else ""
 
 
-_SIDES = dict.fromkeys(("left", "right"))
+_TURNS = {name for name, (kind, _) in KINDS.items() if kind not in STRAIGHT} | {"left", "right"}
 
 
 def _starts_anew(now: Phrase, item: Item, after: str) -> bool:
     """Does this item belong to another thing than the current phrase?"""
     name = item.name
-    if now.joint == "after" and now.length and not _named(now) and name in KINDS | _SIDES:
+    if now.joint == "after" and now.length and not _named(now) and name in _TURNS:
         return True  # 'after 50 m turn left'
     if name in KINDS:
         return _kind_starts_anew(now, KINDS[name][0])

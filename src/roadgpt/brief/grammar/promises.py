@@ -60,7 +60,7 @@ class _Builder:
             return True
         if phrase.mostly and phrase.side:
             return self._mostly(phrase)
-        if phrase.half and phrase.slope:
+        if phrase.half in (1, 2) and phrase.slope:
             return halve(self.units, phrase)
         if phrase.of_them:
             return take_some(self.units, phrase)
@@ -68,7 +68,7 @@ class _Builder:
             return select(self.units, phrase, after)
         if phrase.total and phrase.count and not phrase.degrees and phrase.kind in (None, "turn"):
             return self._total(phrase)
-        if phrase.road and not self._road(phrase):
+        if phrase.road and not self._road(phrase, after):
             return True
         if phrase.kind is not None or phrase.side is not None:
             self._thing(phrase, after)
@@ -140,7 +140,7 @@ class _Builder:
             self.units.add(replace(phrase, side=None), leading=False)
         return True
 
-    def _road(self, phrase: Phrase) -> bool:
+    def _road(self, phrase: Phrase, after: Phrase | None) -> bool:
         """What was said of the road itself; True where it is also a thing, as 'a winding road' is."""
         self.road_said = True
         wishes = self.units.wishes
@@ -158,6 +158,8 @@ class _Builder:
             wishes.alternating |= phrase.alternating
         if not phrase.slope and (phrase.slope_noun or phrase.incline):
             phrase.slope = "up"
+        if phrase.slope and phrase.kind is None and after and after.joint == "then":
+            phrase.after_road = True  # 'a flat road, then a climb': its first part
         if phrase.slope and not phrase.after_road:
             wishes.slope, wishes.incline = slope_of(phrase), phrase.incline
             phrase.slope = ""

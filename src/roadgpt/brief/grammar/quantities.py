@@ -162,9 +162,9 @@ def _bounded(items: list[Item]) -> list[Item]:
     """Bounds put into the amounts beside them, and left out themselves."""
     out = list[Item]()
     waiting: Item | None = None
-    for item in items:
+    for at, item in enumerate(items):
         if item.amount is not None:
-            if waiting is not None and not (waiting.text == "over" and _measured(out)):
+            if waiting is not None and not (waiting.text == "over" and _passed(items, at, out)):
                 item = _with(item, waiting.name)
             waiting = None
             out.append(_without_between(out, item))
@@ -186,8 +186,10 @@ def _bounded(items: list[Item]) -> list[Item]:
     return out
 
 
-def _measured(out: list[Item]) -> bool:
-    """'climbs 10 m over 200 m', '3 turns over 200 m': a way, and no bound."""
+def _passed(items: list[Item], at: int, out: list[Item]) -> bool:
+    """'climbs 10 m over 200 m', 'over three crests': a way, and no bound."""
+    if at + 1 < len(items) and items[at + 1].name in ("crest", "crest+", "hill", "hilly"):
+        return True
     return any(item.amount is not None for item in out[-LOOK_BACK - 1 :])
 
 

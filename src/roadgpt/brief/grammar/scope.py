@@ -138,7 +138,7 @@ def take_some(units: Units, phrase: Phrase) -> bool:
     if phrase.count and _said_nothing(phrase) and phrase.kind is None:  # 'sharp turns, 5 of them'
         whole.count = phrase.count
         return True
-    amount = phrase.count or exactly(1)
+    amount = phrase.count or exactly(max(how_many(whole) // 2, 1) if phrase.half else 1)
     if (
         phrase.kind in (None, "turn")
         and phrase.side

@@ -90,6 +90,8 @@ def _of_the_road(units: Units, alone: list[Phrase]) -> bool:
     if at == len(things) - 1:
         return slope.joint != "then" and not (slope.article and slope.joint in (",", "and"))
     follows = things[at + 1]
+    if slope.joint == "with" and follows.joint == "and" and all(thing.joint != "then" for thing in things):
+        return True  # 'with a gentle incline and five curves'
     return (slope.after_road or follows.joint in ("with", ",", "stop")) and follows.joint not in ONE_LEG
 
 

@@ -75,6 +75,8 @@ class Units:
             return
         elif self.last and self.last.joint == "ahead" and thing.joint in ("", ",", "with"):
             self.things.insert(len(self.things) - 1, thing)
+        elif thing.place in ("top", "bottom") and self.things:
+            self._insert_at_height(thing)
         elif thing.place == "start" and self.things:
             self.things.insert(0, thing)
         elif thing.place == "middle" and self.things:
@@ -157,6 +159,15 @@ class Units:
             behind,
         ]
         return True
+
+    def _insert_at_height(self, thing: Phrase) -> None:
+        """'up and down a hill, with a left turn at the top': behind the last thing that climbs."""
+        slope = "up" if thing.place == "top" else "down"
+        places = [at for at, other in enumerate(self.things) if other.slope == slope]
+        at = places[-1] + 1 if places else len(self.things)
+        self.things.insert(
+            at, replace(thing, joint="then" if at < len(self.things) or places else thing.joint)
+        )
 
     def _insert_in_the_middle(self, thing: Phrase) -> None:
         self.expand()
