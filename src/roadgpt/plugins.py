@@ -26,7 +26,7 @@ def names(shelf: str) -> list[str]:
     found = sorted(_registered(shelf))
     if not found:
         raise PartError(
-            f"nothing is installed on the shelf '{shelf}'; reinstall with pip install --force-reinstall roadgpt"
+            f"nothing is installed on the shelf '{shelf}'; say pip install --force-reinstall roadgpt"
         )
     return found
 

@@ -1,0 +1,12 @@
+"""Hypothesis looks at the same examples every time, so that a change is blamed only for what it broke.
+
+To hunt for new ones: HYPOTHESIS_PROFILE=hunt python -m pytest
+"""
+
+import os
+
+from hypothesis import settings
+
+settings.register_profile("steady", derandomize=True, deadline=None)
+settings.register_profile("hunt", deadline=None, print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
