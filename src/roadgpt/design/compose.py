@@ -9,8 +9,8 @@ from math import inf
 import numpy as np
 
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import Range
-from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, turn_rooms
+from roadgpt.brief.words import LEAST_STRAIGHT, Range
+from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, inside, turn_rooms
 from roadgpt.design.heights import Windows
 from roadgpt.design.order import Order
 from roadgpt.design.spans import Span
@@ -27,6 +27,7 @@ STEP_ASIDE = (
     14.0  # m of the neighbour's grade on an asked-for straight's gap, so that the change is not in the turn
 )
 RAMP = 5.0  # m: what a ramp takes off a straight's mean grade, in metres of its full grade
+OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a straight whose length nobody said
 ALONE = (60.0, 240.0)  # m, of a road without turns whose length nobody said
 HILL = 42.0  # m that one climb or fall of a hilly road takes
 CLIMBS_AT = 12.0  # percent at most, where a road must be long enough for its climb
@@ -127,7 +128,7 @@ def _asked_gap(
         length = drawn_straight(wish, rng, haste, least, mean)
         if wish.length and wish.length.hi < inf:
             length = max(length - changes * RAMP, 0.8 * length)
-        out.append(Span(length, grade=grade, asked=True))
+        out.append(Span(length, grade=grade, promised=wish.length or OPEN))
     if after and windows.part(grades[-1], after.grade):
         out.append(Span(STEP_ASIDE, grade=after.grade))
     return out
@@ -145,7 +146,7 @@ def _with_hills(spans: list[Span], hills: Range, rng: np.random.Generator) -> li
     """Free straights lengthened until climbs and falls find room."""
     stretches = int(hills.lo) + 1
     room = sum(max(int(span.length / HILL), 1) for span in spans if span.length > 0.7 * HILL)
-    free = [i for i, span in enumerate(spans) if not span.turn and not span.asked]
+    free = [i for i, span in enumerate(spans) if span.is_elastic]
     out = list(spans)
     for _ in range(max(stretches - room, 0) if free else 0):
         i = free[rng.integers(len(free))]
@@ -163,7 +164,7 @@ def _with_length(
     low = asked.lo if asked.lo > 0 else 0.7 * asked.hi
     high = asked.hi if asked.hi < inf else 1.3 * asked.lo
     target = low + (high - low) * (0.15 + 0.7 * rng.random())
-    free = [i for i, span in enumerate(spans) if not span.turn and not span.asked]
+    free = [i for i, span in enumerate(spans) if span.is_elastic]
     if not free:
         return spans
     missing = target - now
@@ -187,7 +188,10 @@ def _least(spans: Sequence[Span], index: int, lead: float) -> float:
     """How short the straight may get."""
     before = spans[index - 1] if index else None
     after = spans[index + 1] if index + 1 < len(spans) else None
-    if before is None or after is None:
-        return min(lead, spans[index].length)
-    separate = before.turn * after.turn > 0
-    return min(SEPARATE if separate else FEWEST_METRES, spans[index].length)
+    least = lead
+    if before and after:
+        least = SEPARATE if before.turn * after.turn > 0 else FEWEST_METRES
+    promised = spans[index].promised
+    if promised:
+        least = max(least, inside(promised.lo), CHANGE)
+    return min(least, spans[index].length)

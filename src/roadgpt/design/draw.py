@@ -160,10 +160,9 @@ def _drawn_turn(
         low = low if low > 0 else 0.5 * high
         length = low + (0.35 + 0.3 * rng.random()) * (high - low)
         ramp = 0.1 * length
-        radius = (length - ramp) / radians(angle)
-        if radius < least:
-            angle = max(degrees((length - ramp) / least), room.degrees.lo)
-        return turn_span(angle, room.hand, min(max(radius, least), most), ramp, room.grade)
+        radius = min(max((length - ramp) / radians(angle), least), most)
+        angle = min(max(degrees((length - ramp) / radius), room.degrees.lo), room.degrees.hi)
+        return turn_span(angle, room.hand, radius, ramp, room.grade)
     if not room.tight and not hard:
         least = max(least, SHORTEST_TURN * (1 - haste) / radians(angle))
     wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
@@ -192,16 +191,18 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
     span = wish.length or Range(10, inf)
     low, high = span.lo, span.hi
     if high == inf:
-        low = max(low * 1.05 + 3, 22.0, least)
+        low = max(inside(low), 22.0, least)
         return free_straight(rng, haste, low, mean)
     low = max(low, 0.0)
     share = 0.3 + 0.4 * rng.random()
     return max(low + share * (high - low), min(least, low + 0.6 * (high - low)))
 
 
+def inside(least: float) -> float:
+    """Metres to draw, so that at least so many are measured between the turns at the ends."""
+    return 1.05 * least + 3.0
+
+
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
     """Metres of a straight that nobody asked for."""
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)
-
-
-__all__ = ["LEAD", "SEPARATE", "TurnRoom", "drawn_straight", "drawn_turns", "free_straight", "turn_rooms"]

@@ -22,6 +22,7 @@ LEVEL_SHARE, SLOPE_SHARE = (
 )  # of roads whose words say nothing of heights: level, one slope; the rest rolls
 GENTLE, STEEP = 1.5, 9.0  # percent, of such roads
 NARROW = 3.0  # percentage points, of a promise that a ramp could break
+BRIEF = 45.0  # m: a straight so short that ramps are a good part of it
 STEADY = 0.5  # chance that a feature keeps the grade of the one before, if it may
 UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
 HILL = 34.0  # m: the shortest climb or fall of a hilly road
@@ -156,7 +157,7 @@ def _grades(
             continue
         keeps = last[0] is not None and last[1] in window and rng.random() < STEADY
         value = last[1] if keeps else _between(window, rng)
-        if span.asked and not span.turn and window.hi - window.lo < NARROW:
+        if span.promised and (window.hi - window.lo < NARROW or span.length < BRIEF):
             value = _far_end(window, rng)
         out.append(value)
         last = (window, value)
@@ -173,7 +174,7 @@ def _crests(spans: Sequence[Span], windows: Windows, rng: np.random.Generator) -
 
 
 def _far_end(window: Range, rng: np.random.Generator) -> float:
-    """The steep end of a narrow promise: the ramps at both ends of a straight take off some of its mean."""
+    """The steep end of a promise: ramps take much off the mean where it is narrow or the straight short."""
     share = 0.2 * float(rng.random())
     if window.lo > 0:
         return window.hi - share * (window.hi - window.lo)

@@ -29,8 +29,13 @@ class Span(NamedTuple):
     """Metres, of the clothoid at either end."""
     grade: Range | None = None
     """Percent, that its slope as a whole must lie in; None where nothing is promised."""
-    asked: bool = False
-    """Is it a feature that was asked for, rather than one that joins others?"""
+    promised: Range | None = None
+    """Metres, of a straight that was asked for; None of a turn, or of a straight that only joins others."""
+
+    @property
+    def is_elastic(self) -> bool:
+        """May it be made longer?"""
+        return not self.turn and (self.promised is None or self.promised.hi == inf)
 
     @property
     def curvature(self) -> float:
@@ -54,7 +59,7 @@ def turn_span(angle: float, hand: int, radius: float, ramp: float, grade: Range 
     most = MOST_RAMP * radius * radians(share)
     ramp = max(floor(min(ramp, most) * TENTH), 1) / TENTH
     angle = share * parts
-    return Span(radius * radians(angle) + ramp, hand * angle, radius, ramp, grade, True)
+    return Span(radius * radians(angle) + ramp, hand * angle, radius, ramp, grade)
 
 
 def segments_of_turn(angle: float) -> int:
