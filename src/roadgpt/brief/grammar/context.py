@@ -93,6 +93,8 @@ def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str
             return (
                 "hills" if _name(items, at, -1, MANNERS | {"steep", "mild", "count"}) == "with" else item.name
             )
+        case "slope" if item.text in ("slopes", "gradients", "grades"):
+            return "hills"
         case "hill":
             return (
                 "-"

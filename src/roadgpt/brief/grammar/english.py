@@ -8,7 +8,8 @@ phrase stands under two keys the first one counts, save for bounds, which need a
 ROAD_WORDS: dict[str, str] = {
     # things along the road
     "turn": "turn | bend | curve | corner | kurve | arc | deflection | turning",
-    "turn+": "turns | bends | curves | corners | arcs | turnings",
+    "turn+": "changes of direction | direction changes | changes in direction | turns | bends | curves"
+    " | corners | arcs | turnings",
     "turn~": "curving | curved | bending | veer | veers | veering | swing | swings | swinging | swerve"
     " | swerves | bear | bears | bearing | hook | hooks | hooking | jog | jogs | arcing",
     "left turn": "left hander | lefthander | leftie",

@@ -86,7 +86,7 @@ FRAME_WORDS: dict[str, str] = {
     "across": "wide | high | deep | width | tall | broad | lane width | road width",
     "speed": "kmh | kph | mph | kilometres per hour | kilometers per hour | miles per hour",
     # joints
-    ",": ",",
+    ",": ", | as it | while | whilst | as the road | when it | but | yet | while it",
     "/": "/",
     "stop": ". | ! | ? | ; | \n",
     "colon": ": | -- | namely | i e | viz",
@@ -109,13 +109,14 @@ FRAME_WORDS: dict[str, str] = {
     "enter": "into",
     "into": "through | along | around | round | via | past | across | as it goes through | during"
     " | negotiating | while going through | while it goes through | over",
-    "with": "except for | except | apart from | with the exception of | but for | with | w / | w"
-    " | has | have | having | contains | contain | containing | including | includes | include"
-    " | featuring | features | consisting of | made of | made up of | comprising | that has"
-    " | consists of | comprises | consist of | made from | which has | there are | there is"
-    " | shaped by | that includes | that contains | composed of | where | consisting in"
-    " | which contains | which includes | plus a | should have | must have | needs | built from"
-    " | contained | incorporating | incorporates | characterized by | boasting",
+    "with": "whose | except for | except | apart from | with the exception of | but for | with | w /"
+    " | w | has | have | having | contains | contain | containing | including | includes"
+    " | include | featuring | features | consisting of | made of | made up of | comprising"
+    " | that has | consists of | comprises | consist of | made from | which has | there are"
+    " | there is | shaped by | that includes | that contains | composed of | where"
+    " | consisting in | which contains | which includes | plus a | should have | must have"
+    " | needs | built from | contained | incorporating | incorporates | characterized by"
+    " | boasting",
     "for": "for | lasting",
     "first_of_all": "first | initially | at first | first of all | firstly | to start | to begin with"
     " | to begin | to start with | at the outset",
@@ -146,6 +147,8 @@ FRAME_WORDS: dict[str, str] = {
     " | with breaks of",
     "half1": "the first half | first half | in the first half | for the first half",
     "half2": "the second half | second half | in the second half | for the second half | the other half",
+    "each_side": "in each direction | to each side | each way | on each side | to either side"
+    " | in either direction | per side | each side",
     "in_between": "between them | in between them | between the turns | between the bends"
     " | between the curves | between each | between each turn | between turns | between the two"
     " | between the hairpins | between bends | between curves | between the two turns"
@@ -253,44 +256,44 @@ FRAME_WORDS: dict[str, str] = {
     " | moves | moving | leads | leading | heads | heading | keeps | keep | keeping | stays"
     " | stay | staying | remains | remain | remaining | continues | continue | continuing"
     " | takes | take | taking | follow | follows | comes | come | coming | made | using | use"
-    " | but | however | yet | while | whilst | as it | when | where | still | now | immediately"
-    " | directly | shortly | quick | quickly | slowly | right away | straight after | soon"
-    " | nice | nicely | simple | basic | normal | ordinary | regular | standard | typical"
-    " | beautiful | scenic | pretty | lovely | fun | interesting | random | arbitrary | new"
-    " | novel | different | good | great | small | little | tiny | medium | medium sized | sized"
-    " | kind | kinds | type | sort | form | shape | shaped | style | direction | directions"
-    " | side | sides | angle | angles | angled | turning angle | heading change | size | value"
-    " | amount | number | numbers | one after another | one after the other | in a row"
-    " | consecutive | successive | succession | in succession | in sequence"
-    " | in quick succession | back to back | sequence | series | combination | combinations"
-    " | pattern | order | in this order | in that order | in order | respectively | each time"
-    " | same | another one | element | elements | two lane | two lanes | single lane | one lane"
-    " | 2 lane | dual carriageway | one way | two way | asphalt | asphalted | paved | tarmac"
-    " | gravel | dirt | concrete | surface | narrow | dry | wet | rural | urban | city | town"
-    " | village | suburban | residential | country | countryside | forest | woods | wooded"
-    " | desert | coastal | coast | seaside | farm | park | industrial | scenery | landscape"
-    " | hillside | hillsides | mountainside | valley | lake | river | empty | quiet | test"
-    " | tests | testing | tested | lane keeping | lane keeper | keeper | lane assist | lane keep"
-    " | assist | assistant | adas | lkas | system | systems | self driving | autonomous"
-    " | automated | vehicle | vehicles | car | cars | driver | drivers | driving | ai"
-    " | autopilot | agent | software | simulation | simulator | scenario | scene | map | virtual"
-    " | model | designed | intended | meant | suitable | used | able | bring | brings | also"
-    " | too | just | simply | actually | really | again | only | well | both | here | once"
-    " | until | till | ahead | forward | forwards | off | out | onto | toward | towards | away"
-    " | down to | up to the | top | bottom | foot | base | middle | point | points | place"
-    " | places | position | distance | distances | apart | pass | passes | passing | crossing"
-    " | crosses | reaching | reach | reaches | hits | before | back | itself | other | along"
-    " | about | bit | lot | more | most | less | much | such | than | not only | not just"
-    " | or so | each other | another | next to | keeps on | carries on | carry on | carrying on"
-    " | proceeds | proceed | proceeding | immediately then | per | x | s | d | it's | that's"
-    " | there's | let's | hi | hello | hey | thanks | thank | okay | ok | for a while | a while"
-    " | for some time | while still | blind | classic | proper | real | true | full | complete"
-    " | rather | curvature | having a | smallest | largest | every single | was | were | been"
-    " | has been | both of | because | since | although | though | instead | hence | therefore"
-    " | so that | such that | in order to | want to see | i want | i would like | could you"
-    " | can you | would you | i need | we need | looking | see | look | looks | pure | dedicated"
-    " | beginner | beginners | novice | learner | learners | sunday | famous | old | modern"
-    " | whose | who | what | between | roughly | clear | clean | distinct | separate"
-    " | individual | identical | equal | similar | regular intervals | intervals | evenly"
-    " | spaced | evenly spaced | within | gap | gaps | at least then",
+    " | however | when | where | still | now | immediately | directly | shortly | quick"
+    " | quickly | slowly | right away | straight after | soon | nice | nicely | simple | basic"
+    " | normal | ordinary | regular | standard | typical | beautiful | scenic | pretty | lovely"
+    " | fun | interesting | random | arbitrary | new | novel | different | good | great | small"
+    " | little | tiny | medium | medium sized | sized | kind | kinds | type | sort | form"
+    " | shape | shaped | style | direction | directions | side | sides | angle | angles | angled"
+    " | turning angle | heading change | size | value | amount | number | numbers"
+    " | one after another | one after the other | in a row | consecutive | successive"
+    " | succession | in succession | in sequence | in quick succession | back to back | sequence"
+    " | series | combination | combinations | pattern | order | in this order | in that order"
+    " | in order | respectively | each time | same | another one | element | elements | two lane"
+    " | two lanes | single lane | one lane | 2 lane | dual carriageway | one way | two way"
+    " | asphalt | asphalted | paved | tarmac | gravel | dirt | concrete | surface | narrow | dry"
+    " | wet | rural | urban | city | town | village | suburban | residential | country"
+    " | countryside | forest | woods | wooded | desert | coastal | coast | seaside | farm | park"
+    " | industrial | scenery | landscape | hillside | hillsides | mountainside | valley | lake"
+    " | river | empty | quiet | test | tests | testing | tested | lane keeping | lane keeper"
+    " | keeper | lane assist | lane keep | assist | assistant | adas | lkas | system | systems"
+    " | self driving | autonomous | automated | vehicle | vehicles | car | cars | driver"
+    " | drivers | driving | ai | autopilot | agent | software | simulation | simulator"
+    " | scenario | scene | map | virtual | model | designed | intended | meant | suitable | used"
+    " | able | bring | brings | also | too | just | simply | actually | really | again | only"
+    " | well | both | here | once | until | till | ahead | forward | forwards | off | out | onto"
+    " | toward | towards | away | down to | up to the | top | bottom | foot | base | middle"
+    " | point | points | place | places | position | distance | distances | apart | pass"
+    " | passes | passing | crossing | crosses | reaching | reach | reaches | hits | before"
+    " | back | itself | other | along | about | bit | lot | more | most | less | much | such"
+    " | than | not only | not just | or so | each other | another | next to | keeps on"
+    " | carries on | carry on | carrying on | proceeds | proceed | proceeding | immediately then"
+    " | per | x | s | d | it's | that's | there's | let's | hi | hello | hey | thanks | thank"
+    " | okay | ok | for a while | a while | for some time | while still | blind | classic"
+    " | proper | real | true | full | complete | rather | curvature | having a | smallest"
+    " | largest | every single | was | were | been | has been | both of | because | since"
+    " | although | though | instead | hence | therefore | so that | such that | in order to"
+    " | want to see | i want | i would like | could you | can you | would you | i need | we need"
+    " | looking | see | look | looks | pure | dedicated | beginner | beginners | novice"
+    " | learner | learners | sunday | famous | old | modern | slow | who | what | between"
+    " | roughly | clear | clean | distinct | separate | individual | identical | equal | similar"
+    " | regular intervals | intervals | evenly | spaced | evenly spaced | within | gap | gaps"
+    " | at least then",
 }

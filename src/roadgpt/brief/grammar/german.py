@@ -101,6 +101,7 @@ GERMAN: dict[str, str] = {
     "after": "nach einer | nach einem",
     "a": "ein | eine | einer | einen | einem | eines",
     "the": "der | die | das | den | dem | des",
+    "in_between": "dazwischen",
     "all": "alle | allen",
     "each": "jede | jeder | jeweils | je | jedes",
     "both": "beide | beiden",

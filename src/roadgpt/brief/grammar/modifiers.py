@@ -5,7 +5,7 @@ from dataclasses import replace
 from roadgpt.brief.grammar.phrase import Phrase
 from roadgpt.brief.grammar.slopes import slope_of
 from roadgpt.brief.grammar.units import Units, plural, turns
-from roadgpt.brief.model import at_least, exactly
+from roadgpt.brief.model import Amount, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.errors import BriefError
 
@@ -25,7 +25,7 @@ def modify(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | 
     )
     if phrase.length is not None:
         used |= _length(units, phrase, before, after)
-    if phrase.incline is not None or phrase.slope_noun:
+    if phrase.incline is not None or (phrase.slope_noun and (phrase.steep or phrase.mild)):
         used |= _incline(units, phrase, before)
     on_turn = turn is not None and (before is turn or phrase.joint in ("with", "", "(", ","))
     for name in ("degrees", "radius", "sharpness"):
@@ -44,6 +44,8 @@ def modify(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | 
         last.size, used = phrase.size, True
     if phrase.count and turn is not None and turn.many and turn.count == at_least(2):
         turn.count, used = phrase.count, True
+    if phrase.count and turn is not None and turn.count and not (turn.count.exact and phrase.count.exact):
+        turn.count, used = _both(turn.count, phrase.count), True
     if (phrase.times or phrase.repeat) and units.things:
         _repeat(units, phrase)
         used = True
@@ -86,6 +88,20 @@ def _incline(units: Units, phrase: Phrase, before: Phrase | None) -> bool:
         phrase.slope = "up"
         wishes.slope = wishes.slope or slope_of(phrase)
     return True
+
+
+def _both(one: Amount, other: Amount) -> Amount:
+    """'more than five turns but fewer than nine'.
+
+    Raises:
+        BriefError: no number is in both.
+    """
+    lows = [amount.lo for amount in (one, other) if amount.lo is not None]
+    highs = [amount.hi for amount in (one, other) if amount.hi is not None]
+    low, high = max(lows, default=None), min(highs, default=None)
+    if low is not None and high is not None and low > high:
+        raise BriefError(f"no number is {low:g} or more and {high:g} or less; say one of the two")
+    return Amount(lo=low, hi=high)
 
 
 def _repeat(units: Units, phrase: Phrase) -> None:

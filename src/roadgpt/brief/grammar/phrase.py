@@ -49,6 +49,7 @@ class Phrase:
     steep: bool = False
     mild: bool = False
     mostly: bool = False
+    each_side: bool = False
     each: bool = False
     """'of 40 m each': the number is that of every single one."""
     half: int = 0

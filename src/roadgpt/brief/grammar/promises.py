@@ -89,7 +89,10 @@ class _Builder:
         if phrase.hilly and not phrase.negated:
             wishes.hills = wishes.hills or at_least(HILLS)
         if phrase.climbs_said and not phrase.negated:
-            wishes.hills = wishes.hills or at_least(1)
+            if phrase.mild:
+                wishes.steepest = wishes.steepest or at_most((SLOPES["gently_up"].grade or Range(2, 5)).hi)
+            else:
+                wishes.hills = wishes.hills or at_least(1)
         if phrase.more:
             self._more(phrase.more)
         if phrase.changes and not phrase.negated:
@@ -108,11 +111,16 @@ class _Builder:
     def _climb(self, phrase: Phrase, height: Amount) -> None:
         down = phrase.height_said == "loss" or phrase.slope == "down"
         ends = (height.lo, height.hi) if not down else (_minus(height.hi), _minus(height.lo))
-        self.units.wishes.climb = Amount(lo=ends[0], hi=ends[1])
+        climb, before = Amount(lo=ends[0], hi=ends[1]), self.units.wishes.climb
+        if before and before.exact and climb.exact:  # 'gains 10 m, then loses 4 m'
+            climb = exactly((before.lo or 0) + (climb.lo or 0))
+        self.units.wishes.climb = climb
 
     def _total(self, phrase: Phrase) -> bool:
-        wishes = self.units.wishes
-        if phrase.side == "left":
+        wishes, last = self.units.wishes, self.units.last_turn
+        if phrase.kind is None and phrase.side is None and last and last.kind == "turn" and not plural(last):
+            last.count = phrase.count  # 'a left turn every now and then, four in total'
+        elif phrase.side == "left":
             wishes.left = phrase.count
         elif phrase.side == "right":
             wishes.right = phrase.count
@@ -189,6 +197,9 @@ class _Builder:
             phrase.side = phrase.side or "left"
         if self._fills_in(phrase):
             return
+        if phrase.each_side:
+            self.units.add(replace(phrase, side="left"), leading=False)
+            phrase = replace(phrase, side="right", joint="and")
         self.units.add(phrase, leading=phrase.fresh and after is not None)
 
     def _fills_in(self, phrase: Phrase) -> bool:

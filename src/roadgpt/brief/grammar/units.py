@@ -4,8 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from roadgpt.brief.grammar.phrase import WAVY, Phrase
-from roadgpt.brief.model import Amount, Clause, Kind, Sharpness, Slope, at_least, exactly
+from roadgpt.brief.model import Amount, Clause, Sharpness, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT
+from roadgpt.brief.words import KINDS
 from roadgpt.errors import BriefError
 
 MOST = 200
@@ -63,7 +64,14 @@ class Units:
         if self._joins(thing):
             return
         last = self.last
-        if last and last.kind is None and last.side and last.count is None and thing.count == at_least(2):
+        if (
+            last
+            and last.kind is None
+            and last.side
+            and last.count is None
+            and thing.many
+            and not thing.counted
+        ):
             thing.count = None  # 'left, right and left turns' are three
         if thing.joint == "after" and not leading and self.things:
             self.things.insert(len(self.things) - 1, thing)
@@ -221,7 +229,7 @@ def default_count(thing: Phrase) -> None:
     if thing.count == exactly(0) and thing.kind is not None:
         thing.count, thing.negated = None, True
     if thing.count is None and thing.many and thing.kind not in WAVY and thing.kind not in STRAIGHT:
-        thing.count = at_least(2)
+        thing.count, thing.counted = at_least(2), False
     if thing.count and thing.count.lo is not None and thing.count.lo > MOST:
         how_many(thing)
 
@@ -242,11 +250,13 @@ def overlay(under: Phrase, over: Phrase) -> None:
 
 def _specify(wavy: Phrase, thing: Phrase) -> None:
     """'a winding road with 5 hairpins': five hairpins; 'a serpentine with 6 turns': a serpentine of six."""
+    own = KINDS[wavy.kind].turns if wavy.kind else None
     if thing.kind not in ("turn", None):
-        specific: Kind | None = thing.kind
         wavy.alternating |= wavy.kind != "winding"
-        wavy.kind = specific
-    if thing.counted or wavy.kind not in WAVY:
+        wavy.kind = thing.kind
+    if thing.count == at_least(2) and not thing.counted and own:  # 'a winding road with hairpins'
+        wavy.count = at_least(own.lo) if wavy.kind not in WAVY else None
+    elif thing.counted or wavy.kind not in WAVY:
         wavy.count = thing.count
     overlay(wavy, thing)
 
