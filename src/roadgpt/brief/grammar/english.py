@@ -16,6 +16,7 @@ ROAD_WORDS: dict[str, str] = {
     "left turn+": "left handers | lefthanders",
     "right turn": "right hander | righthander",
     "right turn+": "right handers | righthanders",
+    "sharp s_bend": "z shaped | z bend | z shaped bend",
     "sweeping turn": "sweeper",
     "sweeping turn+": "sweepers",
     "kink turn": "kink",
@@ -24,7 +25,7 @@ ROAD_WORDS: dict[str, str] = {
     "dogleg turn+": "doglegs | dog legs",
     "deg90": "right angle | right angled | right angles | at right angles | at a right angle | quarter"
     " | perpendicular",
-    "deg90 turn": "quarter turn | square corner",
+    "deg90 turn": "l shaped | l shape | quarter turn | square corner",
     "deg45": "half right angle",
     "straight": "straight | straightaway | straight line | straight ahead | straight on | dead straight"
     " | straight away | perfectly straight | straightens | straightens out | straighten out"
@@ -43,16 +44,16 @@ ROAD_WORDS: dict[str, str] = {
     "dip": "dip | hollow | trough | sag | through a valley | across a valley | through a dip"
     " | into a dip | through the dip | through a hollow | into a hollow | depression",
     "dip+": "dips | hollows | troughs",
-    "hairpin": "hairpin | hair pin",
+    "hairpin": "v shaped | hairpin | hair pin",
     "hairpin+": "hairpins | hair pins",
     "switchback": "switchback | switch back",
     "switchback+": "switchbacks | switch backs | switchbacking",
-    "u_turn": "u turn | uturn | about turn | about face | horseshoe | horse shoe | turnaround"
-    " | turn around | turns around | turn back on itself | turns back on itself | doubles back"
-    " | double back | doubling back | doubles back on itself | turns back | turn back"
-    " | u shaped turn | u shaped bend | u shaped curve | u bend | half circle | semicircle"
-    " | semi circle | turns back the way it came | one eighty | reverses direction | turnabout"
-    " | u shape",
+    "u_turn": "c shaped | u shaped | u turn | uturn | about turn | about face | horseshoe | horse shoe"
+    " | turnaround | turn around | turns around | turn back on itself | turns back on itself"
+    " | doubles back | double back | doubling back | doubles back on itself | turns back"
+    " | turn back | u shaped turn | u shaped bend | u shaped curve | u bend | half circle"
+    " | semicircle | semi circle | turns back the way it came | one eighty | reverses direction"
+    " | turnabout | u shape",
     "u_turn+": "u turns | uturns | horseshoes | u bends | semicircles",
     "s_bend": "s bend | s curve | s turn | s shaped bend | s shaped curve | s shaped turn | s shape"
     " | sbend | scurve | reverse curve | ess | s corner | s shaped | s kurve | double bend"
@@ -72,7 +73,8 @@ ROAD_WORDS: dict[str, str] = {
     " | crooked",
     "spiral": "spiral | spirals | spiralling | spiraling | corkscrew | corkscrews | corkscrewing"
     " | helix | helical",
-    "loop": "loop | full circle | complete circle | full loop | loop the loop | circuit | closed loop",
+    "loop": "figure of eight | figure eight | circle | circular | ring | oval | loops | racing oval"
+    " | loop | full circle | complete circle | full loop | loop the loop | circuit | closed loop",
     "stretch": "segment | section | stretch | part | piece | leg | portion | sections | segments"
     " | stretches | parts | pieces",
     # sides and shapes
@@ -134,10 +136,11 @@ ROAD_WORDS: dict[str, str] = {
     " | without hills | no elevation change | without elevation change"
     " | without any elevation change | no elevation changes | no slopes | without climbing"
     " | without any hills | without any slope | constant height | constant elevation"
-    " | constant altitude | same height | neither up nor down | zero grade | no inclines"
-    " | without inclines | no height difference | no grade | without elevation changes"
-    " | without any slopes | no ups or downs | no ups and downs | without any climb | unsloped"
-    " | no climb | no climbs or descents | without any elevation | no elevation | on flat ground"
+    " | constant altitude | same height | neither up nor down | neither uphill nor downhill"
+    " | neither rising nor falling | zero grade | no inclines | without inclines"
+    " | no height difference | no grade | without elevation changes | without any slopes"
+    " | no ups or downs | no ups and downs | without any climb | unsloped | no climb"
+    " | no climbs or descents | without any elevation | no elevation | on flat ground"
     " | on level ground | no change in elevation | no change in height",
     "flat~": "levels off | levels out | level off | level out | levelling off | leveling off"
     " | levelling out | leveling out | flattens | flattens out | flatten out | flattening"

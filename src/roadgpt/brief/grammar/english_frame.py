@@ -7,6 +7,7 @@ FRAME_WORDS: dict[str, str] = {
     # numbers
     "#0": "zero | nil",
     "#1": "one | a single | single | just a | solitary | lone | just a single",
+    "#0.5": "half a",
     "#2": "two | a couple of | a couple | couple of | couple | a pair of | pair of | double | pair",
     "#3": "three | triple | trio of | a trio of",
     "#4": "four",
@@ -203,19 +204,22 @@ FRAME_WORDS: dict[str, str] = {
     "nth6": "the sixth | sixth | 6th | the 6th",
     "nth7": "the seventh | seventh | 7th | the 7th",
     "nth8": "the eighth | eighth | 8th | the 8th",
-    "alternating": "alternating | alternate | alternates | alternately | alternatingly | in alternation"
-    " | alternating directions | alternating sides | opposite | in alternating directions"
-    " | opposing | in opposite directions | alternating direction | to alternating sides"
-    " | switching sides | alternating hands | switching between | switches between"
-    " | back and forth | side to side | from side to side | takes turns | in alternating order"
-    " | opposite directions | in the opposite direction | the other way | alternation of"
-    " | alternately to the | in opposing directions | alternated | changing direction each time"
+    "same_hand": "in the same direction | the same way | in one direction | to the same side"
+    " | same direction | all the same way | in the same sense",
+    "alternating": "in different directions | different directions | alternating | alternate | alternates"
+    " | alternately | alternatingly | in alternation | alternating directions"
+    " | alternating sides | opposite | in alternating directions | opposing"
+    " | in opposite directions | alternating direction | to alternating sides | switching sides"
+    " | alternating hands | switching between | switches between | back and forth | side to side"
+    " | from side to side | takes turns | in alternating order | opposite directions"
+    " | in the opposite direction | the other way | alternation of | alternately to the"
+    " | in opposing directions | alternated | changing direction each time"
     " | changes direction each time",
-    "no": "no | without | without any | not | never | none | free of | lacking | avoid | avoiding"
-    " | avoids | devoid of | isn't | doesn't | don't | no single | not a single | neither"
-    " | not any | without a single | excluding | with no | that has no | absent | shouldn't"
-    " | mustn't | not have any | nothing | cannot | zero number of | has no | does not | do not"
-    " | won't",
+    "no": "w / o | w / o any | no | without | without any | not | never | none | free of | lacking"
+    " | avoid | avoiding | avoids | devoid of | isn't | doesn't | don't | no single"
+    " | not a single | neither | not any | without a single | excluding | with no | that has no"
+    " | absent | shouldn't | mustn't | not have any | nothing | cannot | zero number of | has no"
+    " | does not | do not | won't",
     "too": "too | overly | very | really | extremely | quite | rather | so | super | pretty | fairly"
     " | especially | incredibly | particularly | extra | highly | somewhat | a bit | a little"
     " | relatively | ever | truly",

@@ -21,6 +21,7 @@ def finish(units: Units, road_said: bool) -> Brief:
     Raises:
         BriefError: an S-bend whose turns go one way.
     """
+    _deal_out(units)
     _spell_out(units)
     _name_sides(units)
     settle_slopes(units)
@@ -38,6 +39,21 @@ def finish(units: Units, road_said: bool) -> Brief:
     if not clauses and wishes.turns is None and not (wishes.left and wishes.left.lo):
         wishes.turns = at_least(1)
     return Brief(clauses=tuple(clauses), **{name: getattr(wishes, name) for name in wishes.__slots__})
+
+
+def _deal_out(units: Units) -> None:
+    """'two bends of 45 and 90 degrees': one number each."""
+    out = list[Phrase]()
+    for thing in units.things:
+        name, numbers = thing.series or ("", ())
+        if numbers and how_many(thing) == len(numbers):
+            single = [replace(thing, count=exactly(1), series=None) for _ in numbers]
+            for one, number in zip(single, numbers, strict=True):
+                setattr(one, name, exactly(number))
+            out += single
+        else:
+            out.append(thing)
+    units.things = out
 
 
 def _spell_out(units: Units) -> None:

@@ -23,6 +23,13 @@ def modify(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | 
         or phrase.highest
         or phrase.changes
     )
+    if phrase.in_between and phrase.length and turn is not None:
+        units.add(replace(phrase, kind="straight"), leading=False)
+        return True
+    if phrase.same_hand and turn is not None:
+        turn.side, used = turn.side or "left", True
+    if phrase.series and turn is not None:
+        turn.series = phrase.series
     if phrase.length is not None:
         used |= _length(units, phrase, before, after)
     if phrase.incline is not None or (phrase.slope_noun and (phrase.steep or phrase.mild)):

@@ -50,6 +50,9 @@ class Phrase:
     mild: bool = False
     mostly: bool = False
     each_side: bool = False
+    same_hand: bool = False
+    series: tuple[str, tuple[float, ...]] | None = None
+    """'two bends of 45 and 90 degrees': of what, and the numbers."""
     each: bool = False
     """'of 40 m each': the number is that of every single one."""
     half: int = 0

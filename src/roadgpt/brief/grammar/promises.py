@@ -152,7 +152,8 @@ class _Builder:
         """What was said of the road itself; True where it is also a thing, as 'a winding road' is."""
         self.road_said = True
         wishes = self.units.wishes
-        if phrase.length is not None and (not wishes.length):
+        leg = phrase.after_road and phrase.slope and not phrase.length_said  # 'goes up for 100 m'
+        if phrase.length is not None and not wishes.length and not leg:
             wishes.length, phrase.length = phrase.length, None
         elif phrase.size and phrase.kind is None:
             size = ROAD_SIZES[phrase.size]
@@ -192,6 +193,10 @@ class _Builder:
             phrase.degrees = exactly(round((phrase.degrees.lo or 0) / how_many(phrase), 2))
         if phrase.kind is None and not phrase.counted:  # 'a series of left, right, left'
             phrase.count, phrase.article = None, False
+        if phrase.both_sides and not phrase.alternating:
+            self._both_sides(phrase)
+        if phrase.same_hand:
+            phrase.side = phrase.side or "left"
         if phrase.spiral:
             phrase.count = phrase.count or at_least(3)
             phrase.side = phrase.side or "left"

@@ -34,6 +34,8 @@ class Item:
     amount: Amount | None = None
     exact: bool = True
     """Was a number said, rather than 'several'?"""
+    series: tuple[float, ...] = ()
+    """All numbers of a list, '45, 60 and 90 degrees'; ``amount`` is the first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +66,9 @@ def quantities(lexemes: Sequence[Lexeme]) -> list[Item]:
 
 def _quantity(lexemes: Sequence[Lexeme], at: int, out: list[Item]) -> int:
     read = _number(lexemes, at)
+    if (listed := _series(lexemes, at)) is not None:
+        out.append(listed[0])
+        return listed[1]
     if (slope := _one_in(lexemes, read)) is not None:
         out.append(
             Item("%", lexemes[at].start, lexemes[slope[1] - 1].stop, amount=_amount(slope[0], slope[0]))
@@ -81,6 +86,30 @@ def _quantity(lexemes: Sequence[Lexeme], at: int, out: list[Item]) -> int:
     item = Item(name, lexemes[at].start, lexemes[stop - 1].stop, "#", _amount(lo, hi), read.exact)
     out.append(item)
     return stop
+
+
+def _series(lexemes: Sequence[Lexeme], at: int) -> tuple[Item, int] | None:
+    """A list of numbers with one unit behind the last: '45, 60 and 90 degrees'."""
+    numbers, stop, joint = list[float](), at, ""
+    while stop < len(lexemes) and lexemes[stop].name.startswith("#"):
+        read = _number(lexemes, stop)
+        if read.lo is None or read.lo != read.hi:
+            return None
+        numbers.append(read.lo)
+        stop, joint = read.stop, ""
+        while stop < len(lexemes) and lexemes[stop].name in (",", "and"):
+            joint, stop = lexemes[stop].name, stop + 1
+        if not joint:
+            break
+    unit, stop = _unit(lexemes, stop)
+    if joint or len(numbers) < 2 or unit not in ("deg", "m") or _is_between(lexemes, at):
+        return None
+    item = Item(unit, lexemes[at].start, lexemes[stop - 1].stop, "#", _amount(numbers[0], numbers[0]))
+    return replace(item, series=tuple(numbers)), stop
+
+
+def _is_between(lexemes: Sequence[Lexeme], at: int) -> bool:
+    return "between" in [lexeme.name for lexeme in lexemes[max(at - 2, 0) : at]]
 
 
 def _amount(lo: float | None, hi: float | None) -> Amount:

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from roadgpt.brief.grammar.phrase import Phrase
+from roadgpt.brief.grammar.phrase import WAVY, Phrase
 from roadgpt.brief.grammar.units import Units, Wishes, how_many, turns
 from roadgpt.brief.model import Slope, exactly
 from roadgpt.brief.normal import SINGLE, STRAIGHT
@@ -90,6 +90,13 @@ def _of_the_road(units: Units, alone: list[Phrase]) -> bool:
     if at == len(things) - 1:
         return slope.joint != "then" and not (slope.article and slope.joint in (",", "and"))
     follows = things[at + 1]
+    if (
+        follows.kind in WAVY
+        and follows.count is None
+        and not follows.article
+        and follows.joint in ("and", ",")
+    ):
+        return True  # 'uphill and curvy'
     if slope.joint == "with" and follows.joint == "and" and all(thing.joint != "then" for thing in things):
         return True  # 'with a gentle incline and five curves'
     return (slope.after_road or follows.joint in ("with", ",", "stop")) and follows.joint not in ONE_LEG

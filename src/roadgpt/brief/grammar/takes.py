@@ -78,6 +78,7 @@ def _take_metres(now: Phrase, item: Item, after: str) -> None:
         now.ignored.append(item)
     elif (now.radius_said or after == "radius") and now.radius is None:
         now.radius = item.amount
+        now.series = ("radius", item.series) if item.series else now.series
     elif _is_height(now, item, after):
         now.height = item.amount
     elif now.length is None:
@@ -93,9 +94,14 @@ def _is_height(now: Phrase, item: Item, after: str) -> bool:
         return False
     if now.height_said == "?" and item.amount:
         return (item.amount.hi or item.amount.lo or 0) <= MOST_HEIGHT or after == "height"
+    if after in ("up~", "down~") and item.amount and (item.amount.hi or 0) <= MOST_RISE:
+        now.height_said = "gain"  # 'a 10 m climb'
+        return True
     return now.height_said != "" or after in ("height", "loss", "gain")
 
 
+MOST_RISE = 20.0
+"""Metres: 'a 10 m climb' is 10 m high, 'a 50 m climb' 50 m long."""
 MOST_HEIGHT = 30.0
 """Metres: 'climbs 20 metres' is a height, 'climbs 100 metres' a way."""
 
@@ -113,6 +119,8 @@ def _take_percent(now: Phrase, item: Item, after: str) -> None:
 
 def _take_degrees(now: Phrase, item: Item, after: str) -> None:
     amount = item.amount
+    if item.series:
+        now.series = ("degrees", item.series)
     if amount and amount.lo is not None and amount.lo < 0:  # '-90 degrees' is to the right, as RoadGPT has it
         now.side = now.side or "right"
         amount = exactly(abs(amount.lo))
@@ -131,6 +139,7 @@ def _take_road(now: Phrase, item: Item, after: str) -> None:
         now.many = True  # 'a switchback road' has several
     if now.kind is None or now.kind in ROAD_LIKE or now.verb:
         now.road = True
+        now.length_said |= now.length is not None
 
 
 def _take_scope(now: Phrase, item: Item, after: str) -> None:
@@ -218,6 +227,7 @@ TAKES: dict[str, Callable[[Phrase, Item, str], None]] = {
     "at_end": _set(place="end"),
     "at_start": _set(place="start"),
     "in_middle": _set(place="middle"),
+    "same_hand": _set(same_hand=True),
     "each_side": _set(each_side=True),
     "at_top": _set(place="top"),
     "at_bottom": _set(place="bottom"),

@@ -28,6 +28,7 @@ SURE = TURNING | {
 """Words that speak of roads and of little else."""
 LIKELY = frozenset(
     {"straight", "crest", "dip", "hill", "left", "right", "up", "down", "up~", "down~", "flat", "flat~"}
+    | {"steep", "hard", "hard_road"}
 )
 LIKELY_SHARE = 0.2  # of words not understood, above which such words alone are taken for chance
 SURE_SHARE = 0.75  # above which even one word about roads is
