@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from roadgpt import run as run_room
 from roadgpt.cli import app, talk
 from roadgpt.run import Setup
 
@@ -43,9 +44,20 @@ def test_it_goes_on_from_one_description_to_the_next() -> None:
 
 
 def test_a_wrong_answer_is_asked_again() -> None:
-    result = say("a road", "none", "0", "1", "three turns but no turns", "1", "exit")
+    result = say("a road", "none", "0", "1", "three turns but no turns", "exit")
     assert result.exit_code == 0
     assert "'none' is no whole number" in result.stderr
     assert "0 is not possible" in result.stderr
     assert "1 of 1 roads" in result.stdout
     assert result.stderr.count("roadgpt: ") == 3
+
+
+def test_control_c_stops_the_roads_and_not_the_conversation(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(run_room, "perform", stopped)
+        result = say("a road", "3", "exit")
+    assert result.exit_code == 0
+    assert "roadgpt: stopped; 0 of 3 roads are finished" in result.stderr

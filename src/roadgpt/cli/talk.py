@@ -18,28 +18,30 @@ Leave with 'exit' or an empty line; Ctrl-C stops the roads that are being made."
 
 def talk() -> None:
     """Ask, work off, show; until the user has had enough."""
+    from roadgpt.brief import read
     from roadgpt.road import World
     from roadgpt.run import Setup
 
     _enable_editing()
-    click.echo(HELLO)
-    while (words := _asked("\ndescription> ")) and words.lower() not in ENOUGH:
-        roads = _how_many()
-        if roads is None:
-            break
+    click.echo(f"{HELLO}\n")
+    while (words := _asked("description> ")) and words.lower() not in ENOUGH:
         try:
+            read(words)  # what cannot be read is told before a number is asked for
+            roads = _how_many()
+            if roads is None:
+                break
             work_off(Wish(words, roads, World(), Setup()), Screen(roads))
         except RoadGPTError as error:
             click.echo(f"roadgpt: {error}", err=True)
         except KeyboardInterrupt:
-            click.echo()  # what was finished has been said; ask for the next description
+            pass  # what was finished has been said; ask for the next description
+        click.echo()
 
 
 def _asked(question: str) -> str:
     """The answer without blanks around it; an empty one where there is no more input."""
-    click.echo(question, nl=False)
     try:
-        return input().strip()
+        return input(question).strip()
     except EOFError:
         click.echo()
         return ""
