@@ -10,9 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 Side = Literal["left", "right"]
 Sharpness = Literal["gentle", "sweeping", "sharp"]
 Size = Literal["long", "short"]
-Slope = Literal[
-    "up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"
-]
+Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"]
 Kind = Literal[
     "straight",
     "crest",  # a straight that climbs, then falls
