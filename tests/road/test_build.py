@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.road import Design, Road, Segment, build
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, Road, Segment, build, in_hops
 
 turns = st.one_of(st.floats(-70, -1), st.floats(1, 70))
 segments = st.builds(
@@ -115,6 +116,29 @@ def test_spline_geometry_is_roadgpts_translation() -> None:
     road = build(design, "spline")
     assert road.nodes is not None
     assert road.nodes == pytest.approx(np.array([[10, 20, 1], [15, 20, 1], [15, 70, 6], [55, 70, 4]]))
+
+
+def test_a_road_is_not_endless() -> None:
+    endless = Segment(distance=90_000, direction="straight")
+    with pytest.raises(UsageError, match="up to 50 km"):
+        build(Design(starting_point=(0, 0, 0), theta=0, segments=(endless,)))
+
+
+def test_hops_make_a_spline_that_keeps_the_bends_and_grades() -> None:
+    lead = Segment(distance=60, direction="straight", incline=8)
+    bends = [
+        Segment(distance=45, direction="left", incline=8, turn_degrees=60, radius=20, transition=8),
+        Segment(distance=45, direction="right", incline=-3, turn_degrees=-60, radius=20, transition=8),
+    ]
+    design = Design(starting_point=(50, 50, 0), theta=20, segments=(lead, *bends, lead))
+    arcs, spline = build(design), build(in_hops(design), "spline")
+    assert spline.length == pytest.approx(arcs.length, abs=0.1)
+    s = np.linspace(20, arcs.length - 2, 300)
+    assert spline.at(s)[:, :2] == pytest.approx(arcs.at(s)[:, :2], abs=0.05)
+    assert 1 / np.abs(spline.curvature(s)).max() == pytest.approx(20, rel=0.05)
+    assert spline.grade(s) == pytest.approx(arcs.grade(s), abs=0.01)
+    assert np.abs(spline.grade(np.linspace(0, 20, 50))).max() < 0.12
+    assert all(abs(segment.turn_degrees) <= 70 for segment in in_hops(design).segments)
 
 
 @given(designs, st.floats(0, 1), st.floats(-4, 4))

@@ -62,6 +62,7 @@ SEGMENT = {"distance": 50, "direction": "left", "incline": 5, "turn_degrees": 40
         ({"starting_point": [1, 2]}, "starting_point"),
         ({"starting_point": [1, 2, float("inf")]}, "starting_point"),
         ({"road_segment1": {**SEGMENT, "distance": 0}}, "segment 1"),
+        ({"road_segment1": {**SEGMENT, "distance": 1e-10}}, "segment 1"),
         ({"road_segment1": {**SEGMENT, "distance": "far"}}, "distance"),
         ({"road_segment1": {**SEGMENT, "direction": "up"}}, "direction"),
         ({"road_segment1": {**SEGMENT, "incline": float("nan")}}, "incline"),

@@ -8,6 +8,7 @@ import pytest
 
 from roadgpt.errors import UsageError
 from roadgpt.road import Road, build, read_design, read_road
+from roadgpt.road.source import read_blueprint
 
 DESIGN = {
     "starting_point": [20, 20, 0],
@@ -34,11 +35,21 @@ def test_points_alone_or_in_an_sbft_test(tmp_path: Path, data: object) -> None:
 def test_a_test_with_heights_gives_them_back(tmp_path: Path) -> None:
     ours = build(read_design(DESIGN)[0])
     dense = np.round(ours.centreline(), 4).tolist()
-    road = read_road(written(tmp_path, {"road_points": POINTS, "interpolated_points": dense}))
-    assert road.control_points().tolist() == POINTS
-    assert Road.from_json(road.to_json()).control_points().tolist() == POINTS
+    control = np.round(ours.control_points(), 5).tolist()
+    road = read_road(written(tmp_path, {"road_points": control, "interpolated_points": dense}))
+    assert road.control_points().tolist() == control
+    assert Road.from_json(road.to_json()).control_points().tolist() == control
     s = np.linspace(0, min(road.length, ours.length), 100)
     assert road.at(s) == pytest.approx(ours.at(s), abs=2e-3)
+
+
+def test_points_that_were_edited_win_over_those_interpolated_from_others(tmp_path: Path) -> None:
+    dense = build(read_design(DESIGN)[0]).centreline().tolist()
+    path = written(tmp_path, {"road_points": POINTS, "interpolated_points": dense})
+    road, remarks = read_blueprint(path)
+    assert isinstance(road, Road)
+    assert road.at(road.length) == pytest.approx([150, 60, 0], abs=1e-6)
+    assert "road_points win" in remarks[0]
 
 
 def test_a_design_and_a_run_folder(tmp_path: Path) -> None:
@@ -69,10 +80,16 @@ def test_control_points_are_dense_and_few_enough() -> None:
         ('{"road_points": [["a", 2], [3, 4]]}', "lists of two or three"),
         ("[[1, 2], [3, NaN]]", "finite"),
         ("[[1, 2], [3, 1e300]]", "finite"),
+        ("[[5, 5, 0], [5, 5, 10]]", "0 m long"),
+        ("[[10, 10], [300000, 10]]", "up to 50 km"),
+        (
+            '{"start": [0, 0, 0],"pieces": [[6e4, 0, 0]],"height": 0, "stations": [0, 1], "grades": [0, 0]}',
+            "50",
+        ),
         ('{"pieces": [[1, 0, 0]]}', "start"),
         (
             '{"start": [0, 0, 0], "pieces": [[-1, 0, 0]], "height": 0, "stations": [0, 1], "grades": [0, 0]}',
-            "longer",
+            "-1 m long",
         ),
         (
             '{"start": [0, 0, 0], "pieces": [[1, NaN, 0]],"height": 0, "stations": [0, 1], "grades": [0, 0]}',

@@ -6,6 +6,7 @@ A Design is the blueprint that a designer writes and a person reads; a Road is 3
 
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, Segment, read_design
+from roadgpt.road.hops import in_hops
 from roadgpt.road.road import Road, Samples
 from roadgpt.road.source import read_blueprint, read_road
 from roadgpt.road.world import World
@@ -18,6 +19,7 @@ __all__ = [
     "Segment",
     "World",
     "build",
+    "in_hops",
     "read_blueprint",
     "read_design",
     "read_road",

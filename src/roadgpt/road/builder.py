@@ -9,7 +9,7 @@ from roadgpt.road.alignment import pieces_of
 from roadgpt.road.design import Design
 from roadgpt.road.grades import profile_of
 from roadgpt.road.nodes import nodes_of
-from roadgpt.road.road import Road
+from roadgpt.road.road import Road, check_length
 
 Geometry = Literal["arcs", "spline"]
 
@@ -23,10 +23,11 @@ def build(design: Design, geometry: Geometry = "arcs") -> Road:
             of the segments, and a cubic spline through them.
 
     Raises:
-        UsageError: the spline's nodes coincide.
+        UsageError: the spline's nodes coincide, or the road would be longer than 50 km.
     """
     if geometry == "spline":
         return Road.through(nodes_of(design))
+    check_length(sum(segment.distance for segment in design.segments))
     x, y, z = design.starting_point
     plan = PieceCurve(x, y, math.radians(design.theta), joined(pieces_of(design.segments)))
     return Road(plan, profile_of(design.segments, z))

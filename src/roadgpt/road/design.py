@@ -23,7 +23,7 @@ KEY = re.compile(r"road_segment(\d{1,6})")
 
 Direction = Literal["left", "right", "straight"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
-Length = Annotated[float, Field(gt=0, le=100_000, allow_inf_nan=False)]
+Length = Annotated[float, Field(ge=0.001, le=100_000, allow_inf_nan=False)]
 
 
 class _Frozen(BaseModel):

@@ -22,7 +22,9 @@ from roadgpt.geometry.curve import Array
 
 CONTROL_SPACING = 2.0  # m: closer than this, SBFT's spline keeps our radii (14.8 m nominal is accepted)
 MOST_CONTROL_POINTS = 500  # SBFT rule
-LONGEST = 1_000_000.0  # m, of a road from a file
+LONGEST = 50_000.0  # m, of a road
+FARTHEST = 1_000_000.0  # m, of a point from the origin
+SHORTEST = 1e-3  # m
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +70,8 @@ class Road:
         nodes = _checked(points)
         control = None if road_points is None else _checked(road_points)[:, :2]
         plan = SplineCurve.through(nodes)
-        level = GradeProfile(0.0, (0.0, max(plan.length, 1e-9)), (0.0, 0.0))
+        check_length(plan.length)
+        level = GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0))
         return cls(plan, SplineProfile(plan) if nodes.shape[1] == 3 else level, nodes, control)
 
     @property
@@ -165,8 +168,9 @@ class Road:
             stations, grades = tuple(map(float, data["stations"])), tuple(map(float, data["grades"]))
             numbers = [x, y, heading, float(data["height"]), *stations, *grades]
             numbers += [v for p in pieces for v in (p.length, p.k0, p.k1)]
-            if not np.isfinite(numbers).all() or sum(p.length for p in pieces) > LONGEST:
-                raise ValueError("a number is not finite, or the road is endless")
+            if not np.isfinite(numbers).all():
+                raise ValueError("a number is not finite")
+            check_length(sum(p.length for p in pieces))
             return cls(
                 PieceCurve(x, y, heading, pieces), GradeProfile(float(data["height"]), stations, grades)
             )
@@ -174,6 +178,18 @@ class Road:
             raise UsageError(
                 f"the road cannot be read: {error}; it needs start, pieces, height, stations, grades"
             ) from error
+
+
+def check_length(length: float) -> None:
+    """Refuses roads that run nowhere or for ever.
+
+    Raises:
+        UsageError: the length in plan is under 1 mm or over 50 km.
+    """
+    if not SHORTEST <= length <= LONGEST:
+        raise UsageError(
+            f"the road is {length:.4g} m long, seen from above; give one of up to {LONGEST / 1000:g} km"
+        )
 
 
 def _checked(points: ArrayLike) -> Array:
@@ -185,7 +201,7 @@ def _checked(points: ArrayLike) -> Array:
         ) from error
     if nodes.ndim != 2 or nodes.shape[1] not in (2, 3):
         raise UsageError("road points are lists of two or three numbers each, like [[10, 20], [60, 25]]")
-    if not np.isfinite(nodes).all() or np.abs(nodes).max(initial=0) > LONGEST:
+    if not np.isfinite(nodes).all() or np.abs(nodes).max(initial=0) > FARTHEST:
         raise UsageError(
             "a road point has a number that is not finite or beyond 1,000 km; correct or remove it"
         )

@@ -4,11 +4,16 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from scipy.spatial import cKDTree
+
 from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, read_design
 from roadgpt.road.road import Road
 
+ASTRAY = 1.5  # m between a control point and the nearest of the road's points, a metre apart
 LARGEST = 50_000_000  # bytes of a road file
 SHAPES = (
     "a road, a design or a test written by roadgpt, an SBFT test with road_points, "
@@ -50,6 +55,8 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
     try:
         if isinstance(data, dict) and "starting_point" in data:
             return read_design(data)
+        if isinstance(data, dict) and _is_test(data):
+            return _test_road(data)
         return road_of(data), ()
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from error
@@ -68,15 +75,30 @@ def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
             return Road.from_json(data)
         if "starting_point" in data:
             return build(read_design(data)[0], geometry)
-        if "road_points" in data or "interpolated_points" in data:
-            return _test_road(data)
+        if _is_test(data):
+            return _test_road(data)[0]
     raise UsageError(f"there is no road in it; a road file is {SHAPES}")
 
 
-def _test_road(data: dict[str, Any]) -> Road:
-    """The road of an SBFT test: through its points with heights where it has them, else its others."""
+def _is_test(data: dict[str, Any]) -> bool:
+    return "pieces" not in data and ("road_points" in data or "interpolated_points" in data)
+
+
+def _test_road(data: dict[str, Any]) -> tuple[Road, tuple[str, ...]]:
+    """The road of an SBFT test: through its points with heights where they follow its control points."""
     dense, control = data.get("interpolated_points"), data.get("road_points")
-    if isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3:
-        return Road.through(dense, control)
-    points: Any = dense if control is None else control
-    return Road.through(points)
+    if not (isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3):
+        points: Any = dense if control is None else control
+        return Road.through(points), ()
+    road = Road.through(dense, control)
+    if road.road_points is None or _follows(road, road.road_points):
+        return road, ()
+    return Road.through(road.road_points), (
+        "interpolated_points do not follow road_points; the road_points win, and the heights are left out",
+    )
+
+
+def _follows(road: Road, control: Array) -> bool:
+    """Does the road pass every control point?"""
+    away, _ = cKDTree(road.centreline()[:, :2]).query(control)
+    return bool(np.max(away) <= ASTRAY)

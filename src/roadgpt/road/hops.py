@@ -1,0 +1,42 @@
+"""A design for the spline: the same road in short straight hops, so that RoadGPT's spline keeps its bends."""
+
+import math
+
+import numpy as np
+
+from roadgpt.geometry import wrap_angle
+from roadgpt.road.builder import build
+from roadgpt.road.design import MAX_SEGMENTS, Design, Direction, Segment
+from roadgpt.road.nodes import STUB
+
+GROWS = 2  # hops until the grade is that of the road
+HOP = 2.0  # m; a spline through points so dense keeps radii of 14.8 m and more at SBFT's 14.33 m
+
+
+def in_hops(design: Design) -> Design:
+    """The design whose spline runs along the lines, arcs and clothoids of this one.
+
+    RoadGPT's translation begins with a level stub, behind which the grade grows over a few hops: a spline
+    would swing below the road before a kink. What the road climbs there is left out, and all that follows is
+    as much lower or higher.
+    """
+    road = build(design)
+    first = min(STUB, road.length / 2)
+    count = min(MAX_SEGMENTS, max(2, math.ceil((road.length - first) / HOP)))
+    ways = np.diff(road.at(np.linspace(first, road.length, count + 1)), axis=0)
+    distances = np.hypot(ways[:, 0], ways[:, 1])
+    headings = np.arctan2(ways[:, 1], ways[:, 0])
+    turns = np.degrees(wrap_angle(np.diff(headings, prepend=math.radians(design.theta))))
+    grown = np.minimum(1.0, np.arange(1, count + 1) / (GROWS + 1))
+    inclines = 100 * grown * ways[:, 2] / distances
+    hops = zip(distances.tolist(), turns.tolist(), inclines.tolist(), strict=True)
+    segments = (_hop(distance, turn, incline) for distance, turn, incline in hops)
+    return design.model_copy(update={"segments": tuple(segments)})
+
+
+def _hop(distance: float, turn: float, incline: float) -> Segment:
+    turn = round(turn, 5)
+    direction: Direction = "left" if turn > 0 else "right" if turn < 0 else "straight"
+    return Segment(
+        distance=round(distance, 5), direction=direction, incline=round(incline, 4), turn_degrees=turn
+    )
