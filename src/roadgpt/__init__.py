@@ -18,7 +18,10 @@ __version__ = "0.1.0"
 # Every value and verb, and the room that owns it.
 _ROOMS = {
     "Brief": "brief",
+    "Outline": "brief",
+    "outline": "brief",
     "read": "brief",
+    "sentence": "brief",
     "World": "road",
     "Design": "road",
     "Road": "road",
@@ -33,8 +36,10 @@ _ROOMS = {
     "Verdict": "verdict",
     "judge": "verdict",
     "Run": "run",
+    "campaign": "run",
     "perform": "run",
     "prove": "run",
+    "draw": "report",
 }
 
 __all__ = ["__version__", *sorted(_ROOMS)]
