@@ -58,14 +58,14 @@ class SlipperyBicycle:
                 still_since, still_at = time, s
             if road.length - s < GOAL:
                 ended = "goal"
-            elif abs(t) - BOX.width / 2 > world.lane_width + world.verge:
-                ended = "fell"
             elif time - still_since >= STUCK:
                 ended = "stuck"
-            elif time >= LONGEST:
-                ended = "timeout"
             elif out > world.oob_tolerance and not keep_driving:
                 ended = "out_of_lane"
+            elif abs(t) - BOX.width / 2 > world.lane_width + world.verge:
+                ended = "fell"
+            elif time >= LONGEST:
+                ended = "timeout"
             for _ in range(STEPS):
                 k, grade = bend[int(s / 0.25)], slope[int(s / 0.25)]
                 steer += min(max(command.steer - steer, -0.8 * DT), 0.8 * DT)

@@ -1,9 +1,14 @@
 """A Drive is a value: read-only columns, one file, the same bytes for the same content."""
 
+import contextlib
+import io
+import json
 import pickle
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import UsageError
@@ -12,19 +17,18 @@ from roadgpt.errors import UsageError
 def a_drive(seed: int = 7) -> Drive:
     rng = np.random.default_rng(seed)
     columns = Columns({name: rng.normal(size=50) for name in COLUMNS})
-    return Drive("tester", "mujoco", seed, columns, "goal", Box(4.7, 1.86, -0.1))
+    return Drive("tester", "mujoco", seed, columns, "goal", Box(4.7, 1.86, -0.1, 0.55))
 
 
 def test_a_saved_drive_comes_back(tmp_path):
     drive = a_drive()
-    drive.save(tmp_path / "drive.npz")
+    (tmp_path / "drive.npz").write_bytes(drive.to_bytes())
     back = Drive.load(tmp_path / "drive.npz")
     assert (back.driver, back.simulator, back.seed, back.ended) == ("tester", "mujoco", 7, "goal")
     assert back.car == drive.car
     assert list(back.columns) == list(COLUMNS)
     for name in COLUMNS:
         np.testing.assert_array_equal(back[name], drive[name])
-    assert [p.name for p in tmp_path.iterdir()] == ["drive.npz"]
 
 
 def test_same_content_same_bytes_and_other_content_other_bytes():
@@ -34,7 +38,7 @@ def test_same_content_same_bytes_and_other_content_other_bytes():
 
 def test_numpy_alone_can_read_it(tmp_path):
     drive = a_drive()
-    drive.save(tmp_path / "drive.npz")
+    (tmp_path / "drive.npz").write_bytes(drive.to_bytes())
     with np.load(tmp_path / "drive.npz") as archive:
         np.testing.assert_array_equal(archive["x"], drive["x"])
 
@@ -58,6 +62,77 @@ def test_a_drive_can_go_to_another_process():
 @pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04 broken"])
 def test_a_file_that_is_no_drive_is_told_so(tmp_path, content):
     (tmp_path / "bad.npz").write_bytes(content)
+    with pytest.raises(UsageError, match="not a drive"):
+        Drive.load(tmp_path / "bad.npz")
+
+
+def rewritten(tmp_path, change):
+    """The file of a drive whose parts, header and columns, were changed."""
+    with np.load(io.BytesIO(a_drive().to_bytes())) as archive:
+        parts = {name: archive[name] for name in archive.files}
+    parts["header"] = json.loads(str(parts["header"]))
+    change(parts)
+    if isinstance(parts.get("header"), dict):
+        parts["header"] = np.array(json.dumps(parts["header"]))
+    np.savez(tmp_path / "drive.npz", **parts)
+    return tmp_path / "drive.npz"
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (lambda parts: parts["header"].pop("driver"), "driver"),
+        (lambda parts: parts["header"].pop("format"), "format"),
+        (lambda parts: parts["header"].update(format=1), "its format is 1"),
+        (lambda parts: parts["header"].update(ended="bored"), "no drive ends with 'bored'"),
+        (lambda parts: parts["header"].update(car={"height": 2.0}), "height"),
+        (lambda parts: parts["header"].update(car=[1, 2]), "list"),
+        (lambda parts: parts.update(header=np.array("[1, 2]")), "list"),
+        (lambda parts: parts.update(header=np.array("{")), "Expecting property name"),
+        (lambda parts: parts.pop("header"), "header"),
+        (lambda parts: parts.pop("yaw_rate"), "columns missing or unknown: yaw_rate"),
+        (lambda parts: parts.update(taste=np.zeros(50)), "columns missing or unknown: taste"),
+        (lambda parts: parts.update(x=np.zeros(49)), "of one length"),
+        (lambda parts: parts.update(x=np.zeros((50, 2))), "a list of numbers"),
+        (lambda parts: parts.update(x=np.array(["left"] * 50)), "left"),
+        (lambda parts: parts.update({name: np.zeros(0) for name in COLUMNS}), "not empty"),
+    ],
+)
+def test_a_drive_with_a_part_missing_or_wrong_is_told_so(tmp_path, change, why):
+    path = rewritten(tmp_path, change)
+    with pytest.raises(UsageError, match=rf"not a drive .*{why}.*: drive the road again"):
+        Drive.load(path)
+    assert len(Drive.load(rewritten(tmp_path, lambda parts: None))) == 50
+
+
+WHOLE = a_drive().to_bytes()
+
+
+@given(at=st.integers(0, len(WHOLE) - 1), length=st.integers(1, 40), fill=st.integers(0, 255), data=st.data())
+def test_a_damaged_file_costs_one_error(tmp_path_factory, at, length, fill, data):
+    damaged = bytearray(WHOLE)
+    damaged[at : at + length] = bytes([fill]) * len(damaged[at : at + length])
+    if data.draw(st.booleans()):
+        del damaged[at:]
+    path = tmp_path_factory.mktemp("damaged") / "drive.npz"
+    path.write_bytes(damaged)
+    with contextlib.suppress(UsageError):  # where only a date or a name in passing was hit, it is still whole
+        assert len(Drive.load(path)) == 50
+
+
+@pytest.mark.parametrize("method", [9, 14, 97])  # deflate64, lzma, wavpack
+def test_a_damaged_stream_or_an_unknown_compression_is_told_so(tmp_path, method):
+    damaged = bytearray(WHOLE)
+    for mark, place in ((b"PK\x03\x04", 8), (b"PK\x01\x02", 10)):
+        at = damaged.index(mark) + place
+        damaged[at : at + 2] = method.to_bytes(2, "little")
+    (tmp_path / "bad.npz").write_bytes(damaged)
+    with pytest.raises(UsageError, match="not a drive"):
+        Drive.load(tmp_path / "bad.npz")
+    broken = bytearray(WHOLE)
+    at = broken.index(b"header.npy") + len("header.npy")
+    broken[at : at + 40] = b"\xff" * 40  # zlib: invalid block type
+    (tmp_path / "bad.npz").write_bytes(broken)
     with pytest.raises(UsageError, match="not a drive"):
         Drive.load(tmp_path / "bad.npz")
 

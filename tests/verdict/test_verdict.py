@@ -1,6 +1,7 @@
 """Verdicts on drives written by hand: every number below is worked out on paper."""
 
 import math
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -115,7 +116,7 @@ def test_every_other_end_is_a_failure_with_its_cause(ended: str, cause: str, say
 
 
 def test_without_a_verge_the_end_of_the_road_is_nearer_than_the_end_of_the_lane() -> None:
-    drive = drive_at([-2.0, -2.8])
+    drive = drive_at([-2.0, -2.8, -2.0])
     assert judge(STRAIGHT, drive, World(verge=0)).margin == pytest.approx(4 - 2.8 - 0.93)
     assert judge(STRAIGHT, drive, World(verge=3)).margin == pytest.approx(2.837 - 0.8)
 
@@ -140,13 +141,23 @@ def test_a_verdict_survives_json() -> None:
 
 
 def test_the_record_of_the_competition_step_by_step() -> None:
-    drive = drive_at([-2, 0, 0, 0, -2.5, 0, 0], outside=[0, 0.96, 0.99, 0.97, 0.2, 0.955, 0.953])
+    shares = [0, 0.96, 0.99, 0.97, 0.2, 0.955, 0.953]
+    drive = drive_at([-2, 0, 0, 0, -2.5, 0, 0], outside=shares, ended="timeout")
     record = consult(drive, WORLD)
     assert record.is_oob.tolist() == [False, True, True, True, False, True, True]
     assert record.oob_counter.tolist() == [0, 1, 1, 1, 1, 2, 2]
     assert record.max_oob_percentage.tolist() == [0, 0.96, 0.99, 0.99, 0.99, 0.955, 0.955]
     assert record.oob_percentage.tolist() == drive["outside"].tolist()
     assert record.oob_distance.tolist() == [2, 0, 0, 0, 1.5, 0, 0]
+
+
+def test_the_record_of_a_long_way_outside_takes_no_longer_per_step() -> None:
+    # an hour at 50 Hz, all but its first step outside; a quadratic record takes half a minute
+    drive = drive_at([-2.0] + [2.0] * 200_000, ended="timeout")
+    begun = time.process_time()
+    record = consult(drive, WORLD)
+    assert time.process_time() - begun < 5.0
+    assert record.max_oob_percentage[[0, 1, -1]].tolist() == [0.0, 1.0, 1.0]
 
 
 def test_the_verdict_agrees_with_its_record() -> None:
@@ -171,7 +182,7 @@ def test_the_reach_is_where_the_share_of_a_grid_is_the_tolerance(angle: float, t
 @given(t=st.floats(-8, 4), tolerance=st.floats(0.5, 0.99), turned=st.floats(-0.5, 0.5))
 def test_the_margin_falls_metre_by_metre(t: float, tolerance: float, turned: float) -> None:
     world = World(oob_tolerance=tolerance)
-    drive = drive_at([t, t + 0.01 * np.sign(t + 2)], outside=[0.0, 0.0], turned=turned)
+    drive = drive_at([t, t + 0.01 * np.sign(t + 2)], outside=[0.0, 0.0], turned=turned, ended="timeout")
     here, there = margins(STRAIGHT, drive, world)
     assert here >= there >= 0.0
     beyond = replace(drive, columns=Columns({**drive.columns, "outside": np.ones(2)}))

@@ -2,7 +2,6 @@
 
 import io
 import json
-import os
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -27,6 +26,7 @@ COLUMNS = {
     "roll": "rad, left side up positive (the car leans to its right), against the horizon",
     "vx": "m/s, forward along the car",
     "vy": "m/s, to the car's left",
+    "vz": "m/s, towards the car's roof",
     "yaw_rate": "rad/s, left positive",
     "speed": "m/s",
     "ax": "m/s^2, forward along the car, gravity not counted",
@@ -41,11 +41,11 @@ COLUMNS = {
 """Names of the columns, in their order, with what they hold."""
 
 # The format of the file; raised when a reader of the old one would misread the new one.
-FORMAT = 1
+FORMAT = 2
 
 
 class Box(NamedTuple):
-    """The car's outline in plan."""
+    """The car's outline in plan, and how far its front wheels turn."""
 
     length: float
     """Metres."""
@@ -53,6 +53,8 @@ class Box(NamedTuple):
     """Metres."""
     ahead: float = 0.0
     """Metres, from the centre of gravity forward to the middle of the box."""
+    lock: float = 0.6
+    """Radians, the angle of the front wheels at full lock; saloons have 0.5 to 0.7."""
 
 
 class Columns(Mapping[str, FloatArray]):
@@ -107,9 +109,18 @@ class Drive:
         return float(self.columns["time"][-1])
 
     @property
+    def lane_steps(self) -> int:
+        """How many steps count for the lane, from the first on.
+
+        All of them, but for the last where the car came to the goal or was stuck: the SBFT competition asks
+        for the goal first, then for motion, then for the lane.
+        """
+        return max(len(self) - 1, 1) if self.ended in ("goal", "stuck") else len(self)
+
+    @property
     def max_outside(self) -> float:
-        """Largest share of the car's box outside the right lane, 0..1."""
-        return float(self.columns["outside"].max())
+        """Largest share of the car's box outside the right lane, 0..1, over the steps that count."""
+        return float(self.columns["outside"][: self.lane_steps].max())
 
     def corners(self, step: int) -> FloatArray:
         """The four corners of the car's box in plan at one step, shape (4, 2), counter-clockwise.
@@ -142,16 +153,9 @@ class Drive:
                 _write(archive, name, column)
         return buffer.getvalue()
 
-    def save(self, path: Path | str) -> None:
-        """Write the .npz whole or not at all."""
-        target = Path(path)
-        draft = target.with_name(f"{target.name}.{os.getpid()}.part")
-        draft.write_bytes(self.to_bytes())
-        draft.replace(target)
-
     @classmethod
     def load(cls, path: Path | str) -> "Drive":
-        """Read what `save` wrote.
+        """Read a file that holds what `to_bytes` gave.
 
         Raises:
             UsageError: there is no such file, or it holds no Drive.
@@ -159,23 +163,36 @@ class Drive:
         try:
             with np.load(path, allow_pickle=False) as archive:
                 header = json.loads(str(archive["header"]))
-                columns = Columns({name: archive[name] for name in archive.files if name != "header"})
+                arrays = {name: archive[name] for name in archive.files if name != "header"}
+            return _checked(header, arrays)
         except FileNotFoundError as error:
             raise UsageError(f"there is no drive at {path}: check the path") from error
-        except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile, EOFError) as error:
+        except Exception as error:  # of a broken file, zipfile, its decoders, numpy and json raise anything
             raise UsageError(
-                f"{path} is not a drive saved by roadgpt ({error}): drive the road again"
+                f"{path} is not a drive saved by this version of roadgpt ({error}): drive the road again"
             ) from error
-        if header["format"] != FORMAT or header["ended"] not in get_args(Ended):
-            raise UsageError(f"{path} was saved by another version of roadgpt: drive the road again")
-        return cls(
-            driver=header["driver"],
-            simulator=header["simulator"],
-            seed=header["seed"],
-            columns=columns,
-            ended=header["ended"],
-            car=Box(**header["car"]),
-        )
+
+
+def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
+    """The Drive of a file's content; raises where it is none."""
+    if header["format"] != FORMAT:
+        raise ValueError(f"its format is {header['format']}, not {FORMAT}")
+    if header["ended"] not in get_args(Ended):
+        raise ValueError(f"no drive ends with '{header['ended']}'")
+    if set(arrays) != set(COLUMNS):
+        raise ValueError(f"columns missing or unknown: {', '.join(sorted(set(arrays) ^ set(COLUMNS)))}")
+    if any(array.ndim != 1 for array in arrays.values()):
+        raise ValueError("a column is a list of numbers")
+    if len({len(array) for array in arrays.values()}) != 1 or not len(arrays["time"]):
+        raise ValueError("columns are of one length, and not empty")
+    return Drive(
+        driver=str(header["driver"]),
+        simulator=str(header["simulator"]),
+        seed=int(header["seed"]),
+        columns=Columns({name: arrays[name] for name in COLUMNS}),
+        ended=header["ended"],
+        car=Box(**{name: float(value) for name, value in header["car"].items()}),
+    )
 
 
 def _write(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:

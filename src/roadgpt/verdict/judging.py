@@ -6,7 +6,7 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.verdict.margin import NOTHING, margins
-from roadgpt.verdict.oracle import consult
+from roadgpt.verdict.oracle import consult, is_outside
 from roadgpt.verdict.verdict import Cause, Side, Verdict
 
 if TYPE_CHECKING:
@@ -34,14 +34,15 @@ def judge(road: "Road", drive: "Drive", world: "World") -> Verdict:
     """Whether the car kept its lane, by how many metres, and where it first did not.
 
     What comes first decides: a car that left its lane and later came to the goal, fell or got stuck (it was
-    told to keep driving) failed out of its lane.
+    told to keep driving) failed out of its lane. At one and the same step the competition asks for the goal
+    first, then for motion, then for the lane: that step counts neither for the margin nor for ``max_oob``.
 
     Raises:
         UsageError: the drive was ended at another, smaller tolerance than ``world.oob_tolerance``.
     """
     step, cause = _first_failure(drive, world)
     every = margins(road, drive, world)
-    least = float(every.min())
+    least = float(every[: drive.lane_steps].min())
     left = _left(drive, step, world)
     side: Side | None = ("left" if left else "right") if cause in ("out of lane", "fell") else None
     if cause == "fell":
@@ -64,10 +65,7 @@ def judge(road: "Road", drive: "Drive", world: "World") -> Verdict:
 def _first_failure(drive: "Drive", world: "World") -> tuple[int, Cause | None]:
     """The step at which the drive failed and why; the last step and None when it did not."""
     last = len(drive) - 1
-    out = drive["outside"] > world.oob_tolerance
-    # At one and the same step the competition asks for the goal first, then for motion, then for the lane.
-    if drive.ended != "out_of_lane":
-        out[last] = False
+    out = is_outside(drive, world)
     if out.any():
         return int(np.argmax(out)), "out of lane"
     if drive.ended == "out_of_lane":

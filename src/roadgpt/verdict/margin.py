@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry import wrap_angle
+from roadgpt.verdict.oracle import is_outside
 
 if TYPE_CHECKING:
     from roadgpt.drive import Drive
@@ -73,7 +74,7 @@ def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
     half = world.lane_width / 2
     in_lane = half + reach(world.oob_tolerance, box) - np.abs(box.middle + half)
     ground = world.lane_width + world.verge - np.abs(box.middle) - box.long - box.short
-    outside = drive["outside"] > world.oob_tolerance
+    outside = is_outside(drive, world)
     inside = np.maximum(np.minimum(in_lane, ground), 0.0)
     # The oracle's polygon and the formula differ by millimetres; the oracle decides on which side of 0 it is.
     return np.asarray(np.where(outside, np.minimum(in_lane, -NOTHING), inside), float)

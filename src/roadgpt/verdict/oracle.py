@@ -17,7 +17,8 @@ class Oracle(NamedTuple):
     """Arrays over the steps of a drive, shapes ``(n,)``."""
 
     is_oob: NDArray[np.bool_]
-    """The share outside is above the tolerance."""
+    """The share outside is above the tolerance; never at the step of the goal or of being stuck, where the
+    competition does not ask for the lane any more."""
     oob_counter: NDArray[np.int64]
     """How many times, up to now, the car went outside."""
     max_oob_percentage: NDArray[np.float64]
@@ -32,14 +33,22 @@ class Oracle(NamedTuple):
 def consult(drive: "Drive", world: "World") -> Oracle:
     """The record of a whole drive."""
     share = drive["outside"]
-    out = share > world.oob_tolerance
+    out = is_outside(drive, world)
     went = out & ~np.concatenate([[False], out[:-1]])
     counter = np.cumsum(went)
     largest = np.zeros(len(share))
     best = 0.0
-    for i in np.flatnonzero(out):
-        best = share[i] if went[i] else max(best, share[i])
-        largest[i:] = best
+    for i in range(len(share)):
+        if out[i]:
+            best = share[i] if went[i] else max(best, share[i])
+        largest[i] = best
     half = world.lane_width / 2
     distance = half - np.abs(drive["t"] + half)
     return Oracle(out, counter.astype(np.int64), largest, distance, share)
+
+
+def is_outside(drive: "Drive", world: "World") -> NDArray[np.bool_]:
+    """Where the car is out of its lane for the competition, per step."""
+    out: NDArray[np.bool_] = drive["outside"] > world.oob_tolerance
+    out[drive.lane_steps :] = False
+    return out

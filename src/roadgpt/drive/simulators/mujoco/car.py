@@ -172,8 +172,8 @@ class Car:
 
     @property
     def box(self) -> Box:
-        """Outline in plan."""
-        return Box(self.length, self.width, self.box_ahead)
+        """Outline in plan, and lock."""
+        return Box(self.length, self.width, self.box_ahead, self.steer_limit)
 
     def load(self, axle: Axle) -> float:
         """N on one wheel of the axle, at rest on level ground."""

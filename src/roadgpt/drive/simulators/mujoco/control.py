@@ -31,7 +31,7 @@ _ROW = {name: place for place, name in enumerate(COLUMNS)}
 TIME, OUTSIDE = _ROW["time"], _ROW["outside"]
 X, Y, Z = _ROW["x"], _ROW["y"], _ROW["z"]
 HEADING, PITCH, ROLL = _ROW["heading"], _ROW["pitch"], _ROW["roll"]
-VX, VY, YAW_RATE, SPEED = _ROW["vx"], _ROW["vy"], _ROW["yaw_rate"], _ROW["speed"]
+VX, VY, VZ, YAW_RATE, SPEED = _ROW["vx"], _ROW["vy"], _ROW["vz"], _ROW["yaw_rate"], _ROW["speed"]
 AX, AY = _ROW["ax"], _ROW["ay"]
 STEERED, THROTTLE, BRAKE = _ROW["steer"], _ROW["throttle"], _ROW["brake"]
 S, T = _ROW["s"], _ROW["t"]
@@ -54,6 +54,7 @@ def _look(engine: Engine, car: Any, ground: Ground, motion: Motion, row: FloatAr
     row[ROLL] = math.atan2(m[7], m[8])
     row[VX] = vx * m[0] + vy * m[3] + vz * m[6]
     row[VY] = vx * m[1] + vy * m[4] + vz * m[7]
+    row[VZ] = vx * m[2] + vy * m[5] + vz * m[8]
     row[YAW_RATE] = engine.qvel[5]
     row[SPEED] = math.sqrt(vx * vx + vy * vy + vz * vz)
     row[STEERED] = state[STEER]
@@ -116,7 +117,9 @@ def _mark_of_sources() -> int:
     """Another number when any file of the physics has changed."""
     here = Path(__file__)
     files = sorted(here.parent.glob("*.py"))
-    files += [here.parents[2] / name for name in ("compiled.py", "drive.py", "lane.py", "ribbon.py")]
+    files += [
+        here.parents[2] / name for name in ("compiled.py", "drive.py", "lane.py", "native.py", "ribbon.py")
+    ]
     digest = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
     return int(digest[:12], 16) | 1
 
