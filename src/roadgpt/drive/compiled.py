@@ -1,28 +1,39 @@
-"""Numba where it can be had, plain Python where not: the same functions either way.
+"""Machine code where it can be had, plain Python where not: the same functions either way.
 
-``ROADGPT_NO_NUMBA=1`` forces plain Python; so does a numba that is missing or does not load.
+All or nothing, and decided once: where numba or llvmlite is missing or does not load, or MuJoCo's library
+cannot be called at its addresses, everything is plain Python, far slower. ``ROADGPT_NO_NUMBA=1`` forces it.
+``roadgpt doctor`` tells which is used.
 """
 
 import os
+import warnings
 from collections.abc import Callable
 from typing import Any, TypeVar
+
+from roadgpt.drive.native import addresses, intrinsic_call
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _numba() -> Any:
+def _numba() -> tuple[Any, Any, str]:
+    """Numba, the call of a function at its address, and in words why there are none."""
     if os.environ.get("ROADGPT_NO_NUMBA", "") not in ("", "0"):
-        return None
+        return None, None, "ROADGPT_NO_NUMBA is set"
     try:
-        import numba
-    except (ImportError, OSError, SystemError):
-        return None
-    return numba
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            import numba
+
+            call = intrinsic_call()
+            addresses()
+    except Exception as error:  # what a broken installation raises cannot be foreseen
+        return None, None, f"{type(error).__name__}: {error}"
+    return numba, call, ""
 
 
-numba: Any = _numba()
+numba, call_at, WHY_NOT = _numba()
 COMPILES = numba is not None
-"""Does this process compile its inner loops?"""
+"""Does this process compile its inner loops? If not, WHY_NOT tells why."""
 
 
 def compiled(function: Function) -> Function:
