@@ -9,11 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roadgpt.drive import View
 from roadgpt.drive.driving_line import Line, line_along, stations
 from roadgpt.drive.pedals import pedals
+from roadgpt.drive.pursuit import pursued
 from roadgpt.drive.speed_profile import SLOWEST, Limits, plan_speed
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import Road
+from roadgpt.road import Road, World
 
 LIMITS = Limits(lateral=0.6, braking=0.6, traction=0.5, speed=30.0, power=1e9)
 
@@ -25,6 +27,31 @@ def road_of(*pieces: Piece, grade: float = 0.0) -> Road:
 
 def circle(radius: float, grade: float = 0.0) -> Road:
     return road_of(Piece(100.0, 1 / radius, 1 / radius), grade=grade)
+
+
+@given(
+    radius=st.floats(15, 200),
+    hand=st.sampled_from([-1, 1]),
+    s=st.floats(5, 60),
+    ahead=st.floats(3, 20),
+    t=st.floats(-3, 3),
+    turned=st.floats(-0.5, 0.5),
+)
+def test_the_pursued_circle_leaves_along_the_car_and_meets_the_line(
+    radius: float, hand: int, s: float, ahead: float, t: float, turned: float
+) -> None:
+    road = circle(hand * radius)
+    line = line_along(road, -2.0)
+    x, y, z = road.at(s, t).tolist()
+    heading = float(road.heading(s)) + turned
+    view = View(0, x, y, z, heading, 10, 0, s, t, road, World(), 0, 0.02, 10, 0)
+    bend = pursued(line, view, ahead)
+    aim = road.at(s + ahead, -2.0)[:2]
+    # A circle through the car whose tangent there is the heading: its middle is 1 / bend to the left.
+    left = np.array([-math.sin(heading), math.cos(heading)])
+    off = aim - [x, y]
+    chord = float(off @ off)
+    assert bend * chord == pytest.approx(2 * float(off @ left), abs=0.02 * math.sqrt(chord))
 
 
 def bends(k: list[float]) -> Road:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.drive.driving_line import FloatArray, line_along, stations
+from roadgpt.drive.pursuit import pursued
 from roadgpt.drive.speed_profile import Limits, plan_speed
 from roadgpt.drive.view import Command, View
 
@@ -96,11 +97,7 @@ class BeamngLike:
     def steer(self, view: View) -> Command:
         """Aim at the point of the line ahead; chase the planned speed."""
         line, v = self._line, view.speed
-        i, share = line.place(view.s + max(self.headway * v, self.nearest))
-        dx = line.x[i] + share * (line.x[i + 1] - line.x[i]) - view.x
-        dy = line.y[i] + share * (line.y[i + 1] - line.y[i]) - view.y
-        angle = math.atan2(dy, dx) - view.heading
-        bend = 2 * math.sin(angle) / max(math.hypot(dx, dy), 1.0)
+        bend = pursued(line, view, max(self.headway * v, self.nearest))
         steer = math.atan(self.wheelbase * bend) + self.compensation * v * v * bend
         here, _ = line.place(view.s)
         error = self._speed[here] - v

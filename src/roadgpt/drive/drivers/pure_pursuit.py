@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import line_along
 from roadgpt.drive.pedals import pedals
+from roadgpt.drive.pursuit import pursued
 from roadgpt.drive.speed_profile import Limits, plan_speed
 from roadgpt.drive.view import Command, View
 
@@ -15,8 +16,7 @@ if TYPE_CHECKING:
 class PurePursuit:
     """Steers on the circle that leads to a point of the lane's middle ahead, and knows nothing of slip.
 
-    It cuts bends at low speed and runs wide at high speed: the weak baseline. Source: R. C. Coulter,
-    "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01 (1992).
+    It cuts bends at low speed and runs wide at high speed: the weak baseline.
 
     Args:
         risk: lateral acceleration in bends, in g; at most 0.95 of the friction is used.
@@ -41,9 +41,5 @@ class PurePursuit:
     def steer(self, view: View) -> Command:
         """Aim at the point ahead; follow the planned speed."""
         line = self._line
-        i, share = line.place(view.s + max(self.headway * view.speed, self.nearest))
-        dx = line.x[i] + share * (line.x[i + 1] - line.x[i]) - view.x
-        dy = line.y[i] + share * (line.y[i + 1] - line.y[i]) - view.y
-        angle = math.atan2(dy, dx) - view.heading
-        steer = math.atan(2 * self.wheelbase * math.sin(angle) / max(math.hypot(dx, dy), 1.0))
-        return Command(steer, *pedals(line, self._speed, view.s, view.speed))
+        bend = pursued(line, view, max(self.headway * view.speed, self.nearest))
+        return Command(math.atan(self.wheelbase * bend), *pedals(line, self._speed, view.s, view.speed))

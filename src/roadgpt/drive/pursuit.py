@@ -1,0 +1,26 @@
+"""Pure pursuit: the circle that leads from the car to a point of its line ahead.
+
+Source: R. C. Coulter, "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01 (1992).
+"""
+
+import math
+
+from roadgpt.drive.driving_line import Line
+from roadgpt.drive.view import View
+
+NEAREST = 1.0  # m, the least distance that is reckoned with
+
+
+def pursued(line: Line, view: View, ahead: float) -> float:
+    """Curvature of the circle, in 1/m, positive to the left.
+
+    Args:
+        line: the line to follow.
+        view: where the car is.
+        ahead: metres of road to the point.
+    """
+    i, share = line.place(view.s + ahead)
+    dx = line.x[i] + share * (line.x[i + 1] - line.x[i]) - view.x
+    dy = line.y[i] + share * (line.y[i + 1] - line.y[i]) - view.y
+    angle = math.atan2(dy, dx) - view.heading
+    return 2 * math.sin(angle) / max(math.hypot(dx, dy), NEAREST)
