@@ -1,5 +1,6 @@
 """Whatever a driver does wrong costs one DriverError, and never the run."""
 
+import json
 import math
 import signal
 import threading
@@ -135,6 +136,52 @@ def test_start_is_watched_too():
     seat = Seat(Starts(Command(0.0)))
     with seat.watched(), pytest.raises(DriverError, match="bad plan"):
         seat.start(None, None, 0)
+
+
+def test_a_driver_that_never_gets_ready_is_told_to_start_sooner():
+    class Ponders(Answers):
+        def start(self, road, world, seed):
+            endless()
+
+    seat = Seat(Ponders(Command(0.0)), before_start=0.5)
+    with seat.watched(), pytest.raises(DriverError, match=r"not ready within 0.5 s: make start\(\) return"):
+        seat.start(None, None, 0)
+
+
+def test_the_error_names_the_drivers_own_line_and_not_that_of_a_library():
+    class Reads(Answers):
+        def steer(self, view):
+            return json.loads("no json")
+
+    seat = Seat(Reads(None))
+    with seat.watched(), pytest.raises(DriverError, match=r"\(.*test_seat.py, line \d+\)"):
+        seat.ask(VIEW)
+
+
+def test_an_alarm_of_a_library_in_c_is_left_alone():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(signal, "getsignal", lambda number: None)  # what Python says of a handler not its own
+        patch.setattr(signal, "signal", lambda number, handler: pytest.fail("it was replaced"))
+        with pytest.raises(DriverError, match="no answer within"):
+            ask(endless)
+
+
+def test_an_alarm_that_rings_at_once_finds_the_seat_ready():
+    rung = []
+    before = signal.signal(signal.SIGALRM, lambda *_: rung.append(True))
+    install = signal.signal
+
+    def ringing(number, handler):
+        old = install(number, handler)
+        signal.raise_signal(number)
+        return old
+
+    try:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(signal, "signal", ringing)
+            assert ask(Command(0.1)) == (0.1, 0.0, 0.0)
+    finally:
+        signal.signal(signal.SIGALRM, before)
 
 
 def test_many_slow_answers_add_up():

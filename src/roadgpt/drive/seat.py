@@ -14,6 +14,7 @@ import contextlib
 import ctypes
 import math
 import signal
+import sys
 import threading
 import time
 import traceback
@@ -42,7 +43,13 @@ class Seat:
     Use it as ``with seat.watched(): seat.start(...); seat.ask(view) ...``.
     """
 
-    def __init__(self, driver: Any, one_answer: float = ONE_ANSWER, whole_drive: float = WHOLE_DRIVE) -> None:
+    def __init__(
+        self,
+        driver: Any,
+        one_answer: float = ONE_ANSWER,
+        whole_drive: float = WHOLE_DRIVE,
+        before_start: float = BEFORE_START,
+    ) -> None:
         """A seat for this driver; the limits are seconds of wall time.
 
         Raises:
@@ -58,6 +65,7 @@ class Seat:
             )
         self._one_answer = one_answer
         self._whole_drive = whole_drive
+        self._before_start = before_start
         self._used = 0.0
         self._due = math.inf
 
@@ -69,7 +77,7 @@ class Seat:
         """
         start = getattr(self._driver, "start", None)
         if start is not None:
-            self._guarded(0.0, BEFORE_START, lambda: start(road, world, seed))
+            self.guarded(0.0, self._before_start, lambda: start(road, world, seed))
 
     def ask(self, view: View) -> tuple[float, float, float]:
         """The driver's answer as (steer, throttle, brake), finite and in range.
@@ -85,7 +93,7 @@ class Seat:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a driver may raise anything; it costs this drive only
-            raise self._failure(error, view.time, self._one_answer) from error
+            raise self._failure(error, view.time) from error
         finally:
             self._due = math.inf
         self._used += time.perf_counter() - begun
@@ -96,14 +104,21 @@ class Seat:
             )
         return self._checked(answer, view.time)
 
-    def _guarded(self, at: float, limit: float, action: Callable[[], Any]) -> None:
+    def guarded(self, at: float, limit: float, action: Callable[[], Any]) -> None:
+        """Lets the driver do what comes before its drive; ``at`` is the time told in the error.
+
+        Raises:
+            DriverError: it raised, or took longer than ``limit`` seconds.
+        """
         self._due = time.perf_counter() + limit
         try:
             action()
+            self._due = math.inf
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # as in `ask`
-            raise self._failure(error, at, limit) from error
+            late = f"was not ready within {limit:g} s: make start() return sooner"
+            raise self._failure(error, at, late) from error
         finally:
             self._due = math.inf
 
@@ -123,37 +138,56 @@ class Seat:
             )
         return command[0], min(max(command[1], 0.0), 1.0), min(max(command[2], 0.0), 1.0)
 
-    def _failure(self, error: BaseException, at: float, limit: float) -> DriverError:
+    def _failure(self, error: BaseException, at: float, late: str = "") -> DriverError:
         if isinstance(error, _HungError):
-            return DriverError(
-                f"driver '{self.name}' gave no answer within {limit:g} s at {at:.2f} s of its drive: "
+            late = late or (
+                f"gave no answer within {self._one_answer:g} s at {at:.2f} s of its drive: "
                 "make steer() return at once"
             )
-        frames = traceback.extract_tb(error.__traceback__)
-        where = f" ({frames[-1].filename}, line {frames[-1].lineno})" if len(frames) > 1 else ""
+            return DriverError(f"driver '{self.name}' {late}")
         return DriverError(
-            f"driver '{self.name}' raised {type(error).__name__} at {at:.2f} s of its drive{where}: "
-            f"{_short(str(error) or 'no message', quoted=False)}"
+            f"driver '{self.name}' raised {type(error).__name__} at {at:.2f} s of its drive"
+            f"{self._line(error)}: {_short(str(error) or 'no message', quoted=False)}"
         )
+
+    def _line(self, error: BaseException) -> str:
+        """The innermost line of the driver's own file; of any file, where none of its own was passed."""
+        passed = traceback.extract_tb(error.__traceback__)
+        frames = [frame for frame in passed if frame.filename != __file__]
+        module = sys.modules.get(type(self._driver).__module__)
+        own = [frame for frame in frames if frame.filename == getattr(module, "__file__", None)]
+        if not frames:
+            return ""
+        last = (own or frames)[-1]
+        return f" ({last.filename}, line {last.lineno})"
 
     @contextlib.contextmanager
     def watched(self) -> Iterator[None]:
         """While this is open, a driver that takes too long is stopped."""
-        main = threading.current_thread() is threading.main_thread()
         try:
-            with _by_signal(self) if main and hasattr(signal, "setitimer") else _by_thread(self):
+            with _by_signal(self) if _has_signals() else _by_thread(self):
                 yield
         except _HungError as error:  # sent just when the answer came
-            raise self._failure(error, 0.0, self._one_answer) from error
+            raise self._failure(error, 0.0) from error
 
     def is_late(self) -> bool:
         """Is the driver being asked, and beyond its time?"""
         return time.perf_counter() > self._due
 
 
+def _has_signals() -> bool:
+    """Can an alarm be set here, and what it does now be put back afterwards?"""
+    return (
+        hasattr(signal, "setitimer")
+        and threading.current_thread() is threading.main_thread()
+        and signal.getsignal(signal.SIGALRM) is not None  # it is, where a library in C has set its own
+    )
+
+
 @contextlib.contextmanager
 def _by_signal(seat: Seat) -> Iterator[None]:
     begun = time.perf_counter()
+    left, every = signal.getitimer(signal.ITIMER_REAL)
     before = signal.getsignal(signal.SIGALRM)
 
     def look(number: int, frame: Any) -> None:
@@ -163,7 +197,7 @@ def _by_signal(seat: Seat) -> Iterator[None]:
             raise _HungError
 
     signal.signal(signal.SIGALRM, look)
-    left, every = signal.setitimer(signal.ITIMER_REAL, TICK, TICK)
+    signal.setitimer(signal.ITIMER_REAL, TICK, TICK)
     try:
         yield
     finally:
