@@ -71,3 +71,20 @@ def test_where_mujoco_cannot_be_called_at_its_addresses_it_drives_in_plain_pytho
     assert said.startswith(f"False {why}")
     assert speed == pytest.approx(first_steps("", tmp_path)[1], rel=1e-9)
     assert warned == ""
+
+
+def test_the_doctor_tells_which_is_used_and_why():
+    script = "from roadgpt.cli.commands import doctor; print(doctor._numba())"
+    said = {}
+    for forced in ("0", "1"):
+        done = subprocess.run(
+            [sys.executable, "-c", script],
+            capture_output=True,
+            text=True,
+            check=True,
+            env=os.environ | {"ROADGPT_NO_NUMBA": forced},
+            timeout=120,
+        )
+        said[forced] = done.stdout.strip()
+    assert said["0"] == "compiles the inner loop"
+    assert said["1"] == "is not used (ROADGPT_NO_NUMBA is set): drives work, but far slower"

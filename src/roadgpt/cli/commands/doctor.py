@@ -74,9 +74,9 @@ def _tried(about: str, look: Callable[[], str]) -> Answer:
 
 
 def _numba() -> str:
-    from roadgpt.drive.compiled import COMPILES
+    from roadgpt.drive.compiled import COMPILES, WHY_NOT
 
-    return "compiles the inner loop" if COMPILES else "does not load: drives work, but far slower"
+    return "compiles the inner loop" if COMPILES else f"is not used ({WHY_NOT}): drives work, but far slower"
 
 
 def _drive() -> str:
