@@ -1,13 +1,15 @@
 """Execution data on a drive written by hand."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.road import World
-from roadgpt.run.execution import FIELDS, LOCK, STEERING_RATIO, Record, records_of
+from roadgpt.run.execution import FIELDS, Record, records_of
 
 WORLD = World()
 STEPS = 101  # 2 s
@@ -69,10 +71,26 @@ def test_directions_and_speeds_in_space() -> None:
     assert records[3].vel_kmh == 36
 
 
-def test_the_steering_wheel_turns_more_than_the_wheels() -> None:
-    record = records_of(drive(steer=np.radians(np.full(STEPS, 6.0))), WORLD)[0]
-    assert record.steering == pytest.approx(6.0 * STEERING_RATIO)
-    assert record.steering_input == pytest.approx(6.0 / LOCK)
+def test_a_car_that_falls_moves_down() -> None:
+    rng = np.random.default_rng(4)
+    heading, pitch, roll = (np.full(STEPS, angle) for angle in (2.0, -0.7, 0.5))
+    vx, vy, vz = rng.normal(0, 5, (3, STEPS))
+    record = records_of(drive(heading=heading, pitch=pitch, roll=roll, vx=vx, vy=vy, vz=vz), WORLD)[0]
+    turned = Rotation.from_euler("ZYX", [2.0, 0.7, 0.5])  # scipy's pitch is positive nose down
+    assert record.vel == pytest.approx(turned.apply([vx[0], vy[0], vz[0]]), abs=1e-4)
+    assert record.dir == pytest.approx(turned.apply([1, 0, 0]), abs=1e-4)
+    sinking = records_of(drive(vz=np.full(STEPS, -9.81)), WORLD)[0]
+    assert sinking.vel == [0.0, 0.0, -9.81]
+
+
+def test_steering_is_told_at_the_wheel_in_degrees_and_as_a_share_of_the_car_s_lock() -> None:
+    steer = np.full(STEPS, 0.31)
+    steer[10:] = -0.7
+    turning = replace(drive(steer=steer), car=Box(4.7, 1.86, 0.0, 0.62))
+    first, *_, last = records_of(turning, WORLD)
+    assert first.steering == pytest.approx(15 * 17.7617, abs=1e-3)
+    assert first.steering_input == pytest.approx(0.5)
+    assert last.steering_input == -1.0
 
 
 def test_the_distance_to_the_edge_of_the_lane() -> None:

@@ -28,7 +28,6 @@ from roadgpt.verdict import consult
 
 RATE = 10.0  # Hz, of the records; the Drive itself has 50
 STEERING_RATIO = 15.0  # steering wheel to front wheels
-LOCK = 30.0  # degrees, of the front wheels
 
 FIELDS = (
     "timer",
@@ -86,7 +85,7 @@ def records_of(drive: Drive, world: World) -> list[Record]:
         "dir": ahead,
         "vel": velocity,
         "steering": wheel * STEERING_RATIO,
-        "steering_input": np.clip(wheel / LOCK, -1, 1),
+        "steering_input": np.clip(drive["steer"] / drive.car.lock, -1, 1),
         "brake": drive["brake"],
         "brake_input": drive["brake"],
         "throttle": drive["throttle"],
@@ -108,15 +107,15 @@ def _steps(time: NDArray[np.float64], leaves: NDArray[np.bool_]) -> NDArray[np.i
 
 
 def _directions(drive: Drive) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where the car looks, and how it moves, in space."""
-    heading, pitch = drive["heading"], drive["pitch"]
-    flat = np.cos(pitch)
-    ahead = np.stack([np.cos(heading) * flat, np.sin(heading) * flat, np.sin(pitch)], axis=-1)
-    vx, vy = drive["vx"], drive["vy"]
-    velocity = ahead * vx[:, None]
-    velocity[:, 0] -= np.sin(heading) * vy
-    velocity[:, 1] += np.cos(heading) * vy
-    return ahead, velocity
+    """Where the car looks, and how it moves, in space: both ``(n, 3)``."""
+    heading, pitch, roll = drive["heading"], drive["pitch"], drive["roll"]
+    ahead = np.stack([np.cos(heading) * np.cos(pitch), np.sin(heading) * np.cos(pitch), np.sin(pitch)])
+    level = np.stack([-np.sin(heading), np.cos(heading), np.zeros_like(heading)])  # left, before it rolls
+    upright = np.cross(ahead, level, axis=0)
+    left = np.cos(roll) * level + np.sin(roll) * upright
+    up = np.cos(roll) * upright - np.sin(roll) * level
+    velocity = drive["vx"] * ahead + drive["vy"] * left + drive["vz"] * up
+    return ahead.T, velocity.T
 
 
 def _plain(column: NDArray[np.generic]) -> list[object]:
