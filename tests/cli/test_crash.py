@@ -34,3 +34,23 @@ def test_where_no_file_can_be_written_the_traceback_is_shown(monkeypatch: pytest
     result = CliRunner().invoke(app, ["parts"])
     assert result.exit_code == 70
     assert "in broken" in result.stderr
+
+
+def test_a_folder_that_cannot_be_written_to_is_passed_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = crash.tempfile.NamedTemporaryFile
+
+    def only_here(*args, **more):  # type: ignore[no-untyped-def]
+        if more["dir"] != tmp_path:
+            raise PermissionError(13, "Permission denied")
+        return whole(*args, **more)
+
+    monkeypatch.setattr(parts, "installed", broken)
+    monkeypatch.setattr(crash, "_folder", [tmp_path.parent])
+    monkeypatch.setattr(crash.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(crash.tempfile, "NamedTemporaryFile", only_here)
+    result = CliRunner().invoke(app, ["parts"])
+    (file,) = tmp_path.iterdir()
+    assert str(file) in result.stderr
+    assert len(result.stderr.splitlines()) == 1

@@ -95,6 +95,15 @@ def test_check_in_the_official_words() -> None:
     assert "The road is too sharp" in result.stdout
 
 
+@pytest.mark.parametrize("rules", ["strict", "sbft"])
+@pytest.mark.parametrize("x", [100, 40, 10.5])
+def test_a_road_out_and_back_is_invalid_without_a_warning(rules: str, x: float) -> None:
+    Path("back.json").write_text(json.dumps([[10, 100], [x, 100], [10, 100]]))
+    assert invoke("check", "back.json", "--rules", rules).exit_code == 1
+    Path("back.json").write_text(json.dumps([[10, 100], [x, 100], [x + 0.5, 100], [x, 100], [10, 100]]))
+    assert invoke("check", "back.json", "--rules", rules).exit_code == 1
+
+
 def test_check_honours_the_size_of_the_map() -> None:
     assert invoke("check", "straight.json", "--map-size", "140").exit_code == 1
     assert invoke("check", "straight.json", "--map-size", "150").exit_code == 0

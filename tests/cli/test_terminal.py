@@ -115,3 +115,25 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
     assert process.stderr is not None
     assert process.stderr.read() == ""
     process.stderr.close()
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii", "utf-8"])
+def test_a_pipe_that_has_not_all_letters_gets_escapes(encoding: str) -> None:
+    words = b"an uphill road with 3 turns \xe4\xbd\xa0\xe5\xa5\xbd \x80"
+    done = subprocess.run(
+        [*ROADGPT, "run", words, "--no-plot", "--no-drive"],
+        capture_output=True,
+        env=os.environ | {"PYTHONIOENCODING": encoding},
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"1 of 1 roads" in done.stdout
+    assert (b"\\u4f60" if encoding != "utf-8" else b"\xe4\xbd\xa0") in done.stdout
+    (folder,) = Path("roadgpt-runs").iterdir()
+    shown = subprocess.run(
+        [*ROADGPT, "show", str(folder)],
+        capture_output=True,
+        env=os.environ | {"PYTHONIOENCODING": encoding},
+        check=True,
+    )
+    assert b"1 VALID" in shown.stdout

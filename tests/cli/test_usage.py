@@ -55,6 +55,40 @@ def test_a_description_without_a_command_is_told_where_it_belongs() -> None:
     assert 'roadgpt run "an uphill road with 3 turns"' in result.stderr
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["run", "-5 % slope, then a turn"], '"-5 % slope, then a turn"'),
+        (["run", "-n", "2", "-5 % slope"], '"-5 % slope"'),
+        (["run", "--json", "-5 % slope"], '"-5 % slope"'),
+        (["run", "-5", "%", "slope"], '"-5 ..."'),
+        (["run", "- a road"], '"- a road"'),
+        (["run", "-q road with 3 turns"], '"-q road with 3 turns"'),
+        (["-5 % slope"], '"-5 % slope"'),
+    ],
+)
+def test_a_description_that_begins_with_a_dash_is_told_where_it_belongs(words: list[str], said: str) -> None:
+    result = invoke(*words)
+    assert result.exit_code == 2
+    assert f"behind two: roadgpt run -- {said}" in result.stderr.replace("\n", " ")
+
+
+def test_behind_two_dashes_it_is_a_description(tmp_path) -> None:
+    words = [
+        "-n",
+        "1",
+        "--no-drive",
+        "--no-plot",
+        "--out",
+        str(tmp_path),
+        "--",
+        "-5 % slope over 100 m, a left turn",
+    ]
+    result = invoke("run", *words)
+    assert "No such option" not in result.stderr
+    assert "behind two" not in result.stderr
+
+
 def test_an_unknown_command_is_a_usage_error() -> None:
     result = invoke("fly")
     assert result.exit_code == 2

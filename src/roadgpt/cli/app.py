@@ -10,6 +10,7 @@ import click
 
 from roadgpt import __version__
 from roadgpt.cli.crash import report_crash
+from roadgpt.cli.dashes import told_of_dashes
 from roadgpt.errors import RoadGPTError
 
 # Each command is `command` in the module of its name in roadgpt.cli.commands; its line of help stands here
@@ -56,6 +57,11 @@ class Commands(click.Group):
         if name not in COMMANDS and " " in name.strip():
             raise click.UsageError(f'to make roads from a description, say: roadgpt run "{name}"', ctx)
         return super().resolve_command(ctx, args)
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """What click makes of the words; a description with a dash in front is told where it belongs."""
+        with told_of_dashes(ctx, args):
+            return super().parse_args(ctx, args)
 
     def main(
         self,

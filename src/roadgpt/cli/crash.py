@@ -32,11 +32,15 @@ def report_crash(error: Exception) -> str:
 
 
 def _write(text: str) -> Path:
+    """Into the first folder that takes it."""
     for folder in (*_folder, Path(tempfile.gettempdir())):
-        if folder.is_dir():
+        try:
             with tempfile.NamedTemporaryFile(
-                "w", prefix="roadgpt-crash-", suffix=".txt", dir=folder, delete=False, encoding="utf-8"
-            ) as file:
+                "w", prefix="roadgpt-crash-", suffix=".txt", dir=folder, delete=False, encoding="utf-8",
+                errors="backslashreplace",
+            ) as file:  # fmt: skip
                 file.write(text)
-            return Path(file.name)
+        except OSError:
+            continue
+        return Path(file.name)
     raise OSError("no folder to write to")

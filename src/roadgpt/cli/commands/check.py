@@ -7,9 +7,8 @@ import click
 
 from roadgpt.cli.options import (
     files_argument,
-    geometry_option,
-    rules_option,
     screen_options,
+    setup_options,
     world_of,
     world_options,
 )
@@ -23,9 +22,9 @@ UNREADABLE = 2
 
 @click.command()
 @files_argument
-@rules_option
+@setup_options("rules")
 @world_options("map_size")
-@geometry_option
+@setup_options("geometry")
 @screen_options
 def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **rest: Any) -> int:
     """Check roads that exist against the rules.

@@ -6,11 +6,9 @@ import click
 
 from roadgpt.cli.options import (
     SEED,
-    drive_options,
     files_argument,
-    geometry_option,
-    rules_option,
     screen_options,
+    setup_options,
     world_of,
     world_options,
 )
@@ -29,9 +27,7 @@ UNREADABLE = 2  # exit status
 @files_argument
 @click.option("--seed", type=SEED, default=1, show_default=True, help="Handed to the driver.")
 @world_options()
-@drive_options
-@geometry_option
-@rules_option
+@setup_options("driver", "simulator", "keep_driving", "geometry", "rules")
 @screen_options
 def command(
     files: tuple[str, ...],
@@ -46,11 +42,11 @@ def command(
     ROAD.json is a RoadGPT design, an SBFT test, or a list of points [x, y] or [x, y, z]. A road that the
     rules object to is INVALID and is not driven. The exit status is 0 when all roads could be read.
     """
-    from roadgpt.run.model import Setup
+    from roadgpt.run import Setup, roll_call
 
     world = world_of(rest)
     setup = Setup(**rest)
-    _insist_on_parts(setup)
+    roll_call(setup)  # a driver that does not exist is told of before any road is looked at
     with Screen(len(files), as_json, quiet, verbose) as screen:
         for file in files:
             try:
@@ -61,15 +57,6 @@ def command(
                 screen.row(unreadable(file, error))
         screen.close()
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
-
-
-def _insist_on_parts(setup: "Setup") -> None:
-    """Complain of a driver or simulator that does not exist before any road is looked at."""
-    from roadgpt import plugins
-    from roadgpt.drive.custom import load_driver
-
-    load_driver(setup.driver)
-    plugins.find("simulators", setup.simulator)
 
 
 def _driven(screen: Screen, file: str, seed: int, world: "World", setup: "Setup") -> Row:

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from roadgpt.cli.options import axes_option, files_argument, folder, geometry_option, world_of, world_options
+from roadgpt.cli.options import axes_option, files_argument, folder, setup_options, world_of, world_options
 from roadgpt.errors import UsageError
 
 UNREADABLE = 2  # exit status
@@ -18,7 +18,7 @@ UNREADABLE = 2  # exit status
 )
 @axes_option
 @world_options("map_size")
-@geometry_option
+@setup_options("geometry")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
 def command(
     files: tuple[str, ...], out: Path, axes: Any, geometry: Any, quiet: bool, **rest: Any

@@ -5,16 +5,14 @@ from typing import Any
 
 import click
 
+from roadgpt.cli.dashes import DescribedCommand
 from roadgpt.cli.options import (
     ROADS,
     SEED,
     axes_option,
-    drive_options,
     folder,
-    geometry_option,
-    part_option,
-    rules_option,
     screen_options,
+    setup_options,
     world_of,
     world_options,
 )
@@ -22,17 +20,14 @@ from roadgpt.cli.screen import Screen
 from roadgpt.cli.work import Wish, work_off
 
 
-@click.command()
+@click.command(cls=DescribedCommand)
 @click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION")
 @click.option("-n", "--roads", type=ROADS, default=1, show_default=True, help="How many roads.")
 @click.option("--seed", type=SEED, default=None, help="The same seed gives the same roads. [default: drawn]")
 @click.option("--out", type=folder, default=None, help="Folder for the campaign. [default: a new one]")
-@part_option("readers", "grammar", "What reads the description.")
-@part_option("designers", "planner", "What designs the roads.")
-@drive_options
+@setup_options("reader", "designer", "driver", "simulator", "keep_driving")
 @world_options()
-@geometry_option
-@rules_option
+@setup_options("geometry", "rules")
 @click.option("--no-drive", is_flag=True, help="Design and check only.")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @axes_option

@@ -10,7 +10,7 @@ def command(folders: tuple[str, ...]) -> None:
 
     RUN is a folder like DIR/runs/0001, the file DIR/test.0001.json, or the folder DIR of a whole campaign.
     """
-    from roadgpt.run import show
+    from roadgpt.cli.summary import show
 
     for folder in folders:
         click.echo(show(folder))

@@ -1,0 +1,34 @@
+"""The lines that make a Run again: the road from its words, and the drive from the road."""
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+from roadgpt.cli.flags import SETUP, WORLD, Flag
+from roadgpt.run.model import Request, Run
+
+# Flags of the command that drives a road which exists; the road's file says what its geometry is.
+OF_DRIVES = tuple(flag for flag in SETUP if flag.field in ("driver", "simulator", "keep_driving", "rules"))
+
+
+def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
+    """Commands that give this Run again: from its words (as the last road), and from its road file."""
+    lines = []
+    request = run.request
+    if run.words:
+        rest = ["-n", str(run.index), "--seed", str(request.seed), *_written(request, SETUP)]
+        if not request.setup.drives:
+            rest.append("--no-drive")
+        # words that begin with a dash would pass for an option
+        said = [*rest, "--", run.words] if run.words.startswith("-") else [run.words, *rest]
+        lines.append(shlex.join(["roadgpt", "run", *said]))
+    if folder is not None and run.road is not None and request.setup.drives:
+        again = ["roadgpt", "drive", str(folder / "road.json"), "--seed", str(run.seed)]
+        lines.append(shlex.join(again + _written(request, OF_DRIVES)))
+    return lines
+
+
+def _written(request: Request, flags: Sequence[Flag]) -> list[str]:
+    """What differs from the defaults."""
+    words = [word for flag in flags for word in flag.written(getattr(request.setup, flag.field))]
+    return words + [word for flag in WORLD for word in flag.written(getattr(request.world, flag.field))]

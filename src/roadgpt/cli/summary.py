@@ -1,0 +1,91 @@
+"""What is in a folder, in plain lines: one Run, or all of a campaign."""
+
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.cli.replay import replay_lines
+from roadgpt.errors import UsageError
+from roadgpt.run.campaign import CARD, finished, read_card
+from roadgpt.run.folder import is_run, read_run, run_folder
+from roadgpt.run.model import Run
+
+
+def show(path: Path | str) -> str:
+    """A Run's summary and the lines that make it again, or a campaign's table.
+
+    Args:
+        path: the folder of a run, a campaign's ``test.NNNN.json``, or a campaign's folder.
+
+    Raises:
+        UsageError: neither a Run nor a campaign lies there.
+    """
+    path = Path(path)
+    if not is_run(path) and (path / CARD).is_file():
+        return "\n".join(_campaign_lines(path))
+    run = read_run(path)
+    folder = path if path.is_dir() else run_folder(path.parent, run.index)
+    return "\n".join(_run_lines(run, folder))
+
+
+def _run_lines(run: Run, folder: Path) -> Iterator[str]:
+    yield f"{run.outcome}: {run.description}"
+    if run.words:
+        yield f"  words     {run.words}"
+    if run.brief is not None:
+        from roadgpt.brief import sentence
+
+        yield f"  brief     {sentence(run.brief)}"
+    if run.road is not None:
+        yield f"  road      {_road_line(run)}"
+        drafts = f", {run.rounds} draft{'s' * (run.rounds != 1)}" if run.rounds else ""
+        objections = "; ".join(finding.sentence for finding in run.findings) or "no objection"
+        yield f"  check     {run.request.setup.rules}: {objections}{drafts}"
+    if run.drive is not None:
+        fastest = run.drive["speed"].max() * 3.6
+        yield (
+            f"  drive     {run.drive.driver} in {run.drive.simulator}: {run.drive.duration:.1f} s, "
+            f"up to {fastest:.0f} km/h"
+        )
+    if run.verdict is not None:
+        yield (
+            f"  verdict   at most {run.verdict.max_oob:.0%} of the car outside its lane, "
+            f"margin {run.verdict.margin:+.2f} m"
+        )
+    yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")
+    yield f"  versions  {', '.join(f'{name} {number}' for name, number in run.versions.items())}"
+    yield f"  took      {run.seconds.design * 1000:.1f} ms to design, {run.seconds.drive:.2f} s to drive"
+    for number, line in enumerate(replay_lines(run, folder)):
+        yield f"  {'again' if number == 0 else 'or':<8}  {line}"
+
+
+def _road_line(run: Run) -> str:
+    assert run.road is not None
+    samples = run.road.sample()
+    bend = float(np.abs(samples.curvature).max())
+    tightest = f"tightest radius {1 / bend:.0f} m" if bend > 1e-6 else "straight"
+    climb = float(samples.z[-1] - samples.z[0])
+    steep = float(samples.grade[np.abs(samples.grade).argmax()])
+    return f"{run.length:.0f} m, {tightest}, {climb:+.1f} m in height, steepest {steep:+.1%}"
+
+
+def _campaign_lines(folder: Path) -> Iterator[str]:
+    card = read_card(folder)
+    yield f"{card.request.words or 'roads that were given'} (seed {card.request.seed})"
+    yield f"{'road':>6}  {'outcome':<8} {'length':>7} {'margin':>8}  description"
+    counts: Counter[str] = Counter()
+    for index in finished(folder):
+        try:
+            run = read_run(run_folder(folder, index))
+        except UsageError as error:
+            counts["unreadable"] += 1
+            yield f"{index:>6}  cannot be read: {error}"
+            continue
+        counts[run.outcome] += 1
+        margin = f"{run.verdict.margin:+.2f} m" if run.verdict is not None else ""
+        yield f"{index:>6}  {run.outcome:<8} {run.length:>5.0f} m {margin:>8}  {run.description}"
+    told = ", ".join(f"{number} {outcome}" for outcome, number in counts.most_common())
+    rest = card.roads - counts.total()
+    yield f"{told or 'nothing yet'}" + (f"; {rest} of {card.roads} still to be made" if rest else "")
