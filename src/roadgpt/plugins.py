@@ -13,8 +13,14 @@ SHELVES = ("readers", "designers", "rules", "simulators", "drivers")
 
 
 @cache
-def _registered(shelf: str) -> dict[str, EntryPoint]:
-    return {part.name: part for part in entry_points(group=f"roadgpt.{shelf}")}
+def _registered(shelf: str) -> dict[str, list[EntryPoint]]:
+    """Parts by name; more than one of a name where packages disagree about it."""
+    found: dict[str, list[EntryPoint]] = {}
+    for part in entry_points(group=f"roadgpt.{shelf}"):
+        same = found.setdefault(part.name, [])
+        if part.value not in {other.value for other in same}:
+            same.append(part)
+    return found
 
 
 def names(shelf: str) -> list[str]:
@@ -35,18 +41,27 @@ def find(shelf: str, name: str) -> Any:
     """The object that a part registered, imported now.
 
     Raises:
-        PartError: no part of that name; or its own libraries are missing.
+        PartError: no part of that name, or more than one; or it cannot be loaded.
     """
     known = names(shelf)
     if name not in known:
         raise PartError(f"no {shelf.removesuffix('s')} called '{name}'; there are: {', '.join(known)}")
+    part, *others = _registered(shelf)[name]
+    if others:
+        raise PartError(
+            f"{len(others) + 1} packages bring a {shelf.removesuffix('s')} called '{name}' "
+            f"({origin(shelf, name)}); uninstall all but one"
+        )
     try:
-        return _registered(shelf)[name].load()
-    except ImportError as error:
-        raise PartError(f"the {shelf.removesuffix('s')} '{name}' cannot be loaded: {error}") from error
+        return part.load()
+    except Exception as error:  # a part of another package may fail in any way, and costs only itself
+        raise PartError(
+            f"the {shelf.removesuffix('s')} '{name}' cannot be loaded ({type(error).__name__}: {error}); "
+            f"mend or uninstall {origin(shelf, name)}"
+        ) from error
 
 
 def origin(shelf: str, name: str) -> str:
-    """Which distribution a part comes from, as 'name version'."""
-    part = _registered(shelf)[name]
-    return f"{part.dist.name} {part.dist.version}" if part.dist else "unknown"
+    """Which distribution a part comes from, as 'name version'; all of them, where it is more than one."""
+    parts = _registered(shelf)[name]
+    return ", ".join(f"{part.dist.name} {part.dist.version}" if part.dist else "unknown" for part in parts)
