@@ -47,9 +47,7 @@ def test_a_page_holds_a_hundred_roads(tmp_path: Path, count: int, pages: int) ->
 def test_every_road_lies_on_its_own_map_to_scale() -> None:
     square = np.array([[0.0, 0.0], [250.0, 0.0], [250.0, 250.0], [0.0, 250.0]])
     entries = [Entry(i, "FAIL", square, (125.0, 125.0)) for i in range(1, 8)]
-    from collections import Counter
-
-    figure = page_of(entries, ("squares", "seed 1"), "", Counter(FAIL=7), 250.0)
+    figure = page_of(entries, ("squares", "seed 1"), "", 250.0)
     axes = figure.axes[0]
     lines = [segment for c in axes.findobj(LineCollection) for segment in c.get_segments()]
     assert len(lines) == 7
@@ -68,10 +66,8 @@ def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
     card = {"request": {"words": "a $strange$ road", "seed": 4, "world": {"map_size": 200.0}}}
     (tmp_path / "campaign.json").write_text(json.dumps(card))
     assert overview(tmp_path)
-    from collections import Counter
-
     entries = [Entry(1, "PASS", np.empty((0, 2)), None)]
-    figure = page_of(entries, ("words", "seed 4"), "page 2 of 3", Counter(PASS=1), 200.0)
+    figure = page_of(entries, ("words", "seed 4"), "page 2 of 3", 200.0)
     said = [text.get_text() for text in figure.axes[0].texts]
     assert {"1 PASS", "words", "PASS"} <= set(said)
     assert any("seed 4" in text and "page 2 of 3" in text for text in said)
@@ -83,3 +79,23 @@ def test_no_tests_no_page(tmp_path: Path) -> None:
     (tmp_path / "test.0001.json").write_text("{")
     with pytest.raises(UsageError, match="cannot be read"):
         overview(tmp_path)
+
+
+def test_an_outcome_of_another_tool_is_shown_as_it_is(tmp_path: Path) -> None:
+    test = test_file(1) | {"test_outcome": "NOT_EXECUTED"}
+    (tmp_path / "test.0001.json").write_text(json.dumps(test))
+    assert overview(tmp_path)
+    entries = [Entry(1, "NOT_EXECUTED", np.array([[1.0, 2.0], [30.0, 40.0]]), None)] * 2
+    said = [text.get_text() for text in page_of(entries, ("", ""), "", 200.0).axes[0].texts]
+    assert said.count("NOT_EXECUTED") == 2
+    assert "2 NOT_EXECUTED" in said
+
+
+def test_the_cross_marks_the_first_record_outside(tmp_path: Path) -> None:
+    """The competition's record has is_oob in the 13th place, and the position in the second."""
+    from roadgpt.report.overview import _entry
+
+    records = [[i / 10, [10.0 * i, 5.0, 1.0], *[0] * 10, i >= 3, 0, 0, 0, 0] for i in range(6)]
+    path = tmp_path / "test.0002.json"
+    path.write_text(json.dumps(test_file(1) | {"test_outcome": "FAIL", "execution_data": records}))
+    assert _entry(path).failed_at == (30.0, 5.0)

@@ -41,7 +41,7 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def add_axes(figure: Figure, left: float, bottom: float, right: float, top: float, **options: Any) -> Axes:
+def add_axes(figure: Figure, left: float, bottom: float, right: float, top: float) -> Axes:
     """Axes whose borders lie so many inches from the figure's borders, below the header."""
     wide, high = figure.get_size_inches()
     box = (

@@ -18,11 +18,13 @@ from roadgpt.report.canvas import INK, MARGIN, OUTCOMES, SOFT, VERMILLION, in_ou
 from roadgpt.report.lettering import fitted, inches
 from roadgpt.report.scenery import GROUND, Array
 from roadgpt.road import World
+from roadgpt.run.execution import FIELDS
 
 PER_PAGE, MOST_PAGES = 100, 10
 WIDEST = 11.0  # inches
 LARGEST, TITLE, GAP = 2.4, 0.24, 0.12  # inches: of a map, over it, and between maps
 HEADER = 0.9  # inches
+PLACE, OUTSIDE = FIELDS.index("pos"), FIELDS.index("is_oob")
 STYLES = {"PASS": "solid", "FAIL": "solid", "VALID": "solid", "INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
 
 
@@ -51,15 +53,12 @@ def overview(folder: Path | str) -> list[Path]:
     if not names:
         raise UsageError(f"{folder} holds no test.0001.json; give the folder of a campaign")
     about, size = _about(folder)
-    outcomes = Counter[str]()
     pages = [names[i : i + PER_PAGE] for i in range(0, len(names), PER_PAGE)][:MOST_PAGES]
     drawn = []
     for number, page in enumerate(pages, 1):
         entries = [_entry(path) for path in page]
-        outcomes.update(entry.outcome for entry in entries)
-        counts = outcomes if len(pages) == 1 else Counter(entry.outcome for entry in entries)
         part = f"page {number} of {len(pages)}, of {len(names)} roads" if len(pages) > 1 else ""
-        figure = page_of(entries, about, part, counts, size)
+        figure = page_of(entries, about, part, size)
         drawn.append(save(figure, folder / f"overview{'' if number == 1 else f'-{number}'}.png"))
     return drawn
 
@@ -78,8 +77,8 @@ def _entry(path: Path) -> Entry:
     points = np.asarray(test.get("interpolated_points") or np.empty((0, 2)), float)[:, :2]
     outcome = test.get("test_outcome") or ("VALID" if test.get("is_valid") else "INVALID")
     records = test.get("execution_data") or []
-    outside = next((record for record in records if record[12]), records[-1] if records else None)
-    place = (outside[1][0], outside[1][1]) if outcome == "FAIL" and outside else None
+    outside = next((record for record in records if record[OUTSIDE]), records[-1] if records else None)
+    place = tuple(outside[PLACE][:2]) if outcome == "FAIL" and outside else None
     return Entry(int(test["id"]), outcome, points, place)
 
 
@@ -90,9 +89,7 @@ def _loaded(path: Path) -> Any:
         raise UsageError(f"{path} cannot be read ({error}); remove it or make it again") from error
 
 
-def page_of(
-    entries: list[Entry], about: tuple[str, str], part: str, counts: Counter[str], size: float
-) -> Figure:
+def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float) -> Figure:
     """One page of maps, row by row."""
     columns = _columns(len(entries))
     rows = -(-len(entries) // columns)
@@ -103,7 +100,7 @@ def page_of(
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0, width), ylim=(high, 0))
     axes.axis("off")
-    _header(axes, about, part, counts, width)
+    _header(axes, about, part, Counter(entry.outcome for entry in entries), width)
     for place, entry in zip(_places(len(entries), columns, cell), entries, strict=True):
         _cell(axes, entry, place, cell, size)
     return figure
@@ -125,12 +122,12 @@ def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str],
     title = fitted(about[0] or "roads that were given", width - 2 * MARGIN, 12, bold=True)
     axes.text(MARGIN, 0.3, title, size=12, weight="bold", color=INK, va="center")
     x = MARGIN
-    for outcome in OUTCOMES:
+    for outcome in (*OUTCOMES, *sorted(counts.keys() - OUTCOMES)):
         if counts[outcome]:
             text = f"{counts[outcome]} {outcome}"
             axes.text(
                 x + 0.06, 0.6, text, size=9.5, weight="bold", color="white", va="center",
-                bbox={"boxstyle": "round,pad=0.28", "fc": OUTCOMES[outcome], "ec": "none"},
+                bbox={"boxstyle": "round,pad=0.28", "fc": OUTCOMES.get(outcome, INK), "ec": "none"},
             )  # fmt: skip
             x += inches(text, 9.5, bold=True) + 0.28
     axes.text(
@@ -155,8 +152,8 @@ def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, siz
     clip = Rectangle((x0, y0), cell, cell, transform=axes.transData)
     scaled = entry.points / size * cell * [1, -1] + [x0, y0 + cell]
     line = LineCollection(
-        [scaled], colors=colour, linewidths=2.2 if cell > 1.2 else 1.5, linestyles=[STYLES[entry.outcome]],
-        zorder=2, capstyle="butt",
+        [scaled], colors=colour, linewidths=2.2 if cell > 1.2 else 1.5,
+        linestyles=[STYLES.get(entry.outcome, "solid")], zorder=2, capstyle="butt",
     )  # fmt: skip
     line.set_clip_path(clip)
     axes.add_collection(line)
