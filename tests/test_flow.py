@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from roadgpt.cli.summary import show
 from roadgpt.report import drawing
-from roadgpt.run import Setup, campaign, perform, read_run, show
+from roadgpt.run import Setup, campaign, perform, read_run
 
 WORDS = "an uphill road with 3 turns"
 ON_THE_CLOCK = {"seconds.json", "generation_stats.csv"}
@@ -61,6 +62,7 @@ def test_words_become_a_folder(made: tuple[Path, list[dict[str, Any]]]) -> None:
     names = {path.name for path in folder.iterdir()}
     assert names == {
         "campaign.json",
+        "campaign.lock",
         "test.0001.json",
         "test.0002.json",
         "generation_stats.csv",

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.run.atomic import json_text, sweep, whole_folder, write_whole
+from roadgpt.run.atomic import held, json_text, sweep, whole_folder, write_whole
 
 
 def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
@@ -77,3 +77,28 @@ def test_half_a_letter_from_a_broken_terminal_is_kept(tmp_path: Path) -> None:
 def test_numbers_that_are_not_finite_become_null() -> None:
     text = json_text({"a": math.inf, "b": [math.nan, 1.5, (2, -math.inf)], "c": "ü"})
     assert json.loads(text) == {"a": None, "b": [None, 1.5, [2, None]], "c": "ü"}
+
+
+def test_a_lock_that_is_let_go_is_taken_by_one_only(tmp_path: Path) -> None:
+    """One opens the file, the holder lets go, a third comes: it must meet the same file."""
+    fcntl = pytest.importorskip("fcntl", reason="no locks on this platform")
+    lock = tmp_path / "lock"
+    with held(lock):
+        waiting = lock.open("w")
+    with waiting:
+        fcntl.flock(waiting, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        with pytest.raises(BlockingIOError), held(lock):
+            pass
+
+
+def test_a_failure_under_the_lock_is_what_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows, where a file that is open cannot be removed."""
+
+    def refuse(self: Path, missing_ok: bool = False) -> None:
+        raise PermissionError(32, "the file is being used")
+
+    monkeypatch.setattr(Path, "unlink", refuse)
+    with pytest.raises(ZeroDivisionError), held(tmp_path / "lock"):
+        _ = 1 / 0
+    with held(tmp_path / "lock"):
+        pass

@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 
 from roadgpt.brief.model import Brief
-from roadgpt.errors import DesignError, PartError, UsageError
+from roadgpt.drive.custom import load_in_time
+from roadgpt.errors import DesignError, DriverError, PartError, UsageError
 from roadgpt.road import Road, World
-from roadgpt.run import MOST_ROUNDS, Run, Setup, perform, prove, seed_of
+from roadgpt.run import MOST_ROUNDS, Run, Setup, campaign, perform, prove, read_run, seed_of
 from run.doubles import TOO_STEEP, Designer, Learner, Stubborn, Unable, a_design, put_on_shelf
 
 BRIEF = Brief(words="two straights and a turn")
@@ -113,6 +114,7 @@ def test_a_driver_that_fails_costs_one_error(tmp_path: Path) -> None:
     run = prove(a_design(), setup=Setup(driver=f"{file}:Crashes"))
     assert (run.outcome, run.is_valid) == ("ERROR", True)
     assert "the driver fell asleep" in run.description
+    assert "sleepy.py" in run.trace
     assert run.drive is run.verdict is None
     assert run.seconds.drive > 0
 
@@ -144,3 +146,55 @@ def test_the_same_seed_gives_the_same_drive() -> None:
     assert other.drive is not None
     assert one.drive.to_bytes() == other.drive.to_bytes()
     assert one.verdict == other.verdict
+
+
+MOODY = """
+import json
+from pathlib import Path
+
+COUNT = Path(__file__).with_name("count")
+
+class Moody:
+    def __init__(self):
+        COUNT.write_text(COUNT.read_text() + "x" if COUNT.exists() else "x")
+        if len(COUNT.read_text()) == 3:
+            json.loads("{")
+
+    def start(self, road, world, seed):
+        if len(COUNT.read_text()) == 4:
+            json.loads("[")
+
+    def steer(self, view):
+        return (0.0, 0.2, 0.0)
+"""
+
+
+def test_a_driver_that_cannot_be_made_for_the_second_road_costs_that_road_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "moody.py"
+    file.write_text(MOODY)
+    put_on_shelf(monkeypatch, double=Designer())
+    setup = Setup(designer="double", driver=f"{file}:Moody", keep_driving=True)
+    # the first one is made for the roll call
+    runs = list(campaign(BRIEF, 4, 7, setup=setup, out=tmp_path / "c"))
+    assert [run.outcome == "ERROR" for run in runs] == [False, True, True, False]
+    assert "cannot be made" in runs[1].description
+    assert "moody.py, line 15" in runs[2].description  # and no line of the library json
+    for run in runs[1:3]:
+        trace = (tmp_path / "c" / "runs" / f"{run.index:04d}" / "error.txt").read_text()
+        assert "JSONDecodeError" in trace
+        assert 'moody.py"' in trace
+        assert read_run(tmp_path / "c" / "runs" / f"{run.index:04d}").trace == run.trace
+
+
+def test_a_driver_that_hangs_while_it_is_made_is_given_up(tmp_path: Path) -> None:
+    file = tmp_path / "slow.py"
+    file.write_text(
+        "import time\n\nclass Slow:\n    def __init__(self):\n        time.sleep(60)\n\n"
+        "    def steer(self, view): ...\n"
+    )
+    with pytest.raises(DriverError, match=r"slow\.py:Slow was not made within 0\.5 s: let its __init__"):
+        load_in_time(f"{file}:Slow", limit=0.5)
+    with pytest.raises(UsageError, match="has no class 'Fast'; it has Slow"):
+        load_in_time(f"{file}:Fast")

@@ -11,7 +11,7 @@ import pytest
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.errors import UsageError
 from roadgpt.road import Road, World
-from roadgpt.run import Request, Run, Setup, prove, read_run, replay_lines, show, write_run
+from roadgpt.run import Request, Run, Setup, prove, read_run, write_run
 from roadgpt.run.tables import Tally, write_description
 from roadgpt.run.test_file import test_of as as_test
 from run.doubles import TOO_STEEP, a_design
@@ -154,36 +154,6 @@ def test_tables_have_the_competition_s_columns_and_count(runs: dict[str, Run], t
 def test_an_empty_campaign_has_tables_too(tmp_path: Path) -> None:
     Tally().write(tmp_path)
     assert (tmp_path / "oob_stats.csv").read_text().splitlines()[1] == "0,0,0,nan,nan"
-
-
-def test_show_tells_what_happened_and_how_to_make_it_again(runs: dict[str, Run], tmp_path: Path) -> None:
-    for name in ("PASS", "FAIL", "INVALID"):
-        text = show(write_run(runs[name], tmp_path))
-        assert text.startswith(f"{name}: {runs[name].description}")
-    passed = show(tmp_path / "test.0001.json")
-    assert "2 drafts" in passed
-    assert "roadgpt drive" in passed
-    assert "--seed 11" in passed
-
-
-def test_the_line_that_replays_names_only_what_differs(runs: dict[str, Run]) -> None:
-    (plain,) = replay_lines(runs["PASS"])
-    assert plain.startswith("roadgpt run 'a road with '")
-    assert plain.endswith("-n 1 --seed 11")
-    odd = Request(
-        words="a road",
-        seed=2,
-        world=World(speed_limit=100 / 3.6, friction=0.35, verge=0),
-        setup=Setup(designer="thesis", driver="a b.py:D", geometry="spline", keep_driving=True),
-    )
-    line, again = replay_lines(replace(runs["PASS"], request=odd, index=4), Path("x/runs/0004"))
-    assert line == (
-        "roadgpt run 'a road' -n 4 --seed 2 --designer thesis --geometry spline --driver 'a b.py:D' "
-        "--speed-limit 100 --verge 0 --friction 0.35 --keep-driving"
-    )
-    assert again.startswith(
-        "roadgpt drive x/runs/0004/road.json --seed 11 --driver 'a b.py:D' --speed-limit 100"
-    )
 
 
 @pytest.mark.parametrize(

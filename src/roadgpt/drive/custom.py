@@ -10,7 +10,8 @@ from types import ModuleType
 from typing import Any
 
 from roadgpt import plugins
-from roadgpt.errors import UsageError
+from roadgpt.drive.seat import BEFORE_START, Seat
+from roadgpt.errors import DriverError, UsageError
 
 
 def load_driver(spec: str) -> Any:
@@ -32,6 +33,43 @@ def load_driver(spec: str) -> Any:
         return _made(plugins.find("drivers", spec), spec)
     module = _run(Path(path))
     return _made(_class(module, wanted, path), spec)
+
+
+def load_in_time(spec: str, limit: float = BEFORE_START) -> Any:
+    """As ``load_driver``, and a driver that is not made within so many seconds of wall time is given up.
+
+    Raises:
+        PartError, UsageError: as ``load_driver``.
+        DriverError: it hung.
+    """
+    door = _Door(spec)
+    seat = Seat(door, before_start=limit)
+    try:
+        with seat.watched():
+            seat.start(None, None, 0)  # type: ignore[arg-type]
+    except DriverError as error:
+        if isinstance(cause := error.__cause__, Exception):
+            raise cause from cause.__cause__
+        raise DriverError(
+            f"the driver {spec} was not made within {limit:g} s: let its __init__ return at once and prepare "
+            "in start(road, world, seed)"
+        ) from error
+    return door.driver
+
+
+class _Door:
+    """Sits in for a driver that is being made, so that the seat's clock runs for it."""
+
+    def __init__(self, spec: str) -> None:
+        self.spec = spec
+        self.driver: Any = None
+
+    def steer(self, view: Any) -> None:
+        """Never asked."""
+
+    def start(self, *_: Any) -> None:
+        """Make the driver."""
+        self.driver = load_driver(self.spec)
 
 
 def _run(path: Path) -> ModuleType:
@@ -83,7 +121,7 @@ def _made(driver: Any, spec: str) -> Any:
             raise UsageError(f"the driver {spec} has no method steer(self, view): add it")
         try:
             driver = driver()
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise UsageError(
                 f"the driver {spec} cannot be made without arguments: {_said(error)}; "
                 "give its parameters defaults"

@@ -11,6 +11,7 @@ import time
 import traceback
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 from roadgpt import plugins
@@ -19,15 +20,13 @@ from roadgpt.brief.model import Brief
 from roadgpt.check import Finding, inspect, rules_of
 from roadgpt.design import draft
 from roadgpt.drive import simulate
-from roadgpt.drive.custom import load_driver
-from roadgpt.errors import DesignError, DriverError, UsageError
+from roadgpt.drive.custom import load_in_time
+from roadgpt.errors import DesignError, PartError, RoadGPTError
 from roadgpt.road import Design, Road, World, build
 from roadgpt.run.campaign import Campaign
 from roadgpt.run.folder import Draw, read_run, write_run
 from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
-from roadgpt.run.replay import replay_lines
 from roadgpt.run.seeds import seed_of
-from roadgpt.run.summary import show
 from roadgpt.run.versions import versions_of
 from roadgpt.verdict import judge
 
@@ -43,9 +42,8 @@ __all__ = [
     "perform",
     "prove",
     "read_run",
-    "replay_lines",
+    "roll_call",
     "seed_of",
-    "show",
     "write_run",
 ]
 
@@ -75,8 +73,9 @@ def perform(
     Raises:
         BriefError: the words cannot be read.
         DesignError: nothing could be designed.
-        UsageError: a part is not installed.
+        UsageError: a part is not installed, or the driver's file makes no driver.
     """
+    roll_call(setup)
     begun = time.perf_counter()
     brief = words if isinstance(words, Brief) else read(words, setup.reader, world.map_size)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
@@ -93,8 +92,9 @@ def prove(
     """From a Design or a Road to a Run: check, drive, judge. The seed is handed on as it is.
 
     Raises:
-        UsageError: a part is not installed.
+        UsageError: a part is not installed, or the driver's file makes no driver.
     """
+    roll_call(setup)
     begun = time.perf_counter()
     design = blueprint if isinstance(blueprint, Design) else None
     road = build(blueprint, setup.geometry) if isinstance(blueprint, Design) else blueprint
@@ -131,7 +131,8 @@ def campaign(
     """
     brief = words if isinstance(words, Brief) else read(words, setup.reader, world.map_size)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
-    _call_the_roll(setup)
+    plugins.find("designers", setup.designer)
+    roll_call(setup)
 
     def one(index: int, earlier: Sequence[Design]) -> Run:
         return perform(brief, seed, world, setup, index, earlier)
@@ -139,13 +140,18 @@ def campaign(
     return Campaign.opened(request, n, out, one, draw)
 
 
-def _call_the_roll(setup: Setup) -> None:
-    """Find every part before a folder is made."""
-    plugins.find("designers", setup.designer)
+@cache
+def roll_call(setup: Setup) -> None:
+    """Find rules, simulator and driver before work begins; one that fails after that costs one road.
+
+    Raises:
+        UsageError: a part is not installed, or the driver's file makes no driver.
+        DriverError: the driver hung while it was made.
+    """
     rules_of(setup.rules)
     if setup.drives:
         plugins.find("simulators", setup.simulator)
-        load_driver(setup.driver)
+        load_in_time(setup.driver)
 
 
 def _designed(
@@ -181,14 +187,14 @@ def _driven(run: Run) -> Run:
         return run
     begun = time.perf_counter()
     try:
-        driver = load_driver(setup.driver)  # a new one each time: what it learnt on one road stays there
+        driver = load_in_time(setup.driver)  # a new one each time: what it learnt on one road stays there
         drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving)
         verdict = judge(run.road, drive, run.world)
-    except UsageError:
+    except PartError:
         raise
     except Exception as error:  # whatever a driver or a simulator raises costs this road, not the campaign
-        trace = "" if isinstance(error, DriverError) else traceback.format_exc()
-        said = str(error) if isinstance(error, DriverError) else f"the simulation failed: {error!r}"
+        said = str(error) if isinstance(error, RoadGPTError) else f"the simulation failed: {error!r}"
+        trace = traceback.format_exc()
         driving = replace(run.seconds, drive=time.perf_counter() - begun)
         return replace(run, outcome="ERROR", description=said, trace=trace, seconds=driving)
     driving = replace(run.seconds, drive=time.perf_counter() - begun)

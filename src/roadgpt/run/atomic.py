@@ -33,16 +33,16 @@ def write_whole(path: Path, content: str | bytes) -> None:
 def held(path: Path) -> Iterator[None]:
     """Hold a lock file while the block runs; a process that is killed lets go of it.
 
+    The file stays: were it removed, a process that had just opened it would hold a lock that nobody sees, and
+    Windows removes no file that is open.
+
     Raises:
         BlockingIOError: another process holds it.
     """
     with path.open("w") as file:
         if fcntl is not None:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        try:
-            yield
-        finally:
-            path.unlink(missing_ok=True)
+        yield
 
 
 @contextmanager

@@ -1,14 +1,19 @@
 """Many Runs in one folder: written as each ends; an interrupted campaign goes on where it stopped."""
 
 import json
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Literal
 
+from pydantic import ValidationError
+
+from roadgpt.brief.model import Frozen
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design
-from roadgpt.run.atomic import held, json_text, sweep, write_whole
+from roadgpt.run.atomic import PART, held, json_text, sweep, write_whole
 from roadgpt.run.folder import RUNS, Draw, read_run, run_folder, write_run
 from roadgpt.run.model import Request, Run
 from roadgpt.run.naming import new_folder
@@ -16,13 +21,21 @@ from roadgpt.run.seeds import seed_of
 from roadgpt.run.tables import Tally, write_description
 from roadgpt.run.test_file import test_name
 
-FORMAT = 1
 CARD = "campaign.json"
 LOCK = "campaign.lock"
 GIVE_UP = 3  # roads that cannot be designed, before any that could
 
 Perform = Callable[[int, Sequence[Design]], Run]
 """Makes the Run of an index, different from the Designs before it."""
+
+
+class Card(Frozen):
+    """What a campaign's folder says of the campaign."""
+
+    format: Literal[1] = 1
+    request: Request
+    roads: int
+    is_finished: bool
 
 
 @dataclass
@@ -35,10 +48,11 @@ class Campaign:
     """How many there will be."""
     perform: Perform
     draw: Draw | None = None
-    kept: tuple[int, ...] = ()
-    """Numbers of the roads that are finished."""
+    _finished: set[int] = field(default_factory=set)
     _tally: Tally = field(default_factory=Tally)
-    _designs: dict[int, Design] = field(default_factory=dict)
+    # Numbers of the roads that have a design, in their order, and those designs.
+    _numbers: list[int] = field(default_factory=list)
+    _designs: list[Design] = field(default_factory=list)
 
     @classmethod
     def opened(
@@ -56,13 +70,18 @@ class Campaign:
         folder = Path(out)
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            is_empty = not any(folder.iterdir())
+            is_new = all(_may_lie_in_a_new_folder(path) for path in folder.iterdir())
         except OSError as error:
             raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder") from error
         campaign = cls(folder, request, roads, perform, draw)
-        if not is_empty:
-            campaign._take_up()
+        if not is_new:
+            campaign._insist_on_work(campaign._take_up())
         return campaign
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Numbers of the roads that are finished."""
+        return tuple(sorted(self._finished))
 
     def __iter__(self) -> Iterator[Run]:
         """The Runs that are still to be made, one by one.
@@ -72,38 +91,48 @@ class Campaign:
             UsageError: a part is not installed, or another process is at work in the folder.
             RoadGPTError: a file cannot be written.
         """
-        try:
-            with held(self.folder / LOCK):
+        with ExitStack() as stack:
+            with self._writing():
+                try:
+                    stack.enter_context(held(self.folder / LOCK))
+                except BlockingIOError as error:
+                    raise UsageError(
+                        f"another process is at work in {self.folder}; wait for it or name another folder"
+                    ) from error
                 self._begin()
-                yield from self._work()
-        except BlockingIOError as error:
-            raise UsageError(
-                f"another process is at work in {self.folder}; wait for it or name another folder"
-            ) from error
-        except OSError as error:
-            raise RoadGPTError(
-                f"cannot write into {self.folder}: {error.strerror or error}; make room there and go on "
-                "with the same command and --out"
-            ) from error
+            yield from self._work()
 
     def _work(self) -> Iterator[Run]:
         """Road after road, each written and counted before it is handed out."""
         try:
-            for index in (index for index in range(1, self.roads + 1) if index not in self.kept):
+            for index in (index for index in range(1, self.roads + 1) if index not in self._finished):
                 run = self._one(index)
-                write_run(run, self.folder, self.draw)
-                self._count(run)
-                self.kept += (index,)
-                self._tally.write(self.folder)
+                with self._writing():
+                    write_run(run, self.folder, self.draw)
+                    self._count(run)
+                    self._tally.write(self.folder)
                 yield run
                 if not self._tally.with_road and index >= min(GIVE_UP, self.roads):
                     raise DesignError(run.description)
         finally:
             # however it ends, the tables tell of every road that is there
-            self._tally.write(self.folder)
-        if self.draw is not None:
-            self.draw.of_campaign(self.folder)
-        self._write_card(is_finished=True)
+            with self._writing():
+                self._tally.write(self.folder)
+        with self._writing():
+            if self.draw is not None:
+                self.draw.of_campaign(self.folder)
+            self._write_card(is_finished=True)
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Around all that is written, and nothing else: what the system refuses becomes a sentence."""
+        try:
+            yield
+        except OSError as error:
+            raise RoadGPTError(
+                f"cannot write into {self.folder}: {error.strerror or error}; make room there and go on "
+                "with the same command and --out"
+            ) from error
 
     def earlier_runs(self) -> Iterator[Run]:
         """The Runs that were there before, read from the disk."""
@@ -111,7 +140,7 @@ class Campaign:
             yield read_run(run_folder(self.folder, index))
 
     def _one(self, index: int) -> Run:
-        earlier = [design for number, design in sorted(self._designs.items()) if number < index]
+        earlier = self._designs[: bisect_left(self._numbers, index)]
         try:
             return self.perform(index, earlier)
         except DesignError as error:
@@ -119,53 +148,80 @@ class Campaign:
             return Run(self.request, index, own, outcome="ERROR", description=str(error))
 
     def _count(self, run: Run) -> None:
+        self._finished.add(run.index)
         self._tally.add(run)
         if run.design is not None:
-            self._designs[run.index] = run.design
+            place = bisect_left(self._numbers, run.index)
+            self._numbers.insert(place, run.index)
+            self._designs.insert(place, run.design)
 
     def _begin(self) -> None:
-        (self.folder / RUNS).mkdir(exist_ok=True)
+        """Make the folder ready; another process may have worked in it since it was opened."""
+        if (self.folder / CARD).is_file():
+            self._take_up()
         sweep(self.folder)
-        sweep(self.folder / RUNS)
         self._write_card(is_finished=False)
+        (self.folder / RUNS).mkdir(exist_ok=True)
+        sweep(self.folder / RUNS)
         write_description(self.request, self.roads, self.folder)
 
     def _write_card(self, is_finished: bool) -> None:
-        card = {
-            "format": FORMAT,
-            "request": self.request.model_dump(mode="json"),
-            "roads": self.roads,
-            "is_finished": is_finished,
-        }
-        write_whole(self.folder / CARD, json_text(card))
+        card = Card(request=self.request, roads=self.roads, is_finished=is_finished)
+        write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
 
-    def _take_up(self) -> None:
+    def _take_up(self) -> Card:
         """Look at what lies in the folder, and keep the roads that are finished."""
         card = read_card(self.folder)
-        asked = self.request.model_dump(mode="json")
-        other = [key for key in asked if card["request"].get(key) != asked[key]]
+        other = [name for name, value in self.request if getattr(card.request, name) != value]
         if other:
             raise UsageError(
                 f"{self.folder} holds another campaign (other {' and '.join(other)}); name another folder"
             )
-        if card["is_finished"] and card["roads"] >= self.roads:
+        there = finished(self.folder)
+        if there and there[-1] > self.roads:
             raise UsageError(
-                f"{self.folder} holds this campaign already, finished with {card['roads']} roads; "
-                "ask for more roads or name another folder"
+                f"{self.folder} holds road {there[-1]} of this campaign already; ask for at least so many "
+                "roads or name another folder"
             )
-        self.kept = tuple(finished(self.folder, self.roads))
-        for run in self.earlier_runs():
+        for index in there:
+            if index not in self._finished:
+                self._keep(index)
+        return card
+
+    def _keep(self, index: int) -> None:
+        """Count a road that is there; one that cannot be read is made again."""
+        try:
+            run = read_run(run_folder(self.folder, index))
+        except UsageError:
+            return
+        if run.index == index:
             self._count(run)
 
+    def _insist_on_work(self, card: Card) -> None:
+        if card.is_finished and len(self._finished) >= self.roads:
+            raise UsageError(
+                f"{self.folder} holds this campaign already, finished with {card.roads} roads; "
+                "ask for more roads or name another folder"
+            )
 
-def finished(folder: Path, roads: int) -> Iterator[int]:
-    """Numbers of the roads that are finished, of the first so many."""
-    for index in range(1, roads + 1):
-        if (folder / test_name(index)).is_file() and run_folder(folder, index).is_dir():
-            yield index
+
+def _may_lie_in_a_new_folder(path: Path) -> bool:
+    """Is this what a campaign leaves that was stopped before it had a card?"""
+    return path.name == LOCK or (path.name.startswith(CARD) and path.name.endswith(PART))
 
 
-def read_card(folder: Path) -> dict[str, Any]:
+def finished(folder: Path) -> list[int]:
+    """Numbers of the roads that are finished, in their order."""
+    numbers = (path.name.split(".")[1] for path in folder.glob("test.*.json"))
+    indices = sorted({int(number) for number in numbers if number.isdecimal()})
+    return [
+        index
+        for index in indices
+        if (folder / test_name(index)).is_file() and run_folder(folder, index).is_dir()
+    ]
+
+
+def read_card(folder: Path) -> Card:
     """What a campaign's folder says of the campaign.
 
     Raises:
@@ -175,8 +231,11 @@ def read_card(folder: Path) -> dict[str, Any]:
         card = json.loads((folder / CARD).read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise UsageError(f"{folder} is not empty and holds no campaign; name another folder") from error
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
-    if not isinstance(card, dict) or card.get("format") != FORMAT or "request" not in card:
-        raise UsageError(f"{folder} holds a campaign of another version of roadgpt; name another folder")
-    return card
+    try:
+        return Card.model_validate(card)
+    except ValidationError as error:
+        raise UsageError(
+            f"{folder / CARD} is damaged or was written by another version of roadgpt; name another folder"
+        ) from error
