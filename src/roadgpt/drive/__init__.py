@@ -53,8 +53,9 @@ class Simulator(Protocol):
     ) -> Drive:
         """Drive from the start of the road until the drive ends.
 
-        It ends at the goal, when the car fell, is stuck or takes too long; and, unless ``keep_driving``,
-        when more than ``world.oob_tolerance`` of the car's box is outside the right lane.
+        At every control step it is asked, in this order: is the car at the goal, is it stuck, is more than
+        ``world.oob_tolerance`` of its box outside the right lane (unless ``keep_driving``), has it fallen,
+        is time out? The first yes ends the drive.
 
         Raises:
             DriverError: the driver raised, answered with what is no command, or hung.

@@ -23,7 +23,8 @@ class Verdict:
     sbft_description: str
     """What the SBFT tool competition writes into ``description``, without the name of the simulation."""
     max_oob: float
-    """Largest share of the car's box outside the right lane, 0..1, over the whole drive."""
+    """Largest share of the car's box outside the right lane, 0..1, over the whole drive but the step at which
+    it came to the goal or was stuck."""
     margin: float
     """Metres, see `roadgpt.verdict.margin`: how far sideways the car still was from failing where it came
     closest; negative exactly when it left its lane or fell."""
