@@ -162,3 +162,14 @@ def test_the_three_prompts_of_roadgpt_s_evaluation(tmp_path: Path) -> None:
         assert {run.outcome for run in runs} <= {"PASS", "FAIL"}
         assert read_run(out / "test.0002.json").verdict == runs[1].verdict
     assert sum(run.road is not None and turns_of(run.road.centreline()) == 3 for run in runs) == 2
+
+
+@pytest.mark.parametrize("words", [WORDS, "4 switchbacks downhill"])
+def test_roadgpts_spline_keeps_the_words_too(tmp_path: Path, words: str) -> None:
+    setup = Setup(drives=False, geometry="spline")
+    runs = list(campaign(words, 4, seed=5, setup=setup, out=tmp_path / "spline"))
+    assert [run.outcome for run in runs] == ["VALID"] * 4
+    for run in runs:
+        assert run.road is not None
+        assert run.road.nodes is not None
+        assert turns_of(run.road.centreline()) == (3 if words == WORDS else 4)

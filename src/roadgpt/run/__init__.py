@@ -22,7 +22,7 @@ from roadgpt.design import draft
 from roadgpt.drive import simulate
 from roadgpt.drive.custom import load_in_time
 from roadgpt.errors import DesignError, PartError, RoadGPTError
-from roadgpt.road import Design, Road, World, build
+from roadgpt.road import Design, Road, World, build, in_hops
 from roadgpt.run.campaign import Campaign
 from roadgpt.run.folder import Draw, read_run, write_run
 from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
@@ -169,6 +169,8 @@ def _designed(
             if kept is None:
                 raise
             break
+        if setup.geometry == "spline":
+            design = in_hops(design)  # designers draw bends, which a spline keeps only through many nodes
         road = build(design, setup.geometry)
         kept = design, road, inspect(road, brief, world, setup.rules), attempt + 1
         if not kept[2]:
