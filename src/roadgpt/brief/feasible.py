@@ -189,7 +189,7 @@ def _slopes(brief: Brief) -> None:
         raise BriefError(
             f"a slope of {brief.steepest.lo:g} percent is too steep; ask for {STEEPEST:g} percent or less"
         )
-    for clause in brief.clauses:
+    for clause in (*brief.clauses, *(end for end in (brief.starts, brief.ends) if end)):
         _slope_within(brief, clause)
     if brief.slope and brief.hills and (brief.hills.lo or 0) > 0:
         raise BriefError("a hilly road climbs and falls; leave out that it is all uphill, downhill or flat")

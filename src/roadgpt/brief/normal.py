@@ -9,7 +9,8 @@
 - Where everything that is named has one slope, the whole road has it.
 - What only repeats the clauses (number of turns, left or right, the slope, first and last thing) goes.
 - 'N turns' and nothing more is one clause; 'N or more turns' and nothing more is a wish for the road.
-- Where nothing is said of turns, at least one is meant; where only straights are named, none.
+- Where nothing is said of turns, at least one is meant; where only straights are named, none;
+  there, and only there, '0 or more turns' is kept.
 """
 
 from math import inf
@@ -80,9 +81,15 @@ def _without_empty_bounds(brief: Brief) -> Brief:
         amount: Amount | None = getattr(brief, name)
         if amount and amount.hi == 0:
             update[name] = exactly(0)
-        elif amount and amount.lo == 0:
+        elif amount and amount.lo == 0 and not (name == "turns" and _only_straights(brief, amount)):
             update[name] = None if amount.hi is None else Amount(hi=amount.hi)
     return brief.model_copy(update=update)
+
+
+def _only_straights(brief: Brief, amount: Amount) -> bool:
+    """Where mere straights are named, '0 or more turns' leaves open what would else be none."""
+    turning = brief.left or brief.right or brief.hard or _turns(brief.starts) or _turns(brief.ends)
+    return bool(brief.clauses) and amount.hi is None and not clauses_turn(brief.clauses) and not turning
 
 
 def _turns(clause: Clause | None) -> bool:

@@ -60,6 +60,8 @@ def _wishes(brief: Brief) -> list[str]:
 def _turns(brief: Brief) -> str | None:
     if brief.turns == exactly(0):
         return "no turns"
+    if brief.turns == at_least(0):
+        return "with or without turns"
     if brief.turns and brief.clauses:
         return f"{_count(brief.turns)} {_plural('turn', brief.turns)} in all"
     return None

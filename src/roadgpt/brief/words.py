@@ -141,6 +141,19 @@ def _top() -> list[str]:
     ]
 
 
+OTHER_TURNS = (
+    ("kink", "1", "15 to 30", "40 or more"),
+    ("dogleg", "1", "60 to 120", "-"),
+    ("spiral", "3 or more, all to the left where no side is said", "25 to 120", "-"),
+    ("a couple of, a pair of", "2", "-", "-"),
+    ("some, multiple", "2 or more", "-", "-"),
+    ("a few, a handful of", "3 to 5", "-", "-"),
+    ("several, a series of", "3 or more", "-", "-"),
+    ("many, lots of, numerous", "4 or more", "-", "-"),
+)
+"""Words of the grammar that stand for a turn with a number, or for a number."""
+
+
 def _turns() -> list[str]:
     kinds = [meaning for meaning in KINDS.values() if meaning.turns]
     rows = (
@@ -153,7 +166,7 @@ def _turns() -> list[str]:
         for m in [*kinds, *SHARPNESS.values()]
     )
     return [
-        *_rows("Turns", ("words", "turns", "degrees each", "radius (m)"), rows),
+        *_rows("Turns", ("words", "turns", "degrees each", "radius (m)"), [*rows, *OTHER_TURNS]),
         "",
         "Where the map cannot hold 60 m, a sweeping turn has a radius of 40 m or more."
         " Switchbacks alternate where there are several."

@@ -41,6 +41,7 @@ SLOPING = CLIMBING | {"up", "down", "hill"}
 VERBS = frozenset({"twists", "twist", "winds", "wind", "snakes", "weaves", "meanders"})
 HILLS = frozenset({"climbs", "ascents", "descents", "inclines", "declines", "drops", "rises"})
 """Nouns in 'with steep climbs', verbs elsewhere."""
+LANES = frozenset({"lane", "lanes"})
 BEFORE_A_VERB = frozenset({"", "that", "road", "and", "then", ",", "stop", "first_of_all", "start", "end"})
 
 
@@ -71,6 +72,10 @@ def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str
         case "sharp":
             steep = (item.text.endswith("ly") and {before, after} & SLOPING) or after in CLIMBING
             return "steep" if steep else "sharp"
+        case "m" | "deg" | "%" | "turning_sum" | "count" | "road" if _is_beyond(items, at, before, after):
+            return "?"
+        case "long" | "short" if before == "m" and items[at - 1].amount is None:
+            return "-"
         case "winding" if after in SIDES and item.text in VERBS and not _sides(items, _at(items, at))[0]:
             return "turn~"
         case "turn+" | "crest+":
@@ -81,14 +86,10 @@ def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str
             return "in_between"
         case "then" if item.text == "before" and before in ("", "stop"):
             return "ahead"
-        case "nearly" if after in SIDES | {"to"}:
-            return "mostly"
         case "nearly":
-            return "nearly" if after in ("flat", "flat~") else "-"
+            return "mostly" if after in SIDES | {"to"} else "nearly" if after in ("flat", "flat~") else "-"
         case "for" | "into" | "enter" if at + 1 < len(items) and items[at + 1].name in ("m", "whole"):
             return "-"
-        case "hill" if before in ("steep", "mild"):
-            return "up~" if _name(items, at, -1, {"steep", "mild"}) not in SLOPING else "-"
         case "up~" | "down~" if item.text in HILLS:
             return (
                 "hills" if _name(items, at, -1, MANNERS | {"steep", "mild", "count"}) == "with" else item.name
@@ -96,13 +97,33 @@ def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str
         case "slope" if item.text in ("slopes", "gradients", "grades"):
             return "hills"
         case "hill":
-            return (
-                "-"
-                if {before, _name(items, at, -1, {"steep", "mild", "gentle", "long"})} & SLOPING
-                else "crest"
-            )
+            return _hill(items, at, before)
         case _:
             return item.name
+
+
+def _hill(items: Sequence[Item], at: int, before: str) -> str:
+    """'a steep hill' is a climb, 'up a hill' says no more than 'up', any other hill is a crest."""
+    if before in ("steep", "mild"):
+        return "up~" if _name(items, at, -1, {"steep", "mild"}) not in SLOPING else "-"
+    near = {before, _name(items, at, -1, {"steep", "mild", "gentle", "long"})}
+    return "-" if near & SLOPING else "crest"
+
+
+def _is_beyond(items: Sequence[Item], at: int, before: str, after: str) -> bool:
+    """What no Brief can hold: 'a left turn at 50 m', 'total turning of 300 degrees', '3 lanes'."""
+    item = items[at]
+    match item.name:
+        case "count":
+            return items[min(at + 1, len(items) - 1)].text in LANES
+        case "road":
+            return item.text in LANES and before == "count"
+        case "m" if item.amount and at and items[at - 1].text == "at":
+            return after not in ("radius", "height", "long", "length")
+        case "deg" if item.amount:
+            return "turning_sum" in [other.name for other in items[max(at - 3, 0) : at]]
+        case _:
+            return item.amount is None  # a unit without a number; 'total turning'
 
 
 def _gentle(items: Sequence[Item], at: int, item: Item, before: str, after: str) -> str:

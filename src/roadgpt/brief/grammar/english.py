@@ -41,7 +41,9 @@ ROAD_WORDS: dict[str, str] = {
     " | climbs over a hill | climb over a hill | goes over a hill",
     "crest+": "crests | humps | hilltops | summits | peaks",
     "hill": "hill",
-    "dip": "dip | hollow | trough | sag | through a valley | across a valley | through a dip"
+    "-": "in a valley | along a valley | valley road",
+    "dip": "a valley | over a valley | dip | hollow | trough | sag | through a valley | across a valley"
+    " | through a dip"
     " | into a dip | through the dip | through a hollow | into a hollow | depression",
     "dip+": "dips | hollows | troughs",
     "hairpin": "v shaped | hairpin | hair pin",
@@ -73,7 +75,9 @@ ROAD_WORDS: dict[str, str] = {
     " | crooked",
     "spiral": "spiral | spirals | spiralling | spiraling | corkscrew | corkscrews | corkscrewing"
     " | helix | helical",
-    "loop": "figure of eight | figure eight | circle | circular | ring | oval | loops | racing oval"
+    "loop": "ends where it starts | ends where it began | back to the start | returns to the start"
+    " | returns to its start | back to its start | figure of eight | figure eight | circle | circular"
+    " | ring | oval | loops | racing oval"
     " | loop | full circle | complete circle | full loop | loop the loop | circuit | closed loop",
     "stretch": "segment | section | stretch | part | piece | leg | portion | sections | segments"
     " | stretches | parts | pieces",
@@ -88,8 +92,8 @@ ROAD_WORDS: dict[str, str] = {
     " | subtly | mellow | comfortable | leisurely | gradual | gradually | tame | loose",
     "sweeping": "sweeping | sweep | sweeps | wide | broad | large radius | big radius | wide radius"
     " | fast | widely",
-    "sharp": "sharp | sharply | tight | tightly | abrupt | abruptly | small radius | acute | sharper"
-    " | tighter | sudden | suddenly | severe | severely | aggressive | aggressively"
+    "sharp": "sharp | sharply | tight | tightly | abrupt | abruptly | small radius | acute"
+    " | sudden | suddenly | severe | severely | aggressive | aggressively"
     " | tight radius | pointed | snappy",
     "long": "long | lengthy | longer | extended | longish | elongated",
     "short": "short | brief | shorter | briefly | shortish",
@@ -111,7 +115,8 @@ ROAD_WORDS: dict[str, str] = {
     " | uphill slope | uphill grade | uphill gradient | upward slope | climbs up a hill"
     " | rises up | lifts | soars | gain elevation | uphill climb | rises uphill | ascends uphill"
     " | upward incline",
-    "down": "downhill | down hill | downward | downwards | downslope | down | down a hill"
+    "down": "down the other side | downhill | down hill | downward | downwards | downslope | down"
+    " | down a hill"
     " | down the hill | down a hillside | down the hillside | down a mountain"
     " | down the mountain | down a slope | down the slope | down a mountainside"
     " | down the mountainside | negative incline | negative slope | negative gradient"
@@ -148,9 +153,11 @@ ROAD_WORDS: dict[str, str] = {
     " | plateauing | levels itself",
     "nearly": "mainly | nearly | almost | mostly | roughly | virtually | practically | basically"
     " | largely | fairly",
-    "steep": "steep | steeply | steeper | precipitous | steepness",
+    "steep": "steep | steeply | precipitous | steepness",
     "slope": "slope | slopes | gradient | grade | sloping | sloped | ramp | tilt | pitch | hillslope"
     " | gradients | grades | inclination angle",
+    "up , down , up": "up and down and up again | up and down and up | up down and up again",
+    "up , down , up , down": "up and down and up and down | up and down and up and down again",
     "hilly": "hilly | goes up and down | going up and down | go up and down | runs up and down"
     " | rolling | undulating | undulates | undulation | undulations | ups and downs"
     " | up and down | rollercoaster | roller coaster | hills | rolling hills | crests and dips"
@@ -164,7 +171,12 @@ ROAD_WORDS: dict[str, str] = {
     "highway": "highway | motorway | freeway | expressway | autobahn | interstate | speedway",
     "highest": "steepest | steepest grade | steepest gradient | steepest point | steepest section"
     " | steepest part | maximum steepness",
-    "highest <=": "max grade | maximum grade | maximum gradient | maximum slope | max slope | max gradient"
+    "highest <=": "no slope steeper than | no slopes steeper than | no grade steeper than"
+    " | no gradient steeper than | no slope over | no slope above | no slope more than"
+    " | no slope of more than | no slope greater than | no slope exceeding | no grade over"
+    " | no gradient over | no grade above | no gradient above | no climb steeper than"
+    " | no hill steeper than | no incline steeper than | max grade | maximum grade | maximum gradient"
+    " | maximum slope | max slope | max gradient"
     " | maximum incline | max incline | grade limit | no steeper than | not steeper than"
     " | never steeper than | nowhere steeper than | no steeper",
     "highest >": "steeper than",

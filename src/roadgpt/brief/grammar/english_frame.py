@@ -75,6 +75,9 @@ FRAME_WORDS: dict[str, str] = {
     "in_ten": "in",
     "radius": "r | radius | radii | radiuses | radius of curvature",
     "length": "length | total length | in length | overall length | lengths",
+    "height #0 m": "net climb zero | zero net climb | no net climb | no net height | net climb of zero"
+    " | a net climb of zero | ends at the same height | ends as high as it starts",
+    "free_turns": "with or without turns | turns left open | with or without bends",
     "height": "height | elevation | altitude | vertical | vertically | elevation gain | height gain"
     " | net climb | height difference | elevation difference | elevation change | total climb"
     " | of climb | total ascent | of height | of elevation | in height | in elevation"
@@ -96,21 +99,22 @@ FRAME_WORDS: dict[str, str] = {
     "hyphen": "-",
     "and": "and | & | as well as | plus | also | along with | together with | + | and also | plus also",
     "or": "or | nor | and or",
-    "then": "then | followed by | after that | afterwards | afterward | next | subsequently"
+    "then": "then | followed by | followed | after that | afterwards | afterward | next | subsequently"
     " | thereafter | before | → | leads into | leading into | leading to | leads to"
     " | continues with | continuing with | later | and then | which leads to | which leads into"
-    " | immediately followed by | succeeded by | from there | after which | before it"
-    " | after this | and next | directly followed by | onto | followed immediately by"
+    " | succeeded by | from there | after which | before it"
+    " | after this | and next | onto"
     " | continues into | turns into | transitions into | transitioning into | transitions to"
     " | flows into | flowing into | gives way to | opens into | opens onto | before going into"
-    " | which then | and after that | right before | just before | immediately before"
-    " | shortly before | immediately after that | and afterwards | feeding into | feeds into"
+    " | which then | and after that | right before | just before"
+    " | shortly before | and afterwards | feeding into | feeds into"
     " | becomes | becoming | followed up by | connects to | merges into | continuing into"
-    " | followed then by | followed directly by | shortly followed by | before finally",
+    " | shortly followed by | before finally",
     "enter": "into",
     "into": "through | along | around | round | via | past | across | as it goes through | during"
     " | negotiating | while going through | while it goes through | over",
-    "with": "whose | except for | except | apart from | with the exception of | but for | with | w /"
+    "except": "except for | except | apart from | with the exception of | but for | excepting",
+    "with": "whose | with | w /"
     " | w | has | have | having | contains | contain | containing | including | includes"
     " | include | featuring | features | consisting of | made of | made up of | comprising"
     " | that has | consists of | comprises | consist of | made from | which has | there are"
@@ -141,8 +145,8 @@ FRAME_WORDS: dict[str, str] = {
     " | finished by | finish off with | then ends | then ends with | then ends in"
     " | rounded off by | rounds off with | end on | ends as",
     "after": "after | preceded by | following | coming after | once past | upon leaving"
-    " | after passing | once through | right after | just after | immediately after"
-    " | shortly after | directly after | immediately following | out of",
+    " | after passing | once through | right after | just after"
+    " | shortly after | out of",
     "between": "between | in between | separated by | connected by | joined by | linked by"
     " | interspersed with | broken up by | split by | divided by | spaced by | interrupted by"
     " | with breaks of",
@@ -167,8 +171,7 @@ FRAME_WORDS: dict[str, str] = {
     " | at its beginning",
     "in_middle": "in the middle | halfway | midway | half way | in its middle | somewhere in the middle"
     " | in the centre | in the center | at the halfway point",
-    "again": "again | another | one more | once more | a second | a further | further | yet another"
-    " | a third",
+    "again": "again | another | one more | once more | a second | a further | yet another | a third",
     "repeat": "repeated | repeat | repeats | repeating | this pattern | repeat this | repeated over",
     # scope
     "a": "a | an",
@@ -190,7 +193,8 @@ FRAME_WORDS: dict[str, str] = {
     "total": "totalling | totaling | adding up to | which add up to | that add up to | in total"
     " | in all | altogether | total | in sum | all in all | combined | all together | all told",
     "rest": "the rest | the others | others | remaining | the remaining | the other"
-    " | the rest of them | other | the other ones",
+    " | the rest of them | the other ones",
+    "other": "other | further",
     "half_of": "half of them | half of which | half of the turns | half of the bends | one half of them",
     "of_them": "of them | of which | of those | of these | among them | of the turns | of the bends"
     " | of the curves | out of them | of all turns",
@@ -217,7 +221,7 @@ FRAME_WORDS: dict[str, str] = {
     " | changes direction each time",
     "no": "w / o | w / o any | no | without | without any | not | never | none | free of | lacking"
     " | avoid | avoiding | avoids | devoid of | isn't | doesn't | don't | no single"
-    " | not a single | neither | not any | without a single | excluding | with no | that has no"
+    " | not a single | neither | not any | without a single | excluding | that has no"
     " | absent | shouldn't | mustn't | not have any | nothing | cannot | zero number of | has no"
     " | does not | do not | won't",
     "too": "too | overly | very | really | extremely | quite | rather | so | super | pretty | fairly"
@@ -227,7 +231,7 @@ FRAME_WORDS: dict[str, str] = {
     "that": "that | which | it | this | who | car | driver | you | we | they",
     "road": "road | street | track | roadway | route | path | lane | trail | alley | avenue"
     " | boulevard | roads | lanes | streets | driveway | byway | carriageway | country lane"
-    " | country road | racetrack | race track | pass road | backroad | back road | terrain"
+    " | country road | pass road | backroad | back road | terrain"
     " | ground | layout",
     "hard": "hard",
     "hard_road": "challenging | challenge | challenges | difficult | demanding | tricky | stress"
@@ -260,7 +264,7 @@ FRAME_WORDS: dict[str, str] = {
     " | moves | moving | leads | leading | heads | heading | keeps | keep | keeping | stays"
     " | stay | staying | remains | remain | remaining | continues | continue | continuing"
     " | takes | take | taking | follow | follows | comes | come | coming | made | using | use"
-    " | however | when | where | still | now | immediately | directly | shortly | quick"
+    " | however | when | where | still | now | shortly | quick"
     " | quickly | slowly | right away | straight after | soon | nice | nicely | simple | basic"
     " | normal | ordinary | regular | standard | typical | beautiful | scenic | pretty | lovely"
     " | fun | interesting | random | arbitrary | new | novel | different | good | great | small"
@@ -270,10 +274,10 @@ FRAME_WORDS: dict[str, str] = {
     " | one after another | one after the other | in a row | consecutive | successive"
     " | succession | in succession | in sequence | in quick succession | back to back | sequence"
     " | series | combination | combinations | pattern | order | in this order | in that order"
-    " | in order | respectively | each time | same | another one | element | elements | two lane"
-    " | two lanes | single lane | one lane | 2 lane | dual carriageway | one way | two way"
-    " | asphalt | asphalted | paved | tarmac | gravel | dirt | concrete | surface | narrow | dry"
-    " | wet | rural | urban | city | town | village | suburban | residential | country"
+    " | in order | respectively | each time | another one | element | elements | two lane"
+    " | two lanes | 2 lane | two way"
+    " | asphalt | asphalted | paved | tarmac | concrete | surface"
+    " | rural | urban | city | town | village | suburban | residential | country"
     " | countryside | forest | woods | wooded | desert | coastal | coast | seaside | farm | park"
     " | industrial | scenery | landscape | hillside | hillsides | mountainside | valley | lake"
     " | river | empty | quiet | test | tests | testing | tested | lane keeping | lane keeper"
@@ -286,9 +290,9 @@ FRAME_WORDS: dict[str, str] = {
     " | toward | towards | away | down to | up to the | top | bottom | foot | base | middle"
     " | point | points | place | places | position | distance | distances | apart | pass"
     " | passes | passing | crossing | crosses | reaching | reach | reaches | hits | before"
-    " | back | itself | other | along | about | bit | lot | more | most | less | much | such"
+    " | back | itself | along | about | bit | lot | more | most | less | much | such"
     " | than | not only | not just | or so | each other | another | next to | keeps on"
-    " | carries on | carry on | carrying on | proceeds | proceed | proceeding | immediately then"
+    " | carries on | carry on | carrying on | proceeds | proceed | proceeding"
     " | per | x | s | d | it's | that's | there's | let's | hi | hello | hey | thanks | thank"
     " | okay | ok | for a while | a while | for some time | while still | blind | classic"
     " | proper | real | true | full | complete | rather | curvature | having a | smallest"
@@ -297,7 +301,7 @@ FRAME_WORDS: dict[str, str] = {
     " | want to see | i want | i would like | could you | can you | would you | i need | we need"
     " | looking | see | look | looks | pure | dedicated | beginner | beginners | novice"
     " | learner | learners | sunday | famous | old | modern | slow | who | what | between"
-    " | roughly | clear | clean | distinct | separate | individual | identical | equal | similar"
-    " | regular intervals | intervals | evenly | spaced | evenly spaced | within | gap | gaps"
+    " | roughly | clear | clean | distinct | separate | individual"
+    " | intervals | within | gap | gaps"
     " | at least then",
 }

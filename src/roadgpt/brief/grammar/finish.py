@@ -3,6 +3,14 @@
 from dataclasses import replace
 from itertools import pairwise
 
+from roadgpt.brief.grammar.ahead import (
+    hills_of_a_list,
+    in_driving_order,
+    most_to_one_side,
+    place_picks,
+    share_of_the_rest,
+    turns_left_open,
+)
 from roadgpt.brief.grammar.phrase import WAVY, Phrase
 from roadgpt.brief.grammar.slopes import settle_slopes, slope_of
 from roadgpt.brief.grammar.units import Units, how_many, plural, turns
@@ -21,16 +29,23 @@ def finish(units: Units, road_said: bool) -> Brief:
     Raises:
         BriefError: an S-bend whose turns go one way.
     """
+    in_driving_order(units)
     _deal_out(units)
     _spell_out(units)
     _name_sides(units)
+    place_picks(units)
+    share_of_the_rest(units)
     settle_slopes(units)
     _move_to_ends(units)
     _part_of_the_number(units)
     _fill_up(units)
+    most_to_one_side(units)
+    hills_of_a_list(units)
+    if turns_left_open(units, road_said):
+        units.wishes.turns = at_least(0)
     wishes = units.wishes
     clauses = [_clause(thing, units) for thing in units.things if thing.kind is not None]
-    if len(units.things) == 1 and not wishes.turns:
+    if len(units.things) == 1 and wishes.turns in (None, at_least(0)):
         joint = units.things[0].joint if not units.things[0].place else units.things[0].place
         if joint == "start" and road_said:
             wishes.starts, clauses = clauses[0], []
@@ -98,7 +113,7 @@ def _spelled(things: list[Phrase], start: int, number: tuple[int, int]) -> int:
 
 def _spelled_attribute(units: Units, whole: Phrase, start: int) -> None:
     """'two turns, left': not spelled out, but told more of."""
-    if start < len(units.things):
+    if start < len(units.things) and not _parts_of(units, whole, start):
         thing = units.things[start]
         if (
             thing.kind is None
@@ -109,6 +124,19 @@ def _spelled_attribute(units: Units, whole: Phrase, start: int) -> None:
         ):
             whole.side = thing.side
             del units.things[start]
+
+
+def _parts_of(units: Units, whole: Phrase, start: int) -> bool:
+    """'5 turns, 3 to the left': three of the five."""
+    parts = [t for t in units.things[start:] if t.kind is None and t.side and t.count and t.joint != "then"]
+    if parts != units.things[start:] or whole.side or not plural(whole):
+        return False
+    if sum(how_many(part) for part in parts) > how_many(whole):
+        return False
+    for part in parts:
+        setattr(units.wishes, part.side or "left", part.count)
+    del units.things[start:]
+    return True
 
 
 def _inherit(thing: Phrase, whole: Phrase) -> None:

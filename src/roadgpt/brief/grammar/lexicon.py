@@ -2,14 +2,18 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 
+from roadgpt.brief.grammar.beyond import BEYOND
 from roadgpt.brief.grammar.english import ROAD_WORDS
 from roadgpt.brief.grammar.english_frame import FRAME_WORDS
 from roadgpt.brief.grammar.german import GERMAN
 from roadgpt.brief.grammar.romance import ROMANCE
 from roadgpt.brief.grammar.tokens import Token, tokens
 
+ALIKE = 0.75
+"""Share of letters in common from which a word may be another one mistyped."""
 LEAST_LETTERS = 5  # of a word in which a typing error is forgiven; shorter ones are too alike
 MOST_LETTERS = 20
 UNKNOWN = "?"
@@ -57,8 +61,8 @@ class Lexicon:
 
 @cache
 def lexicon() -> Lexicon:
-    """All vocabularies; English first."""
-    return Lexicon.of((ROAD_WORDS, FRAME_WORDS, GERMAN, ROMANCE))
+    """All vocabularies; what no Brief can hold first, then English."""
+    return Lexicon.of((BEYOND, ROAD_WORDS, FRAME_WORDS, GERMAN, ROMANCE))
 
 
 def lex(found: Sequence[Token]) -> list[Lexeme]:
@@ -118,6 +122,18 @@ def _is_number(token: Token) -> bool:
         return True
     readings = lexicon().phrases.get((token.text,), ())
     return any(meanings[0].startswith("#") for meanings in readings)
+
+
+def similar(word: str) -> str | None:
+    """A word about roads that somebody may have meant: 'turns' for 'trns'; None where none is near."""
+    known = {w for listed in ROAD_WORDS.values() for w in listed.split() if len(w) > 3 and w.isalpha()}
+    near = get_close_matches(word, sorted(known), n=1, cutoff=ALIKE)
+    return near[0] if near else None
+
+
+def is_strange(word: str) -> bool:
+    """Does no vocabulary have this word?"""
+    return word not in lexicon().longest
 
 
 @cache

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from roadgpt.brief.grammar.ahead import as_one_turn
 from roadgpt.brief.grammar.phrase import Phrase
 from roadgpt.brief.grammar.slopes import slope_of
 from roadgpt.brief.grammar.units import Units, plural, turns
@@ -22,7 +23,10 @@ def modify(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | 
         or phrase.hard
         or phrase.highest
         or phrase.changes
+        or phrase.free_turns
     )
+    if as_one_turn(units, phrase):
+        return True
     if phrase.in_between and phrase.length and turn is not None:
         units.add(replace(phrase, kind="straight"), leading=False)
         return True

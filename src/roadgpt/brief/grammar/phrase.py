@@ -83,11 +83,18 @@ class Phrase:
     """'with steep climbs': some, somewhere."""
     changes: bool = False
     """Does the count say how often the slope changes?"""
+    relative: bool = False
+    """Does it begin with 'which': 'the last turn, which is downhill'?"""
+    slope_alone: bool = False
+    """Was it a slope and no more, and made a straight?"""
+    free_turns: bool = False
     hard: bool = False
     mountain: bool = False
     highway: bool = False
     loop: bool = False
     items: list[Item] = field(default_factory=list)
+    exception: list[Item] = field(default_factory=list)
+    """The word 'except', where the phrase stands behind it."""
     ignored: list[Item] = field(default_factory=list)
 
     @property

@@ -26,6 +26,7 @@ JOINTS = {
     "then": 6,
     "between": 7,
     "after": 8,
+    "except": 8,
     "ahead": 8,
     "enter": 5,
     "start": 9,
@@ -69,9 +70,11 @@ class _Chunker:
     def take(self, at: int, item: Item) -> None:
         name = item.name
         if name in _SILENT:
+            self.now.relative |= name == "that" and self.now.empty
             return
         if name in _AS_JOINT:
             self._joint(_AS_JOINT[name])
+            self.now.exception += [item] if name == "except" else []
             return
         self._begin_if_needed(at, item)
         if name in TAKES:
@@ -124,6 +127,7 @@ _AS_JOINT = {
     "start": "start",
     "end": "end",
     "after": "after",
+    "except": "except",
     "between": "between",
 }
 

@@ -11,7 +11,7 @@ from roadgpt.brief.grammar.scope import halve, negate, select, take_some
 from roadgpt.brief.grammar.slopes import slope_of
 from roadgpt.brief.grammar.units import Units, default_count, how_many, overlay, plural, turns
 from roadgpt.brief.model import Amount, Brief, at_least, at_most, exactly
-from roadgpt.brief.normal import STRAIGHT
+from roadgpt.brief.normal import OTHER, STRAIGHT
 from roadgpt.brief.words import HILLS, MOUNTAIN, ROAD_SIZES, SLOPES, Range
 from roadgpt.errors import BriefError
 
@@ -43,12 +43,20 @@ class _Builder:
         self.left_over += phrase.ignored
         default_count(phrase)
         self._flags(phrase)
-        if not self._take(phrase, after):
+        if phrase.pick and phrase.length and not phrase.turning:  # 'the first 100 m are flat'
+            phrase.joint, phrase.place = ("start", "") if phrase.pick[0] == 0 else (phrase.joint, "end")
+            phrase.pick = None
+        if phrase.scope and len(phrase.items) == 1 and after and after.joint == "with" and not after.turning:
+            after.scope, after.joint = phrase.scope, ""  # 'all with a radius of 20 m'
+        elif not self._take(phrase, after):
             self.left_over += [item for item in phrase.items if item.name not in _UNCOUNTED]
+            self.left_over += phrase.exception
         self.before = phrase
 
     def _take(self, phrase: Phrase, after: Phrase | None) -> bool:
         """Finds the phrase its place; False where it has none."""
+        if phrase.exception or (phrase.relative and self.before and self.before.exception):
+            return self._except(phrase)
         if phrase.negated:
             return negate(self.units, phrase)
         if phrase.only and phrase.side:
@@ -83,8 +91,10 @@ class _Builder:
         wishes = self.units.wishes
         if phrase.loop and not phrase.negated:
             raise BriefError(
-                "a full circle would cross itself; ask for a U-turn of at most 210 degrees instead"
+                "a road that comes back to its start would cross itself; ask for a U-turn instead"
             )
+        if phrase.free_turns:
+            wishes.turns = at_least(0)
         wishes.hard |= phrase.hard and not phrase.negated
         if phrase.hilly and not phrase.negated:
             wishes.hills = wishes.hills or at_least(HILLS)
@@ -103,8 +113,12 @@ class _Builder:
             wishes.sharpness = wishes.sharpness or "sweeping"
         if phrase.highest and phrase.incline:
             wishes.steepest, phrase.incline = phrase.incline, None
+        elif phrase.steep and phrase.incline and not phrase.slope and not phrase.kind and not phrase.road:
+            wishes.steepest, phrase.incline, phrase.steep = phrase.incline, None, False  # 'at most 6 % steep'
         elif phrase.steep and not phrase.slope and not phrase.negated and not phrase.slope_noun:
-            wishes.steepest = wishes.steepest or at_least((SLOPES["steeply_up"].grade or Range(8)).lo)
+            steep = at_least((SLOPES["steeply_up"].grade or Range(8)).lo)
+            mountain = wishes.steepest == at_least(MOUNTAIN.lo)
+            wishes.steepest = steep if mountain else wishes.steepest or steep
         if phrase.height is not None:
             self._climb(phrase, phrase.height)
 
@@ -114,11 +128,13 @@ class _Builder:
         climb, before = Amount(lo=ends[0], hi=ends[1]), self.units.wishes.climb
         if before and before.exact and climb.exact:  # 'gains 10 m, then loses 4 m'
             climb = exactly((before.lo or 0) + (climb.lo or 0))
+            if climb == exactly(0):  # of the two heights nothing is left to promise
+                self.left_over += [item for said in self.found for item in said.items if item.name == "m"]
         self.units.wishes.climb = climb
 
     def _total(self, phrase: Phrase) -> bool:
         wishes, last = self.units.wishes, self.units.last_turn
-        if phrase.kind is None and phrase.side is None and last and last.kind == "turn" and not plural(last):
+        if phrase.kind is None and phrase.side is None and last and last.kind == "turn" and _open(last):
             last.count = phrase.count  # 'a left turn every now and then, four in total'
         elif phrase.side == "left":
             wishes.left = phrase.count
@@ -141,9 +157,7 @@ class _Builder:
 
     def _mostly(self, phrase: Phrase) -> bool:
         """'5 turns, mostly to the right'."""
-        last = phrase if phrase.kind else self.units.last_turn
-        number = how_many(last) if last else 0
-        setattr(self.units.wishes, phrase.side or "left", at_least(number // 2 + 1))
+        self.units.mostly = phrase.side
         if phrase.kind:
             self.units.add(replace(phrase, side=None), leading=False)
         return True
@@ -191,6 +205,9 @@ class _Builder:
             phrase.total and phrase.degrees and phrase.degrees.exact and plural(phrase)
         ):  # 'totalling 360 degrees'
             phrase.degrees = exactly(round((phrase.degrees.lo or 0) / how_many(phrase), 2))
+        elif phrase.total and phrase.degrees:  # of how many turns, nobody said
+            self.left_over += [item for item in phrase.items if item.name in ("deg", "total")]
+            phrase.degrees, phrase.count = None, phrase.count or at_least(1)
         if phrase.kind is None and not phrase.counted:  # 'a series of left, right, left'
             phrase.count, phrase.article = None, False
         if phrase.both_sides and not phrase.alternating:
@@ -200,7 +217,7 @@ class _Builder:
         if phrase.spiral:
             phrase.count = phrase.count or at_least(3)
             phrase.side = phrase.side or "left"
-        if self._fills_in(phrase):
+        if self._fills_in(phrase) or self._is_part(phrase):
             return
         if phrase.each_side:
             self.units.add(replace(phrase, side="left"), leading=False)
@@ -220,6 +237,25 @@ class _Builder:
             overlay(last, phrase)
             return True
         return False
+
+    def _is_part(self, phrase: Phrase) -> bool:
+        """'5 turns, at least 3 to the left': of the five."""
+        last, count = self.units.last_turn, phrase.count
+        if phrase.kind or not phrase.side or not count or count.exact or not last or last.side:
+            return False
+        if phrase.joint == "then" or not plural(last) or (count.lo or 0) > how_many(last):
+            return False
+        setattr(self.units.wishes, phrase.side, count)
+        return True
+
+    def _except(self, phrase: Phrase) -> bool:
+        """'5 turns, all left except the third'; False where nothing says what the exception is like."""
+        before, turn = self.before, self.units.last_turn
+        if not (phrase.exception and before and before.scope == "all" and before.side and turn):
+            return False
+        if not _is_pick(phrase) or sum(how_many(t) for t in self.units.things if turns(t)) < 2:
+            return False
+        return select(self.units, replace(phrase, side=OTHER[before.side]), None)
 
     def _both_sides(self, phrase: Phrase) -> bool:
         last, wishes = self.units.last_turn, self.units.wishes
@@ -248,6 +284,10 @@ class _Builder:
             return True
         if phrase.height is not None and phrase.height_said in ("gain", "loss") and not phrase.climbs:
             return True
+        bare = not (phrase.article or phrase.stretch or phrase.length or phrase.climbs or phrase.count)
+        if phrase.joint == "and" and bare and last and last is self.before and _takes_a_slope(last):
+            overlay(last, phrase)  # 'straight and flat'
+            return True
         if not scoped and (phrase.stretch or phrase.length or phrase.size) and not phrase.whole:
             phrase.kind = "straight"
             self.units.add(phrase, leading=False)
@@ -273,6 +313,15 @@ def _is_pick(phrase: Phrase) -> bool:
         phrase.length,
     )
     return phrase.pick is not None and not any(said) and phrase.kind in (None, "turn")
+
+
+def _open(thing: Phrase) -> bool:
+    """Was no number said?"""
+    return not plural(thing) or (thing.count == at_least(2) and not thing.counted)
+
+
+def _takes_a_slope(thing: Phrase) -> bool:
+    return thing.kind in WAVY | {"straight"} and not thing.slope
 
 
 def _minus(number: float | None) -> float | None:

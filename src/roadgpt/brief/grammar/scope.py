@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from roadgpt.brief.grammar.phrase import Phrase
 from roadgpt.brief.grammar.slopes import slope_of
-from roadgpt.brief.grammar.units import Units, how_many, turns
+from roadgpt.brief.grammar.units import Units, how_many, plural, turns
 from roadgpt.brief.model import Amount, at_least, at_most, between, exactly
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
@@ -26,6 +26,8 @@ def select(units: Units, phrase: Phrase, after: Phrase | None) -> bool:
         units.things.append(replace(phrase, scope=""))
         return True
     targets = _targets(units, phrase)
+    if not targets and phrase.scope == "rest" and units.things:
+        return _rest(units, phrase)
     if not targets:
         return _wish(units, phrase)
     if (
@@ -39,8 +41,19 @@ def select(units: Units, phrase: Phrase, after: Phrase | None) -> bool:
     if phrase.alternating and len(targets) > 1:
         units.wishes.alternating, phrase.alternating = True, False
     for thing in targets:
-        _give(thing, phrase)
+        give(thing, phrase)
     return True
+
+
+def _rest(units: Units, phrase: Phrase) -> bool:
+    """'the first two turns are left, the others right', 'the first 100 m are flat, the rest is uphill'."""
+    if turns(phrase) or phrase.sharpness or phrase.degrees or phrase.radius:
+        phrase.kind, phrase.count, phrase.joint = phrase.kind or "turn", None, "then"
+        units.things.append(phrase)
+        return True
+    if phrase.slope:
+        units.things.append(replace(phrase, scope="", joint="then"))
+    return phrase.slope != ""
 
 
 def _said_nothing(phrase: Phrase) -> bool:
@@ -62,7 +75,8 @@ def _targets(units: Units, phrase: Phrase) -> list[Phrase]:
     return [thing for thing in units.things if turns(thing)]
 
 
-def _give(thing: Phrase, phrase: Phrase) -> None:
+def give(thing: Phrase, phrase: Phrase) -> None:
+    """Puts what a phrase says on a thing, over what was said of it before."""
     if phrase.kind not in (None, "turn"):
         thing.kind = phrase.kind
     for name in ATTRIBUTES:
@@ -105,6 +119,8 @@ def _pick(units: Units, phrase: Phrase) -> bool:
     if phrase.kind in STRAIGHT:
         places = [at for at, thing in enumerate(units.things) if thing.kind in STRAIGHT]
     picked = places[first : first + number] if first >= 0 else places[first:][:number]
+    if any(plural(units.things[at]) for at in picked):
+        return False  # of turns that alternate among others, none can be told apart
     if not picked:
         kind = phrase.kind or ("turn" if phrase.side or phrase.sharpness or phrase.degrees else None)
         if kind is None:
@@ -113,20 +129,19 @@ def _pick(units: Units, phrase: Phrase) -> bool:
         units.things.append(replace(phrase, kind=kind, count=count, joint="then"))
         return True
     for at in picked:
-        _give(units.things[at], phrase)
+        give(units.things[at], phrase)
     return True
 
 
 def halve(units: Units, phrase: Phrase) -> bool:
-    """'the first half uphill': the slope goes to that half of the turns, or is a straight."""
+    """'the first half uphill': the slope goes to that half of the turns; False where none is named."""
     units.expand()
     turning = [thing for thing in units.things if turns(thing)]
     if not turning:
-        units.things.append(replace(phrase, kind="straight", joint="then"))
-        return True
+        return False
     middle = (len(turning) + 1) // 2
     for thing in turning[:middle] if phrase.half == 1 else turning[middle:]:
-        _give(thing, phrase)
+        give(thing, phrase)
     return True
 
 
@@ -152,7 +167,7 @@ def take_some(units: Units, phrase: Phrase) -> bool:
         thing for thing in units.things if turns(thing) and thing.kind == whole.kind and not thing.of_them
     ]
     for thing in plain[len(plain) - number :] if number else []:
-        _give(thing, phrase)
+        give(thing, phrase)
         thing.of_them = True
     return True
 

@@ -97,7 +97,12 @@ def _of_the_road(units: Units, alone: list[Phrase]) -> bool:
         and follows.joint in ("and", ",")
     ):
         return True  # 'uphill and curvy'
-    if slope.joint == "with" and follows.joint == "and" and all(thing.joint != "then" for thing in things):
+    if (
+        slope.joint == "with"
+        and follows.joint == "and"
+        and turns(follows)
+        and all(thing.joint != "then" for thing in things)
+    ):
         return True  # 'with a gentle incline and five curves'
     return (slope.after_road or follows.joint in ("with", ",", "stop")) and follows.joint not in ONE_LEG
 
@@ -119,6 +124,11 @@ def _wish(wishes: Wishes, slope: Phrase) -> None:
         wishes.slope, wishes.incline = said, slope.incline or wishes.incline
     elif said and {said.split("_")[-1], wishes.slope.split("_")[-1]} == {"up", "down"}:
         raise BriefError("the road is said to go uphill and downhill; say the slope of each part instead")
+    elif said and said != wishes.slope and ("flat" in said) != ("flat" in wishes.slope):
+        raise BriefError(
+            "the road is said to be flat and to climb or fall; say it of each part, as in"
+            " 'a flat straight, then a steep climb, then a flat straight'"
+        )
 
 
 def _along_the_road(units: Units, only: bool) -> None:
@@ -144,7 +154,7 @@ def _along_the_road(units: Units, only: bool) -> None:
             _give(out[-1], thing, with_number=True)
             carried = None
         else:
-            out.append(replace(thing, kind="straight", count=None))
+            out.append(replace(thing, kind="straight", count=None, slope_alone=True))
             carried = thing if thing.climbs and not thing.article else None
     units.things = out
 

@@ -149,6 +149,11 @@ def _take_scope(now: Phrase, item: Item, after: str) -> None:
         now.each = True
 
 
+def _take_other(now: Phrase, item: Item, after: str) -> None:
+    if now.count is None:  # 'two other turns' are two more
+        now.scope = "rest"
+
+
 def _take_last(now: Phrase, item: Item, after: str) -> None:
     now.pick = (-1, 1)
 
@@ -224,6 +229,8 @@ TAKES: dict[str, Callable[[Phrase, Item, str], None]] = {
     "of_them": _set(of_them=True),
     "in_between": _set(in_between=True),
     "repeat": _set(repeat=True),
+    "other": _take_other,
+    "free_turns": _set(free_turns=True),
     "at_end": _set(place="end"),
     "at_start": _set(place="start"),
     "in_middle": _set(place="middle"),

@@ -30,7 +30,8 @@ _PLAIN = str.maketrans(
 )
 _TOKEN = re.compile(
     r"""
-      (?P<ratio>(?<![\w.:])1\s?:\s?\d{1,4}(?:\.\d{1,3})?(?![\w:]))
+      (?P<tag></?(?:b|i|u|em|strong|p|br|div|span|h\d|li|ul|ol)\s*/?>)
+    | (?P<ratio>(?<![\w.:])1\s?:\s?\d{1,4}(?:\.\d{1,3})?(?![\w:]))
     | (?P<number>(?:(?<![\w.,)°%])-)?
         (?:\d{1,3}(?:,\d{3})+(?!\d)|[1-9]\d{0,2}(?:\.\d{3})+(?!\d)|\d+(?:[.,]\d+)?))
     | (?P<arrow>-+>|=+>|→)
@@ -70,6 +71,8 @@ def tokens(text: str) -> list[Token]:
     found = []
     for match in _TOKEN.finditer(plain(text)):
         sort, raw = match.lastgroup, match.group()
+        if sort == "tag":
+            continue
         if sort == "number":
             found.append(Token("#", raw, "number", _number(raw)))
         elif sort == "ratio":

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from roadgpt.brief.grammar.phrase import WAVY, Phrase
-from roadgpt.brief.model import Amount, Clause, Sharpness, Slope, at_least, exactly
+from roadgpt.brief.model import Amount, Clause, Sharpness, Side, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.words import KINDS
 from roadgpt.errors import BriefError
@@ -41,6 +41,8 @@ class Units:
 
     things: list[Phrase] = field(default_factory=list)
     wishes: Wishes = field(default_factory=Wishes)
+    mostly: Side | None = None
+    """'mostly left turns': how many that are is known at the end."""
     lists: list[tuple[Phrase, int]] = field(default_factory=list)
     """Things that are spelled out: 'three turns: left, right, left', and how many stood before that."""
 
@@ -73,11 +75,15 @@ class Units:
             and not thing.counted
         ):
             thing.count = None  # 'left, right and left turns' are three
+        if self._refers(thing):
+            return
         if thing.joint == "after" and not leading and self.things:
             self.things.insert(len(self.things) - 1, thing)
+        elif thing.joint == "between" and self._is_flanked(thing):
+            self._surround(thing)
         elif (thing.in_between or thing.joint == "between") and thing.kind in STRAIGHT and self.last_turn:
             self._weave(thing, lambda other: turns(other))
-        elif thing.joint == "between" and turns(thing) and self.last and self.last.kind in STRAIGHT:
+        elif thing.joint == "between" and turns(thing) and self.last and self._is_between(thing, self.last):
             self._surround(thing)
         elif self.last and "middle" in (thing.place, self.last.place) and self._in_the_straight(thing):
             return
@@ -92,6 +98,24 @@ class Units:
         else:
             self._note_list(thing)
             self.things.append(thing)
+
+    def _is_between(self, thing: Phrase, middle: Phrase) -> bool:
+        """'a hairpin between two bends'; but in 'two bends separated by a hairpin' there is one."""
+        return middle.kind in STRAIGHT or (turns(middle) and not plural(middle) and how_many(thing) > 1)
+
+    def _is_flanked(self, thing: Phrase) -> bool:
+        """'a hairpin between two straights'."""
+        alone = len(self.things) == 1 and not plural(self.things[0])
+        return alone and thing.kind in STRAIGHT and thing.count == exactly(2)
+
+    def _refers(self, thing: Phrase) -> bool:
+        """'over a crest and down, with a left turn after the crest': the crest that was named."""
+        if thing.joint != "after" or thing.kind not in ("crest", "dip") or thing.article or thing.count:
+            return False
+        at = next((i for i, other in enumerate(self.things[:-1]) if other.kind == thing.kind), None)
+        if at is not None:
+            self.things.insert(at + 1, self.things.pop())
+        return at is not None
 
     def _joins(self, thing: Phrase) -> bool:
         """Does it say more about the thing before, rather than name another: 'a serpentine with 6 turns'?"""
@@ -190,13 +214,23 @@ class Units:
                 and thing.count
                 and thing.count.exact
                 and how_many(thing) > 1
-                and not thing.alternating
+                and self._can_be_told_apart(thing)
             ):
-                first = replace(thing, count=exactly(1))
+                first = replace(thing, count=exactly(1), alternating=False)
+                first.kind = "turn" if thing.kind in WAVY else thing.kind
                 out += [first] + [replace(first, joint="and") for _ in range(how_many(thing) - 1)]
             else:
                 out.append(thing)
         self.things = out
+
+    def _can_be_told_apart(self, thing: Phrase) -> bool:
+        """Turns that alternate can, where they are all the turns: then the whole road alternates."""
+        alternates = thing.alternating or (thing.kind is not None and KINDS[thing.kind].alternating)
+        if thing.kind in ("s_bend", "chicane") or not alternates:
+            return not thing.alternating
+        alone = [other for other in self.things if turns(other)] == [thing] and thing.side is None
+        self.wishes.alternating |= alone
+        return alone
 
 
 def turns(thing: Phrase) -> bool:
@@ -217,7 +251,7 @@ def how_many(thing: Phrase) -> int:
     """
     number = thing.count.lo if thing.count and thing.count.lo is not None else 1
     if number > MOST:
-        raise BriefError(f"{number:g} of one thing do not fit on any map; ask for {MOST} or fewer")
+        raise BriefError(f"{number:,.0f} of one thing do not fit on any map; ask for {MOST} or fewer")
     return max(int(number), 0)
 
 

@@ -2,7 +2,7 @@
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.grammar.context import TURNING, settle
-from roadgpt.brief.grammar.lexicon import UNKNOWN, Lexeme, lex
+from roadgpt.brief.grammar.lexicon import UNKNOWN, Lexeme, is_strange, lex, similar
 from roadgpt.brief.grammar.phrases import phrases
 from roadgpt.brief.grammar.promises import promises
 from roadgpt.brief.grammar.quantities import Item, quantities
@@ -28,7 +28,7 @@ SURE = TURNING | {
 """Words that speak of roads and of little else."""
 LIKELY = frozenset(
     {"straight", "crest", "dip", "hill", "left", "right", "up", "down", "up~", "down~", "flat", "flat~"}
-    | {"steep", "hard", "hard_road"}
+    | {"steep", "hard", "hard_road", "slope", "hills", "height", "radius", "%"}
 )
 LIKELY_SHARE = 0.2  # of words not understood, above which such words alone are taken for chance
 SURE_SHARE = 0.75  # above which even one word about roads is
@@ -55,17 +55,39 @@ class GrammarReader:
         brief, left_over = promises(phrases(items))
         unused = _unused(found, lexemes, items, left_over)
         share = len(unused) / max(sum(token.sort != "sign" for token in found), 1)
-        _about_a_road(words, lexemes, share)
+        _about_a_road(words, found, lexemes, share)
         check(brief, map_size=None)
         told = {"words": words, "unused": unused, "confidence": round(max(0.0, 1.0 - share), 3)}
         return normal(brief).model_copy(update=told)
 
 
-def _about_a_road(words: str, lexemes: list[Lexeme], share: float) -> None:
+def _about_a_road(words: str, found: list[Token], lexemes: list[Lexeme], share: float) -> None:
+    """Passes words that speak of roads, and of which enough was understood.
+
+    Args:
+        words: as they were written.
+        found: their tokens.
+        lexemes: their meanings.
+        share: of words that were not understood, whether they are known or not.
+
+    Raises:
+        BriefError: with the word that may have been meant, or what is wrong with those that are known.
+    """
     names = {lexeme.name for lexeme in lexemes}
-    if (names & SURE and share <= SURE_SHARE) or (names & LIKELY and share <= LIKELY_SHARE):
+    said = [token.text for token in found if token.sort != "sign"]
+    strange = [lexeme.text for lexeme in lexemes if lexeme.name == UNKNOWN and is_strange(lexeme.text)]
+    likely = names & LIKELY and len(strange) <= LIKELY_SHARE * len(said)
+    if share <= SURE_SHARE and (names & SURE or likely):
         return
     start = " ".join(words.split())[:40]
+    if "half" in said or names & {"half1", "half2"}:
+        raise BriefError(
+            f"'{start}' has halves, which are not understood; give each part a length, as in"
+            " 'flat for 100 m, then uphill for 100 m'"
+        )
+    meant = [(word, near) for word in strange if (near := similar(word))]
+    if meant and names & (SURE | LIKELY) and len(meant) == len(strange):
+        raise BriefError(f"'{meant[0][0]}' is not understood; did you mean '{meant[0][1]}'?")
     raise BriefError(f"'{start}' does not describe a road; {EXAMPLE}")
 
 
@@ -74,6 +96,6 @@ def _unused(
 ) -> tuple[str, ...]:
     """The words that were not understood, as they were written and in order."""
     places = {at for lexeme in lexemes if lexeme.name == UNKNOWN for at in range(lexeme.start, lexeme.stop)}
-    for item in [*left_over, *(item for item in items if item.name == "speed")]:
+    for item in [*left_over, *(item for item in items if item.name in ("speed", UNKNOWN))]:
         places |= set(range(item.start, item.stop))
     return tuple(found[at].raw for at in sorted(places) if found[at].sort != "sign" or found[at].raw in "%°")
