@@ -18,6 +18,7 @@ DESCRIPTIONS = [
     json.loads(line)["words"] for line in (HERE / "descriptions.jsonl").read_text("utf-8").splitlines()
 ]
 ROAD_WORDS = sorted({word for words in DESCRIPTIONS for word in words.split()})
+SIGNED = ["-2", "-3 %", "-5 to 3 %", "-90 degrees", "-20 m", "-1.5 km", "at most -4", "between -8 and 2", "0"]
 
 
 @pytest.mark.parametrize("words", ["", "   ", "\n\t"])
@@ -142,8 +143,11 @@ def test_any_text_ends_well(words: str) -> None:
     ends_well(words)
 
 
+jumbled = st.one_of(st.sampled_from(ROAD_WORDS), st.sampled_from(ROAD_WORDS), st.sampled_from(SIGNED))
+
+
 @settings(max_examples=600, deadline=None)
-@given(st.lists(st.sampled_from(ROAD_WORDS), max_size=40).map(" ".join))
+@given(st.lists(jumbled, max_size=40).map(" ".join))
 def test_any_jumble_of_road_words_ends_well(words: str) -> None:
     ends_well(words)
 

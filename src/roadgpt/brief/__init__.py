@@ -30,7 +30,7 @@ from roadgpt.brief.model import (
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import Range
+from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, Range
 
 __all__ = [
     "Amount",
@@ -66,13 +66,21 @@ class Reader(Protocol):
         ...
 
 
-def read(words: str, reader: str = "grammar", map_size: float | None = 250.0) -> Brief:
+def read(
+    words: str,
+    reader: str = "grammar",
+    map_size: float | None = 250.0,
+    min_radius: float = LEAST_RADIUS,
+    max_grade: float = STEEPEST / 100,
+) -> Brief:
     """What a description asks for.
 
     Args:
         words: up to 2,000 characters.
         reader: name of a part on the shelf ``readers``.
         map_size: metres along one side of the map on which the road shall fit; None: do not ask.
+        min_radius: metres, of the tightest turn that the world allows.
+        max_grade: ratio, of the steepest slope that it allows.
 
     Raises:
         BriefError: no road can be read out of the words; says what to change.
@@ -81,5 +89,5 @@ def read(words: str, reader: str = "grammar", map_size: float | None = 250.0) ->
     part = plugins.find("readers", reader)
     words = words.encode("utf-8", "replace").decode()  # half letters from a broken terminal fit into no file
     brief: Brief = (part() if isinstance(part, type) else part).read(words)
-    check(brief, map_size)
+    check(brief, map_size, min_radius, max_grade)
     return brief

@@ -1,14 +1,24 @@
 """Contradictions and impossible wishes: found before anybody designs, and said with a way out."""
 
 from math import inf, sqrt
+from typing import NamedTuple
 
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
-from roadgpt.brief.need import SMALLEST_RADIUS, least_length
+from roadgpt.brief.need import least_length
 from roadgpt.brief.normal import SINGLE, STRAIGHT, normal, total, turns_of
-from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, ROAD_LENGTH_SLACK, SHARPNESS, SLOPES, Range
+from roadgpt.brief.words import (
+    KINDS,
+    LEAST_RADIUS,
+    LEAST_STRAIGHT,
+    LENGTH_SLACK,
+    ROAD_LENGTH_SLACK,
+    SHARPNESS,
+    SLOPES,
+    STEEPEST,
+    Range,
+)
 from roadgpt.errors import BriefError
 
-STEEPEST = 15.0  # percent, RoadGPT's limit in both directions
 LARGEST_ANGLE = 240.0  # degrees; a turn that goes on would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; less is measured as straight
 SHORTEST_ROAD = 20.0  # metres
@@ -19,12 +29,26 @@ FALLING = ("down", "gently_down", "steeply_down")
 LEVEL = ("flat", "nearly_flat")
 
 
-def check(brief: Brief, map_size: float | None = 250.0) -> None:
+class _Limits(NamedTuple):
+    min_radius: float
+    """Metres."""
+    steepest: float
+    """Percent."""
+
+
+def check(
+    brief: Brief,
+    map_size: float | None = 250.0,
+    min_radius: float = LEAST_RADIUS,
+    max_grade: float = STEEPEST / 100,
+) -> None:
     """Passes a Brief that some road can keep, as far as numbers alone can tell.
 
     Args:
         brief: in any form.
         map_size: metres along one side of the square map; None: do not ask whether it fits.
+        min_radius: metres, of the tightest turn that the world allows.
+        max_grade: ratio, of the steepest slope that it allows; no design has more than 15 %.
 
     Raises:
         BriefError: one sentence on the first contradiction or impossible wish.
@@ -33,15 +57,17 @@ def check(brief: Brief, map_size: float | None = 250.0) -> None:
         _counts(clause)
     _whole_counts(brief)
     brief = normal(brief)
+    limits = _Limits(min_radius, min(100 * max_grade, STEEPEST))
     for clause in (*brief.clauses, *(c for c in (brief.starts, brief.ends) if c)):
-        _shape(clause)
-    _shape(Clause(kind="turn", sharpness=brief.sharpness, degrees=brief.degrees, radius=brief.radius))
+        _shape(clause, limits)
+    each = Clause(kind="turn", sharpness=brief.sharpness, degrees=brief.degrees, radius=brief.radius)
+    _shape(each, limits)
     _number_of_turns(brief)
     _sides(brief)
-    _slopes(brief)
-    _length(brief)
+    _slopes(brief, limits)
+    _length(brief, limits)
     if map_size is not None:
-        _on_the_map(brief, map_size)
+        _on_the_map(brief, map_size, limits)
 
 
 def _counts(clause: Clause) -> None:
@@ -59,16 +85,16 @@ def _whole_counts(brief: Brief) -> None:
                 raise BriefError(f"a road cannot have {number:g} {noun}; ask for a whole number")
 
 
-def _shape(clause: Clause) -> None:
-    noun = _noun(clause)
-    if clause.radius and clause.radius.hi is not None and clause.radius.hi * 1.15 < SMALLEST_RADIUS:
+def _shape(clause: Clause, limits: _Limits) -> None:
+    noun, least = _noun(clause), limits.min_radius
+    if clause.radius and clause.radius.hi is not None and clause.radius.hi * (1 + LENGTH_SLACK) < least:
         raise BriefError(
-            f"a radius of {clause.radius.hi:g} m is too tight to drive; ask for {SMALLEST_RADIUS:g} m or more"
+            f"a radius of {clause.radius.hi:g} m is too tight to drive; ask for {least:g} m or more"
         )
     if clause.degrees:
         _angle(clause, noun)
     _radius(clause, noun)
-    _incline(clause.slope, clause.incline)
+    _incline(clause.slope, clause.incline, limits)
     if clause.length and clause.length.hi is not None and clause.length.hi < 1:
         raise BriefError(
             f"a {noun} of {clause.length.hi:g} m is no {noun}; ask for {LEAST_STRAIGHT:g} m or more"
@@ -115,15 +141,19 @@ def _overlaps(amount: Amount, limits: Range, slack: float) -> bool:
     return low <= limits.hi and high >= limits.lo
 
 
-def _incline(slope: str | None, incline: Amount | None) -> None:
+def _incline(slope: str | None, incline: Amount | None, limits: _Limits) -> None:
     if incline is None:
         return
-    if incline.lo is not None and incline.lo > STEEPEST:
-        raise BriefError(
-            f"a slope of {incline.lo:g} percent is too steep; ask for {STEEPEST:g} percent or less"
-        )
+    _not_too_steep(incline, limits)
     if slope in LEVEL and (incline.lo or 0) > (1 if slope == "flat" else 3.5):
         raise BriefError(f"a level road has no slope of {incline.lo:g} percent; leave out one of the two")
+
+
+def _not_too_steep(incline: Amount, limits: _Limits) -> None:
+    if incline.lo is not None and incline.lo > limits.steepest:
+        raise BriefError(
+            f"a slope of {incline.lo:g} percent is too steep; ask for {limits.steepest:g} percent or less"
+        )
 
 
 def _number_of_turns(brief: Brief) -> None:
@@ -183,12 +213,10 @@ def _sure(clause: Clause, side: str) -> float:
     return least if clause.side == side and clause.kind in SINGLE | {"winding"} else 0
 
 
-def _slopes(brief: Brief) -> None:
-    _incline(brief.slope, brief.incline)
-    if brief.steepest and brief.steepest.lo is not None and brief.steepest.lo > STEEPEST:
-        raise BriefError(
-            f"a slope of {brief.steepest.lo:g} percent is too steep; ask for {STEEPEST:g} percent or less"
-        )
+def _slopes(brief: Brief, limits: _Limits) -> None:
+    _incline(brief.slope, brief.incline, limits)
+    if brief.steepest:
+        _not_too_steep(brief.steepest, limits)
     for clause in (*brief.clauses, *(end for end in (brief.starts, brief.ends) if end)):
         _slope_within(brief, clause)
     if brief.slope and brief.hills and (brief.hills.lo or 0) > 0:
@@ -230,24 +258,31 @@ def _slope_within(brief: Brief, clause: Clause) -> None:
         )
 
 
-def _length(brief: Brief) -> None:
+def _length(brief: Brief, limits: _Limits) -> None:
     if brief.length is None:
         return
+    least = least_length(brief, limits.min_radius)
     longest = inf if brief.length.hi is None else brief.length.hi * (1 + ROAD_LENGTH_SLACK)
     if longest < SHORTEST_ROAD:
         raise BriefError(f"a road of {brief.length.hi:g} m is too short; ask for {SHORTEST_ROAD:g} m or more")
-    if least_length(brief) > longest:
-        raise BriefError(
-            f"{brief.length.hi:g} m cannot hold all that; ask for {least_length(brief):.0f} m or fewer turns"
-        )
-    if brief.climb and brief.climb.lo is not None and brief.climb.lo > longest * STEEPEST / 100:
-        raise BriefError(
-            f"{brief.length.hi:g} m of road cannot climb {brief.climb.lo:g} m; ask for a longer road"
-        )
+    if least > longest:
+        raise BriefError(f"{brief.length.hi:g} m cannot hold all that; ask for {least:.0f} m or fewer turns")
+    for way, height in _heights(brief.climb):
+        if height > longest * limits.steepest / 100:
+            raise BriefError(
+                f"{brief.length.hi:g} m of road cannot {way} {height:g} m; ask for a longer road"
+            )
 
 
-def _on_the_map(brief: Brief, map_size: float) -> None:
-    metres = least_length(brief)
+def _heights(climb: Amount | None) -> list[tuple[str, float]]:
+    """What a road surely climbs or falls, metres."""
+    if climb is None:
+        return []
+    return [("climb", climb.lo or 0.0), ("fall", -(climb.hi or 0.0))]
+
+
+def _on_the_map(brief: Brief, map_size: float, limits: _Limits) -> None:
+    metres = least_length(brief, limits.min_radius)
     if brief.length and brief.length.lo is not None:
         metres = max(metres, brief.length.lo * (1 - ROAD_LENGTH_SLACK))
     room = map_size * map_size / WIDTH_OF_A_TURN

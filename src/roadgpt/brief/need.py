@@ -6,19 +6,18 @@ from roadgpt.brief.model import Brief, Clause
 from roadgpt.brief.normal import STRAIGHT, total, turns_of
 from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, SHARPNESS, SIZES
 
-SMALLEST_RADIUS = 14.326  # metres, 47 ft, SBFT's limit
 WAY_OF_A_TURN = 30.0  # metres that a turn and the straight behind it take at least
 GAP = 16.0  # metres of straight between two turns of one hand
 
 
-def least_length(brief: Brief) -> float:
-    """Metres that the clauses and the number of turns need at least."""
-    metres = sum(_way(clause) for clause in brief.clauses)
+def least_length(brief: Brief, min_radius: float) -> float:
+    """Metres that the clauses and the number of turns need at least, if no turn may be tighter than this."""
+    metres = sum(_way(clause, min_radius) for clause in brief.clauses)
     extra = (brief.turns.lo or 0) - (total(brief.clauses).lo or 0) if brief.turns else 0
     return metres + max(extra, 0) * WAY_OF_A_TURN
 
 
-def _way(clause: Clause) -> float:
+def _way(clause: Clause, min_radius: float) -> float:
     """Metres that a clause takes at least."""
     if clause.kind in STRAIGHT:
         if clause.length and clause.length.lo is not None:
@@ -33,5 +32,5 @@ def _way(clause: Clause) -> float:
     radius = sharp.radius.lo if sharp and sharp.radius else 0.0
     if clause.radius and clause.radius.lo:
         radius = 0.85 * clause.radius.lo
-    arc = radians(angle) * max(radius, SMALLEST_RADIUS)
+    arc = radians(angle) * max(radius, min_radius)
     return least * max(arc + (0 if clause.kind in ("s_bend", "chicane") else GAP), WAY_OF_A_TURN * 0.8)

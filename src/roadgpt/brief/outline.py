@@ -18,15 +18,16 @@ from roadgpt.brief.words import (
     SHARPNESS,
     SIZES,
     SLOPES,
+    STEEPEST,
     Range,
     degrees_slack,
+    overlap,
 )
 
 SMALLEST_TURN = 12.0  # degrees; below 10 a bend is not measured as a turn
 SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have this share of it or more
 LARGEST_TURN = 270.0  # degrees, where only a lower bound was said
 NO_LIMIT = Range()
-STEEPEST = Range(0, 15)  # percent, the rules' limit
 KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
 
 
@@ -96,7 +97,7 @@ def outline(brief: Brief, roomy: bool = True) -> Outline:
     grade, grade_range = _whole_grade(brief)
     steepest = _near(brief.steepest, _percent_slack)
     if grade is None and grade_range:  # nearly flat: no place is steeper
-        steepest = _both(steepest, Range(0, max(abs(grade_range.lo), abs(grade_range.hi))))
+        steepest = overlap(steepest, Range(0, max(abs(grade_range.lo), abs(grade_range.hi))))
     return Outline(
         groups=groups,
         turns=_turn_count(brief, groups),
@@ -149,7 +150,7 @@ def _turn(clause: Clause, roomy: bool, angle_is_free: bool = False) -> Feature:
     degrees, radius = (None if angle_is_free else meaning.degrees), meaning.radius
     if clause.sharpness:
         sharpness = "gentle" if clause.sharpness == "sweeping" and not roomy else clause.sharpness
-        radius = _both(radius, SHARPNESS[sharpness].radius)
+        radius = overlap(radius, SHARPNESS[sharpness].radius)
         if clause.kind not in KEEPS_OWN_ANGLE:
             asked = SHARPNESS[sharpness].degrees or NO_LIMIT
             degrees = Range(asked.lo) if angle_is_free else asked
@@ -200,7 +201,7 @@ def _grade(slope: Slope | None, incline: Amount | None) -> Range | None:
     if incline is None:
         return SLOPES[slope].grade if slope else None
     size = _near(incline, _percent_slack) or NO_LIMIT
-    low, high = max(size.lo, 1.0), min(size.hi, STEEPEST.hi)
+    low, high = max(size.lo, 1.0), min(size.hi, STEEPEST)
     return Range(-high, -low) if slope and slope.endswith("down") else Range(low, high)
 
 
@@ -221,7 +222,7 @@ def _turn_count(brief: Brief, groups: Sequence[Group]) -> Range:
     wished = _count(brief.turns)
     if turning:
         most = inf if any(g.hi is None for g in turning) else sum(g.hi or 0 for g in turning)
-        return _both(Range(sum(g.lo for g in turning), most), wished) or NO_LIMIT
+        return overlap(Range(sum(g.lo for g in turning), most), wished) or NO_LIMIT
     if brief.turns:
         return wished
     ends_turn = any(c and c.kind not in ("straight", "crest", "dip") for c in (brief.starts, brief.ends))
@@ -255,10 +256,3 @@ def _near(amount: Amount | None, slack: Callable[[float], float]) -> Range | Non
     if amount.exact and amount.lo is not None:
         return Range(amount.lo - slack(amount.lo), amount.lo + slack(amount.lo))
     return Range(amount.lo if amount.lo is not None else -inf, amount.hi if amount.hi is not None else inf)
-
-
-def _both(one: Range | None, other: Range | None) -> Range | None:
-    """Where two ranges overlap."""
-    if one is None or other is None:
-        return one or other
-    return Range(max(one.lo, other.lo), min(one.hi, other.hi))

@@ -34,6 +34,13 @@ class Range:
         return f"{self.lo:g} or more" if self.hi == inf else f"{self.lo:g} to {self.hi:g}"
 
 
+def overlap(one: Range | None, other: Range | None) -> Range | None:
+    """Where two ranges overlap; None is no limit, and nothing in common has lo above hi."""
+    if one is None or other is None:
+        return one or other
+    return Range(max(one.lo, other.lo), min(one.hi, other.hi))
+
+
 @dataclass(frozen=True, slots=True)
 class Meaning:
     """What a word promises; None where it promises nothing."""
@@ -116,6 +123,9 @@ HILLS = 3
 """Changes between climbing and falling on 'a hilly road': up, down, up, down."""
 ROAD_SIZES: Mapping[Size, Range] = {"long": Range(250), "short": Range(20, 150)}
 """Metres: 'a long road', 'a short road'."""
+
+LEAST_RADIUS = 14.326  # metres: 47 ft, the tightest turn of the SBFT competition
+STEEPEST = 15.0  # percent, up and down: RoadGPT's system prompt
 
 PERCENT_SLACK = 1.0  # percentage points, around a grade that was said as a number
 LENGTH_SLACK = 0.15  # ratio, around the length of a straight or the radius of a turn

@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import KINDS, SHARPNESS, Range
+from roadgpt.brief.words import KINDS, SHARPNESS, Range, overlap
 from roadgpt.check.measures import LEAST_TURN
-from roadgpt.design.order import overlap
 from roadgpt.design.spans import MOST_RAMP, Span, segments_of_turn, turn_span
 from roadgpt.errors import DesignError
 from roadgpt.road import World

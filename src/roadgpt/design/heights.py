@@ -6,9 +6,8 @@ from math import inf
 import numpy as np
 
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.words import STEEPEST, Range, overlap
 from roadgpt.check.measures import LEVEL
-from roadgpt.design.order import overlap
 from roadgpt.design.spans import TENTH, Span
 from roadgpt.errors import DesignError
 from roadgpt.road import World
@@ -38,7 +37,7 @@ class Windows:
     """The grades, in percent, that every place and every feature of a road may have."""
 
     def __init__(self, outline: Outline, world: World) -> None:
-        limit = min(100 * world.max_grade, 15.0) - UNDER_LIMIT
+        limit = min(100 * world.max_grade, STEEPEST) - UNDER_LIMIT
         steepest = (
             outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi) if outline.steepest else inf
         )
@@ -219,7 +218,7 @@ def _hilly(spans: Sequence[Span], hills: Range, rng: np.random.Generator) -> lis
             elif so_far >= HILL and wanted < most:
                 wanted, sign, so_far = wanted + 1, -sign, 0.0
             so_far += length
-            size = _between(span.grade, rng) if span.grade and span.grade.lo > 0 else None
+            size = abs(_between(span.grade, rng)) if span.grade and 0 not in span.grade else None
             low, high = HILL_GRADES
             out.append((index, sign * (size or low + rng.random() * (high - low)), length))
     return out
@@ -233,7 +232,7 @@ def _with_steepest(
     rng: np.random.Generator,
 ) -> np.ndarray:
     """One long enough stretch made as steep as was asked, if none is."""
-    low = steepest.lo + min(0.5, 0.3 * max(min(steepest.hi, 15) - steepest.lo, 0.0))
+    low = steepest.lo + min(0.5, 0.3 * max(min(steepest.hi, STEEPEST) - steepest.lo, 0.0))
     if np.any((np.abs(values) >= low) & (lengths > HILL)):
         return values
     out = values.copy()

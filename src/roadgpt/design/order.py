@@ -8,7 +8,7 @@ import numpy as np
 
 from roadgpt.brief.model import Side
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.words import Range, overlap
 from roadgpt.errors import DesignError
 
 USUAL = (0.10, 0.20, 0.26, 0.20, 0.14, 0.10)  # chances of 1, 2, ... turns on a road whose words leave it open
@@ -152,13 +152,6 @@ def both(one: Feature, other: Feature) -> Feature:
         length=overlap(one.length, other.length),
         grade=overlap(one.grade, other.grade),
     )
-
-
-def overlap(one: Range | None, other: Range | None) -> Range | None:
-    """Where two ranges overlap; None is no limit, and nothing in common has lo above hi."""
-    if one is None or other is None:
-        return one or other
-    return Range(max(one.lo, other.lo), min(one.hi, other.hi))
 
 
 def _sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generator) -> list[Side]:

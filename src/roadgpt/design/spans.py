@@ -3,7 +3,7 @@
 A turn is a clothoid, an arc and a clothoid:   length = radius * angle + ramp
 """
 
-from math import ceil, degrees, floor, inf, radians
+from math import ceil, floor, inf, radians
 from typing import NamedTuple
 
 from roadgpt.brief.words import Range
@@ -101,8 +101,3 @@ def cut(span: Span, inclines: list[tuple[float, float]]) -> list[Segment]:
             )
         )
     return out
-
-
-def arc_angle(length: float, radius: float, ramp: float) -> float:
-    """Degrees that a turn of this length has."""
-    return degrees((length - ramp) / radius)

@@ -204,7 +204,7 @@ class _Builder:
         if (
             phrase.total and phrase.degrees and phrase.degrees.exact and plural(phrase)
         ):  # 'totalling 360 degrees'
-            phrase.degrees = exactly(round((phrase.degrees.lo or 0) / how_many(phrase), 2))
+            phrase.degrees = exactly(round((phrase.degrees.lo or 0) / max(how_many(phrase), 1), 2))
         elif phrase.total and phrase.degrees:  # of how many turns, nobody said
             self.left_over += [item for item in phrase.items if item.name in ("deg", "total")]
             phrase.degrees, phrase.count = None, phrase.count or at_least(1)

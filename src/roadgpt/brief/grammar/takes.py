@@ -1,6 +1,7 @@
 """What each meaning does to the Phrase that it is read into."""
 
 from collections.abc import Callable
+from typing import TypeGuard
 
 from roadgpt.brief.grammar.phrase import ROAD_LIKE, WAVY, Phrase
 from roadgpt.brief.grammar.quantities import Item
@@ -108,22 +109,41 @@ MOST_HEIGHT = 30.0
 
 def _take_percent(now: Phrase, item: Item, after: str) -> None:
     amount = item.amount
-    if amount and amount.lo is not None and amount.lo < 0:  # '-5 %' is downhill
-        now.slope = now.slope or "down"
-        amount = Amount(lo=abs(amount.hi if amount.hi is not None else amount.lo), hi=abs(amount.lo))
-    if now.incline is None:
-        now.incline = amount
-    else:
+    if now.incline is not None or _changes_sign(amount):
         now.ignored.append(item)
+        return
+    if _is_negative(amount):  # '-5 %' is downhill
+        now.slope = now.slope or "down"
+        amount = _size(amount)
+    now.incline = amount
+
+
+def _changes_sign(amount: Amount | None) -> bool:
+    """From below to above nought: no slope that has a name."""
+    return amount is not None and (amount.lo or 0) < 0 < (amount.hi or 0)
+
+
+def _is_negative(amount: Amount | None) -> TypeGuard[Amount]:
+    return amount is not None and min(amount.lo or 0, amount.hi or 0) < 0
+
+
+def _size(amount: Amount) -> Amount:
+    """Without its sign; a bound stays on the side that was said."""
+    if amount.lo is None or amount.hi is None:
+        return Amount(lo=amount.lo and abs(amount.lo), hi=amount.hi and abs(amount.hi))
+    return Amount(lo=abs(amount.hi), hi=abs(amount.lo))
 
 
 def _take_degrees(now: Phrase, item: Item, after: str) -> None:
     amount = item.amount
+    if _changes_sign(amount):
+        now.ignored.append(item)
+        return
     if item.series:
         now.series = ("degrees", item.series)
-    if amount and amount.lo is not None and amount.lo < 0:  # '-90 degrees' is to the right, as RoadGPT has it
+    if _is_negative(amount):  # '-90 degrees' is to the right, as RoadGPT has it
         now.side = now.side or "right"
-        amount = exactly(abs(amount.lo))
+        amount = _size(amount)
     now.degrees = amount if now.degrees is None or not now.degrees.exact else now.degrees
 
 

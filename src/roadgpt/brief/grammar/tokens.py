@@ -2,8 +2,15 @@
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Literal
+
+from roadgpt.brief.grammar.english import ROAD_WORDS
+from roadgpt.brief.grammar.english_frame import FRAME_WORDS
+from roadgpt.brief.grammar.german import GERMAN
+from roadgpt.brief.grammar.romance import ROMANCE
 
 _PLAIN = str.maketrans(
     {
@@ -43,14 +50,14 @@ _TOKEN = re.compile(
     """,
     re.VERBOSE,
 )
-_THOUSANDS = re.compile(r"\d{1,3}(,\d{3})+|\d{1,3}(\.\d{3})+")
+_GROUPS = re.compile(r"[1-9]\d{0,2}(?P<mark>[.,])\d{3}(?P<more>(?:(?P=mark)\d{3})*)")
 LARGEST = 1e9  # numbers beyond are as impossible as this one
 Sort = Literal["word", "number", "ratio", "sign"]
 
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A piece of the description: ``text`` to be looked up, ``raw`` as it was written."""
+    """A piece of the description: ``text`` to be looked up, ``raw`` just as it was written."""
 
     text: str
     raw: str
@@ -60,43 +67,83 @@ class Token:
 
 def plain(text: str) -> str:
     """Lower case, one sort of quotes and dashes, no accents: 'Größe' -> 'grosse'."""
-    folded = unicodedata.normalize("NFKC", text).translate(_PLAIN).casefold()
-    if folded.isascii():
-        return folded
+    return text.lower() if text.isascii() else "".join(map(_plain_letter, text))
+
+
+@cache
+def _plain_letter(letter: str) -> str:
+    """Of one letter: none, one or several."""
+    folded = unicodedata.normalize("NFKC", letter).translate(_PLAIN).casefold()
     return "".join(c for c in unicodedata.normalize("NFKD", folded) if not unicodedata.combining(c))
 
 
 def tokens(text: str) -> list[Token]:
     """The tokens of a description, in order; signs that mean nothing here are left out."""
-    found = []
-    for match in _TOKEN.finditer(plain(text)):
-        sort, raw = match.lastgroup, match.group()
-        if sort == "tag":
-            continue
-        if sort == "number":
-            found.append(Token("#", raw, "number", _number(raw)))
-        elif sort == "ratio":
-            found.append(Token("1:n", raw, "ratio", _ratio(raw)))
-        elif sort == "word":
-            found.append(Token(raw.removesuffix("'s"), raw))
-        elif sort == "arrow":
-            found.append(Token("→", raw, "sign"))
-        elif sort == "dash":
-            found.append(Token("--", raw, "sign"))
-        else:
-            found.append(Token(raw, raw, "sign"))
-    return found
+    folded, places = plain(text), _places(text)
+    found = [
+        (match.lastgroup, match.group(), match.span())
+        for match in _TOKEN.finditer(folded)
+        if match.lastgroup != "tag"
+    ]
+    commas = _has_decimal_commas([said for sort, said, _ in found if sort == "word"])
+    return [
+        _token(sort, said, text[places[start] : places[stop - 1] + 1], commas)
+        for sort, said, (start, stop) in found
+    ]
 
 
-def _number(raw: str) -> float:
-    if _THOUSANDS.fullmatch(raw.lstrip("-")):
-        value = float(raw.replace(",", "").replace(".", ""))
+def _places(text: str) -> Sequence[int]:
+    """For every letter of the plain text, where it was written."""
+    if text.isascii():
+        return range(len(text))
+    return [at for at, letter in enumerate(text) for _ in _plain_letter(letter)]
+
+
+def _token(sort: str | None, said: str, raw: str, commas: bool) -> Token:
+    match sort:
+        case "number":
+            return Token("#", raw, "number", _number(said, commas))
+        case "ratio":
+            return Token("1:n", raw, "ratio", _ratio(said))
+        case "word":
+            return Token(said.removesuffix("'s"), raw)
+        case "arrow":
+            return Token("→", raw, "sign")
+        case "dash":
+            return Token("--", raw, "sign")
+        case _:
+            return Token(said, raw, "sign")
+
+
+def _has_decimal_commas(words: Sequence[str]) -> bool:
+    """Is it written in a language that says 12,5 for twelve and a half, and 1.250 for a thousand and more?"""
+    theirs, english = _vocabularies()
+    abroad = sum(word in theirs and word not in english for word in words)
+    return abroad > 0 and abroad >= sum(word in english and word not in theirs for word in words)
+
+
+@cache
+def _vocabularies() -> tuple[frozenset[str], frozenset[str]]:
+    """Words of German, French, Spanish and Italian, and of English."""
+    both = ((GERMAN, ROMANCE), (ROAD_WORDS, FRAME_WORDS))
+    theirs, english = (
+        frozenset(word for listed in some for said in listed.values() for word in said.split())
+        for some in both
+    )
+    return theirs, english
+
+
+def _number(said: str, commas: bool) -> float:
+    """What a number is worth: one group of three digits is a thousand where its mark is no decimal one."""
+    groups = _GROUPS.fullmatch(said.lstrip("-"))
+    if groups and (groups["more"] or groups["mark"] == ("." if commas else ",")):
+        value = float(said.replace(",", "").replace(".", ""))
     else:
-        value = float(raw.replace(",", "."))
+        value = float(said.replace(",", "."))
     return max(-LARGEST, min(LARGEST, value))
 
 
-def _ratio(raw: str) -> float:
+def _ratio(said: str) -> float:
     """Percent of a slope written as a ratio, '1:8' -> 12.5; a slope of 1:0 is as steep as a wall."""
-    run = float(raw.split(":")[1])
+    run = float(said.split(":")[1])
     return 100.0 / run if run else 1e6

@@ -56,7 +56,7 @@ class GrammarReader:
         unused = _unused(found, lexemes, items, left_over)
         share = len(unused) / max(sum(token.sort != "sign" for token in found), 1)
         _about_a_road(words, found, lexemes, share)
-        check(brief, map_size=None)
+        check(brief, map_size=None, min_radius=0.0)  # what a world allows is asked in brief.read
         told = {"words": words, "unused": unused, "confidence": round(max(0.0, 1.0 - share), 3)}
         return normal(brief).model_copy(update=told)
 
@@ -98,4 +98,4 @@ def _unused(
     places = {at for lexeme in lexemes if lexeme.name == UNKNOWN for at in range(lexeme.start, lexeme.stop)}
     for item in [*left_over, *(item for item in items if item.name in ("speed", UNKNOWN))]:
         places |= set(range(item.start, item.stop))
-    return tuple(found[at].raw for at in sorted(places) if found[at].sort != "sign" or found[at].raw in "%°")
+    return tuple(found[at].raw for at in sorted(places) if found[at].sort != "sign" or found[at].text in "%°")
