@@ -2,7 +2,8 @@ import pytest
 
 from paper_roads import road_of, straight, turn
 from roadgpt.brief.model import Brief, Clause, at_least, between, exactly
-from roadgpt.check.rules.promises import inspect
+from roadgpt.check.measures import measure
+from roadgpt.check.rules.promises import complaints, inspect, promises_of
 from roadgpt.road import World
 
 SEGMENTS = (straight(30, 5), turn(60, incline=5), straight(40, 5), turn(-50, incline=5), straight(30, 5))
@@ -134,3 +135,25 @@ def test_a_finding_tells_the_place() -> None:
     assert 95 < finding.s < 130
     x, y, _ = LEFT_RIGHT.at(finding.s)
     assert (finding.x, finding.y) == pytest.approx((x, y))
+
+
+@pytest.mark.parametrize(
+    ("brief", "on_heights"),
+    [
+        (Brief(turns=exactly(3)), False),
+        (Brief(clauses=(clause(), clause("hairpin"))), False),
+        (Brief(length=exactly(400)), False),
+        (Brief(ends=clause("straight", length=exactly(90))), False),
+        (Brief(clauses=(clause(), clause(slope="down"))), True),
+        (Brief(slope="down"), True),
+        (Brief(slope="flat"), True),
+        (Brief(climb=exactly(30)), True),
+        (Brief(steepest=exactly(12)), True),
+        (Brief(hills=at_least(3)), True),
+        (Brief(clauses=(clause(), clause("straight", slope="down"), clause())), True),
+    ],
+)
+def test_a_complaint_says_whether_other_heights_could_mend_it(brief: Brief, on_heights: bool) -> None:
+    found = complaints(measure(LEFT_RIGHT.centreline()), promises_of(brief, World()))
+    assert found
+    assert all(complaint.on_heights == on_heights for complaint in found)

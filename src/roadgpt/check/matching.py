@@ -18,6 +18,8 @@ class Complaint(NamedTuple):
 
     sentence: str
     s: float | None = None
+    on_heights: bool = False
+    """Could other heights on the same plan mend it?"""
 
 
 class _Cost(NamedTuple):
@@ -69,9 +71,11 @@ def turn_complaints(
         says.append(f"turn {number} has a radius of {turn.radius:.1f} m, asked for {feature.radius} m")
     if feature.length and turn.length not in feature.length:
         says.append(f"turn {number} is {turn.length:.0f} m long, asked for {feature.length} m")
+    out = [Complaint(text, turn.start) for text in says]
     if feature.grade and turn.grade not in feature.grade:
-        says.append(f"turn {number} has a grade of {turn.grade:.1f} %, asked for {feature.grade} %")
-    return tuple(Complaint(text, turn.start) for text in says)
+        text = f"turn {number} has a grade of {turn.grade:.1f} %, asked for {feature.grade} %"
+        out.append(Complaint(text, turn.start, on_heights=True))
+    return tuple(out)
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
@@ -132,8 +136,15 @@ def _gap_cost(gap: tuple[Stretch, ...], wanted: tuple[Feature, ...], turn: int) 
     where = f"after turn {turn}" if turn else "at the start"
     s = gap[0].start if gap else None
     has = _said(gap[0].pieces) if gap else "none"
-    says = (Complaint(f"asked for a straight {where} with {_asked(wish)}, has {has}", s) for wish in missing)
-    return _Cost(len(missing), tuple(says))
+    return _Cost(
+        len(missing),
+        tuple(
+            Complaint(
+                f"asked for a straight {where} with {_asked(wish)}, has {has}", s, wish.grade is not None
+            )
+            for wish in missing
+        ),
+    )
 
 
 def _asked(wish: Feature) -> str:

@@ -5,6 +5,7 @@ left[0] ---- left[1] ---- left[2]        quad i is (left i, left i+1, right i+1,
 right[0] --- right[1] --- right[2]
 """
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,11 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Samples
 
 Indices = NDArray[np.intp]
+Boxes = tuple[Array, Array]
+"""Least and largest x and y, ``(n, 2)`` each."""
 
-BLOCK = 8  # quads that share one bounding box in the first, coarse look
+BLOCK = 8  # quads that share one bounding box in the second look
+PORTION = 512  # quads that share one in the first look, and are handed out together; a multiple of BLOCK
 SLIVER = 1e-6  # m^2: a corner flatter than this does not count as convex
 
 
@@ -48,25 +52,51 @@ def is_convex(quads: Array) -> NDArray[np.bool_]:
     return np.asarray((corner < -SLIVER).all(axis=1))
 
 
-def near_pairs(quads: Array, reach: float, apart: int = 2) -> tuple[Indices, Indices]:
-    """Pairs i < j, at least ``apart`` in the row, whose bounding boxes come within ``reach`` metres."""
+def near_pairs(quads: Array, reach: float, apart: int = 2) -> Iterator[tuple[Indices, Indices]]:
+    """Pairs i < j, at least ``apart`` in the row, whose bounding boxes come within ``reach`` metres.
+
+    They come in portions along the road: of ``PORTION`` quads j in a row, all pairs. Boxes of portions are
+    compared first, then boxes of blocks, so that of a long road only what lies near is ever looked at; and
+    who needs no more than the first meeting, stops there.
+    """
     low, high = quads.min(axis=1) - reach, quads.max(axis=1)
-    starts = np.arange(0, len(quads), BLOCK)
-    first, second = _meeting(np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts))
-    far = (second - first + 1) * BLOCK > apart
-    first, second = first[far], second[far]
+    blocks, portions = _boxes(low, high, BLOCK), _boxes(low, high, PORTION)
+    for portion in range(len(portions[0])):
+        yield _pairs_of_portion(portion, portions, blocks, (low, high), apart)
+
+
+def _pairs_of_portion(
+    portion: int, portions: Boxes, blocks: Boxes, boxes: Boxes, apart: int
+) -> tuple[Indices, Indices]:
+    near = _meeting(portions, np.arange(portion + 1), np.array([portion]))[0]
+    per = PORTION // BLOCK
+    own = np.arange(portion * per, min((portion + 1) * per, len(blocks[0])))
+    theirs = (near[:, None] * per + np.arange(per)).ravel()
+    first, second = _meeting(blocks, theirs[theirs < len(blocks[0])], own)
+    worth = (first <= second) & ((second - first + 1) * BLOCK > apart)
+    first, second = first[worth], second[worth]
     within = np.arange(BLOCK)
     i = (first[:, None, None] * BLOCK + within[:, None]) + np.zeros(BLOCK, np.intp)
     j = (second[:, None, None] * BLOCK + within) + np.zeros((BLOCK, 1), np.intp)
-    wanted = (j - i >= apart) & (j < len(quads))
+    wanted = (j - i >= apart) & (j < len(boxes[0]))
     i, j = i[wanted], j[wanted]
+    low, high = boxes
     meet = _touch(low[i], high[i], low[j], high[j])
     return i[meet], j[meet]
 
 
-def _meeting(low: Array, high: Array) -> tuple[Indices, Indices]:
-    """Pairs a <= b of boxes that touch."""
-    return np.nonzero(np.triu(_touch(low[:, None], high[:, None], low, high)))  # type: ignore[return-value]
+def _boxes(low: Array, high: Array, size: int) -> Boxes:
+    """The bounding boxes of so many boxes in a row."""
+    starts = np.arange(0, len(low), size)
+    return np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
+
+
+def _meeting(boxes: Boxes, some: Indices, others: Indices) -> tuple[Indices, Indices]:
+    """Which of some boxes touch which of the others: indices of both."""
+    low, high = boxes
+    touch = _touch(low[some][:, None], high[some][:, None], low[others], high[others])
+    one, other = np.nonzero(touch)
+    return some[one], others[other]
 
 
 def _touch(low: Array, high: Array, other_low: Array, other_high: Array) -> Any:
@@ -84,6 +114,8 @@ def gaps(quads: Array, i: Indices, j: Indices) -> Array:
     Positive: they are disjoint, and at least this far apart. Negative: they overlap; it takes this much to
     part them. Nought: they touch.
     """
+    used, index = np.unique(np.concatenate((i, j)), return_inverse=True)
+    quads, i, j = quads[used], index[: len(i)], index[len(i) :]
     sides = np.roll(quads, -1, axis=1) - quads
     outward = np.stack((-sides[..., 1], sides[..., 0]), axis=-1)
     outward /= np.maximum(np.sqrt((outward**2).sum(axis=-1, keepdims=True)), 1e-12)

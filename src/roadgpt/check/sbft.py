@@ -28,6 +28,7 @@ MIN_RADIUS = 47.0  # ft
 MIN_LENGTH = 20.0  # m
 MAX_POINTS = 500
 STRAIGHT = 1e-6  # m^2: three nodes that span less (twice the triangle's area) lie on a line
+SPLINE_REACH = 1.5  # m, by which their spline may leave a road: a node 1 m too far, and some for rounding
 DOUBT = 1e-9  # of the largest coordinate, but no less than so many metres: closer calls go to shapely
 
 TOO_FEW = "Not enough road points."
@@ -56,8 +57,7 @@ def sbft_verdict(points: ArrayLike, map_size: float) -> tuple[bool, str]:
         return False, TOO_MANY
     if not np.isfinite(points[:, :2]).all():
         raise UsageError("a number of the road points is not finite; give every point as two plain numbers")
-    with np.errstate(invalid="ignore"):  # nodes that coincide have no direction: NaN, which no quad survives
-        message = _complaint(interpolate(points[:, :2]), map_size)
+    message = _complaint(interpolate(points[:, :2]), map_size)
     return not message, message
 
 
@@ -74,10 +74,19 @@ def _complaint(nodes: Array, map_size: float) -> str:
     return ""
 
 
+def splines(points: Array) -> tuple[Array, Array]:
+    """Nodes ``(n, 2)`` of the spline through control points ``(n, 2)``, driven forwards and backwards.
+
+    The two differ: nodes are set from the first point on, and only beyond the last one may there be one more.
+    """
+    return interpolate(points), interpolate(points[::-1])
+
+
 def edges(nodes: Array, road_width: float = ROAD_WIDTH) -> tuple[Array, Array]:
     """Left and right edge points ``(n, 2)``: across the way to the next node; at the last, the one before."""
     ahead = np.diff(nodes, axis=0, append=nodes[-2:-1])
-    across = ahead / np.sqrt((ahead**2).sum(axis=1, keepdims=True)) * (road_width / 2)
+    with np.errstate(invalid="ignore"):  # nodes that coincide have no direction: NaN, which no quad survives
+        across = ahead / np.sqrt((ahead**2).sum(axis=1, keepdims=True)) * (road_width / 2)
     turned = np.stack((-across[:, 1], across[:, 0]), axis=1)
     turned[-1] *= -1
     return nodes + turned, nodes - turned
@@ -99,7 +108,8 @@ def _meets_border(left: Array, right: Array, map_size: float) -> bool:
 
     border = shapely.box(0, 0, map_size, map_size).boundary
     try:
-        return bool(shapely.intersects(shapely.polygons(outline), border))
+        with np.errstate(invalid="ignore"):
+            return bool(shapely.intersects(shapely.polygons(outline), border))
     except shapely.errors.GEOSException:  # a NaN: their code stops here, ours lets the quads complain
         return False
 
@@ -125,7 +135,10 @@ def keeps_clear(quads: Array) -> bool:
 def _strangers_are_apart(quads: Array, plain: NDArray[np.bool_]) -> bool:
     """Are quads that are no neighbours disjoint? Equal ones do not count."""
     doubt = _doubt(quads)
-    i, j = near_pairs(quads, reach=doubt)
+    return all(_are_apart(quads, plain, i, j, doubt) for i, j in near_pairs(quads, reach=doubt))
+
+
+def _are_apart(quads: Array, plain: NDArray[np.bool_], i: Indices, j: Indices, doubt: float) -> bool:
     gap = np.where(plain[i] & plain[j], gaps(quads, i, j), 0.0)
     i, j, gap = i[gap <= doubt], j[gap <= doubt], gap[gap <= doubt]
     differ = (quads[i] != quads[j]).any(axis=(1, 2))
@@ -170,19 +183,22 @@ def measured_length(nodes: Array) -> float:
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:
-    """Least radius over circles through nodes i, i+2, i+4 of ``(n, 2)``, metres, and its middle node's index.
+    """The least of the ``radii`` of nodes ``(n, 2)``, metres, and its middle node's index.
 
-    The last window is left out, as theirs is. Infinite where no three nodes make a circle: on a straight
-    road, or with fewer than six nodes.
+    Infinite where no three nodes make a circle: on a straight road, or with fewer than six nodes.
     """
-    if len(nodes) < 6:
+    found = radii(nodes)
+    if not found.size:
         return math.inf, 0
-    radii = _radii(nodes)
-    least = int(radii.argmin())
-    return float(radii[least]), least + 2
+    least = int(found.argmin())
+    return float(found[least]), least + 2
 
 
-def _radii(nodes: Array) -> Array:
+def radii(nodes: Array) -> Array:
+    """Radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``.
+
+    The last window is left out, as theirs is. Infinite where three nodes lie on a line.
+    """
     a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
     (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T
     square = bx * bx + by * by

@@ -15,10 +15,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from roadgpt.check.sbft import radii
 from roadgpt.run.execution import Record
 
 BINS = 25
-COLLINEAR = 1e-6  # m^2: three points that span less lie on a line
 FEWEST_RECORDS = 3  # with fewer, a drive has no features
 
 
@@ -40,24 +40,14 @@ def features_of(points: ArrayLike, records: Sequence[Record] = ()) -> dict[str, 
 
 def max_curvature(plan: NDArray[np.float64]) -> float:
     """Largest curvature, 1/m, of points ``(n, 2)``; 0 on a line and for fewer than six points."""
-    p, q, r = plan[:-5], plan[2:-3], plan[4:-1]
-    a, b = p - q, r - q
-    twice_area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    sides = _norm(a) * _norm(b) * _norm(p - r)
-    bends = twice_area >= COLLINEAR
-    # 1/R = 4 * area / (product of the sides)
-    return float((2 * twice_area[bends] / sides[bends]).max(initial=0.0))
+    return float((1 / radii(plan)).max(initial=0.0))
 
 
 def direction_coverage(plan: NDArray[np.float64]) -> float:
     """Share of the 26 edges that bin the directions of points ``(n, 2)``."""
     step = np.diff(plan, axis=0)
-    length = _norm(step)
+    length = np.sqrt((step**2).sum(axis=1))
     moves = length > 0
     angle = np.degrees(np.arccos(np.clip(step[moves, 1] / length[moves], -1, 1)))
     edges = np.linspace(0.0, 360.0, BINS + 1)
     return len(np.unique(np.digitize(angle, edges))) / len(edges)
-
-
-def _norm(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(np.sqrt((vectors**2).sum(axis=-1)))

@@ -1,6 +1,7 @@
 """The road stays on or above the level's ground: z >= -28 m on BeamNG's flat SBFT level."""
 
 from roadgpt.brief.model import Brief
+from roadgpt.check.extremes import lowest
 from roadgpt.check.finding import Finding
 from roadgpt.road import Road, World
 
@@ -9,11 +10,9 @@ ROUNDING = 1e-6  # m
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Says where the road is lowest, where that is under the ground."""
-    samples = road.sample()
-    lowest = int(samples.z.argmin())
-    z = float(samples.z[lowest])
+    s, z = lowest(road.profile, road.length)
     if z >= world.z_floor - ROUNDING:
         return ()
-    s, x, y = (float(v[lowest]) for v in (samples.s, samples.x, samples.y))
+    x, y, _ = (float(v) for v in road.at(s))
     sentence = f"at s = {s:.0f} m: height {z:.1f} m is below the ground at {world.z_floor:g} m"
     return (Finding("below_floor", sentence, s, x, y),)

@@ -2,19 +2,17 @@
 
 Source: RoadGPT's two checks (the furthest points lie no further apart than the map is wide, no part meets the
 border) and the SBFT competition's, whose operators bind so that a road far outside passes; here it does not.
-Near the border its own spline is looked at too: it may run up to a metre beyond the last point.
+Near the border its own spline is looked at too, driven either way: it may run up to a metre beyond its end.
 """
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.check import sbft
 from roadgpt.check.finding import Finding
 from roadgpt.check.ribbon import bulge, sides
-from roadgpt.geometry import interpolate
+from roadgpt.check.sbft import SPLINE_REACH, splines
+from roadgpt.check.sbft import edges as sbft_edges
 from roadgpt.road import Road, World
-
-SPLINE_REACH = 1.5  # m, by which SBFT's spline may leave the road: a node 1 m too far, and some for rounding
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
@@ -39,8 +37,9 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def _on_sbft_s_spline(road: Road, world: World) -> tuple[Finding, ...]:
-    nodes = interpolate(road.control_points())
-    edges = np.stack(sbft.edges(nodes, world.road_width), axis=1)
+    ways = splines(road.control_points())
+    nodes = np.concatenate(ways)
+    edges = np.concatenate([np.stack(sbft_edges(way, world.road_width), axis=1) for way in ways])
     if edges.min() > 0 and edges.max() < world.map_size:
         return ()
     node = int(np.any((edges <= 0) | (edges >= world.map_size), axis=(1, 2)).argmax())

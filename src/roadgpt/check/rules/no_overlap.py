@@ -4,7 +4,8 @@ The ribbon is cut into quads about 1 m long. A quad that is not convex has folde
 half the road is wide. Without folds, a stretch shorter than half a turn at that radius cannot reach itself:
 its curve stays out of the two circles that touch it there (Schur's comparison theorem). Quads farther along
 must stand apart, by twice the little that true edges bulge beyond the quads' straight ones. Where they nearly
-meet, the competition's own quads are asked too: its spline may run up to a metre beyond the last point.
+meet, the competition's own quads are asked too, whichever way the road is driven: its spline may run up to a
+metre beyond the last point.
 """
 
 import numpy as np
@@ -12,11 +13,8 @@ import numpy as np
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.check.ribbon import bulge, gaps, is_convex, near_pairs, quads_of, sides
-from roadgpt.check.sbft import edges, keeps_clear
-from roadgpt.geometry import interpolate
+from roadgpt.check.sbft import SPLINE_REACH, edges, keeps_clear, splines
 from roadgpt.road import Road, World
-
-SPLINE_REACH = 1.5  # m, by which SBFT's spline may leave the road: a node 1 m too far, and some for rounding
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
@@ -28,23 +26,22 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
         return (_finding(road, int(folded[0]), "the road folds onto itself; widen the bend"),)
     slack = 2 * bulge(samples, half)
     half_turn = np.pi * half / max(float(samples.s[1] - samples.s[0]), 1e-9)
-    i, j = near_pairs(quads, reach=SPLINE_REACH, apart=max(2, int(half_turn)))
-    gap = gaps(quads, i, j)
-    lies_over = gap <= slack
-    if not lies_over.any():
-        return (
-            _on_sbft_s_spline(road, world, int(j[gap.argmin()]))
-            if gap.min(initial=np.inf) < SPLINE_REACH
-            else ()
-        )
-    again = int(j[lies_over].min())
-    earlier = float(samples.s[int(i[lies_over & (j == again)].min())])
-    return (_finding(road, again, f"the road lies over its own stretch at s = {earlier:.0f} m"),)
+    nearest = (np.inf, 0)
+    for i, j in near_pairs(quads, reach=SPLINE_REACH, apart=max(2, int(half_turn))):
+        gap = gaps(quads, i, j)
+        lies_over = gap <= slack
+        if lies_over.any():
+            again = int(j[lies_over].min())
+            earlier = float(samples.s[int(i[lies_over & (j == again)].min())])
+            return (_finding(road, again, f"the road lies over its own stretch at s = {earlier:.0f} m"),)
+        if gap.size:
+            nearest = min(nearest, (float(gap.min()), int(j[gap.argmin()])))
+    return _on_sbft_s_spline(road, world, nearest[1]) if nearest[0] < SPLINE_REACH else ()
 
 
 def _on_sbft_s_spline(road: Road, world: World, nearest: int) -> tuple[Finding, ...]:
-    nodes = interpolate(road.control_points())
-    if keeps_clear(quads_of(*edges(nodes, world.road_width))):
+    ways = splines(road.control_points())
+    if all(keeps_clear(quads_of(*edges(nodes, world.road_width))) for nodes in ways):
         return ()
     return (
         _finding(road, nearest, "the road, as SBFT lays its spline, meets itself; part the two stretches"),

@@ -25,6 +25,7 @@ class _Whole(NamedTuple):
     value: float
     asked: Range | None
     sentence: str
+    on_heights: bool = True
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
@@ -48,9 +49,9 @@ def complaints(found: Measures, asked: Outline) -> list[Complaint]:
     for number, turn in enumerate(found.turns, 1):
         out += turn_complaints(number, turn, asked.each_turn)
     out += _slopes(found, asked)
-    for value, span, sentence in _wholes(found, asked):
+    for value, span, sentence, on_heights in _wholes(found, asked):
         if span is not None and value not in span:
-            out.append(Complaint(sentence.format(asked=span)))
+            out.append(Complaint(sentence.format(asked=span), on_heights=on_heights))
     return out + list(_ends(found, asked))
 
 
@@ -90,12 +91,14 @@ def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
     low, high = found.lowest_grade, found.highest_grade
     if asked.grade == "up" and not (found.grade >= LEVEL and low > -LEVEL):
         worst = f"{found.grade:.1f} % on average and {low:.1f} % at its lowest over 20 m"
-        yield Complaint(f"asked for a road that climbs all the way, has {worst}")
+        yield Complaint(f"asked for a road that climbs all the way, has {worst}", on_heights=True)
     elif asked.grade == "down" and not (found.grade <= -LEVEL and high < LEVEL):
         worst = f"{found.grade:.1f} % on average and {high:.1f} % at its highest over 20 m"
-        yield Complaint(f"asked for a road that falls all the way, has {worst}")
+        yield Complaint(f"asked for a road that falls all the way, has {worst}", on_heights=True)
     elif asked.grade == "flat" and not (low > -LEVEL and high < LEVEL):
-        yield Complaint(f"asked for a flat road, has grades from {low:.1f} to {high:.1f} % over 20 m")
+        yield Complaint(
+            f"asked for a flat road, has grades from {low:.1f} to {high:.1f} % over 20 m", on_heights=True
+        )
 
 
 def _wholes(found: Measures, asked: Outline) -> tuple[_Whole, ...]:
@@ -113,7 +116,9 @@ def _wholes(found: Measures, asked: Outline) -> tuple[_Whole, ...]:
             asked.hills,
             f"asked for {{asked}} changes between climbing and falling, has {found.hills}",
         ),
-        _Whole(found.length, asked.length, f"asked for a length of {{asked}} m, has {found.length:.0f} m"),
+        _Whole(
+            found.length, asked.length, f"asked for a length of {{asked}} m, has {found.length:.0f} m", False
+        ),
     )
 
 
@@ -130,4 +135,5 @@ def _ends(found: Measures, asked: Outline) -> Iterator[Complaint]:
             number = len(found.turns) if index else 1
             yield from turn_complaints(number, last, feature)
         elif not (fits(last, feature) or fits(last.pieces[index], feature)):
-            yield Complaint(f"asked to {says} with another straight than the one it has", last.start)
+            text = f"asked to {says} with another straight than the one it has"
+            yield Complaint(text, last.start, on_heights=feature.grade is not None)

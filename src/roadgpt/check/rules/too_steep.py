@@ -7,6 +7,7 @@ that a road falling by 60 % passed; here a window slides over the whole road and
 import numpy as np
 
 from roadgpt.brief.model import Brief
+from roadgpt.check.extremes import steepest
 from roadgpt.check.finding import Finding
 from roadgpt.road import Road, World
 
@@ -16,18 +17,21 @@ ROUNDING = 1e-6  # ratio
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Says where the road is steepest, where that is too steep."""
-    samples = road.sample()
-    step = max(float(samples.s[1] - samples.s[0]), ROUNDING)
-    width = min(max(1, round(WINDOW / step)), len(samples.s) - 1)
-    windows = (samples.z[width:] - samples.z[:-width]) / (width * step)
-    looks = ((windows, width // 2, f" over {width * step:.0f} m"), (samples.grade, 0, ""))
-    for grades, middle, over in looks:
-        worst = int(np.abs(grades).argmax())
-        grade = float(grades[worst])
+    for (s, grade), over in ((_over_a_window(road), f" over {WINDOW:.0f} m"), (steepest(road), "")):
         if abs(grade) > world.max_grade + ROUNDING:
-            s, x, y = (float(v[worst + middle]) for v in (samples.s, samples.x, samples.y))
+            x, y, _ = (float(v) for v in road.at(s))
             way = "uphill" if grade > 0 else "downhill"
             limit = f"steeper than {100 * world.max_grade:g} %"
             sentence = f"at s = {s:.0f} m: grade {100 * abs(grade):.1f} % {way}{over} is {limit}"
             return (Finding("too_steep", sentence, s, x, y),)
     return ()
+
+
+def _over_a_window(road: Road) -> tuple[float, float]:
+    """Middle and mean grade of the steepest 10 m, or of all of a road that is shorter."""
+    samples = road.sample()
+    step = max(float(samples.s[1] - samples.s[0]), ROUNDING)
+    width = min(max(1, round(WINDOW / step)), len(samples.s) - 1)
+    means = (samples.z[width:] - samples.z[:-width]) / (width * step)
+    worst = int(np.abs(means).argmax())
+    return float(samples.s[worst + width // 2]), float(means[worst])

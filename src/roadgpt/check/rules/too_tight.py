@@ -4,9 +4,8 @@ Measured twice: on the curve itself, and as the competition does it, with circle
 spline, which cuts corners between control points.
 """
 
-import numpy as np
-
 from roadgpt.brief.model import Brief
+from roadgpt.check.extremes import tightest
 from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import smallest_radius
 from roadgpt.geometry import interpolate
@@ -17,13 +16,11 @@ ROUNDING = 1e-9  # of the limit
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Says where the road is tightest, where that is too tight."""
-    samples = road.sample()
-    bend = np.abs(samples.curvature)
-    tightest = int(bend.argmax())
+    s, bend = tightest(road)
     limit = f"tighter than {world.min_radius:.4g} m"
-    if bend[tightest] * world.min_radius > 1 + ROUNDING:
-        s, x, y = (float(v[tightest]) for v in (samples.s, samples.x, samples.y))
-        sentence = f"at s = {s:.0f} m: radius {1 / bend[tightest]:.1f} m is {limit}"
+    if abs(bend) * world.min_radius > 1 + ROUNDING:
+        x, y, _ = (float(v) for v in road.at(s))
+        sentence = f"at s = {s:.0f} m: radius {1 / abs(bend):.1f} m is {limit}"
         return (Finding("too_tight", sentence, s, x, y),)
     nodes = interpolate(road.control_points())
     radius, middle = smallest_radius(nodes)
