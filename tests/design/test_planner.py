@@ -7,9 +7,13 @@ from hypothesis import strategies as st
 
 from roadgpt import check
 from roadgpt.brief.model import Brief, Clause, at_least, at_most, exactly
+from roadgpt.brief.outline import outline
+from roadgpt.brief.words import Range
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.designers.planner import Planner
+from roadgpt.design.heights import Windows, drawn_heights
+from roadgpt.design.spans import Span
 from roadgpt.errors import DesignError, PartError
 from roadgpt.road import Design, World, build, read_design
 from strategies import briefs, sensible_briefs, worlds
@@ -127,6 +131,24 @@ def test_roads_stay_above_the_floor() -> None:
     for seed in range(10):
         design = planner.draft(Brief(slope="down"), deep, (), (), seed)
         assert build(design).centreline()[:, 2].min() > 30
+
+
+def test_the_lowest_place_of_a_hilly_road_is_no_lower_than_the_ground() -> None:
+    for seed in range(40):
+        road = build(planner.draft(Brief(hills=at_least(3)), WORLD, (), (), seed))
+        lowest = road.profile.height(np.linspace(0, road.length, 20_000)).min()
+        assert 0 <= lowest < 6.02
+
+
+def test_steep_descents_of_a_hilly_road_are_drawn_from_all_that_was_promised() -> None:
+    promised = Range(-14, -8)
+    spans = [Span(60.0), Span(60.0, grade=promised, promised=Range(50, 70)), Span(60.0)]
+    asked = outline(Brief(hills=at_least(1)))
+    windows, rng = Windows(asked, WORLD), np.random.default_rng(4)
+    steep = [drawn_heights(spans, asked, windows, rng)[1][0][1] for _ in range(60)]
+    assert min(steep) < -13
+    assert max(steep) > -9
+    assert np.std(steep) > 1
 
 
 def test_hard_roads_are_tight_and_crest_before_bends() -> None:

@@ -1,12 +1,14 @@
+from math import inf
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, exactly
 from roadgpt.design.designers.planner import Planner
-from roadgpt.design.variety import Shape, Shapes, apart, apart_by_metres, shape_of
-from roadgpt.road import Design, World, build
+from roadgpt.design.variety import ENOUGH, Shape, Shapes, apart, apart_by_metres, nearest, shape_of
+from roadgpt.road import Design, World, build, read_design
 
 
 def lines(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -80,3 +82,47 @@ def test_shapes_are_remembered_by_design_and_do_not_depend_on_what_came_before()
     used.of(designs[::-1])
     for one, other in zip(fresh.of(designs), used.of(designs), strict=True):
         assert np.array_equal(one, other)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6), st.booleans())
+def test_the_nearest_is_found_among_few_of_many(seed: int, by_metres: bool) -> None:
+    many = lines(seed, 40)
+    rng = np.random.default_rng(seed)
+    s, z = many[0]
+    shapes = stacked([shape_of(*line) for line in many[1:]])
+    own = shape_of(s, moved(z, rng) + rng.uniform(0, 6) * np.sin(s / rng.uniform(5, 40)))
+    shapes = stacked([*(Shape(*(column[i] for column in shapes)) for i in range(39)), shape_of(s, z)])
+    known = [apart(own, shapes).min(), *([apart_by_metres(own, shapes).min()] if by_metres else [])]
+    found = nearest(own, shapes, by_metres)
+    if min(known) < ENOUGH:
+        assert found < ENOUGH
+        assert found in known
+    else:
+        assert found == inf
+
+
+def test_a_row_that_grows_is_not_stacked_anew() -> None:
+    planner, shapes = Planner(), Shapes()
+    designs = [planner.draft(Brief(), World(), (), (), seed) for seed in range(6)]
+    three = shapes.of(designs[:3])
+    before = [column.copy() for column in three]
+    six = shapes.of(designs)
+    assert np.shares_memory(three.shares, six.shares)
+    shapes.of(designs[::-1])  # another row: what was given out stays as it was
+    for one, other in zip(three, before, strict=True):
+        assert np.array_equal(one, other)
+    for one, other in zip(six, Shapes().of(designs), strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_a_resumed_campaign_goes_on_as_it_would_have() -> None:
+    planner, brief, earlier = Planner(), Brief(turns=exactly(2)), list[Design]()
+    for seed in range(60):
+        earlier.append(planner.draft(brief, World(), (), earlier, seed))
+    for start in (20, 40, 59):
+        read = [read_design(design.to_json())[0] for design in earlier[:start]]
+        assert Planner().draft(brief, World(), (), read, start) == earlier[start]
+    known = planner._shapes.of(earlier)
+    for one, other in zip(known, Shapes().of(earlier), strict=True):
+        assert np.array_equal(one, other)  # whether they were drafted here or read

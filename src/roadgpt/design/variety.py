@@ -6,41 +6,55 @@ onto another is the phase of their inner product, so a thousand earlier roads ta
 """
 
 from collections.abc import Sequence
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Design, build
+from roadgpt.road import Design, Road, build
 
 POINTS = 80  # at equal shares of the length
 STEP = 6.0  # m between points at equal distances
 MOST = 60  # of those: 360 m
 ENOUGH = 5.5  # m RMS: two roads further apart than this are not alike
 REMEMBERED = 5000  # designs whose shape is kept at hand
+FIRST_ROOM = 64  # designs for which there is room at first
 
 Complex = NDArray[np.complex128]
 
 
 class Shape(NamedTuple):
-    """A plan, or many: points as x + iy."""
+    """A plan, or many: points as x + iy, and what comparing them needs time and again."""
 
     shares: Complex
     """At equal shares of the length, centred; ``(POINTS,)`` or ``(m, POINTS)``."""
+    spread: Array
+    """Metres, root mean square of their distances from their centre; ``()`` or ``(m,)``."""
     metres: Complex
     """Every ``STEP`` metres from the start; ``(MOST,)`` or ``(m, MOST)``, 0 beyond the end."""
     reach: NDArray[np.intp]
     """How many of ``metres`` lie on the road."""
+    centres: Complex
+    """Of the first 1, 2, ... of ``metres``: their mean."""
+    spreads: Array
+    """Of the first 1, 2, ... of ``metres``: root mean square of their distances from that."""
 
 
 def shape_of(s: Array, line: Complex) -> Shape:
     """The shape of a line ``x + iy`` that was sampled at stations ``s`` (metres, from 0)."""
     shares = _at(s, line, np.linspace(0.0, float(s[-1]), POINTS))
+    shares -= shares.mean()
     reach = min(MOST, int(s[-1] / STEP) + 1)
     metres = np.zeros(MOST, complex)
     metres[:reach] = _at(s, line, STEP * np.arange(float(reach)))
-    return Shape(shares - shares.mean(), metres, np.array(reach))
+    metres[:reach] -= metres[:reach].mean()  # small numbers lose few digits
+    first = np.arange(1.0, MOST + 1)
+    centres = np.cumsum(metres) / first
+    squares = np.cumsum(np.abs(metres) ** 2) / first - np.abs(centres) ** 2
+    spread = np.sqrt((np.abs(shares) ** 2).mean())
+    return Shape(shares, spread, metres, np.array(reach), centres, np.sqrt(np.maximum(squares, 0.0)))
 
 
 def _at(s: Array, line: Complex, stations: Array) -> Complex:
@@ -48,60 +62,104 @@ def _at(s: Array, line: Complex, stations: Array) -> Complex:
     return np.asarray(x + 1j * y, complex)
 
 
+def nearest(shape: Shape, others: Shape, by_metres: bool) -> float:
+    """Metres to the nearest of other shapes, infinite where none is alike.
+
+    Two lines are at least as far apart as their spreads, so most need not be laid onto each other.
+
+    Args:
+        shape: of one road.
+        others: of many.
+        by_metres: count those as well that are alike only as far as the shorter one goes.
+    """
+    near = np.flatnonzero(np.abs(others.spread - shape.spread) < ENOUGH)
+    some = others._replace(shares=others.shares[near], spread=others.spread[near])
+    least = float(apart(shape, some).min(initial=inf))
+    if by_metres and least >= ENOUGH and len(others.reach):
+        near = np.flatnonzero(_at_least_by_metres(shape, others) < ENOUGH)
+        some = others._replace(
+            metres=others.metres[near],
+            reach=others.reach[near],
+            centres=others.centres[near],
+            spreads=others.spreads[near],
+        )
+        least = float(apart_by_metres(shape, some).min(initial=inf))
+    return least if least < ENOUGH else inf
+
+
+def _at_least_by_metres(shape: Shape, others: Shape) -> Array:
+    """A lower bound of the distances at equal distances: from all that both have, and from its first half."""
+    n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
+    half = (n + 1) // 2
+    whole = np.abs(others.spreads[row, n - 1] - shape.spreads[n - 1])
+    start = np.abs(others.spreads[row, half - 1] - shape.spreads[half - 1]) * np.sqrt(half / n)
+    return np.asarray(np.maximum(whole, start))
+
+
 def apart(shape: Shape, others: Shape) -> Array:
     """RMS distances in metres ``(m,)`` at equal shares, after the best shift, turn and mirror."""
     own, many = shape.shares, others.shares
-    sizes = (np.abs(many) ** 2).sum(axis=1) + float((np.abs(own) ** 2).sum())
+    sizes = others.spread**2 + shape.spread**2
     # einsum, not @: sums in one order on every machine, and no threads for so small a product
     straight, mirrored = (np.abs(np.einsum("ij,j->i", many, other)) for other in (own.conj(), own))
     alike = np.maximum(straight, mirrored)
-    return np.asarray(np.sqrt(np.maximum(sizes - 2 * alike, 0.0) / POINTS))
+    return np.asarray(np.sqrt(np.maximum(sizes - 2 * alike / POINTS, 0.0)))
 
 
 def apart_by_metres(shape: Shape, others: Shape) -> Array:
     """The same at equal distances, as far as both roads go."""
-    n = np.minimum(shape.reach, others.reach)
-    # sums of products up to there, with the means taken out
-    row, last = np.arange(len(n)), n - 1
-    own, many = shape.metres, others.metres
-    own_mean = np.cumsum(own)[last] / n
-    mean = np.cumsum(many, axis=1)[row, last] / n
-
-    def size(points: Complex, centre: Complex) -> Array:
-        upto = np.cumsum(np.abs(points) ** 2, axis=-1)
-        return np.asarray((upto[last] if points.ndim == 1 else upto[row, last]) - n * np.abs(centre) ** 2)
-
-    straight = np.abs(np.cumsum(many * own.conj(), axis=1)[row, last] - n * mean * own_mean.conj())
-    mirrored = np.abs(np.cumsum(many * own, axis=1)[row, last] - n * mean * own_mean)
-    squares = size(own, own_mean) + size(many, mean) - 2 * np.maximum(straight, mirrored)
-    return np.asarray(np.sqrt(np.maximum(squares, 0.0) / n))
+    n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
+    own, centre = shape.centres[n - 1], others.centres[row, n - 1]
+    sizes = shape.spreads[n - 1] ** 2 + others.spreads[row, n - 1] ** 2
+    # both are 0 beyond their ends, so the sums go as far as the shorter one
+    straight = np.abs(np.einsum("ij,j->i", others.metres, shape.metres.conj()) / n - centre * own.conj())
+    mirrored = np.abs(np.einsum("ij,j->i", others.metres, shape.metres) / n - centre * own)
+    return np.asarray(np.sqrt(np.maximum(sizes - 2 * np.maximum(straight, mirrored), 0.0)))
 
 
 class Shapes:
-    """Shapes of designs, remembered from draft to draft."""
+    """Shapes of designs, remembered from draft to draft: always those of the roads that grow from them."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Design, Shape]] = {}
+        self._row: list[Design] = []
+        self._stack = _room_for(FIRST_ROOM)
 
     def of(self, designs: Sequence[Design]) -> Shape:
-        """Shapes of designs, in their order, stacked."""
+        """Shapes of designs, in their order, stacked; a row that only grows is not stacked anew."""
         if len(self._known) > REMEMBERED + len(designs):
             self._known.clear()
-        rows = [self._shape(design) for design in designs]
-        if not rows:
-            return Shape(np.empty((0, POINTS), complex), np.empty((0, MOST), complex), np.empty(0, int))
-        shares, metres, reach = zip(*rows, strict=True)
-        return Shape(np.array(shares), np.array(metres), np.array(reach))
+        same = _alike(self._row, designs)
+        if same < len(self._row) or len(designs) > len(
+            self._stack.reach
+        ):  # what was given out stays as it is
+            before, self._stack = self._stack, _room_for(2 * max(len(designs), FIRST_ROOM))
+            for new, old in zip(self._stack, before, strict=True):
+                new[:same] = old[:same]
+        for number in range(same, len(designs)):
+            for rows, row in zip(self._stack, self._shape(designs[number]), strict=True):
+                rows[number] = row
+        self._row[same:] = designs[same:]
+        return Shape._make(rows[: len(designs)] for rows in self._stack)
 
-    def remember(self, design: Design, shape: Shape) -> None:
-        """Keeps the shape of a design that was just drafted."""
-        self._known[id(design)] = (design, shape)
+    def remember(self, design: Design, road: Road) -> None:
+        """Keeps the shape of the road that grew from a design, where it is at hand."""
+        samples = road.sample()
+        self._known[id(design)] = (design, shape_of(samples.s, samples.x + 1j * samples.y))
 
     def _shape(self, design: Design) -> Shape:
         # by identity: hashing a whole design takes longer than all the rest, and the entry keeps it alive
-        known = self._known.get(id(design))
-        if known is None:
-            samples = build(design).sample()
-            known = (design, shape_of(samples.s, samples.x + 1j * samples.y))
-            self._known[id(design)] = known
-        return known[1]
+        if id(design) not in self._known:
+            self.remember(design, build(design))
+        return self._known[id(design)][1]
+
+
+def _room_for(designs: int) -> Shape:
+    some = shape_of(np.array([0.0, 1.0]), np.array([0j, 1 + 0j]))
+    return Shape._make(np.zeros((designs, *np.shape(column)), column.dtype) for column in some)
+
+
+def _alike(one: Sequence[Design], other: Sequence[Design]) -> int:
+    """How many of the first designs are the same ones."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((at for at, (a, b) in pairs if a is not b), min(len(one), len(other)))

@@ -8,7 +8,7 @@ wishes that hardly fit are met in the end, and only those that cannot be are ref
 
 from collections import Counter
 from collections.abc import Sequence
-from math import inf
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
+from roadgpt.check.extremes import lowest
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import complaints, promises_of
 from roadgpt.design.advice import advice
@@ -24,19 +25,24 @@ from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.layout import Line, Place, keeps_clear, place, smallest_box, walk
 from roadgpt.design.order import drawn_order
 from roadgpt.design.spans import Span, cut
-from roadgpt.design.variety import ENOUGH, Shape, Shapes, apart, apart_by_metres, shape_of
+from roadgpt.design.variety import ENOUGH, Shape, Shapes, nearest, shape_of
 from roadgpt.errors import DesignError
-from roadgpt.road import Design, Segment, World, build
+from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.road.grades import profile_of
 
 DRAFTS = 320  # that are drawn for one road at most
 ALIKE = 120  # drafts like earlier roads, after which the least alike is taken
 ALIKE_STRAIGHTS = 12  # where a road has no turns, so that only its length can differ
+CHOOSY = 1 / 8  # of these drafts: for so long, a road that only goes on further is called alike as well ...
+CROWDED = (
+    400  # ... but for a third of it where there are more earlier roads than this, as hardly any are left
+)
 FINISHED = 100  # drafts that fit, of which none keeps every promise, before the search is given up
 LAST_RESORTS = 20  # drafts like earlier roads that are tried where there are no others
 HEIGHTS = 5  # that are tried on one plan
 NO_HASTE = 16  # drafts that are drawn freely
 VERGES = 0.6  # of the drafts: so long, legs keep off each other's verges as well
+CENTIMETRE = 100.0  # per metre: the start is written to the centimetre
 STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
 
 
@@ -63,9 +69,9 @@ class Planner:
         Raises:
             DesignError: no draft passed; says which wish stood in the way, and what to do.
         """
-        search = _Search(brief, world, self._shapes.of(earlier), np.random.default_rng([seed, len(notes)]))
-        design, shape = search.run()
-        self._shapes.remember(design, shape)
+        rng = np.random.default_rng([seed, len(notes)])
+        design, road = _Search(brief, world, self._shapes.of(earlier), rng).run()
+        self._shapes.remember(design, road)
         return design
 
 
@@ -84,33 +90,34 @@ class _Search:
         self.failed: Counter[str] = Counter()
         self.boxes: list[float] = []
 
-    def run(self) -> tuple[Design, Shape]:
+    def run(self) -> tuple[Design, Road]:
         """The first draft that passes; where all are like earlier roads, the least alike."""
         alike: list[tuple[float, int, _Draft]] = []
         finished = 0
         most = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
+        choosy = CHOOSY * most / (3 if len(self.others.reach) > CROWDED else 1)
         for number in range(DRAFTS):
             haste = max(0.0, (number - NO_HASTE) / (DRAFTS - NO_HASTE))
             drafted = self._plan(haste, with_verges=number < VERGES * DRAFTS)
             if drafted is None:
                 continue
-            nearest = self._nearest(drafted.shape, by_metres=len(alike) < most / 8)
-            if nearest < ENOUGH * min(1.0, 1.5 * (1 - len(alike) / most)):
+            away = nearest(drafted.shape, self.others, by_metres=len(alike) < choosy)
+            if away < ENOUGH * min(1.0, 1.5 * (1 - len(alike) / most)):
                 self.failed["like an earlier road"] += 1
-                alike.append((-nearest, number, drafted))
+                alike.append((-away, number, drafted))
                 if len(alike) == most:
                     break
                 continue
             finished += 1
-            design = self._finished(drafted)
-            if design:
-                return design, drafted.shape
+            found = self._finished(drafted)
+            if found:
+                return found
             if finished == FINISHED:
                 break
         for _, _, drafted in sorted(alike)[:LAST_RESORTS]:
-            design = self._finished(drafted)
-            if design:
-                return design, drafted.shape
+            found = self._finished(drafted)
+            if found:
+                return found
         raise DesignError(advice(self.outline, self.world, self.failed, self.boxes))
 
     def _plan(self, haste: float, with_verges: bool) -> _Draft | None:
@@ -130,27 +137,19 @@ class _Search:
             return None
         return _Draft(spans, line, where, shape_of(line.s, line.z))
 
-    def _nearest(self, shape: Shape, by_metres: bool) -> float:
-        """Metres to the nearest earlier road; ``by_metres`` also counts those that only start alike."""
-        if not len(self.others.reach):
-            return inf
-        nearest = float(apart(shape, self.others).min())
-        if not by_metres or nearest < ENOUGH:
-            return nearest
-        return min(nearest, float(apart_by_metres(shape, self.others).min()))
-
-    def _finished(self, drafted: _Draft) -> Design | None:
-        """The Design, where some heights keep the promises and every rule passes its road."""
+    def _finished(self, drafted: _Draft) -> tuple[Design, Road] | None:
+        """The Design and its Road, where some heights keep the promises and every rule passes its road."""
         segments = self._with_heights(drafted)
         if segments is None:
             return None
         x, y, theta = drafted.place
         design = Design(starting_point=(x, y, self._start(segments)), theta=theta, segments=segments)
-        objections = check.inspect(build(design), self.brief, self.world)
+        road = build(design)
+        objections = check.inspect(road, self.brief, self.world)
         if objections:
             self.failed[objections[0].sentence] += 1
             return None
-        return design
+        return design, road
 
     def _with_heights(self, drafted: _Draft) -> tuple[Segment, ...] | None:
         s, z = drafted.line
@@ -163,16 +162,14 @@ class _Search:
             if not broken:
                 return segments
             self.failed[broken[0].sentence] += 1
-            if not any(
-                "grade" in c.sentence or "climb" in c.sentence or "steep" in c.sentence for c in broken
-            ):
+            if not any(complaint.on_heights for complaint in broken):
                 return None
         return None
 
     def _start(self, segments: Sequence[Segment]) -> float:
         """Height of the start, such that the lowest place lies a little above 0, or above the floor."""
         profile = profile_of(segments, 0.0)
-        lowest = float(profile.height(np.array(profile.stations)).min())
+        _, sag = lowest(profile, profile.stations[-1])
         low, high = STARTS_AT
         ground = max(low, self.world.z_floor + 1) + self.rng.random() * (high - low)
-        return round(ground - lowest, 2)
+        return ceil((ground - sag) * CENTIMETRE) / CENTIMETRE
