@@ -1,4 +1,4 @@
-"""The competition's verdict: against its own on 3,000 roads, and against a slow second opinion."""
+"""The competition's verdict: against its own on many roads, and against a slow second opinion."""
 
 import gzip
 import json
@@ -18,11 +18,15 @@ from roadgpt.errors import UsageError
 
 # Lies beside the checkout where the project is built; not part of it.
 OFFICIAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "sbft_verdicts.jsonl.gz"
+FROZEN = Path(__file__).parent / "data" / "sbft_verdicts.jsonl"  # some of them
 
 
 def official_verdicts() -> list[dict]:
-    with gzip.open(OFFICIAL, "rt") as lines:
-        return [json.loads(line) for line in lines]
+    """Some that are kept here, and 3,000 more where they are at hand."""
+    rows = FROZEN.read_text(encoding="utf-8").splitlines()
+    if OFFICIAL.exists():
+        rows += gzip.decompress(OFFICIAL.read_bytes()).decode().splitlines()
+    return [json.loads(row) for row in rows]
 
 
 def agree(points: np.ndarray, map_size: float) -> bool:
@@ -37,14 +41,14 @@ def agree(points: np.ndarray, map_size: float) -> bool:
     return sbft_verdict(points, map_size) == theirs
 
 
-@pytest.mark.skipif(not OFFICIAL.exists(), reason="the official verdicts are not at hand")
 def test_ours_equals_every_official_verdict() -> None:
-    for row in official_verdicts():
+    rows = official_verdicts()
+    assert len({row["validation_message"] for row in rows}) >= 5
+    for row in rows:
         ours = sbft_verdict(row["road_points"], row["map_size"])
         assert ours == (row["is_valid"], row["validation_message"]), row
 
 
-@pytest.mark.skipif(not OFFICIAL.exists(), reason="the official verdicts are not at hand")
 def test_the_second_opinion_equals_official_verdicts() -> None:
     for row in official_verdicts()[::10]:
         theirs = slow.verdict(row["road_points"], row["map_size"])
