@@ -1,4 +1,4 @@
-"""Works off a campaign in a process of its own, so that a test may kill it: FOLDER ROADS [--slow]."""
+"""Works off a campaign in a process of its own, so that a test may kill it: FOLDER ROADS [--slow] [--all]."""
 
 import sys
 import time
@@ -35,7 +35,7 @@ def perform(index: int, earlier: Sequence[Design]) -> Run:
 def main() -> None:
     """Say each road as it is done."""
     campaign = Campaign.opened(REQUEST, int(sys.argv[2]), sys.argv[1], perform, Drawing())
-    for run in campaign:
+    for run in campaign.all_runs() if "--all" in sys.argv else campaign:
         print(run.index, flush=True)
         time.sleep(0.02 * ("--slow" in sys.argv))
 

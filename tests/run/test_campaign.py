@@ -15,7 +15,7 @@ import pytest
 from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design, Road
-from roadgpt.run import Request, Run, Setup, campaign, read_run, seed_of
+from roadgpt.run import Request, Run, Setup, campaign, read_run, seed_in, seed_of
 from roadgpt.run.campaign import GIVE_UP, Campaign
 from run.campaign_worker import Drawing
 from run.doubles import Designer, Unable, a_design, put_on_shelf
@@ -94,8 +94,10 @@ def test_a_campaign_that_was_left_goes_on(designer: Designer, tmp_path: Path) ->
             break
     again = campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=parts, draw=Drawing())
     assert again.kept == (1, 2)
+    assert not again.is_complete
+    assert seed_in(parts) == 7
     assert [run.index for run in again.earlier_runs()] == [1, 2]
-    assert [run.index for run in again] == [3, 4, 5]
+    assert [run.index for run in again.all_runs()] == [1, 2, 3, 4, 5]
     assert contents(whole) == contents(parts)
     assert table(parts, "generation_stats.csv")["test_generated"] == "5"
 
@@ -112,8 +114,12 @@ def test_a_road_that_was_taken_away_is_made_again(designer: Designer, tmp_path: 
 
 def test_a_finished_campaign_is_not_made_again_but_can_grow(designer: Designer, tmp_path: Path) -> None:
     list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path))
-    with pytest.raises(UsageError, match="finished with 2 roads"):
-        campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path)
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*") if path.name != "campaign.lock"}
+    again = campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path)
+    assert again.is_complete
+    assert list(again) == []
+    assert [run.index for run in again.all_runs()] == [1, 2]
+    assert all(path.stat().st_mtime_ns == time for path, time in before.items())
     assert [run.index for run in campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path)] == [3]
 
 
@@ -169,11 +175,45 @@ def test_a_road_that_cannot_be_designed_costs_one_error(
 def test_where_no_road_can_be_designed_the_campaign_ends(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, asked: int, tried: int
 ) -> None:
-    put_on_shelf(monkeypatch, double=Unable())
-    runs = []
+    seeds: list[int] = []
+    put_on_shelf(monkeypatch, double=Unable(lambda seed: bool(seeds.append(seed))))
     with pytest.raises(DesignError, match="9 hairpins"):
-        runs.extend(campaign(BRIEF, asked, 7, setup=NO_DRIVE, out=tmp_path))
-    assert len(list(tmp_path.glob("test.*.json"))) == tried
+        list(campaign(BRIEF, asked, 7, setup=NO_DRIVE, out=tmp_path))
+    assert len(seeds) == tried
+
+
+@pytest.mark.parametrize("out", [None, "new", "new/within", "empty"])
+def test_where_no_road_can_be_designed_nothing_is_left_behind(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, out: str | None
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("empty").mkdir()
+    put_on_shelf(monkeypatch, double=Unable())
+    with pytest.raises(DesignError, match="9 hairpins"):
+        list(campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=out, draw=Drawing()))
+    assert [str(path) for path in Path().rglob("*")] == ["empty"]
+
+
+def test_roads_that_could_not_be_designed_are_written_once_one_could(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    put_on_shelf(monkeypatch, double=Unable(lambda seed: seed not in {seed_of(7, 1), seed_of(7, 2)}))
+    outcomes = []
+    for run in campaign(BRIEF, 4, 7, setup=NO_DRIVE, out=tmp_path):
+        outcomes.append(run.outcome)
+        assert table(tmp_path, "generation_stats.csv")["test_generated"] == str(run.index)
+    assert outcomes == ["ERROR", "ERROR", "VALID", "VALID"]
+    assert len(list(tmp_path.glob("test.*.json"))) == 4
+
+
+def test_a_campaign_with_roads_keeps_them_where_no_more_can_be_designed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    put_on_shelf(monkeypatch, double=Unable(lambda seed: seed == seed_of(7, 1)))
+    assert [run.outcome for run in campaign(BRIEF, 1, 7, setup=NO_DRIVE, out=tmp_path)] == ["VALID"]
+    more = [run.outcome for run in campaign(BRIEF, 6, 7, setup=NO_DRIVE, out=tmp_path)]
+    assert more == ["ERROR"] * 5
+    assert table(tmp_path, "generation_stats.csv")["test_generated"] == "6"
 
 
 def test_a_failure_in_the_middle_leaves_whole_runs_only(designer: Designer, tmp_path: Path) -> None:
@@ -258,7 +298,9 @@ def test_two_processes_do_not_work_in_one_folder(tmp_path: Path) -> None:
     process = start(tmp_path, 500, "--slow")
     assert process.stdout is not None
     process.stdout.readline()
-    second = start(tmp_path, 500)
+    second = start(tmp_path, 500, "--all")
+    assert second.stdout is not None
+    assert second.stdout.readline() == ""  # not even the roads that are finished
     assert "another process is at work" in second.communicate(timeout=60)[1]
     assert second.returncode != 0
     assert process.poll() is None

@@ -198,3 +198,27 @@ def test_a_driver_that_hangs_while_it_is_made_is_given_up(tmp_path: Path) -> Non
         load_in_time(f"{file}:Slow", limit=0.5)
     with pytest.raises(UsageError, match="has no class 'Fast'; it has Slow"):
         load_in_time(f"{file}:Fast")
+
+
+ALWAYS_LEFT = """
+from roadgpt.drive import Command
+
+
+class Leaves:
+    def steer(self, view):
+        return Command(steer=0.5 if view.time > 2 else 0.0, throttle=0.4)
+"""
+
+
+def test_a_drive_that_goes_on_after_a_departure_tells_how_it_ended(tmp_path: Path) -> None:
+    file = tmp_path / "leaves.py"
+    file.write_text(ALWAYS_LEFT)
+    setup = Setup(driver=f"{file}:Leaves", keep_driving=True)
+    run = prove(Road.through([[40, 100], [90, 100], [140, 100]]), world=World(verge=0), setup=setup)
+    assert run.verdict is not None
+    assert run.drive is not None
+    assert run.verdict.cause == "out of lane"
+    assert run.drive.ended == "fell"
+    assert run.description == f"{run.verdict.description}, then fell after {run.drive['s'][-1]:.0f} m"
+    ended = prove(run.road, world=World(verge=0), setup=setup.model_copy(update={"keep_driving": False}))
+    assert ended.description == ended.verdict.description  # type: ignore[union-attr]

@@ -8,7 +8,8 @@ import numpy as np
 
 from roadgpt.cli.replay import replay_lines
 from roadgpt.errors import UsageError
-from roadgpt.run.campaign import CARD, finished, read_card
+from roadgpt.run.campaign import finished
+from roadgpt.run.card import CARD, read_card
 from roadgpt.run.folder import is_run, read_run, run_folder
 from roadgpt.run.model import Run
 

@@ -24,9 +24,11 @@ from roadgpt.drive.custom import load_in_time
 from roadgpt.errors import DesignError, PartError, RoadGPTError
 from roadgpt.road import Design, Road, World, build, in_hops
 from roadgpt.run.campaign import Campaign
+from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
 from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
 from roadgpt.run.seeds import seed_of
+from roadgpt.run.telling import told
 from roadgpt.run.versions import versions_of
 from roadgpt.verdict import judge
 
@@ -43,6 +45,7 @@ __all__ = [
     "prove",
     "read_run",
     "roll_call",
+    "seed_in",
     "seed_of",
     "write_run",
 ]
@@ -116,13 +119,14 @@ def campaign(
 ) -> Campaign:
     """Many Runs of one description, each written into one folder as it ends.
 
-    Iterate over it to make it work; ``.folder`` says where. A driver or a simulator that fails costs one Run.
+    Iterate over it to make it work (over ``.all_runs()`` to be given also the roads of a campaign that goes
+    on); ``.folder`` says where. A driver or a simulator that fails costs one Run.
 
     Args:
         words, seed, world, setup: as for ``perform``.
         n: how many roads.
-        out: the folder; an interrupted campaign of the same request is continued there. None makes a new one
-            under ``roadgpt-runs``.
+        out: the folder; an interrupted campaign of the same request is continued there, and nothing is done
+            where it is finished. None makes a new one under ``roadgpt-runs``.
         draw: puts pictures into the folders, as ``report.drawing()`` does; None draws none.
 
     Raises:
@@ -202,5 +206,5 @@ def _driven(run: Run) -> Run:
     driving = replace(run.seconds, drive=time.perf_counter() - begun)
     ended: Outcome = verdict.outcome
     return replace(
-        run, outcome=ended, description=verdict.description, drive=drive, verdict=verdict, seconds=driving
+        run, outcome=ended, description=told(verdict, drive), drive=drive, verdict=verdict, seconds=driving
     )

@@ -1,41 +1,27 @@
 """Many Runs in one folder: written as each ends; an interrupted campaign goes on where it stopped."""
 
-import json
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
 
-from pydantic import ValidationError
-
-from roadgpt.brief.model import Frozen
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design
 from roadgpt.run.atomic import PART, held, json_text, sweep, write_whole
+from roadgpt.run.card import CARD, Card, read_card
 from roadgpt.run.folder import RUNS, Draw, read_run, run_folder, write_run
 from roadgpt.run.model import Request, Run
-from roadgpt.run.naming import new_folder
+from roadgpt.run.naming import HOME, new_folder
 from roadgpt.run.seeds import seed_of
-from roadgpt.run.tables import Tally, write_description
+from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, write_description
 from roadgpt.run.test_file import test_name
 
-CARD = "campaign.json"
 LOCK = "campaign.lock"
 GIVE_UP = 3  # roads that cannot be designed, before any that could
 
 Perform = Callable[[int, Sequence[Design]], Run]
 """Makes the Run of an index, different from the Designs before it."""
-
-
-class Card(Frozen):
-    """What a campaign's folder says of the campaign."""
-
-    format: Literal[1] = 1
-    request: Request
-    roads: int
-    is_finished: bool
 
 
 @dataclass
@@ -48,6 +34,8 @@ class Campaign:
     """How many there will be."""
     perform: Perform
     draw: Draw | None = None
+    made: tuple[Path, ...] = ()
+    """Folders that were made for it, the innermost first; they go again where nothing can be designed."""
     _finished: set[int] = field(default_factory=set)
     _tally: Tally = field(default_factory=Tally)
     # Numbers of the roads that have a design, in their order, and those designs.
@@ -66,16 +54,19 @@ class Campaign:
         if roads < 1:
             raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
         if out is None:
-            return cls(new_folder(request.words, request.seed), request, roads, perform, draw)
+            made = _missing(HOME)
+            folder = new_folder(request.words, request.seed)
+            return cls(folder, request, roads, perform, draw, (folder, *made))
         folder = Path(out)
         try:
+            made = _missing(folder)
             folder.mkdir(parents=True, exist_ok=True)
             is_new = all(_may_lie_in_a_new_folder(path) for path in folder.iterdir())
         except OSError as error:
             raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder") from error
-        campaign = cls(folder, request, roads, perform, draw)
+        campaign = cls(folder, request, roads, perform, draw, made)
         if not is_new:
-            campaign._insist_on_work(campaign._take_up())
+            campaign._take_up()
         return campaign
 
     @property
@@ -83,14 +74,26 @@ class Campaign:
         """Numbers of the roads that are finished."""
         return tuple(sorted(self._finished))
 
+    @property
+    def is_complete(self) -> bool:
+        """Are all roads there?"""
+        return len(self._finished) >= self.roads
+
     def __iter__(self) -> Iterator[Run]:
-        """The Runs that are still to be made, one by one.
+        """The Runs that are still to be made, one by one; raises as ``all_runs``."""
+        return self._runs(with_earlier=False)
+
+    def all_runs(self) -> Iterator[Run]:
+        """The Runs that were there before, read from the disk, then those that are still to be made.
 
         Raises:
-            DesignError: no road could be designed.
+            DesignError: no road could be designed; there is no folder then, unless it was there before.
             UsageError: a part is not installed, or another process is at work in the folder.
             RoadGPTError: a file cannot be written.
         """
+        return self._runs(with_earlier=True)
+
+    def _runs(self, with_earlier: bool) -> Iterator[Run]:
         with ExitStack() as stack:
             with self._writing():
                 try:
@@ -99,29 +102,64 @@ class Campaign:
                     raise UsageError(
                         f"another process is at work in {self.folder}; wait for it or name another folder"
                     ) from error
-                self._begin()
-            yield from self._work()
+                is_finished = self._begin()
+            if with_earlier:
+                yield from self.earlier_runs()
+            if not is_finished:
+                yield from self._work()
 
     def _work(self) -> Iterator[Run]:
-        """Road after road, each written and counted before it is handed out."""
+        """The roads that are missing; then the page of all of them."""
         try:
-            for index in (index for index in range(1, self.roads + 1) if index not in self._finished):
-                run = self._one(index)
+            yield from self._made_runs()
+        except DesignError:
+            with self._writing():
+                self._go_without_trace()
+            raise
+        except BaseException:
+            # however it ends, the tables tell of every road that is there
+            with self._writing():
+                self._tally.write(self.folder)
+            raise
+        with self._writing():
+            self._tally.write(self.folder)
+            if self.draw is not None:
+                self.draw.of_campaign(self.folder)
+            self._write_card(is_finished=True)
+
+    def _made_runs(self) -> Iterator[Run]:
+        """Road after road, each written and counted before it is handed out.
+
+        Roads that cannot be designed are held back until one can: a description that makes no road at all
+        leaves no tests behind.
+        """
+        missing = [index for index in range(1, self.roads + 1) if index not in self._finished]
+        held_back: list[Run] = []
+        for index in missing:
+            held_back.append(self._one(index))
+            if held_back[-1].road is None and not self._tally.with_road:
+                if len(held_back) == min(GIVE_UP, len(missing)):
+                    raise DesignError(held_back[-1].description)
+                continue
+            for run in held_back:
                 with self._writing():
                     write_run(run, self.folder, self.draw)
                     self._count(run)
                     self._tally.write(self.folder)
                 yield run
-                if not self._tally.with_road and index >= min(GIVE_UP, self.roads):
-                    raise DesignError(run.description)
-        finally:
-            # however it ends, the tables tell of every road that is there
-            with self._writing():
-                self._tally.write(self.folder)
-        with self._writing():
-            if self.draw is not None:
-                self.draw.of_campaign(self.folder)
-            self._write_card(is_finished=True)
+            held_back = []
+
+    def _go_without_trace(self) -> None:
+        """Take away what was made for roads that cannot be; what was there before stays."""
+        if self._finished:
+            self._tally.write(self.folder)
+            return
+        for name in (CARD, DESCRIPTION, *TABLES, LOCK):
+            with suppress(OSError):  # Windows removes no file that is open
+                (self.folder / name).unlink()
+        for folder in (self.folder / RUNS, *self.made):
+            with suppress(OSError):  # something else lies in it
+                folder.rmdir()
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
@@ -155,15 +193,19 @@ class Campaign:
             self._numbers.insert(place, run.index)
             self._designs.insert(place, run.design)
 
-    def _begin(self) -> None:
-        """Make the folder ready; another process may have worked in it since it was opened."""
-        if (self.folder / CARD).is_file():
-            self._take_up()
+    def _begin(self) -> bool:
+        """Make the folder ready, and say whether the campaign is finished.
+
+        Another process may have worked in it since it was opened.
+        """
+        if (self.folder / CARD).is_file() and self._take_up().is_finished and self.is_complete:
+            return True
         sweep(self.folder)
         self._write_card(is_finished=False)
         (self.folder / RUNS).mkdir(exist_ok=True)
         sweep(self.folder / RUNS)
         write_description(self.request, self.roads, self.folder)
+        return False
 
     def _write_card(self, is_finished: bool) -> None:
         card = Card(request=self.request, roads=self.roads, is_finished=is_finished)
@@ -197,12 +239,10 @@ class Campaign:
         if run.index == index:
             self._count(run)
 
-    def _insist_on_work(self, card: Card) -> None:
-        if card.is_finished and len(self._finished) >= self.roads:
-            raise UsageError(
-                f"{self.folder} holds this campaign already, finished with {card.roads} roads; "
-                "ask for more roads or name another folder"
-            )
+
+def _missing(folder: Path) -> tuple[Path, ...]:
+    """The folder and those around it that do not exist, the innermost first."""
+    return tuple(path for path in (folder, *folder.parents) if not path.exists())
 
 
 def _may_lie_in_a_new_folder(path: Path) -> bool:
@@ -219,23 +259,3 @@ def finished(folder: Path) -> list[int]:
         for index in indices
         if (folder / test_name(index)).is_file() and run_folder(folder, index).is_dir()
     ]
-
-
-def read_card(folder: Path) -> Card:
-    """What a campaign's folder says of the campaign.
-
-    Raises:
-        UsageError: no campaign lies there.
-    """
-    try:
-        card = json.loads((folder / CARD).read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise UsageError(f"{folder} is not empty and holds no campaign; name another folder") from error
-    except (OSError, ValueError, RecursionError) as error:
-        raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
-    try:
-        return Card.model_validate(card)
-    except ValidationError as error:
-        raise UsageError(
-            f"{folder / CARD} is damaged or was written by another version of roadgpt; name another folder"
-        ) from error

@@ -115,7 +115,12 @@ def read_run(path: Path | str) -> Run:
 def _folder_of(path: Path) -> Path:
     if path.is_file():
         parts = path.name.split(".")
-        beside = path.parent / RUNS / parts[1] if len(parts) == 3 and parts[0] == "test" else path.parent
+        is_test = len(parts) == 3 and parts[0] == "test"
+        beside = path.parent / RUNS / parts[1] if is_test else path.parent
+        if not is_run(beside):
+            raise UsageError(
+                f"{path} belongs to no run; give a folder like DIR/runs/0001 or DIR/test.0001.json"
+            )
         path = beside
     if is_run(path):
         return path

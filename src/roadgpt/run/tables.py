@@ -14,6 +14,8 @@ from roadgpt.run.atomic import write_whole
 from roadgpt.run.model import Request, Run
 from roadgpt.run.sparseness import Spread, failure_segment
 
+TABLES = ("generation_stats.csv", "oob_stats.csv")
+DESCRIPTION = "experiment_description.csv"
 DEPARTURES = ("out of lane", "fell")  # causes of failures that have a place and a side
 
 
@@ -44,8 +46,8 @@ class Tally:
 
     def write(self, folder: Path) -> None:
         """Write the tables that change from road to road."""
-        write_whole(folder / "generation_stats.csv", _table([self._generation()]))
-        write_whole(folder / "oob_stats.csv", _table([self._departures()]))
+        for name, row in zip(TABLES, (self._generation(), self._departures()), strict=True):
+            write_whole(folder / name, _table([row]))
 
     def _generation(self) -> dict[str, object]:
         generated = self.outcomes.total()
@@ -97,7 +99,7 @@ def write_description(request: Request, roads: int, folder: Path) -> None:
         **{key: value for key, value in setup.model_dump().items() if key not in ("simulator", "designer")},
         **{key: value for key, value in world.model_dump().items() if key not in theirs},
     }
-    write_whole(folder / "experiment_description.csv", _table([theirs | ours]))
+    write_whole(folder / DESCRIPTION, _table([theirs | ours]))
 
 
 def _table(rows: list[dict[str, object]]) -> str:

@@ -1,0 +1,51 @@
+"""The card of a campaign: what its folder says that it was asked for, so that it can be gone on with."""
+
+import json
+from pathlib import Path
+from typing import Literal
+
+from pydantic import ValidationError
+
+from roadgpt.brief.model import Frozen
+from roadgpt.errors import UsageError
+from roadgpt.run.model import Request
+
+CARD = "campaign.json"
+
+
+class Card(Frozen):
+    """What a campaign's folder says of the campaign."""
+
+    format: Literal[1] = 1
+    request: Request
+    roads: int
+    is_finished: bool
+
+
+def seed_in(folder: Path) -> int | None:
+    """The seed of the campaign in a folder; None where there is none.
+
+    Raises:
+        UsageError: its card is damaged.
+    """
+    return read_card(folder).request.seed if (folder / CARD).is_file() else None
+
+
+def read_card(folder: Path) -> Card:
+    """What a campaign's folder says of the campaign.
+
+    Raises:
+        UsageError: no campaign lies there.
+    """
+    try:
+        card = json.loads((folder / CARD).read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise UsageError(f"{folder} is not empty and holds no campaign; name another folder") from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
+    try:
+        return Card.model_validate(card)
+    except ValidationError as error:
+        raise UsageError(
+            f"{folder / CARD} is damaged or was written by another version of roadgpt; name another folder"
+        ) from error
