@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt import check
-from roadgpt.brief.model import Brief, Clause, at_least, at_most, exactly
+from roadgpt.brief.model import Brief, Clause, Slope, at_least, at_most, exactly
 from roadgpt.brief.outline import outline
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import measure
@@ -149,6 +149,14 @@ def test_steep_descents_of_a_hilly_road_are_drawn_from_all_that_was_promised() -
     assert min(steep) < -13
     assert max(steep) > -9
     assert np.std(steep) > 1
+
+
+@pytest.mark.parametrize("slope", ["up", "down", "gently_up", "steeply_up", "steeply_down"])
+def test_a_short_climb_between_straights_is_short_and_steep_enough(slope: Slope) -> None:
+    plain, climb = Clause(kind="straight"), Clause(kind="straight", size="short", slope=slope)
+    brief = Brief(clauses=(plain, climb, plain))
+    for seed in range(4):
+        assert_fine(planner.draft(brief, WORLD, (), (), seed), brief, WORLD)
 
 
 def test_hard_roads_are_tight_and_crest_before_bends() -> None:

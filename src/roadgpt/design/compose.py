@@ -27,6 +27,7 @@ STEP_ASIDE = (
     14.0  # m of the neighbour's grade on an asked-for straight's gap, so that the change is not in the turn
 )
 RAMP = 5.0  # m: what a ramp takes off a straight's mean grade, in metres of its full grade
+MOST_KEPT, LEAST_KEPT = 0.8, 0.45  # of a straight from which ramps are taken off: first, and at last
 OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a straight whose length nobody said
 ALONE = (60.0, 240.0)  # m, of a road without turns whose length nobody said
 HILL = 42.0  # m that one climb or fall of a hilly road takes
@@ -127,7 +128,7 @@ def _asked_gap(
             out.append(Span(STEP_ASIDE, grade=windows.other(grade)))
         length = drawn_straight(wish, rng, haste, least, mean)
         if wish.length and wish.length.hi < inf:
-            length = max(length - changes * RAMP, 0.8 * length)
+            length = max(length - changes * RAMP, max(MOST_KEPT - haste, LEAST_KEPT) * length)
         out.append(Span(length, grade=grade, promised=wish.length or OPEN))
     if after and windows.part(grades[-1], after.grade):
         out.append(Span(STEP_ASIDE, grade=after.grade))

@@ -27,6 +27,7 @@ UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would
 HILL = 34.0  # m: the shortest climb or fall of a hilly road
 HILL_GRADES = (4.0, 8.5)  # percent
 CREST = (2.5, 4.5)  # percent up to a bend of a hard road, and down in it
+RAMPED = 6.0  # percent: a place so steep shows best where its neighbours slope the other way
 BISECTIONS = 40
 
 Inclines = list[tuple[float, float]]
@@ -96,6 +97,8 @@ class Windows:
         """A grade that is seen to differ."""
         if self.base and not (self.base.lo <= 0 <= self.base.hi):
             return Range(0, 0)
+        if grade and not self.base and max(grade.lo, -grade.hi) >= RAMPED:
+            return Range(-5, -3) if grade.lo > 0 else Range(3, 5)
         return Range(0, 0) if grade is None or grade.lo > 1 or grade.hi < -1 else Range(3.5, 6)
 
     @staticmethod
