@@ -120,7 +120,9 @@ def test_check_reports_the_direction_that_wins() -> None:
 def test_a_file_that_holds_no_road_gets_one_sentence_and_status_2(command: str, name: str) -> None:
     result = invoke(command, name)
     assert result.exit_code == 2
-    assert name.removesuffix(".json") in result.output
+    assert result.stderr.startswith("roadgpt: ")
+    assert name.removesuffix(".json") in result.stderr
+    assert result.stdout == ""
 
 
 @pytest.mark.parametrize("command", ["check", "drive"])

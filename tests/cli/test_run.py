@@ -129,7 +129,8 @@ def test_nothing_that_could_be_designed_ends_with_3(monkeypatch: pytest.MonkeyPa
     result = invoke(WORDS, "-n", "5", "--no-plot", "--out", "here")
     assert result.exit_code == 3
     assert "roadgpt: no road fits; ask for less" in result.stderr
-    assert "ERROR" in result.stdout
+    assert "ERROR" not in result.stdout
+    assert not Path("here").exists()
 
 
 def test_one_road_that_could_not_be_designed_does_not_stop_the_others(
@@ -181,10 +182,64 @@ def test_an_interrupted_campaign_is_complete_as_far_as_it_went_and_goes_on(
 def test_a_finished_campaign_is_not_written_over() -> None:
     words = (WORDS, "--seed", "3", "--no-drive", "--no-plot", "--out", "here")
     assert invoke(*words).exit_code == 0
-    for again in (words, ("a flat road", *words[1:])):
-        result = invoke(*again)
+    before = {path: path.read_bytes() for path in Path("here").rglob("*") if path.is_file()}
+    for other in (("a flat road", *words[1:]), (WORDS, "--seed", "4", *words[3:])):
+        result = invoke(*other)
         assert result.exit_code == 2
         assert "name another folder" in result.stderr
+        assert result.stdout == ""
+    for same in (words, (WORDS, *words[3:])):  # without --seed as well
+        result = invoke(*same)
+        assert result.exit_code == 0
+        assert "all 1 roads are there" in result.stdout
+        assert "1/1  VALID" in result.stdout
+    assert {path: path.read_bytes() for path in Path("here").rglob("*") if path.is_file()} == before
+
+
+def test_without_a_seed_an_interrupted_campaign_goes_on_with_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    words = (WORDS, "-n", "2", "--no-drive", "--no-plot", "--out", "here")
+    with monkeypatch.context() as patched:
+        patched.setattr(run_room, "perform", stopped)
+        first = invoke(*words)
+    assert first.exit_code == 130
+    again = invoke(*words)
+    assert again.exit_code == 0
+    seeds = [result.stdout.split("seed ")[1].split(",")[0] for result in (first, again)]
+    assert seeds[0] == seeds[1]
+    assert len([*Path("here").glob("test.*.json")]) == 2
+
+
+def test_what_was_understood_is_said_when_nothing_stands_in_the_way() -> None:
+    for more in (("--driver", "nobody"), ("--driver", "none.py:Nobody"), ("--out", "taken")):
+        Path("taken").mkdir(exist_ok=True)
+        Path("taken", "thesis.docx").write_text("")
+        result = invoke(WORDS, *more)
+        assert (result.exit_code, result.stdout) == (2, "")
+
+
+def test_lines_name_the_test_and_not_its_folder() -> None:
+    result = invoke(WORDS, "--seed", "1", "--no-drive", "--no-plot", "--out", "a-folder")
+    (line,) = [line for line in result.stdout.splitlines() if line.startswith("1/1")]
+    assert line.endswith("  test.0001.json")
+    assert "a-folder" not in line
+
+
+def test_a_driver_that_prints_spoils_no_json() -> None:
+    Path("chatty.py").write_text(
+        "from roadgpt.drive import Command\n\nprint('loaded')\n\n\nclass Chatty:\n"
+        "    def steer(self, view):\n        print('steering')\n        return Command(0.0, throttle=0.3)\n"
+    )
+    result = invoke(WORDS, "--driver", "chatty.py:Chatty", "--no-plot", "--json", "--out", "here")
+    assert len([json.loads(line) for line in result.stdout.splitlines()]) == 1
+    assert "steering" in result.stderr
+    assert "loaded" in result.stderr
+    road = str(Path("here", "runs", "0001", "road.json"))
+    driven = CliRunner().invoke(app, ["drive", road, "--driver", "chatty.py:Chatty", "--json"])
+    assert len([json.loads(line) for line in driven.stdout.splitlines()]) == 1
+    assert "steering" in driven.stderr
 
 
 def test_show_tells_of_a_run_and_of_its_campaign() -> None:
@@ -195,3 +250,33 @@ def test_show_tells_of_a_run_and_of_its_campaign() -> None:
         assert WORDS in result.stdout
     again = next(line for line in result.stdout.splitlines() if "roadgpt drive" in line)
     assert "runs/0001/road.json" in again
+
+
+def test_show_of_a_campaign_tells_the_cause_of_a_failure() -> None:
+    Path("asleep.py").write_text(
+        "from roadgpt.drive import Command\n\n\nclass Asleep:\n    def steer(self, view):\n"
+        "        return Command(0.0, throttle=0.3 if view.speed < 8 else 0.0)\n"
+    )
+    invoke(WORDS, "--driver", "asleep.py:Asleep", "--no-plot", "--out", "here", "--seed", "7")
+    shown = CliRunner().invoke(app, ["show", "here"]).stdout
+    assert "FAIL (out of lane)" in shown
+
+
+@pytest.mark.parametrize("command", ["drive", "check", "plot"])
+def test_the_folder_of_a_campaign_is_answered_with_its_roads(command: str) -> None:
+    invoke(WORDS, "--seed", "7", "--no-drive", "--no-plot", "--out", "here")
+    result = CliRunner().invoke(app, [command, "here"])
+    assert result.exit_code == 2
+    assert (
+        result.stderr
+        == f"roadgpt: here is the folder of a whole campaign; give its roads: {Path('here', 'runs')}/*\n"
+    )
+    assert result.stdout == ""
+    assert CliRunner().invoke(app, [command, "here/runs/0001"]).exit_code == 0
+
+
+def test_show_of_a_file_that_is_no_test_names_it() -> None:
+    Path("points.json").write_text("[[1, 2]]")
+    result = CliRunner().invoke(app, ["show", "points.json"])
+    assert result.exit_code == 2
+    assert "points.json belongs to no run; give a folder like DIR/runs/0001" in result.stderr

@@ -1,11 +1,14 @@
 """Rows and screens: what is printed, where, and the table at the end."""
 
 import json
+import sys
+from dataclasses import replace
 
 import pytest
 
 from roadgpt.cli.rows import Row, summary
 from roadgpt.cli.screen import Screen
+from roadgpt.cli.streams import apart
 
 KEPT = Row("a.json", "PASS", "kept its lane", max_oob=0.2, margin_m=0.62, length_m=187.25, seconds=1.234567)
 LEFT = Row(
@@ -28,15 +31,16 @@ def test_json_has_no_infinities() -> None:
 
 def test_a_line_carries_the_cause_of_a_failure_and_the_sentence_of_a_rule() -> None:
     assert LEFT.to_line().startswith("FAIL (out of lane)")
-    assert "-0.06 m" in LEFT.to_line()
+    assert "margin -0.060 m" in LEFT.to_line()
+    assert "margin -0.003 m" in replace(LEFT, margin_m=-0.0029).to_line()
     assert WRONG.to_line().endswith("it is too sharp")
 
 
 def test_the_summary_counts_each_outcome_and_finds_the_least_margin() -> None:
     closer = Row("d.json", "PASS", "kept its lane", margin_m=0.11)
     assert summary([LEFT, KEPT, WRONG, closer]) == [
-        ("PASS", 2, "50 %", "+0.11 m"),
-        ("FAIL (out of lane)", 1, "25 %", "-0.06 m"),
+        ("PASS", 2, "50 %", "+0.110 m"),
+        ("FAIL (out of lane)", 1, "25 %", "-0.060 m"),
         ("INVALID", 1, "25 %", "-"),
     ]
 
@@ -76,3 +80,37 @@ def test_json_stands_alone_on_standard_output(capsys: pytest.CaptureFixture[str]
 def test_quiet_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     show(quiet=True, verbose=True)
     assert capsys.readouterr() == ("", "")
+
+
+def test_a_line_of_a_driven_road_fits_into_80_columns() -> None:
+    far = replace(LEFT, file="roadgpt-runs/a-very-long-description/test.0001.json", name="test.0001.json")
+    assert far.to_line().endswith("  test.0001.json")
+    assert len(f"1000/1000  {far.to_line()}") <= 80
+    assert json.loads(far.to_json())["file"] == far.file
+
+
+def test_what_is_printed_while_a_step_is_made_goes_to_standard_error(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def steps():  # type: ignore[no-untyped-def]
+        for number in (1, 2):
+            print("a driver says", number)
+            yield number
+        print("a driver says goodbye")
+
+    for step in apart(steps()):
+        print("row", step)
+    assert capsys.readouterr() == (
+        "row 1\nrow 2\n", "a driver says 1\na driver says 2\na driver says goodbye\n"
+    )  # fmt: skip
+
+
+def test_an_error_while_a_step_is_made_leaves_standard_output_where_it_was() -> None:
+    def steps():  # type: ignore[no-untyped-def]
+        yield 1
+        raise KeyboardInterrupt
+
+    before = sys.stdout
+    with pytest.raises(KeyboardInterrupt):
+        list(apart(steps()))
+    assert sys.stdout is before

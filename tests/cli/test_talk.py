@@ -43,6 +43,15 @@ def test_it_goes_on_from_one_description_to_the_next() -> None:
     assert len([*Path("roadgpt-runs").iterdir()]) == 2
 
 
+@pytest.mark.parametrize("word", ["help", "?", "HELP"])
+def test_help_is_given_at_either_question_and_is_no_description(word: str) -> None:
+    result = say(word, "a road", word, "1", "exit")
+    assert result.exit_code == 0
+    assert result.stdout.count("Options belong to 'roadgpt run'") == 2
+    assert "1 of 1 roads" in result.stdout
+    assert result.stderr == ""
+
+
 def test_a_wrong_answer_is_asked_again() -> None:
     result = say("a road", "none", "0", "1", "three turns but no turns", "exit")
     assert result.exit_code == 0

@@ -2,9 +2,11 @@
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -19,7 +21,9 @@ def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def on_a_terminal(*command: str, stdout_is_a_file: bool = False) -> tuple[str, str]:
+def on_a_terminal(
+    *command: str, stdout_is_a_file: bool = False, mood: dict[str, str] | None = None
+) -> tuple[str, str]:
     """What a command shows on a pseudo-terminal, and what it writes to standard output, if that is a file."""
     pty = pytest.importorskip("pty", reason="no pseudo-terminals on this platform")
     here, there = pty.openpty()
@@ -30,7 +34,7 @@ def on_a_terminal(*command: str, stdout_is_a_file: bool = False) -> tuple[str, s
             stdin=there,
             stdout=stdout if stdout_is_a_file else there,
             stderr=there,
-            env=os.environ | {"TERM": "xterm-256color", "COLUMNS": "120"},
+            env=os.environ | {"TERM": "xterm-256color", "COLUMNS": "120"} | (mood or {}),
         )
         os.close(there)
         shown = b""
@@ -80,7 +84,8 @@ def test_it_works_without_any_locale_or_home() -> None:
     assert "1 of 1 roads" in done.stdout
 
 
-def test_control_c_leaves_what_is_finished(tmp_path: Path) -> None:
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_control_c_and_a_polite_kill_leave_what_is_finished(sent: signal.Signals) -> None:
     process = subprocess.Popen(
         [*RUN, "-n", "5000", "--out", "here"],
         stdout=subprocess.DEVNULL,
@@ -92,7 +97,7 @@ def test_control_c_leaves_what_is_finished(tmp_path: Path) -> None:
     third = Path("here", "test.0003.json")
     while not third.exists() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.02)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(sent)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
     finished = int(said.split("stopped; ")[1].split(" of ")[0])
@@ -104,6 +109,35 @@ def test_control_c_leaves_what_is_finished(tmp_path: Path) -> None:
     assert {test.name[5:9] for test in tests} <= {run.name for run in Path("here", "runs").iterdir()}
 
 
+@pytest.mark.parametrize("command", [[*RUN, "-n", "3"], [*RUN, "--json"], [*ROADGPT, "parts"]])
+def test_standard_output_that_takes_nothing_is_told_in_a_sentence(command: list[str]) -> None:
+    before = {*Path(tempfile.gettempdir()).glob("roadgpt-crash-*")}
+    for there, why in ((">/dev/full", "No space left on device"), (">&-", "Bad file descriptor")):
+        line = f"{shlex.join(command)} {there}"
+        done = subprocess.run(["sh", "-c", line], stderr=subprocess.PIPE, text=True, check=False)
+        assert done.returncode == 1
+        assert done.stderr.splitlines()[-1] == (
+            f"roadgpt: cannot write to standard output ({why}); send it where there is room"
+        )
+        assert "Exception ignored" not in done.stderr
+    assert {*Path(tempfile.gettempdir()).glob("roadgpt-crash-*")} == before
+    assert not [*Path().rglob("roadgpt-crash-*")]
+
+
+def test_who_says_nothing_needs_no_standard_output() -> None:
+    line = f"{shlex.join(RUN)} --quiet >&- 2>&- <&-"
+    assert subprocess.run(["sh", "-c", line], check=False).returncode == 0
+    assert len([*Path("roadgpt-runs").glob("*/test.0001.json")]) == 1
+
+
+@pytest.mark.parametrize("mood", [{"TERM": "dumb"}, {"NO_COLOR": "1"}])
+def test_who_wants_no_colours_gets_none(mood: dict[str, str]) -> None:
+    for command in ([*RUN, "-n", "1"], [*ROADGPT, "parts"]):
+        shown, _ = on_a_terminal(*command, mood=mood)
+        assert "\x1b[3" not in shown.replace("\x1b[39m", "").split("outcome")[-1]
+        assert "\x1b[1m" not in shown.split("outcome")[-1]
+
+
 def test_a_reader_that_goes_away_is_no_error() -> None:
     process = subprocess.Popen(
         [*RUN, "-n", "300", "--json", "--quiet"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -111,7 +145,7 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
     assert process.stdout is not None
     assert json.loads(process.stdout.readline())
     process.stdout.close()
-    assert process.wait(60) == 1
+    assert process.wait(60) == 141
     assert process.stderr is not None
     assert process.stderr.read() == ""
     process.stderr.close()

@@ -24,13 +24,14 @@ def invoke(*words: str) -> Result:
         (["--map-size", "nan"], "nan is not possible"),
         (["--map-size", "1e9"], "from 50 to 10000"),
         (["--speed-limit", "fast"], "'fast' is no number; give a number from 5 to 300 km/h"),
-        (["--oob-tolerance", "0"], "give a number more than 0 to 1"),
-        (["--oob-tolerance", "1.01"], "give a number more than 0 to 1"),
+        (["--oob-tolerance", "0"], "give a number above 0, up to 1"),
+        (["--oob-tolerance", "1.01"], "give a number above 0, up to 1"),
         (["--verge", "-1"], "from 0 to 100 metres"),
         (["--friction", "inf"], "inf is not possible"),
         (["--geometry", "nurbs"], "'nurbs' is not one of 'arcs', 'spline'"),
         (["--axes", "log"], "'log' is not one of 'equal', 'thesis'"),
         (["--frobnicate"], "No such option"),
+        (["--out", ""], "a folder without a name"),
     ],
 )
 def test_a_value_that_is_not_possible_says_which_ones_are(words: list[str], advice: str) -> None:
@@ -93,6 +94,21 @@ def test_an_unknown_command_is_a_usage_error() -> None:
     result = invoke("fly")
     assert result.exit_code == 2
     assert "No such command 'fly'" in result.stderr
+    assert "Did you mean" not in result.stderr
+
+
+@pytest.mark.parametrize(("typed", "meant"), [("rnu", "run"), ("Drive", "drive"), ("docter", "doctor")])
+def test_a_command_that_is_misspelt_is_guessed(typed: str, meant: str) -> None:
+    result = invoke(typed, "a road")
+    assert result.exit_code == 2
+    assert f"No such command '{typed}'. Did you mean '{meant}'?" in result.stderr
+
+
+def test_an_option_before_a_command_is_told_where_it_belongs() -> None:
+    result = invoke("--seed", "7")
+    assert result.exit_code == 2
+    assert "No such option '--seed' here" in result.stderr
+    assert "roadgpt run DESCRIPTION" in result.stderr
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -1,8 +1,8 @@
 """The group of commands: finds a command when it is called, and turns errors into sentences."""
 
-import os
 import sys
 from collections.abc import Sequence
+from difflib import get_close_matches
 from importlib import import_module
 from typing import Any
 
@@ -11,6 +11,7 @@ import click
 from roadgpt import __version__
 from roadgpt.cli.crash import report_crash
 from roadgpt.cli.dashes import told_of_dashes
+from roadgpt.cli.streams import OutputError, drop_output, is_coloured
 from roadgpt.errors import RoadGPTError
 
 # Each command is `command` in the module of its name in roadgpt.cli.commands; its line of help stands here
@@ -26,7 +27,8 @@ COMMANDS = {
 }
 
 INTERRUPTED = 130  # exit status after Ctrl-C, as shells have it: 128 + SIGINT
-NO_READER = 1  # whoever read the output went away; what click answers too
+NO_READER = 141  # whoever read the output went away; as shells have it: 128 + SIGPIPE
+REFUSED = 1  # the machine does not take what was to be written
 INTERNAL = 70  # EX_SOFTWARE of sysexits.h
 
 
@@ -56,12 +58,22 @@ class Commands(click.Group):
         name = args[0]
         if name not in COMMANDS and " " in name.strip():
             raise click.UsageError(f'to make roads from a description, say: roadgpt run "{name}"', ctx)
+        near = get_close_matches(name.lower(), COMMANDS, 1)
+        if name not in COMMANDS and near and not name.startswith("-"):
+            raise click.UsageError(f"No such command '{name}'. Did you mean '{near[0]}'?", ctx)
         return super().resolve_command(ctx, args)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """What click makes of the words; a description with a dash in front is told where it belongs."""
-        with told_of_dashes(ctx, args):
-            return super().parse_args(ctx, args)
+        try:
+            with told_of_dashes(ctx, args):
+                return super().parse_args(ctx, args)
+        except click.NoSuchOption as error:
+            raise click.UsageError(
+                f"No such option '{error.option_name}' here. Options follow the command that they belong to: "
+                "roadgpt run DESCRIPTION --seed 7",
+                ctx,
+            ) from error
 
     def main(
         self,
@@ -77,10 +89,11 @@ class Commands(click.Group):
         try:
             status = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
             sys.stdout.flush()
-        except BrokenPipeError:
-            # Python flushes stdout once more at its end; let it flush into nothing.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            status = NO_READER
+        except OutputError as error:
+            drop_output()
+            status = NO_READER if error.is_reader_gone else REFUSED
+            if not error.is_reader_gone:
+                click.echo(f"roadgpt: {error}", err=True)
         except click.ClickException as error:
             error.show()
             status = error.exit_code
@@ -109,6 +122,8 @@ def app(ctx: click.Context) -> None:
     RoadGPT designs 3-D roads that keep what a description promises, drives a car along them, and says whether
     it kept its lane. Without a command it asks for descriptions, one after another.
     """
+    if not is_coloured():
+        ctx.color = False
     if ctx.invoked_subcommand is None:
         from roadgpt.cli.talk import talk
 

@@ -10,8 +10,8 @@ import click
 
 def measure(low: float, high: float, unit: str = "", above: bool = False) -> Callable[[str], float]:
     """The type of an option that takes a finite number within bounds; above: the lower bound is excluded."""
-    start = "more than" if above else "from"
-    advice = f"give a number {start} {low:g} to {high:g}{unit and ' ' + unit}"
+    bounds = f"above {low:g}, up to {high:g}" if above else f"from {low:g} to {high:g}"
+    advice = f"give a number {bounds}{unit and ' ' + unit}"
 
     def number(value: str) -> float:
         try:

@@ -35,6 +35,8 @@ def whole(low: int, high: int, what: str) -> Callable[[str], int]:
 
 def folder(value: str) -> Path:
     """The type of an option that takes a folder which exists or can be made."""
+    if not str(value).strip():
+        raise click.BadParameter("a folder without a name; give its name, or '.' for this one")
     path = Path(value)
     for place in (path, *path.parents):
         if place.is_dir():

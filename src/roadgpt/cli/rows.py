@@ -32,6 +32,8 @@ class Row:
     margin_m: float | None = None
     length_m: float | None = None
     seconds: float = 0.0
+    name: str = ""
+    """What a line calls it, where the path of the file is too long for a line."""
 
     @property
     def outcome(self) -> str:
@@ -57,10 +59,15 @@ class Row:
     def to_line(self) -> str:
         """Outcome, length, margin, file, and the sentence where something is wrong."""
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
-        margin = "" if self.margin_m is None else f"margin {self.margin_m:+.2f} m"
-        line = f"{self.outcome:<19} {length:>9}  {margin:<15}  {self.seconds:5.2f} s  {self.file}"
+        margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
+        line = f"{self.outcome:<18} {length:>9}  {margin:<15} {self.seconds:5.2f} s  {self.name or self.file}"
         wrong = self.test_outcome in ("INVALID", "ERROR")
         return f"{line}  {self.description.removeprefix(f'{self.file}: ')}" if wrong else line
+
+
+def metres(margin: float) -> str:
+    """A margin, to the millimetre: those that decide are small."""
+    return f"{margin:+.3f} m"
 
 
 def _rounded(number: float | None) -> float | None:
@@ -74,7 +81,7 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str]]:
     table = []
     for outcome, count in sorted(counted.items(), key=lambda item: (_rank(item[0]), item[0])):
         margins = [row.margin_m for row in rows if row.outcome == outcome and row.margin_m is not None]
-        least = f"{min(margins):+.2f} m" if margins else "-"
+        least = metres(min(margins)) if margins else "-"
         table.append((outcome, count, f"{100 * count / len(rows):.0f} %", least))
     return table
 
@@ -83,8 +90,8 @@ def _rank(outcome: str) -> int:
     return [*COLOURS].index(outcome.split(" ")[0])
 
 
-def row_of(run: "Run", file: str) -> Row:
-    """What is told of a Run whose road is in a file."""
+def row_of(run: "Run", file: str, name: str = "") -> Row:
+    """What is told of a Run whose road is in a file, which a line may call by a shorter name."""
     verdict = run.verdict
     return Row(
         file,
@@ -97,9 +104,10 @@ def row_of(run: "Run", file: str) -> Row:
         margin_m=verdict.margin if verdict else None,
         length_m=run.length if run.road else None,
         seconds=run.seconds.total,
+        name=name,
     )
 
 
 def unreadable(file: str, error: Exception) -> Row:
-    """What is told of a file that holds no road."""
+    """What is told of one of many files, that holds no road."""
     return Row(file, "ERROR", str(error), is_valid=False, validation_message=str(error), cause="unreadable")

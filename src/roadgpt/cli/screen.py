@@ -1,6 +1,5 @@
 """How a command talks while it works: a bar on a terminal, plain lines in a pipe, JSON, or nothing."""
 
-import os
 import sys
 import time
 from types import TracebackType
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING, Self
 import click
 
 from roadgpt.cli.rows import COLOURS, Row, summary
+from roadgpt.cli.streams import is_coloured
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
@@ -88,8 +88,7 @@ class Screen:
 def _show(line: str, on_stderr: bool = False) -> None:
     """Print a line, in colour only where someone sees it; click.echo would go past the bar and garble it."""
     stream = sys.stderr if on_stderr else sys.stdout
-    in_colour = stream.isatty() and not os.environ.get("NO_COLOR")
-    print(line if in_colour else click.unstyle(line), file=stream, flush=True)
+    print(line if stream.isatty() and is_coloured() else click.unstyle(line), file=stream, flush=True)
 
 
 def _coloured(row: Row) -> str:

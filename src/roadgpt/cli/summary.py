@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.cli.replay import replay_lines
+from roadgpt.cli.rows import metres, row_of
 from roadgpt.errors import UsageError
 from roadgpt.run.campaign import finished
 from roadgpt.run.card import CARD, read_card
@@ -53,7 +54,7 @@ def _run_lines(run: Run, folder: Path) -> Iterator[str]:
     if run.verdict is not None:
         yield (
             f"  verdict   at most {run.verdict.max_oob:.0%} of the car outside its lane, "
-            f"margin {run.verdict.margin:+.2f} m"
+            f"margin {metres(run.verdict.margin)}"
         )
     yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")
     yield f"  versions  {', '.join(f'{name} {number}' for name, number in run.versions.items())}"
@@ -75,7 +76,7 @@ def _road_line(run: Run) -> str:
 def _campaign_lines(folder: Path) -> Iterator[str]:
     card = read_card(folder)
     yield f"{card.request.words or 'roads that were given'} (seed {card.request.seed})"
-    yield f"{'road':>6}  {'outcome':<8} {'length':>7} {'margin':>8}  description"
+    yield f"{'road':>6}  {'outcome':<18} {'length':>7} {'margin':>9}  description"
     counts: Counter[str] = Counter()
     for index in finished(folder):
         try:
@@ -85,8 +86,9 @@ def _campaign_lines(folder: Path) -> Iterator[str]:
             yield f"{index:>6}  cannot be read: {error}"
             continue
         counts[run.outcome] += 1
-        margin = f"{run.verdict.margin:+.2f} m" if run.verdict is not None else ""
-        yield f"{index:>6}  {run.outcome:<8} {run.length:>5.0f} m {margin:>8}  {run.description}"
+        row = row_of(run, "")
+        margin = metres(row.margin_m) if row.margin_m is not None else ""
+        yield f"{index:>6}  {row.outcome:<18} {run.length:>5.0f} m {margin:>9}  {run.description}"
     told = ", ".join(f"{number} {outcome}" for outcome, number in counts.most_common())
     rest = card.roads - counts.total()
     yield f"{told or 'nothing yet'}" + (f"; {rest} of {card.roads} still to be made" if rest else "")

@@ -12,8 +12,20 @@ from roadgpt.errors import RoadGPTError
 USUAL_ROADS = 3
 ENOUGH = {"exit", "quit", "bye", "q"}
 
+HELP = {"help", "?", "hilfe"}
+
 HELLO = """Describe a road, for example: an uphill road with 3 turns
-Leave with 'exit' or an empty line; Ctrl-C stops the roads that are being made."""
+Leave with 'exit' or an empty line, ask with 'help'; Ctrl-C stops the roads that are being made."""
+
+EXPLAINED = """\
+Say in plain words how the road goes: how many turns, which way, how sharp, how long, how steep. For example:
+  two hairpins, then a long straight
+  a winding road downhill, 300 m long, with 5 turns, the last one to the left
+  a flat road with four sharp left turns
+Then say how many roads you want. What was not understood is listed before the first road is made.
+Here all options have their usual values. Options belong to 'roadgpt run', for example:
+  roadgpt run "a winding road downhill" -n 20 --seed 7 --friction 0.6
+'roadgpt run --help' lists them."""
 
 
 def talk() -> None:
@@ -25,6 +37,8 @@ def talk() -> None:
     _enable_editing()
     click.echo(f"{HELLO}\n")
     while (words := _asked("description> ")) and words.lower() not in ENOUGH:
+        if _wants_help(words):
+            continue
         try:
             read(words)  # what cannot be read is told before a number is asked for
             roads = _how_many()
@@ -47,6 +61,14 @@ def _asked(question: str) -> str:
         return ""
 
 
+def _wants_help(answer: str) -> bool:
+    """Was help asked for? It is given then."""
+    if answer.lower() not in HELP:
+        return False
+    click.echo(f"{EXPLAINED}\n")
+    return True
+
+
 def _how_many() -> int | None:
     """The number of roads; None where the user has had enough."""
     while True:
@@ -55,6 +77,8 @@ def _how_many() -> int | None:
             return None
         if not answer:
             return USUAL_ROADS
+        if _wants_help(answer):
+            continue
         try:
             return ROADS(answer)
         except click.BadParameter as error:

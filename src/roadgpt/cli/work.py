@@ -1,6 +1,8 @@
 """Working off one description: ``roadgpt run`` does it once, the conversation as often as it is asked."""
 
 import secrets
+import sys
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,6 +10,7 @@ from typing import TYPE_CHECKING
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.rows import row_of
 from roadgpt.cli.screen import Screen
+from roadgpt.cli.streams import apart
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -44,15 +47,28 @@ def work_off(wish: Wish, screen: Screen) -> None:
     from roadgpt.run import campaign
 
     brief = read(wish.words, wish.setup.reader, wish.world.map_size)
+    seed = _seed(wish)
+    with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
+        work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, _pictures(wish))
     screen.say(understood(brief))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
-    seed = secrets.randbelow(SEEDS) if wish.seed is None else wish.seed
-    work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, _pictures(wish))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")
-    if work.kept:
+    if work.is_complete:
+        screen.say(f"all {work.roads} roads are there")
+    elif work.kept:
         screen.say(f"{len(work.kept)} roads were finished before; going on")
     _watch(work, screen)
+
+
+def _seed(wish: Wish) -> int:
+    """The one that was given, else that of the campaign which lies in the folder, else a new one."""
+    from roadgpt.run import seed_in
+
+    if wish.seed is not None:
+        return wish.seed
+    there = seed_in(wish.out) if wish.out is not None else None
+    return secrets.randbelow(SEEDS) if there is None else there
 
 
 def understood(brief: "Brief") -> str:
@@ -70,10 +86,10 @@ def _watch(work: "Campaign", screen: Screen) -> None:
 
     try:
         with screen:
-            for runs in (work.earlier_runs(), work):
-                for run in runs:
-                    screen.row(row_of(run, str(work.folder / test_name(run.index))))
-                    screen.detail(f"  {run.description}")
+            for run in apart(work.all_runs()):
+                name = test_name(run.index)
+                screen.row(row_of(run, str(work.folder / name), name))
+                screen.detail(f"  {run.description}")
     finally:
         screen.close()
         if screen.rows:

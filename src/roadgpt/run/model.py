@@ -77,6 +77,8 @@ class Run:
     rounds: int = 0
     """Drafts that it took."""
     versions: Mapping[str, str] = field(default_factory=dict)
+    source: str = ""
+    """Name of the file that the road was read from, to be shown; not kept on the disk."""
     trace: str = ""
     """Of a simulator or a driver that failed: where."""
     seconds: Seconds = Seconds()

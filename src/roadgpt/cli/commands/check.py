@@ -12,9 +12,9 @@ from roadgpt.cli.options import (
     world_of,
     world_options,
 )
-from roadgpt.cli.rows import Row, unreadable
+from roadgpt.cli.roads import blueprint_of, each_road
+from roadgpt.cli.rows import Row
 from roadgpt.cli.screen import Screen
-from roadgpt.errors import UsageError
 
 INVALID = 1  # exit status, so that a script can ask
 UNREADABLE = 2
@@ -33,23 +33,18 @@ def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **
     when all roads are valid, 1 when one is not, 2 when one cannot be read.
     """
     world = world_of(rest)
-    with Screen(len(files), rest["as_json"], rest["quiet"], verbose) as screen:
-        for file in files:
-            try:
-                screen.row(_checked(screen, file, rules, geometry, world))
-            except UsageError as error:
-                screen.row(unreadable(file, error))
-        screen.close()
+    screen = Screen(len(files), rest["as_json"], rest["quiet"], verbose)
+    each_road(files, screen, lambda file: _checked(screen, file, rules, geometry, world))
     outcomes = {row.test_outcome for row in screen.rows}
     return UNREADABLE if "ERROR" in outcomes else INVALID if "INVALID" in outcomes else 0
 
 
 def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> Row:
     from roadgpt.check import inspect
-    from roadgpt.road import Design, build, read_blueprint
+    from roadgpt.road import Design, build
 
     begun = time.perf_counter()
-    blueprint, remarks = read_blueprint(file)
+    blueprint, remarks = blueprint_of(file)
     road = build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint
     findings = inspect(road, None, world, rules)
     seconds = time.perf_counter() - begun

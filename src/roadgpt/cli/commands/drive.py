@@ -1,5 +1,7 @@
 """``roadgpt drive``: drive roads that exist."""
 
+import sys
+from contextlib import redirect_stdout
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -12,9 +14,9 @@ from roadgpt.cli.options import (
     world_of,
     world_options,
 )
-from roadgpt.cli.rows import Row, row_of, unreadable
+from roadgpt.cli.roads import blueprint_of, each_road
+from roadgpt.cli.rows import Row, row_of
 from roadgpt.cli.screen import Screen
-from roadgpt.errors import PartError, UsageError
 
 if TYPE_CHECKING:
     from roadgpt.road import World
@@ -46,26 +48,20 @@ def command(
 
     world = world_of(rest)
     setup = Setup(**rest)
-    roll_call(setup)  # a driver that does not exist is told of before any road is looked at
-    with Screen(len(files), as_json, quiet, verbose) as screen:
-        for file in files:
-            try:
-                screen.row(_driven(screen, file, seed, world, setup))
-            except PartError:
-                raise
-            except UsageError as error:
-                screen.row(unreadable(file, error))
-        screen.close()
+    with redirect_stdout(sys.stderr):
+        roll_call(setup)  # a driver that does not exist is told of before any road is looked at
+    screen = Screen(len(files), as_json, quiet, verbose)
+    each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
 
 
 def _driven(screen: Screen, file: str, seed: int, world: "World", setup: "Setup") -> Row:
-    from roadgpt.road import read_blueprint
     from roadgpt.run import prove
 
-    blueprint, remarks = read_blueprint(file)
+    blueprint, remarks = blueprint_of(file)
     for remark in remarks:
         screen.say(f"{file}: {remark}")
-    run = prove(blueprint, seed, world, setup)
+    with redirect_stdout(sys.stderr):  # what a user's driver prints is no row
+        run = prove(blueprint, seed, world, setup)
     screen.detail(f"{file}: {run.description}")
     return row_of(run, file)

@@ -1,11 +1,13 @@
 """``roadgpt plot``: pictures of roads that exist."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 
 from roadgpt.cli.options import axes_option, files_argument, folder, setup_options, world_of, world_options
+from roadgpt.cli.roads import blueprint_of
 from roadgpt.errors import UsageError
 
 UNREADABLE = 2  # exit status
@@ -26,7 +28,8 @@ def command(
     """Draw roads that exist: from above, height over distance, curvature and grade.
 
     ROAD.json is a RoadGPT design, an SBFT test, a list of points [x, y] or [x, y, z], or the folder of a run,
-    whose drive is drawn as well. Prints the names of the pictures.
+    whose drive is drawn as well. The pictures of straight.json go into a new folder OUT/straight, or
+    OUT/straight-2 and so on where that exists. Prints the names of the pictures.
     """
     from roadgpt.report import draw
 
@@ -48,16 +51,16 @@ def command(
 
 def _run_of(file: str, world: Any, geometry: Any) -> Any:
     """The Run in a folder, or one made of a road that nobody drove."""
-    from roadgpt.road import read_blueprint
     from roadgpt.run import Setup, prove, read_run
     from roadgpt.run.folder import is_run
 
     if is_run(Path(file)):
         return read_run(file)
-    blueprint, remarks = read_blueprint(file)
+    blueprint, remarks = blueprint_of(file)
     for remark in remarks:
         click.echo(f"roadgpt: {file}: {remark}", err=True)
-    return prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
+    run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
+    return replace(run, source=Path(file).name)
 
 
 def _place(out: Path, file: Path) -> Path:

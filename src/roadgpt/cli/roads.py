@@ -1,0 +1,46 @@
+"""Roads that exist, one file after the other: one that cannot be read does not stop the others."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadgpt.cli.rows import Row, unreadable
+from roadgpt.cli.screen import Screen
+from roadgpt.errors import PartError, UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.road import Design, Road
+
+
+def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
+    """What a file holds, a Design or a Road, and remarks on what had to be settled.
+
+    Raises:
+        UsageError: it holds no road, or is the folder of a whole campaign.
+    """
+    from roadgpt.road import read_blueprint
+    from roadgpt.run.card import CARD
+
+    if Path(file, CARD).is_file():
+        raise UsageError(f"{file} is the folder of a whole campaign; give its roads: {Path(file, 'runs')}/*")
+    return read_blueprint(file)
+
+
+def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) -> None:
+    """Look at every file, and show the rows with their table.
+
+    Raises:
+        UsageError: there is one file only, and it cannot be used; that needs no table.
+    """
+    with screen:
+        for file in files:
+            try:
+                row = look(file)
+            except PartError:
+                raise
+            except UsageError as error:
+                if len(files) == 1 and not screen.as_json:
+                    raise
+                row = unreadable(file, error)
+            screen.row(row)
+        screen.close()

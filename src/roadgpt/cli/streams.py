@@ -1,0 +1,89 @@
+"""Standard output: what it cannot take is told in a sentence, and what others print goes past it."""
+
+import io
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import redirect_stdout
+from typing import TypeVar
+
+Step = TypeVar("Step")
+LETTERS = "backslashreplace"  # letters that the other end has not are written as escapes
+
+
+class OutputError(Exception):
+    """Standard output takes nothing. No OSError, which click and others would take for theirs."""
+
+    def __init__(self, cause: OSError) -> None:
+        self.is_reader_gone = isinstance(cause, BrokenPipeError)
+        super().__init__(
+            f"cannot write to standard output ({cause.strerror or cause}); send it where there is room"
+        )
+
+
+class _Output(io.TextIOWrapper):
+    """Standard output that says so when it is at fault."""
+
+    def write(self, text: str) -> int:
+        try:
+            return super().write(text)
+        except OSError as error:
+            raise OutputError(error) from error
+
+    def flush(self) -> None:
+        try:
+            super().flush()
+        except OSError as error:
+            raise OutputError(error) from error
+
+
+def make_ready() -> None:
+    """Let both outputs take every letter, and standard output say when it takes none.
+
+    One that was closed before the program began is there afterwards, and takes nothing.
+    """
+    if sys.stdin is None:
+        sys.stdin = os.fdopen(_nothing(0, os.O_RDONLY))
+    if sys.stdout is None:
+        sys.stdout = os.fdopen(_nothing(1, os.O_RDONLY), "w")  # writing fails, as to one that is closed
+    if sys.stderr is None:
+        sys.stderr = os.fdopen(_nothing(2, os.O_WRONLY), "w")
+    if isinstance(sys.stderr, io.TextIOWrapper):
+        sys.stderr.reconfigure(errors=LETTERS)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        encoding, is_terminal = sys.stdout.encoding, sys.stdout.line_buffering
+        sys.stdout = _Output(sys.stdout.detach(), encoding, LETTERS, line_buffering=is_terminal)
+
+
+def _nothing(number: int, mode: int) -> int:
+    """The null device under a file number, so that no other file gets this number."""
+    opened = os.open(os.devnull, mode)
+    if opened != number:
+        os.dup2(opened, number)
+        os.close(opened)
+    return number
+
+
+def drop_output() -> None:
+    """Python flushes standard output once more at its end; let it flush into nothing."""
+    nothing = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nothing, sys.stdout.fileno())
+    os.close(nothing)
+
+
+def is_coloured() -> bool:
+    """Does whoever looks at a terminal want colours?"""
+    return not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def apart(steps: Iterable[Step]) -> Iterator[Step]:
+    """The same steps; what is printed while one is made, by a user's driver for example, goes to standard
+    error, so that standard output holds rows and nothing else."""
+    made = iter(steps)
+    while True:
+        with redirect_stdout(sys.stderr):
+            try:
+                step = next(made)
+            except StopIteration:
+                return
+        yield step
