@@ -111,7 +111,9 @@ def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
         sides = {"left": outline.left, "right": outline.right}
         asked = " and ".join(f"{span} to the {side}" for side, span in sides.items() if span != Range())
         raise DesignError(f"no road has turns {outline.turns} in all, {asked}; change one of these numbers")
-    if plain:
+    # of a road of which only ups and downs are said, they are what it is to show
+    only_slopes = bool(outline.groups) and all(group.feature.grade for group in outline.groups)
+    if plain or only_slopes:
         return low
     if low <= 1:
         some = 1 + int(rng.choice(len(USUAL), p=USUAL))
