@@ -15,6 +15,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation, Text
 
+from roadgpt.check import Finding
 from roadgpt.report import birds_eye, draw, drawing, height_profile, strip
 from roadgpt.report.canvas import Header
 from roadgpt.report.lettering import fitted, inches
@@ -85,6 +86,89 @@ def test_every_picture_tells_words_outcome_and_seed(picture, passed: Run, failed
         assert run.outcome in said
         assert run.description in said
         assert f"seed {run.request.seed}, road {run.index}" in said
+
+
+def test_a_road_from_a_file_is_called_by_its_file_and_has_no_seed() -> None:
+    run = replace(prove(design(), setup=Setup(drives=False)), source="my_road.json")
+    for picture in (birds_eye, height_profile, strip):
+        said = flat(picture(run))
+        assert "my_road.json" in said
+        assert "seed" not in said
+
+
+def objected(at: tuple[float, ...], sentence: str) -> Run:
+    """A road whose promises are broken at these stations."""
+    run = named(prove(design(), 3, setup=Setup(drives=False)))
+    assert run.road is not None
+    places = [run.road.at(s) for s in at]
+    findings = tuple(
+        Finding("promises", sentence, s, float(x), float(y)) for s, (x, y, _) in zip(at, places, strict=True)
+    )
+    return replace(run, findings=findings, outcome="INVALID", description=sentence)
+
+
+@pytest.mark.parametrize("at", [(0.0,), (0.0, 208.0), (30.0, 60.0, 100.0)])
+def test_a_broken_promise_is_told_in_its_own_words_beside_all_lines(at: tuple[float, ...]) -> None:
+    sentence = "turn 1 has a radius of 93.1 m, asked for 0 to 30 m"
+    figure = birds_eye(objected(at, sentence))
+    axes = figure.axes[0]
+    notes = [note for note in axes.texts if isinstance(note, Annotation)]
+    said = [" ".join(note.get_text().split()) for note in notes]
+    assert said.count(sentence) == len(at)
+    assert not any("promises" in text for text in texts(figure))
+    figure.canvas.draw()
+    boxes = [Text.get_window_extent(note).padded(-2) for note in notes]
+    for i, note in enumerate(notes):
+        ends = axes.transData.transform([note.xy, note.xyann])
+        line = np.linspace(*ends, 200)
+        for j, box in enumerate(boxes):
+            assert i == j or not any(box.contains(x, y) for x, y in line), (said[i], said[j])
+    for picture in (height_profile, strip):
+        assert sentence in texts(picture(objected(at, sentence)))
+
+
+def test_the_border_s_name_is_not_written_under_the_road() -> None:
+    points = [[20, 20], [100, 8], [180, -6], [230, -3]]
+    run = prove(Road.through(points), setup=Setup(drives=False))
+    figure = birds_eye(run)
+    axes = figure.axes[0]
+    (border,) = [text for text in axes.texts if text.get_text() == "border of the map"]
+    figure.canvas.draw()
+    box = border.get_window_extent()
+    assert run.road is not None
+    half = run.world.lane_width + run.world.verge
+    across = [run.road.at(np.linspace(0, run.length, 400), t)[:, :2] for t in np.linspace(-half, half, 15)]
+    for x, y in axes.transData.transform(np.concatenate(across)):
+        assert not box.contains(x, y)
+    assert not any(box.overlaps(Text.get_window_extent(t)) for t in axes.texts if t is not border)
+
+
+def test_every_climb_and_fall_has_its_slope() -> None:
+    hills = [Segment(distance=36, direction="straight", incline=8 * (-1) ** i) for i in range(6)]
+    hilly = Design(starting_point=(5, 60, 3), theta=0, segments=tuple(hills))
+    axes = height_profile(prove(hilly, setup=Setup(drives=False))).axes[0]
+    slopes = sorted(
+        (text.get_position()[0], text.get_text()[0]) for text in axes.texts if "%" in text.get_text()
+    )
+    assert [sign for _, sign in slopes] == ["+", "−"] * 3
+    assert all(36 * i <= x <= 36 * (i + 1) for i, (x, _) in enumerate(slopes))
+
+
+def test_a_level_road_can_be_seen_on_the_thesis_axes_and_its_names_lie_apart() -> None:
+    run = prove(Road.through([[60, 60], [75, 60], [85, 60], [95, 65], [100, 85], [100, 110]]))
+    assert run.findings
+    figure = height_profile(run, "thesis")
+    axes = figure.axes[0]
+    figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3].astype(int)  # type: ignore[attr-defined]
+    x, y = (int(v) for v in axes.transData.transform((30, 0)))
+    column = pixels[pixels.shape[0] - y - 4 : pixels.shape[0] - y + 4, x]
+    assert (
+        np.abs(column - [0x4B, 0x55, 0x63]).max(axis=1) < 40
+    ).sum() >= 4  # pixels: half of it would be two
+    boxes = [Text.get_window_extent(text) for text in axes.texts]
+    assert len(boxes) >= 2
+    assert not any(box.overlaps(other) for i, box in enumerate(boxes) for other in boxes[:i])
 
 
 def test_axes_have_names_and_units(passed: Run) -> None:

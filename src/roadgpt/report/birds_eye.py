@@ -1,6 +1,6 @@
 """The bird's-eye view: north is up, metres are metres."""
 
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib import colormaps
@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.ticker import MultipleLocator
 
+from roadgpt.report.border import name_border
 from roadgpt.report.canvas import HALO, INK, SOFT, VERMILLION, Header, add_axes, new_figure
 from roadgpt.report.labels import Labels
 from roadgpt.report.places import Place, places_of
@@ -24,7 +25,6 @@ THESIS = Frame(0.0, 220.0, 0.0, 220.0)
 SIDE = 6.6  # inches, the longer side of what shows the road
 LEFT, BOTTOM, BAR = 0.75, 0.62, 1.15  # inches
 MARGIN, LEAST = 16.0, 60.0  # m, around the road and across the picture
-BORDER = "border of the map"
 SLOWEST = 10.0  # km/h; the colours span at least so much
 
 # plasma without its lightest end, which asphalt would swallow
@@ -44,11 +44,14 @@ def birds_eye(run: Run, scale: Scale = "equal") -> Figure:
     axes = add_axes(figure, LEFT, BOTTOM, right, header.height)
     header.write(figure)
     _ground(axes, frame, world.map_size)
+    border = name_border(axes, frame, world.map_size, centre, frame.width / across)
     draw_road(axes, road, world, frame.width / across)
     draw_ends(axes, road, world)
     if run.drive is not None:
         _path(figure, axes, run)
     labels = Labels(axes, frame, frame.width / across, centre, world.lane_width + 1.0)
+    if border is not None:
+        labels.keep_clear_of(border)
     places = places_of(run)
     for place in places:
         _mark(axes, run, place)
@@ -87,23 +90,6 @@ def _ground(axes: Axes, frame: Frame, size: float) -> None:
         axis.set_major_locator(MultipleLocator(step))
     axes.grid(color="white", lw=0.8, zorder=0.5)
     axes.set_axisbelow(True)
-    _name_border(axes, frame, size)
-
-
-def _name_border(axes: Axes, frame: Frame, size: float) -> None:
-    """Say 'border of the map' outside a border that is in view, where there is room for it."""
-    gap = frame.width * 0.012
-    room = 4 * gap
-    style: dict[str, Any] = {"size": 8.5, "color": SOFT, "zorder": 0.7}
-    x, y = (frame.x0 + frame.x1) / 2, (frame.y0 + frame.y1) / 2
-    if frame.y0 + room < 0:
-        axes.text(x, -gap, BORDER, ha="center", va="top", **style)
-    elif frame.y1 - room > size:
-        axes.text(x, size + gap, BORDER, ha="center", va="bottom", **style)
-    elif frame.x0 + room < 0:
-        axes.text(-gap, y, BORDER, ha="right", va="center", rotation=90, **style)
-    elif frame.x1 - room > size:
-        axes.text(size + gap, y, BORDER, ha="left", va="center", rotation=90, **style)
 
 
 def _path(figure: Figure, axes: Axes, run: Run) -> None:

@@ -79,7 +79,7 @@ class Header:
     def of(cls, run: Run, width: float) -> "Header":
         """The header of a picture so many inches wide."""
         room = width - 2 * MARGIN
-        title = fitted(run.words or "a road that was given", room, TITLE, True, MOST_LINES)
+        title = fitted(run.words or run.source or "a road that was given", room, TITLE, True, MOST_LINES)
         return cls(run, width, title, fitted(run.description, room - _badge(run), TEXT, lines=MOST_LINES))
 
     @property
@@ -113,9 +113,10 @@ def _badge(run: Run) -> float:
 
 
 def origin(run: Run) -> str:
-    """Seed, number and length of the road, and who drove it."""
+    """Seed and number of the road, where it was drawn; its length; who drove it."""
     seed = f"seed {run.request.seed}"
-    said = [f"{seed}, road {run.index}" if run.words else seed, f"{run.length:.0f} m"]
+    said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []
+    said.append(f"{run.length:.0f} m")
     if run.drive is not None:
         said.append(f"driven by {run.drive.driver} in {run.drive.simulator}")
     return "   ·   ".join(said)

@@ -28,7 +28,9 @@ LOWEST = 1.45  # inches, of the axes, however flat the road
 THESIS_HEIGHT = 3.6  # inches
 THESIS_X, THESIS_Z = 200.0, 20.0  # m
 SAME_GRADE = 0.004  # slopes within this are one stretch
-SHORTEST = 0.55  # inches, of a stretch that is worth a label
+SHORTEST = 0.55  # inches, of a stretch that is worth a label, and between labels
+LEAST = 0.005  # ratio: what rises or falls less neither climbs nor falls
+OVER_THE_FRAME = 3  # pixels by which a line on the border of the axes may reach over it
 EARTH, SURFACE = "#dcd9c3", "#4b5563"
 
 
@@ -59,14 +61,18 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     axes.set_axisbelow(True)
     low, high = axes.get_ylim()
     axes.fill_between(s, z, low, color=EARTH, lw=0)
-    axes.plot(s, z, color=SURFACE, lw=2.4, solid_capstyle="round")
+    # on the thesis' axes a level road lies on the frame: over it, it is seen
+    (surface,) = axes.plot(s, z, color=SURFACE, lw=2.4, solid_capstyle="round", zorder=4)
+    surface.set_clip_box(axes.bbox.padded(OVER_THE_FRAME))
     _slopes(axes, run, s, z)
     places = places_of(run)
     for place in places:
         at = float(np.interp(place.s, s, z))
         axes.plot([place.s, place.s], [low, high], color=VERMILLION, lw=1, ls=(0, (4, 3)), zorder=3)
-        axes.plot(place.s, at, "X", ms=10, mfc=VERMILLION, mec="white", mew=1.2, zorder=6)
-    name_places(axes, places, axes.get_xlim()[1])
+        (cross,) = axes.plot(place.s, at, "X", ms=10, mfc=VERMILLION, mec="white", mew=1.2, zorder=6)
+        cross.set_clip_box(axes.bbox.padded(2 * OVER_THE_FRAME))
+    is_low = bool(places) and float(np.interp(places[0].s, s, z)) < (low + high) / 2
+    name_places(axes, places, axes.get_xlim()[1], at_top=scale == "thesis" and is_low)
     return figure
 
 
@@ -89,24 +95,38 @@ def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
 
 
 def _slopes(axes: Axes, run: Run, s: Array, z: Array) -> None:
-    """The slope of every stretch of one slope, written over it, in percent."""
+    """Slopes in percent: of every stretch of one slope, and the steepest of every other climb or fall."""
     assert run.road is not None
     grade = run.road.grade(s)
-    breaks = np.flatnonzero(np.abs(np.diff(grade)) > SAME_GRADE * (s[1] - s[0]) / 2)
-    edges = np.r_[0, breaks + 1, len(s) - 1]
     left, right = axes.get_xlim()
     shortest = SHORTEST * (right - left) / (WIDTH - LEFT - RIGHT)
     lift = 0.13 * _metres_per_inch(axes)
-    for a, b in pairwise(edges):
-        middle = (s[a] + s[b]) / 2
-        if s[b] - s[a] < shortest or not left <= middle <= right:
+    for middle, slope in _told_slopes(s, grade, shortest):
+        if not left <= middle <= right - shortest / 2:
             continue
-        slope = float(grade[(a + b) // 2])
         text = "level" if abs(slope) < 5e-4 else f"{slope:+.1%}".replace("%", " %").replace("-", "−")
         axes.text(
             middle, np.interp(middle, s, z) + lift, text, ha="center", va="bottom", size=9, color=INK,
             path_effects=HALO,
         )  # fmt: skip
+
+
+def _told_slopes(s: Array, grade: Array, shortest: float) -> list[tuple[float, float]]:
+    """Where a slope is told, metres, and which."""
+    breaks = np.flatnonzero(np.abs(np.diff(grade)) > SAME_GRADE * (s[1] - s[0]) / 2)
+    told = [
+        ((s[a] + s[b]) / 2, float(grade[(a + b) // 2]))
+        for a, b in pairwise(np.r_[0, breaks + 1, len(s) - 1])
+        if s[b] - s[a] >= shortest
+    ]
+    way = np.where(np.abs(grade) < LEAST, 0, np.sign(grade))
+    for a, b in pairwise(np.r_[0, np.flatnonzero(np.diff(way)) + 1, len(s) - 1]):
+        steepest = a + int(np.abs(grade[a : b + 1]).argmax())
+        place = float(np.clip(s[steepest], s[a] + shortest / 4, s[b] - shortest / 4))
+        is_alone = not any(s[a] <= middle <= s[b] or abs(place - middle) < shortest for middle, _ in told)
+        if way[a] and s[b] - s[a] >= shortest / 2 and is_alone:
+            told.append((place, float(grade[steepest])))
+    return told
 
 
 def _metres_per_inch(axes: Axes) -> float:

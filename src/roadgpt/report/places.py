@@ -1,15 +1,20 @@
 """The places of a Run that a picture marks: where the car left its lane, or what a rule objects to."""
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from roadgpt.check import Finding
 from roadgpt.report.canvas import HALO, VERMILLION
+from roadgpt.report.lettering import fitted, plain
 from roadgpt.run import Run
 
 MOST = 3  # findings; more would cover the road
+LONGEST = 30  # letters of a line of a label
+SIZE, STEP = 9.5, 0.18  # points; inches from line to line
 WORDS = {
     "out of lane": "left its lane",
     "fell": "fell off the road",
@@ -48,19 +53,34 @@ def places_of(run: Run) -> list[Place]:
     for finding in run.findings:
         where = _where(run, finding.s, finding.x, finding.y)
         if where is not None:
-            text = RULES.get(finding.rule, finding.rule.replace("_", " "))
-            places.append(Place(*where, text))
+            places.append(Place(*where, _said(finding)))
     return places[:MOST]
 
 
-def name_places(axes: Axes, places: Sequence[Place], length: float) -> None:
-    """Name places beside their stations at the foot of axes whose x is the distance along the road."""
+def _said(finding: Finding) -> str:
+    """A rule in two words; what a promise asked for in its own, since there are so many."""
+    if finding.rule == "promises":
+        return textwrap.fill(plain(finding.sentence), LONGEST)
+    return RULES.get(finding.rule, finding.rule.replace("_", " "))
+
+
+def name_places(axes: Axes, places: Sequence[Place], length: float, at_top: bool = False) -> None:
+    """Name places beside their stations at the foot, or at the top, of axes whose x is the distance along
+    the road."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    shape = axes.get_position()
+    wide, high = figure.get_size_inches() * (shape.width, shape.height)
     for number, place in enumerate(places):
         is_late = place.s > length / 2
+        share = place.s / length
+        text = fitted(place.text, wide * max(share, 1 - share) - 0.2, SIZE)
+        away = (0.07 + STEP * number + (0.17 if at_top else 0)) / high
         axes.annotate(
-            place.text.replace("\n", " "), (place.s, 0.05 + 0.12 * number), (-5 if is_late else 5, 0),
-            xycoords=axes.get_xaxis_transform(), textcoords="offset points", size=9.5, color=VERMILLION,
-            ha="right" if is_late else "left", va="bottom", path_effects=HALO, zorder=8, annotation_clip=True,
+            text, (place.s, 1 - away if at_top else away), (-5 if is_late else 5, 0),
+            xycoords=axes.get_xaxis_transform(), textcoords="offset points", size=SIZE, color=VERMILLION,
+            ha="right" if is_late else "left", va="top" if at_top else "bottom", path_effects=HALO, zorder=8,
+            annotation_clip=True,
         )  # fmt: skip
 
 
