@@ -50,23 +50,45 @@ def test_steep_inclines_and_wide_turns_are_kept_and_remarked_on() -> None:
     assert any("-17 %" in r for r in remarks)
 
 
+def test_a_gap_in_the_numbers_is_remarked_on() -> None:
+    data = good()
+    data["road_segment7"] = data.pop("road_segment3")
+    design, remarks = read_design(data)
+    assert [s.distance for s in design.segments] == [50, 40, 30]
+    assert remarks[0].startswith("segments are numbered 1, 2, 7 and not 1, 2, 3")
+
+
+def test_a_radius_that_cannot_be_is_remarked_on() -> None:
+    data = good()
+    data["road_segment1"] = {**SEGMENT, "distance": 20, "turn_degrees": 60, "radius": 30}  # needs 31.4 m
+    remarks = read_design(data)[1]
+    assert "60 degrees at a radius of 30 m do not fit into 20 m; the distance wins" in remarks[0]
+    data["road_segment1"] = {**SEGMENT, "distance": 40, "turn_degrees": 60, "radius": 30}
+    assert not any("radius" in remark for remark in read_design(data)[1])
+
+
 SEGMENT = {"distance": 50, "direction": "left", "incline": 5, "turn_degrees": 40}
 
 
 @pytest.mark.parametrize(
     ("change", "hint"),
     [
-        ({"theta": None}, "theta"),
+        ({"theta": None}, "theta: is no number; give one"),
         ({"theta": "north"}, "theta"),
         ({"theta": float("nan")}, "theta"),
         ({"starting_point": [1, 2]}, "starting_point"),
         ({"starting_point": [1, 2, float("inf")]}, "starting_point"),
-        ({"road_segment1": {**SEGMENT, "distance": 0}}, "segment 1"),
+        (
+            {"road_segment1": {**SEGMENT, "distance": 0}},
+            "segment 1 .*distance: is out of range; give 0.001 or more",
+        ),
+        ({"road_segment1": {**SEGMENT, "incline": 400}}, "incline: is out of range; give 100 or less"),
+        ({"road_segment1": {"direction": "left"}}, "distance: is missing; add it"),
         ({"road_segment1": {**SEGMENT, "distance": 1e-10}}, "segment 1"),
         ({"road_segment1": {**SEGMENT, "distance": "far"}}, "distance"),
-        ({"road_segment1": {**SEGMENT, "direction": "up"}}, "direction"),
+        ({"road_segment1": {**SEGMENT, "direction": "up"}}, "direction: is unknown; give 'left', 'right' or"),
         ({"road_segment1": {**SEGMENT, "incline": float("nan")}}, "incline"),
-        ({"road_segment1": {**SEGMENT, "colour": "red"}}, "colour"),
+        ({"road_segment1": {**SEGMENT, "colour": "red"}}, "colour: is no field of a design; remove it"),
         ({"road_segment1": [1, 2, 3]}, "segment 1"),
         ({"segment1": SEGMENT}, "nobody knows"),
     ],

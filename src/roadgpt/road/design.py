@@ -83,7 +83,14 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
     if not isinstance(data, Mapping):
         raise UsageError("a design is a JSON object with starting_point, theta and road_segment1, ...")
     segments, remarks = [], []
-    for number, raw in _numbered(data):
+    numbered = _numbered(data)
+    numbers = [number for number, _ in numbered]
+    if numbers != [*range(1, len(numbers) + 1)]:
+        told = ", ".join([*map(str, numbers[:12]), *(["..."] if len(numbers) > 12 else [])])
+        remarks.append(
+            f"segments are numbered {told} and not 1, 2, 3, ...; they follow each other in this order"
+        )
+    for number, raw in numbered:
         segment, said = _segment(number, raw)
         segments.append(segment)
         remarks += said
@@ -135,11 +142,36 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
         )
     if abs(segment.incline) > MAX_INCLINE:
         remarks.append(f"segment {number}: incline {segment.incline:g} % is beyond {MAX_INCLINE:g} %")
+    if segment.radius and math.radians(abs(turn)) * segment.radius > segment.distance:
+        remarks.append(
+            f"segment {number}: {abs(turn):g} degrees at a radius of {segment.radius:g} m do not fit into "
+            f"{segment.distance:g} m; the distance wins, and the turn is tighter"
+        )
     return segment.model_copy(update={"turn_degrees": turn}), remarks
 
 
 def _first(error: ValidationError) -> str:
-    """The first complaint, as 'field: what is wrong'."""
+    """The first complaint, as 'field: what to do'."""
     problem = error.errors()[0]
     place = ".".join(str(part) for part in problem["loc"])
-    return f"{place}: {problem['msg']}" if place else str(problem["msg"])
+    said = _advice(problem["type"], problem.get("ctx", {})) or str(problem["msg"])
+    return f"{place}: {said}" if place else said
+
+
+def _advice(kind: str, bounds: Mapping[str, Any]) -> str | None:
+    """What to do about a complaint of pydantic's; None where its own words will do."""
+    known = {
+        "missing": "is missing; add it",
+        "extra_forbidden": "is no field of a design; remove it",
+        "finite_number": "is no number; give a finite one",
+        "float_type": "is no number; give one",
+        "float_parsing": "is no number; give one",
+        "model_type": "give an object with distance, direction, incline, turn_degrees",
+    }
+    limits = {"greater_than_equal": ("ge", "or more"), "less_than_equal": ("le", "or less")}
+    if kind in limits:
+        name, which = limits[kind]
+        return f"is out of range; give {bounds[name]:g} {which}"
+    if kind == "literal_error":
+        return f"is unknown; give {bounds['expected']}"
+    return known.get(kind)
