@@ -122,3 +122,10 @@ def test_the_limits_of_another_world_count() -> None:
         read("a 10 % climb", max_grade=0.06)
     with pytest.raises(BriefError, match="ask for 15 percent or less"):
         read("a 20 % climb", max_grade=0.3)  # designs have no more
+
+
+def test_changes_of_slope_that_are_counted_hold_beside_a_crest() -> None:
+    brief = GrammarReader().read(
+        "a road with a left turn, then a crest, then a turn; at least 2 changes of slope"
+    )
+    assert brief.hills == at_least(2)

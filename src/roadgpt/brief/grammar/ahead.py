@@ -89,6 +89,8 @@ def hills_of_a_list(units: Units) -> None:
         for slope in _SLOPES.get(thing.kind or "", (thing.slope,)):
             changes += slope in ("up", "down") and before in ("up", "down") and slope != before
             before = slope or before
+    if units.hills_are_counted:
+        return
     if hills and hills.lo and not hills.exact and 1 <= changes < hills.lo:
         units.wishes.hills = None
 

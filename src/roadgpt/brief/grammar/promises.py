@@ -107,6 +107,7 @@ class _Builder:
             self._more(phrase.more)
         if phrase.changes and not phrase.negated:
             wishes.hills, phrase.count = phrase.count or at_least(1), None
+            self.units.hills_are_counted = True
         if phrase.mountain and not phrase.negated:
             wishes.steepest = wishes.steepest or at_least(MOUNTAIN.lo)
         if phrase.highway:

@@ -43,6 +43,8 @@ class Units:
     wishes: Wishes = field(default_factory=Wishes)
     mostly: Side | None = None
     """'mostly left turns': how many that are is known at the end."""
+    hills_are_counted: bool = False
+    """'at least 2 changes of slope', not just 'hilly'."""
     lists: list[tuple[Phrase, int]] = field(default_factory=list)
     """Things that are spelled out: 'three turns: left, right, left', and how many stood before that."""
 
