@@ -75,6 +75,49 @@ def test_the_python_in_the_readme_runs() -> None:
     assert done.stdout.strip()
 
 
+def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
+    text = (ROOT / "docs" / "reference" / "limits.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(-[\w-]+)`[^|]*\| (above )?([\d,]+) \| ([\d,]+) \|", text, flags=re.MULTILINE)
+    run = app.get_command(click.Context(app), "run")
+    assert run is not None
+    assert len(rows) == 7
+
+    def takes(option: str, value: int) -> bool:
+        try:
+            run.make_context("run", ["a road", f"{option}", str(value)], click.Context(app))
+        except click.BadParameter:
+            return False
+        return True
+
+    for option, above, *bounds in rows:
+        low, high = (int(bound.replace(",", "")) for bound in bounds)
+        assert [takes(option, value) for value in (low - 1, low, high, high + 1)] == [
+            False, not above, True, False
+        ], option  # fmt: skip
+
+
+def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
+    from roadgpt.brief.readers.grammar import MOST_CHARACTERS
+    from roadgpt.drive import seat
+    from roadgpt.report.overview import MOST_PAGES, PER_PAGE
+    from roadgpt.road.design import MAX_SEGMENTS
+    from roadgpt.road.source import LARGEST
+    from roadgpt.run import MOST_ROUNDS
+    from roadgpt.run.campaign import GIVE_UP
+
+    cli_app = importlib.import_module("roadgpt.cli.app")
+    text = (ROOT / "docs" / "reference" / "limits.md").read_text(encoding="utf-8")
+    found = [row.replace(",", "") for row in re.findall(r"^\| [^|]+ \| ([\d,; ]+) \|$", text, re.MULTILINE)]
+    seconds = [seat.BEFORE_START, seat.BEFORE_START, seat.ONE_ANSWER, seat.WHOLE_DRIVE]
+    said = "; ".join(f"{limit:g}" for limit in seconds)
+    counts = [MOST_CHARACTERS, LARGEST, MAX_SEGMENTS, MOST_ROUNDS, GIVE_UP, MOST_PAGES * PER_PAGE]
+    assert found == [*map(str, counts), said]
+    guide = (ROOT / "docs" / "how-to" / "own-driver.md").read_text(encoding="utf-8")
+    assert re.findall(r"\| (\d+) \|$", guide, re.MULTILINE) == said.split("; ")
+    statuses = {int(status) for status in re.findall(r"^\| (\d+) \| [^\d]", text, re.MULTILINE)}
+    assert statuses == {0, 2, 3, cli_app.REFUSED, cli_app.INTERNAL, cli_app.INTERRUPTED, cli_app.NO_READER}
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_to_pages_that_exist(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):

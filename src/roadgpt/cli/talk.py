@@ -18,11 +18,13 @@ HELLO = """Describe a road, for example: an uphill road with 3 turns
 Leave with 'exit' or an empty line, ask with 'help'; Ctrl-C stops the roads that are being made."""
 
 EXPLAINED = """\
-Say in plain words how the road goes: how many turns, which way, how sharp, how long, how steep. For example:
+Say in plain words how the road goes: how many turns, which way, how sharp,
+how long, how steep. For example:
   two hairpins, then a long straight
   a winding road downhill, 300 m long, with 5 turns, the last one to the left
   a flat road with four sharp left turns
-Then say how many roads you want. What was not understood is listed before the first road is made.
+Then say how many roads you want. What was not understood is listed before the
+first road is made.
 Here all options have their usual values. Options belong to 'roadgpt run', for example:
   roadgpt run "a winding road downhill" -n 20 --seed 7 --friction 0.6
 'roadgpt run --help' lists them."""

@@ -121,8 +121,9 @@ def _told_slopes(s: Array, grade: Array, shortest: float) -> list[tuple[float, f
     ]
     way = np.where(np.abs(grade) < LEAST, 0, np.sign(grade))
     for a, b in pairwise(np.r_[0, np.flatnonzero(np.diff(way)) + 1, len(s) - 1]):
+        room = min(shortest, s[b] - s[a]) / 2
         steepest = a + int(np.abs(grade[a : b + 1]).argmax())
-        place = float(np.clip(s[steepest], s[a] + shortest / 4, s[b] - shortest / 4))
+        place = float(np.clip(s[steepest], s[a] + room, s[b] - room))
         is_alone = not any(s[a] <= middle <= s[b] or abs(place - middle) < shortest for middle, _ in told)
         if way[a] and s[b] - s[a] >= shortest / 2 and is_alone:
             told.append((place, float(grade[steepest])))
