@@ -3,7 +3,18 @@
 import pytest
 from hypothesis import assume, given, settings
 
-from roadgpt.brief import Brief, Clause, at_least, between, check, exactly, normal, sentence
+from roadgpt.brief import (
+    Amount,
+    Brief,
+    Clause,
+    at_least,
+    at_most,
+    between,
+    check,
+    exactly,
+    normal,
+    sentence,
+)
 from roadgpt.brief.normal import SINGLE, STRAIGHT
 from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.errors import BriefError
@@ -145,3 +156,23 @@ def test_same_meaning_same_normal_form(one: Brief, other: Brief) -> None:
 )
 def test_other_meaning_other_normal_form(one: Brief, other: Brief) -> None:
     assert normal(one) != normal(other)
+
+
+@pytest.mark.parametrize(
+    ("amount", "said"),
+    [
+        (at_most(1), "at most 1 right turn in all"),
+        (at_least(1), "at least 1 right turn in all"),
+        (at_most(2), "at most 2 right turns in all"),
+        (between(1, 2), "1 to 2 right turns in all"),
+    ],
+)
+def test_one_of_a_thing_is_singular(amount: Amount, said: str) -> None:
+    assert said in sentence(Brief(turns=exactly(3), right=amount))
+
+
+def test_words_that_are_refused_are_cut_with_a_sign() -> None:
+    with pytest.raises(BriefError, match=r"^'the quick brown fox jumps over the lazy \.\.\.' does not"):
+        GrammarReader().read("the quick brown fox jumps over the lazy dog and runs from the other animals")
+    with pytest.raises(BriefError, match=r"^'the quick brown fox' does not describe"):
+        GrammarReader().read("the quick brown fox")

@@ -160,9 +160,8 @@ def _count(amount: Amount) -> str:
 
 
 def _plural(noun: str, amount: Amount) -> str:
-    return (
-        noun if amount.lo == 1 and amount.hi in (1, None) else noun + ("es" if noun.endswith("ch") else "s")
-    )
+    is_one = (amount.lo, amount.hi) in ((1, 1), (1, None), (None, 1))
+    return noun if is_one else noun + ("es" if noun.endswith("ch") else "s")
 
 
 def _article(text: str) -> str:

@@ -79,7 +79,8 @@ def _about_a_road(words: str, found: list[Token], lexemes: list[Lexeme], share: 
     likely = names & LIKELY and len(strange) <= LIKELY_SHARE * len(said)
     if share <= SURE_SHARE and (names & SURE or likely):
         return
-    start = " ".join(words.split())[:40]
+    start = " ".join(words.split())
+    start = start if len(start) <= 40 else f"{start[:40].rstrip()} ..."
     if "half" in said or names & {"half1", "half2"}:
         raise BriefError(
             f"'{start}' has halves, which are not understood; give each part a length, as in"
