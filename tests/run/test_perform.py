@@ -6,9 +6,9 @@ import pytest
 
 from roadgpt.brief.model import Brief
 from roadgpt.drive.custom import load_in_time
-from roadgpt.errors import DesignError, DriverError, PartError, UsageError
+from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
 from roadgpt.road import Road, World
-from roadgpt.run import MOST_ROUNDS, Run, Setup, campaign, perform, prove, read_run, seed_of
+from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, campaign, perform, prove, read_run, seed_of
 from run.doubles import TOO_STEEP, Designer, Learner, Stubborn, Unable, a_design, put_on_shelf
 
 BRIEF = Brief(words="two straights and a turn")
@@ -222,3 +222,9 @@ def test_a_drive_that_goes_on_after_a_departure_tells_how_it_ended(tmp_path: Pat
     assert run.description == f"{run.verdict.description}, then fell after {run.drive['s'][-1]:.0f} m"
     ended = prove(run.road, world=World(verge=0), setup=setup.model_copy(update={"keep_driving": False}))
     assert ended.description == ended.verdict.description  # type: ignore[union-attr]
+
+
+def test_a_description_is_refused_where_the_world_forbids_it() -> None:
+    assert brief_of("a straight road climbing at 12 percent").clauses
+    with pytest.raises(BriefError, match="10"):
+        brief_of("a straight road climbing at 12 percent", World(max_grade=0.1))

@@ -43,10 +43,9 @@ def work_off(wish: Wish, screen: Screen) -> None:
         RoadGPTError: the words, a part or the folder cannot be used, or nothing could be designed.
         KeyboardInterrupt: the user stopped it; what is finished is complete, and was said.
     """
-    from roadgpt.brief import read
-    from roadgpt.run import campaign
+    from roadgpt.run import brief_of, campaign
 
-    brief = read(wish.words, wish.setup.reader, wish.world.map_size)
+    brief = brief_of(wish.words, wish.world, wish.setup)
     seed = _seed(wish)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, _pictures(wish))

@@ -40,6 +40,7 @@ __all__ = [
     "Run",
     "Seconds",
     "Setup",
+    "brief_of",
     "campaign",
     "perform",
     "prove",
@@ -80,13 +81,23 @@ def perform(
     """
     roll_call(setup)
     begun = time.perf_counter()
-    brief = words if isinstance(words, Brief) else read(words, setup.reader, world.map_size)
+    brief = words if isinstance(words, Brief) else brief_of(words, world, setup)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     own = seed_of(seed, index)
     design, road, findings, rounds = _designed(brief, request, earlier, own)
     designing = time.perf_counter() - begun
     run = Run(request, index, own, brief=brief, design=design, road=road, findings=findings, rounds=rounds)
     return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(designing)))
+
+
+def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN) -> Brief:
+    """What the setup's reader reads out of the words, if a road of this world can be like that.
+
+    Raises:
+        BriefError: the words cannot be read, or ask for what the world does not allow.
+        PartError: no such reader.
+    """
+    return read(words, setup.reader, world.map_size, world.min_radius, world.max_grade)
 
 
 def prove(
@@ -133,7 +144,7 @@ def campaign(
         BriefError: the words cannot be read.
         UsageError: the folder holds something else, or a part is not installed.
     """
-    brief = words if isinstance(words, Brief) else read(words, setup.reader, world.map_size)
+    brief = words if isinstance(words, Brief) else brief_of(words, world, setup)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     plugins.find("designers", setup.designer)
     roll_call(setup)

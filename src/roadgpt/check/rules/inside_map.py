@@ -27,7 +27,8 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
     x, y = (float(v) for v in edges[first, int(out[first].argmax())])
     s = float(road.sample().s[first])
     verb = "leaves the map at" if first else "starts outside the map at"
-    sentence = f"at s = {s:.0f} m: the road {verb} ({x:.0f}, {y:.0f}); the map runs from 0 to {size:g} m"
+    place = f"({round(x)}, {round(y)})"
+    sentence = f"at s = {s:.0f} m: the road {verb} {place}; the map runs from 0 to {size:g} m"
     found = [Finding("inside_map", sentence, s, x, y)]
     for axis, extent in zip("xy", np.ptp(edges, axis=(0, 1)), strict=True):
         if extent >= size:
