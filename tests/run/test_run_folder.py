@@ -12,8 +12,8 @@ from roadgpt.brief.model import Brief, Clause
 from roadgpt.errors import UsageError
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup, prove, read_run, write_run
+from roadgpt.run.sbft_json import test_of as as_test
 from roadgpt.run.tables import Tally, write_description
-from roadgpt.run.test_file import test_of as as_test
 from run.doubles import TOO_STEEP, a_design
 
 NEVER = """

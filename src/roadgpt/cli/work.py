@@ -81,7 +81,7 @@ def understood(brief: "Brief") -> str:
 
 def _watch(work: "Campaign", screen: Screen) -> None:
     """Show the roads of a campaign, first those that were there before; end with the table in any case."""
-    from roadgpt.run.test_file import test_name
+    from roadgpt.run.sbft_json import test_name
 
     try:
         with screen:

@@ -13,9 +13,9 @@ from roadgpt.run.card import CARD, Card, read_card
 from roadgpt.run.folder import RUNS, Draw, read_run, run_folder, write_run
 from roadgpt.run.model import Request, Run
 from roadgpt.run.naming import HOME, new_folder
+from roadgpt.run.sbft_json import test_name
 from roadgpt.run.seeds import seed_of
 from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, write_description
-from roadgpt.run.test_file import test_name
 
 LOCK = "campaign.lock"
 GIVE_UP = 3  # roads that cannot be designed, before any that could

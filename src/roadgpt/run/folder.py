@@ -24,7 +24,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Road, read_design
 from roadgpt.run.atomic import json_text, to_bytes, whole_folder, write_whole
 from roadgpt.run.model import Request, Run, Seconds
-from roadgpt.run.test_file import test_name, test_text
+from roadgpt.run.sbft_json import test_name, test_text
 from roadgpt.verdict import Verdict
 
 FORMAT = 1
