@@ -23,6 +23,9 @@ def page() -> str:
         command = app.get_command(group, name)
         if command is not None:
             parts += [f"## roadgpt {name}\n", help_of(command, name, group)]
+        if isinstance(command, click.Group):
+            inside = click.Context(command, group, name)
+            parts += [help_of(its, own, inside) for own, its in command.commands.items()]
     return "\n".join(parts)
 
 

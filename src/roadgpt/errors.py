@@ -36,4 +36,4 @@ class PartError(UsageError):
 
 
 class LearnError(UsageError):
-    """Training pairs, a grammar of phrases or a checkpoint that cannot be used."""
+    """Pairs of descriptions and plans, or a grammar of phrases, that cannot be used."""

@@ -22,6 +22,7 @@ COMMANDS = {
     "check": "Check roads that exist against the rules.",
     "plot": "Draw roads that exist.",
     "show": "Tell what is in the folder of a run or a campaign.",
+    "learn": "Descriptions by hand and by the thousand, and how well readers read them.",
     "parts": "List what is installed on each shelf.",
     "doctor": "Find out whether this installation works.",
 }

@@ -1,0 +1,171 @@
+"""How well a reader reads: its Briefs held against labels, whole and by parts."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import normal
+from roadgpt.brief.outline import outline
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.errors import BriefError
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.labels import REFUSALS
+
+Read = Callable[[str], Brief]
+PARTS = ("turns", "slope", "order and side")
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One description, its label, and what a reader made of it."""
+
+    pair: Pair
+    got: str
+    """Plan in normal form, or '!refused'."""
+    confidence: float
+    reason: str
+    """Why it was refused."""
+    right: bool
+    parts: frozenset[str]
+    """Those of PARTS that are right; all where a refusal was right."""
+
+    @property
+    def is_honest(self) -> bool:
+        """Does the description ask for a road that can be built?"""
+        return not self.pair.plan.startswith("!")
+
+    @property
+    def was_refused(self) -> bool:
+        """Did the reader refuse?"""
+        return self.got.startswith("!")
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """Shares of a set of readings, each from 0 to 1, with how many they are of."""
+
+    number: int
+    exact: float
+    turns: float
+    slope: float
+    order_and_side: float
+    refused_rightly: float
+    refusals: int
+    refused_wrongly: float
+
+    def row(self, name: str) -> str:
+        """One row of a Markdown table."""
+        shares = (
+            self.exact,
+            self.turns,
+            self.slope,
+            self.order_and_side,
+            self.refused_rightly,
+            self.refused_wrongly,
+        )
+        return f"| {name} | {self.number} | " + " | ".join(f"{100 * share:.1f}" for share in shares) + " |"
+
+
+HEAD = (
+    "| | descriptions | whole Brief exact | number of turns | slope | order and side"
+    " | refused rightly | refused wrongly |\n"
+    "|---|---|---|---|---|---|---|---|"
+)
+
+
+def readings(pairs: Iterable[Pair], read: Read) -> list[Reading]:
+    """Every description read; a refusal is a reading too."""
+    return [_reading(pair, read) for pair in pairs]
+
+
+def _reading(pair: Pair, read: Read) -> Reading:
+    wanted = None if pair.plan in REFUSALS else normal(read_plan(pair.plan))
+    try:
+        brief = read(pair.text)
+    except BriefError as error:
+        everything = frozenset(PARTS) if wanted is None else frozenset()
+        return Reading(pair, "!refused", 1.0, str(error), wanted is None, everything)
+    got = normal(brief)
+    parts = frozenset() if wanted is None else frozenset(_parts(wanted, got))
+    return Reading(pair, plan(got), brief.confidence, "", got == wanted, parts)
+
+
+def _parts(wanted: Brief, got: Brief) -> Iterable[str]:
+    if outline(wanted).turns == outline(got).turns:
+        yield "turns"
+    if _slopes(wanted) == _slopes(got):
+        yield "slope"
+    if _order(wanted) == _order(got):
+        yield "order and side"
+
+
+def _slopes(brief: Brief) -> tuple[object, ...]:
+    along = tuple((c.slope, c.incline) for c in brief.clauses if c.slope or c.kind in ("crest", "dip"))
+    return (along, brief.slope, brief.incline, brief.steepest, brief.climb, brief.hills)
+
+
+def _order(brief: Brief) -> tuple[object, ...]:
+    along = tuple((c.kind, c.side, c.alternating) for c in brief.clauses)
+    ends = tuple((c.kind, c.side) if c else None for c in (brief.starts, brief.ends))
+    return (along, ends, brief.left, brief.right, brief.alternating)
+
+
+def score(found: Sequence[Reading]) -> Score:
+    """The shares of readings that are right."""
+    honest = [reading for reading in found if reading.is_honest]
+    others = [reading for reading in found if not reading.is_honest]
+    return Score(
+        number=len(found),
+        exact=_share(reading.right for reading in found),
+        turns=_share("turns" in reading.parts for reading in honest),
+        slope=_share("slope" in reading.parts for reading in honest),
+        order_and_side=_share("order and side" in reading.parts for reading in honest),
+        refused_rightly=_share(reading.was_refused for reading in others),
+        refusals=len(others),
+        refused_wrongly=_share(reading.was_refused for reading in honest),
+    )
+
+
+def _share(rights: Iterable[bool]) -> float:
+    every = list(rights)
+    return sum(every) / len(every) if every else 0.0
+
+
+def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]:
+    """Scores of groups, by language or family, say."""
+    groups: dict[str, list[Reading]] = {}
+    for reading in found:
+        groups.setdefault(key(reading.pair), []).append(reading)
+    return {name: score(groups[name]) for name in sorted(groups)}
+
+
+def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
+    """How often a part of a plan was wanted and another was written in its place; '-' for none.
+
+    Parts are compared clause by clause where the number of clauses is right, and as a bag elsewhere.
+    """
+    table: Counter[tuple[str, str]] = Counter()
+    for reading in found:
+        if reading.right:
+            continue
+        if reading.was_refused or not reading.is_honest:
+            wanted = "a road" if reading.is_honest else reading.pair.plan
+            table[wanted, "refused" if reading.was_refused else "a road"] += 1
+            continue
+        wants, gots = Counter(_words(reading.pair.plan)), Counter(_words(reading.got))
+        missing, extra = sorted((wants - gots).elements()), sorted((gots - wants).elements())
+        for index in range(max(len(missing), len(extra))):
+            pair = [words[index] if index < len(words) else "-" for words in (missing, extra)]
+            table[pair[0], pair[1]] += 1
+    return table
+
+
+def _words(line: str) -> list[str]:
+    return line.replace(";", " ").replace("|", " ").split()
+
+
+def worst(found: Sequence[Reading], number: int = 30) -> list[Reading]:
+    """The misses of which the reader was most sure."""
+    misses = [reading for reading in found if not reading.right]
+    return sorted(misses, key=lambda reading: (-reading.confidence, reading.pair.text))[:number]

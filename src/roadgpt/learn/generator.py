@@ -1,0 +1,104 @@
+"""Descriptions by the thousand: drawn from the grammars, checked for sense, typed with noise."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.errors import BriefError
+from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
+from roadgpt.learn.held_out import is_held_out
+from roadgpt.learn.noise import noisy, tidy
+from roadgpt.learn.refusing import contradicted, overdone
+from roadgpt.learn.sense import makes_sense
+from roadgpt.learn.standard import standard
+
+SPOILED = 0.045
+"""Share of honest descriptions that are made contradictory or impossible."""
+SHARES = {"en": 0.62, "de": 0.10, "fr": 0.10, "es": 0.09, "it": 0.09}
+WISH = re.compile(r"\|\s*(?:(?:starts|ends)\([^()]*\)|[^\s;|]+)")
+KIND = re.compile(
+    r"straight|crest|dip|turn|hairpin|switchback|u_turn|s_bend|chicane|slalom|serpentine|zigzag|winding"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A description and its plan."""
+
+    text: str
+    plan: str
+    family: str
+    lang: str
+
+
+def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair]:
+    """Endless pairs; the same seed gives the same ones."""
+    rng = np.random.default_rng(seed)
+    shares = languages or SHARES
+    codes, weights = list(shares), np.cumsum(list(shares.values()))
+    while True:
+        code = codes[int(np.searchsorted(weights, rng.random() * weights[-1], side="right"))]
+        pair = draw(code, rng)
+        if pair:
+            yield refused(pair, rng)
+
+
+def refused(pair: Pair, rng: np.random.Generator) -> Pair:
+    """Now and then the pair with a wish that spoils it; else the pair as it is."""
+    way = rng.random()
+    if way < SPOILED / 2:
+        text, plan = contradicted(pair.text, pair.plan, pair.lang, rng), "!contradiction"
+    elif way < SPOILED:
+        text, plan = overdone(pair.text, pair.plan, pair.lang, rng), "!impossible"
+    else:
+        return pair
+    return Pair(text, plan, pair.family, pair.lang) if text else pair
+
+
+def draw(language: str, rng: np.random.Generator, symbol: str = "top") -> Pair | None:
+    """One pair; None where what was drawn makes no sense."""
+    try:
+        text, raw = Speaker(grammar_of(language), rng).say(symbol)
+        plan = assembled(raw)
+    except (Discarded, BriefError):
+        return None
+    if plan is None or not 1 <= len(text) <= 500:
+        return None
+    text = tidy(text)
+    typed = noisy(text, language, rng)
+    if is_held_out(text) or is_held_out(typed):
+        return None
+    return Pair(typed, plan, f"generated-{language}", language)
+
+
+def assembled(raw: str) -> str | None:
+    """The plan in its standard form from what the rules wrote; None where it makes no sense."""
+    if "!" in raw:
+        return "!" + raw.split("!")[1].split()[0]
+    wishes = [wish.lstrip("| ").replace("straight_", "straight ") for wish in WISH.findall(raw)]
+    clauses = [_kind_first(part) for part in WISH.sub(" ", raw).split(";")]
+    line = "; ".join(part for part in clauses if part)
+    wishes = [_placed(wish) for wish in dict.fromkeys(wishes)]
+    if line and "turns=1.." in wishes:
+        wishes.remove("turns=1..")
+    brief = read_plan(f"{line} | {' '.join(wishes)}" if wishes else line)
+    return standard(brief) if makes_sense(brief) else None
+
+
+def _placed(wish: str) -> str:
+    place = re.fullmatch(r"(starts|ends)\((.*)\)", wish)
+    return f"{place[1]}({_kind_first(place[2])})" if place else wish
+
+
+def _kind_first(clause: str) -> str:
+    """A clause with its kind in front; empty mods such as 'len=' are dropped."""
+    words = [word for word in clause.split() if not word.endswith("=")]
+    kinds = [word for word in words if KIND.fullmatch(word)]
+    if not words:
+        return ""
+    if len(kinds) != 1:
+        raise Discarded
+    return " ".join([kinds[0], *(word for word in dict.fromkeys(words) if word != kinds[0])])

@@ -1,0 +1,193 @@
+"""Two-sided grammars: rules that write a description and, beside it, its plan.
+
+A grammar is a text. ``= name`` begins the rules of a symbol; each further line is one rule::
+
+    = bend
+    3* <sharpness?> {bend|curve} to the <side>        => turn <sharpness> <side>
+    [rather ]<#2-9:n> bends, the last one a hairpin   => turn x<=n-1>; hairpin
+
+``3*`` is a weight, ``{a|b}`` a choice, ``[a]`` is there half of the time (``[20:a]`` in 20 % of cases),
+``<name>`` another symbol (``<name?>`` half of the time, ``<name?20>``, ``<name:label>``), ``<#2-9>`` a number
+(``<#20-90/5>`` in steps), ``<=n-1>`` a sum over numbers said. Without ``=>`` the plan is that of the parts,
+in order. In a plan, ``|word`` is a wish for the whole road wherever it stands.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from itertools import accumulate
+
+import numpy as np
+
+from roadgpt.errors import LearnError
+from roadgpt.learn.numerals import spell
+
+CHOICE = re.compile(r"\{([^{}]*)\}")
+OPTION = re.compile(r"\[(?:(\d+):)?([^\[\]]*)\]")
+PART = re.compile(r"<([^<>]+)>")
+NUMBER = re.compile(r"#(\d+)-(\d+)(?:/(\d+))?")
+SUM = re.compile(r"=(\w+)([-+*])(\w+)")
+JOINT = re.compile(r"<((?:link|lastlink|vlink|oops|prewish|tailwish|lenwish|sidewish|hardwish)[?0-9]*)>")
+"""Symbols that stand between others, with a space on both sides; tidying up leaves what is needed."""
+DEEPEST = 30
+
+
+class Discarded(Exception):  # noqa: N818 - no error: another throw of the dice follows
+    """What was drawn does not fit together."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """One way to say a symbol."""
+
+    text: str
+    plan: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Grammar:
+    """The rules of one language."""
+
+    language: str
+    rules: Mapping[str, tuple[Rule, ...]]
+    weights: Mapping[str, tuple[float, ...]]
+    """Cumulative, for drawing."""
+
+
+def read_grammar(text: str, language: str) -> Grammar:
+    """The grammar written in a text.
+
+    Raises:
+        LearnError: a symbol that is used but has no rules.
+    """
+    rules: dict[str, list[Rule]] = {}
+    weights: dict[str, list[float]] = {}
+    symbol = ""
+    for line in text.splitlines():
+        line = line.strip()
+        if not line or line.startswith("--"):
+            continue
+        if line.startswith("= "):
+            symbol = line[2:].strip()
+            rules.setdefault(symbol, [])
+            weights.setdefault(symbol, [])
+            continue
+        weighted = re.match(r"(\d+)\*\s*(.*)", line)
+        body = weighted[2] if weighted else line
+        said, arrow, plan = body.partition("=>")
+        said = JOINT.sub(r" <\1> ", said)
+        rules[symbol].append(
+            Rule(said.strip() if said.strip() != "-" else "", plan.strip() if arrow else None)
+        )
+        weights[symbol].append(float(weighted[1]) if weighted else 1.0)
+    for name, its in rules.items():
+        for rule in its:
+            for part in PART.findall(rule.text):
+                used = _name(part)[0]
+                if not NUMBER.fullmatch(used) and used not in rules:
+                    raise LearnError(
+                        f"the grammar '{language}' uses <{used}> in <{name}>, but has no rules for it"
+                    )
+    return Grammar(
+        language,
+        {name: tuple(its) for name, its in rules.items()},
+        {name: tuple(accumulate(its)) for name, its in weights.items()},
+    )
+
+
+def _name(part: str) -> tuple[str, str, int]:
+    """Symbol, label and percent of a part."""
+    symbol, _, label = part.partition(":")
+    symbol, question, percent = symbol.partition("?")
+    return symbol, label or symbol, int(percent or 50) if question else 100
+
+
+class Speaker:
+    """Draws descriptions from a grammar; one speaker prefers digits or words throughout a description."""
+
+    def __init__(self, grammar: Grammar, rng: np.random.Generator) -> None:
+        self.grammar = grammar
+        self.rng = rng
+        self.digits = float(rng.choice([0.02, 0.5, 0.97], p=[0.35, 0.2, 0.45]))
+
+    def say(self, symbol: str, depth: int = 0) -> tuple[str, str]:
+        """A text for a symbol, and its plan."""
+        if depth > DEEPEST:
+            raise Discarded
+        weights = self.grammar.weights[symbol]
+        at = int(np.searchsorted(weights, self.rng.random() * weights[-1], side="right"))
+        rule = self.grammar.rules[symbol][at]
+        text = self._chosen(rule.text)
+        plans: dict[str, str] = {}
+        in_order: list[str] = []
+        out: list[str] = []
+        end = 0
+        for part in PART.finditer(text):
+            out.append(text[end : part.start()])
+            end = part.end()
+            name, label, percent = _name(part[1])
+            if percent < 100 and self.rng.random() * 100 >= percent:
+                continue
+            said, plan = (
+                self._number(name, _is_glued(text, part)) if name[0] == "#" else self.say(name, depth + 1)
+            )
+            out.append(said)
+            plans[label] = f"{plans[label]} {plan}" if label in plans and name[0] != "#" else plan
+            in_order.append(plan)
+        out.append(text[end:])
+        if rule.plan is None:
+            return "".join(out), " ".join(plan for plan in in_order if plan)
+        return "".join(out), PART.sub(lambda match: _filled(match[1], plans), rule.plan)
+
+    def _chosen(self, text: str) -> str:
+        while "{" in text or "[" in text:
+            before = text
+            text = OPTION.sub(lambda m: m[2] if self.rng.random() * 100 < float(m[1] or 50) else "", text)
+            text = CHOICE.sub(lambda m: self._one(m[1].split("|")), text)
+            if text == before:
+                break
+        return text
+
+    def _one(self, ways: Sequence[str]) -> str:
+        return ways[int(self.rng.integers(len(ways)))]
+
+    def _number(self, name: str, is_glued: bool) -> tuple[str, str]:
+        match = NUMBER.fullmatch(name)
+        if not match:
+            raise LearnError(f"the grammar has a number <{name}>; write <#2-9> or <#20-90/5>")
+        low, high, step = int(match[1]), int(match[2]), int(match[3] or 1)
+        number = low + step * int(self.rng.integers((high - low) // step + 1))
+        in_words = self.rng.random() > (self.digits if number <= 20 else 1 - (1 - self.digits) * 0.3)
+        if in_words and not is_glued and 1 < number <= 1500 and (number <= 200 or number % 5 == 0):
+            return spell(number, self.grammar.language), str(number)
+        return str(number), str(number)
+
+
+def _is_glued(text: str, part: re.Match[str]) -> bool:
+    """Does a letter touch this number, as in 50m or R20? Then it is written in digits."""
+    return text[part.end() : part.end() + 1].isalpha() or text[: part.start()][-1:].isalpha()
+
+
+def _filled(part: str, plans: Mapping[str, str]) -> str:
+    total = SUM.fullmatch(part)
+    if not total:
+        return plans.get(part, "")
+    left, right = (
+        int(name) if name.isdigit() else int(plans.get(name) or 0) for name in (total[1], total[3])
+    )
+    number = {"-": left - right, "+": left + right, "*": left * right}[total[2]]
+    if number < 1:
+        raise Discarded
+    return str(number)
+
+
+@cache
+def grammar_of(language: str) -> Grammar:
+    """Our grammar of a language: en, de, fr, es, it."""
+    folder = files("roadgpt.learn") / "phrases"
+    names = sorted(path.name for path in folder.iterdir() if path.name.startswith(language))
+    if not names:
+        raise LearnError(f"there are no phrases in the language '{language}'; there are: de, en, es, fr, it")
+    return read_grammar("\n".join((folder / name).read_text(encoding="utf-8") for name in names), language)

@@ -1,0 +1,85 @@
+"""Hand-written pairs: read, checked, and split so that no family of phrasing is on both sides."""
+
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.errors import BriefError, LearnError
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.held_out import is_held_out
+from roadgpt.learn.standard import standard
+
+REFUSALS = ("!nonsense", "!contradiction", "!impossible")
+LONGEST = 2000  # letters
+SPLITS = ("train", "validation", "test")
+
+
+def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
+    """All pairs of JSON-lines files that can be used, and a sentence for each line that cannot."""
+    good: list[Pair] = []
+    problems: list[str] = []
+    seen: dict[str, str] = {}
+    for path in sorted(paths):
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            place = f"{path.name}:{number}"
+            if not line.strip():
+                continue
+            try:
+                pair = read_pair(line)
+            except LearnError as error:
+                problems.append(f"{place}: {error}")
+                continue
+            key = " ".join(pair.text.lower().split())
+            if is_held_out(pair.text):
+                problems.append(f"{place}: is held out from training; leave it out")
+                continue
+            if key in seen:
+                problems.append(f"{place}: says the same as {seen[key]}; leave one out")
+                continue
+            seen[key] = place
+            good.append(pair)
+    return good, problems
+
+
+def read_pair(line: str) -> Pair:
+    """One line of JSON as a pair whose plan is written as we write it.
+
+    Raises:
+        LearnError: no JSON, a field that is missing, a plan that cannot be read, a text that is too long.
+    """
+    try:
+        fields = json.loads(line)
+        text, written = str(fields["text"]), str(fields["plan"])
+        family, language = str(fields.get("family", "")), str(fields.get("lang", "en"))
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise LearnError(f"this is no pair ({error}); write {{'text', 'plan', 'family', 'lang'}}") from error
+    if not text.strip() or len(text) > LONGEST:
+        raise LearnError(f"a text has {len(text)} letters; write 1 to {LONGEST}")
+    if written.strip() not in REFUSALS:
+        try:
+            brief = read_plan(written)
+            plan(brief)
+        except BriefError as error:
+            raise LearnError(f"'{text[:40]}': {error}") from error
+        written = standard(brief)
+    return Pair(text, written.strip(), family, language)
+
+
+def split(
+    pairs: Sequence[Pair], test: int = 500, validation: float = 0.12, seed: int = 3
+) -> dict[str, list[Pair]]:
+    """Whole families to each side: ``test`` pairs or a few more to the test, a share to the validation."""
+    families: dict[str, list[Pair]] = {}
+    for pair in pairs:
+        families.setdefault(pair.family, []).append(pair)
+    names = sorted(families)
+    np.random.default_rng(seed).shuffle(names)
+    out: dict[str, list[Pair]] = {name: [] for name in SPLITS}
+    wanted = {"test": test, "validation": int(validation * len(pairs))}
+    for name in names:
+        side = next((s for s in ("test", "validation") if len(out[s]) < wanted[s]), "train")
+        out[side] += families[name]
+    return out

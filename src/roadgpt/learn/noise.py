@@ -1,0 +1,82 @@
+"""How people really type: slips of the finger, capitals, missing dots, polite words around the wish."""
+
+import json
+import re
+from importlib.resources import files
+
+import numpy as np
+
+NEIGHBOURS = {
+    "a": "sqz", "b": "vn", "c": "xv", "d": "sf", "e": "wr", "f": "dg", "g": "fh", "h": "gj", "i": "uo",
+    "j": "hk",
+    "k": "jl", "l": "k", "m": "n", "n": "bm", "o": "ip", "p": "o", "q": "wa", "r": "et", "s": "ad", "t": "ry",
+    "u": "yi", "v": "cb", "w": "qe", "x": "zc", "y": "tu", "z": "x",
+}  # fmt: skip
+WORDS = json.loads((files("roadgpt.learn") / "words" / "typing.json").read_text(encoding="utf-8"))
+SLIPS: dict[str, list[tuple[str, str]]] = WORDS["slips"]
+"""Words and how they are often mistyped or shortened, by language."""
+BEFORE: dict[str, list[str]] = WORDS["before"]
+AFTER: dict[str, list[str]] = WORDS["after"]
+"""Polite words before and after a wish, by language."""
+
+
+def tidy(text: str) -> str:
+    """Spaces and articles as they should be after rules were put together."""
+    text = re.sub(r"\s+", " ", text)
+    text = re.sub(r"\s+([,.;:!?])(?!\d)", r"\1", text)
+    text = re.sub(r"([,.;:])(?:\s*[,;])+", r"\1", text)
+    text = re.sub(r"\.\s*\.", ".", text)
+    text = re.sub(r"\b([Aa]) (?=[aeiouAEIO])(?!one|u-|U-|uturn|uni)", r"\1n ", text)
+    return text.strip(" ,;:")
+
+
+def noisy(text: str, language: str, rng: np.random.Generator) -> str:
+    """The same wish, typed by somebody in a hurry, or by somebody polite."""
+    if rng.random() < 0.12:
+        ways = BEFORE[language]
+        text = ways[int(rng.integers(len(ways)))] + text
+    if rng.random() < 0.15:
+        ways = AFTER[language]
+        text = text.rstrip(".") + ways[int(rng.integers(len(ways)))]
+    if rng.random() < 0.12:
+        for _ in range(int(rng.integers(1, 5))):
+            word, short = SLIPS[language][int(rng.integers(len(SLIPS[language])))]
+            text = re.sub(rf"\b{word}\b", short, text, count=1)
+    if rng.random() < 0.16:
+        for _ in range(int(rng.integers(1, 1 + max(2, len(text) // 25)))):
+            text = _slip(text, rng)
+    return _dressed(text, rng)
+
+
+def _slip(text: str, rng: np.random.Generator) -> str:
+    """One slip: two letters swapped, one dropped, doubled, or hit beside its key."""
+    places = [m.start() for m in re.finditer(r"(?<=[a-zà-ÿ])[a-zà-ÿ]", text)]
+    if not places:
+        return text
+    at = places[int(rng.integers(len(places)))]
+    kind = rng.random()
+    if kind < 0.35:
+        return text[: at - 1] + text[at] + text[at - 1] + text[at + 1 :]
+    if kind < 0.65:
+        return text[:at] + text[at + 1 :]
+    if kind < 0.8:
+        return text[:at] + text[at] + text[at:]
+    if kind < 0.95:
+        near = NEIGHBOURS.get(text[at], text[at])
+        return text[:at] + near[int(rng.integers(len(near)))] + text[at + 1 :]
+    space = text.find(" ", at)
+    return text if space < 0 else text[:space] + text[space + 1 :]
+
+
+def _dressed(text: str, rng: np.random.Generator) -> str:
+    """Capitals and punctuation."""
+    dress = rng.random()
+    if dress < 0.25:
+        text = text[:1].upper() + text[1:] + ("." if rng.random() < 0.5 and text[-1:].isalnum() else "")
+    elif dress < 0.28:
+        text = text.upper()
+    elif dress < 0.31:
+        text = re.sub(r"[,;:.](?=\s)", "", text)
+    elif dress < 0.34:
+        text = re.sub(r"\s*([,;/])\s*", r"\1", text)
+    return text

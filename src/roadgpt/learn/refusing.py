@@ -1,0 +1,75 @@
+"""Honest descriptions made impossible: a wish added that contradicts them, or that no road can keep."""
+
+import json
+import re
+from importlib.resources import files
+
+import numpy as np
+
+from roadgpt.learn.noise import tidy
+from roadgpt.learn.numerals import spell
+
+TURNING = re.compile(
+    r"\b(?:turn|hairpin|switchback|u_turn|s_bend|chicane|slalom|serpentine|zigzag|winding)\b"
+)
+WORDS = json.loads((files("roadgpt.learn") / "words" / "spoilers.json").read_text(encoding="utf-8"))
+CONFLICTS: dict[str, dict[str, list[str]]] = WORDS["conflicts"]
+"""What a plan promises -> language -> wishes that cannot be true beside it."""
+BEYOND: dict[str, list[str]] = WORDS["beyond"]
+"""Language -> wishes that no road can keep."""
+
+
+def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
+    """The description with a wish that cannot be true beside it; None where none of ours fits."""
+    kinds = [kind for kind in _holds(plan) if language in CONFLICTS[kind]]
+    if not kinds:
+        return None
+    ways = CONFLICTS[kinds[int(rng.integers(len(kinds)))]][language]
+    return _with(text, ways[int(rng.integers(len(ways)))], rng)
+
+
+def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
+    """The description with a wish that no road can keep."""
+    if language not in BEYOND or plan.startswith("!"):
+        return None
+    ways = BEYOND[language]
+    numbers = {
+        "grade": int(rng.integers(18, 96)), "far": int(rng.integers(3, 60)),
+        "near": int(rng.integers(2, 9)), "much": int(rng.integers(20, 99)),
+    }  # fmt: skip
+    said = {name: spell(n, language) if rng.random() < 0.3 else str(n) for name, n in numbers.items()}
+    way = ways[int(rng.integers(len(ways)))]
+    if (
+        "radius" in way or "Radius" in way or "rayon" in way or "radio" in way or "raggio" in way
+    ) and not TURNING.search(plan):
+        return None
+    return _with(text, way.format(**said), rng)
+
+
+def _with(text: str, wish: str, rng: np.random.Generator) -> str:
+    body = text.rstrip(" .!?")
+    if rng.random() < 0.15:
+        wish = re.sub(r"^(?:and|but|yet|aber|und|mais|et|pero|y|ma|e) ", "", wish)
+        return tidy(f"{wish[:1].upper()}{wish[1:]}: {body}")
+    return tidy(f"{body}{', ' if rng.random() < 0.7 else ' '}{wish}")
+
+
+def _holds(plan: str) -> list[str]:
+    """What a plan promises that can be contradicted."""
+    if plan.startswith("!"):
+        return []
+    clauses, _, wishes = plan.partition("|")
+    found = []
+    if TURNING.search(clauses):
+        found.append("turning")
+        found += [side for side in ("left", "right") if re.search(rf"\b{side}\b", clauses)]
+        if any(int(n) > 2 for n in re.findall(r"\bx(\d+)(?!\d*\.\.)", clauses)) or clauses.count(";") > 3:
+            found.append("many") if "straight" not in clauses else None
+    found += [
+        way
+        for way in ("up", "down", "flat")
+        if re.search(rf"(?:^|[\s_]){way}\b", wishes) and "ends(" not in wishes
+    ]
+    if clauses.strip() == "straight" and re.search(r"\bturns=0\b", wishes):
+        found.append("straight")
+    return found

@@ -1,0 +1,90 @@
+"""Generated pairs: seeded, sensible, and none of those that are held out."""
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.errors import LearnError
+from roadgpt.learn.generator import assembled, draw, pairs
+from roadgpt.learn.grammar import Discarded, Speaker, grammar_of, read_grammar
+from roadgpt.learn.held_out import is_held_out
+from roadgpt.learn.labels import REFUSALS
+from roadgpt.learn.refusing import contradicted, overdone
+from roadgpt.learn.sense import makes_sense
+from roadgpt.learn.standard import standard
+
+
+def test_the_same_seed_gives_the_same_pairs_and_another_others() -> None:
+    one, again, other = (list(islice(pairs(seed), 50)) for seed in (5, 5, 6))
+    assert one == again
+    assert one != other
+
+
+def test_every_generated_plan_is_in_standard_form_and_none_is_held_out() -> None:
+    for pair in islice(pairs(11), 1500):
+        assert not is_held_out(pair.text)
+        assert pair.plan in REFUSALS or standard(read_plan(pair.plan)) == pair.plan
+
+
+@pytest.mark.parametrize("language", ["en", "de", "fr", "es", "it"])
+def test_a_language_speaks_in_many_ways(language: str) -> None:
+    rng = np.random.default_rng(3)
+    found = [pair for pair in (draw(language, rng) for _ in range(800)) if pair]
+    assert len({pair.text for pair in found}) > 0.9 * len(found) > 600
+    assert len({pair.plan for pair in found}) > 200
+    assert {*REFUSALS} <= {pair.plan for pair in found}
+
+
+def test_a_grammar_writes_text_and_plan_side_by_side() -> None:
+    text = (
+        "= top\n<#3-3:n> bends, the last one a <kind>  => turn x<=n-1>; <kind>\n= kind\nhairpin => hairpin\n"
+    )
+    said, raw = Speaker(read_grammar(text, "en"), np.random.default_rng(0)).say("top")
+    assert said in ("3 bends, the last one a hairpin", "three bends, the last one a hairpin")
+    assert assembled(raw) == "turn x2; hairpin"
+
+
+def test_a_sum_that_leaves_nothing_is_discarded() -> None:
+    grammar = read_grammar("= top\n<#2-2:n> turns => turn x<=n-2>\n", "en")
+    with pytest.raises(Discarded):
+        Speaker(grammar, np.random.default_rng(0)).say("top")
+
+
+def test_a_symbol_without_rules_is_named() -> None:
+    with pytest.raises(LearnError, match="<nowhere>"):
+        read_grammar("= top\n<nowhere>\n", "en")
+
+
+def test_there_are_no_phrases_in_klingon() -> None:
+    with pytest.raises(LearnError, match="klingon"):
+        grammar_of("klingon")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "turn up | down", "crest | flat", "turn left | lefts=0", "turn x5 | turns=..3", "hairpin deg=20",
+        "turn x13", "straight pct=20", "turn r=5", "turn | len=1600", "straight | gentle turns=0",
+    ],
+)  # fmt: skip
+def test_nonsense_is_not_generated(line: str) -> None:
+    assert not makes_sense(read_plan(line))
+
+
+@pytest.mark.parametrize(
+    "line", ["turn x3 | up", "straight up; turn left down", "| hard turns=1..", "hairpin x2 sharp r=20"]
+)
+def test_sense_is(line: str) -> None:
+    assert makes_sense(read_plan(line))
+    assert plan(read_plan(line)) == line
+
+
+def test_what_spoils_a_wish_fits_it() -> None:
+    rng = np.random.default_rng(2)
+    assert contradicted("a road", "| turns=1..", "en", rng) is None
+    spoiled = contradicted("three left turns", "turn x3 left", "en", rng)
+    assert spoiled is not None
+    assert "three left turns" in spoiled.lower()
+    assert overdone("three left turns", "!nonsense", "en", rng) is None
