@@ -97,7 +97,9 @@ class _Builder:
             wishes.turns = at_least(0)
         wishes.hard |= phrase.hard and not phrase.negated
         if phrase.hilly and not phrase.negated:
-            wishes.hills = wishes.hills or at_least(HILLS)
+            if phrase.times or not wishes.hills:
+                wishes.hills = at_least(_changes(phrase.times))
+            phrase.times = None
         if phrase.climbs_said and not phrase.negated:
             if phrase.mild:
                 wishes.steepest = wishes.steepest or at_most((SLOPES["gently_up"].grade or Range(2, 5)).hi)
@@ -332,3 +334,8 @@ def _minus(number: float | None) -> float | None:
 _UNCOUNTED = frozenset(
     {"a", "stretch", "again", "all", "each", "both", "whole", "total", "only", "too", "place"}
 )
+
+
+def _changes(times: Amount | None) -> float:
+    """Changes of slope of a road that goes up and down so many times; of one that just does, the usual."""
+    return max(2 * times.lo - 1, 1) if times and times.lo else HILLS
