@@ -88,7 +88,10 @@ def _longest(
 ) -> tuple[int, Meanings]:
     most = min(known.longest.get(found[at].text, 1), len(found) - at)
     for size in range(most, 0, -1):
-        readings = known.phrases.get(tuple(token.text for token in found[at : at + size]))
+        words = tuple(token.text for token in found[at : at + size])
+        if words == AT_ONCE and before and before[-1].name in ("a", "long", "short"):
+            continue  # 'a long straight after the turn' is a straight
+        readings = known.phrases.get(words)
         if readings and (meanings := _reading(readings, found, at + size, before)):
             return size, meanings
     bound = known.phrases.get((found[at].text,))
@@ -114,6 +117,7 @@ def _reading(
     return plain[0] if plain else ()
 
 
+AT_ONCE = ("straight", "after")
 UNITS = frozenset({"m", "km", "ft", "yd", "mile", "%", "deg"})
 
 

@@ -196,7 +196,7 @@ def _bounded(items: list[Item]) -> list[Item]:
             if waiting is not None and not (waiting.text == "over" and _passed(items, at, out)):
                 item = _with(item, waiting.name)
             waiting = None
-            out.append(_without_between(out, item))
+            out.append(_with_other_bound(out, _without_between(out, item)))
         elif item.name in ("or_more", "or_less"):
             _bound_behind(out, replace(item, name=">=" if item.name == "or_more" else "<="))
         elif item.name in BEFORE:
@@ -226,6 +226,18 @@ def _without_between(out: list[Item], item: Item) -> Item:
     if out and out[-1].name == "between" and item.amount and not item.amount.exact:
         out.pop()
     return item
+
+
+def _with_other_bound(out: list[Item], item: Item) -> Item:
+    """'at least 4 and at most 6 turns': one range, whose first bound is taken out."""
+    first = out[-2] if len(out) > 1 and out[-1].name in ("and", ",") else None
+    if first is None or first.amount is None or item.amount is None or first.name not in ("count", item.name):
+        return item
+    low, high = first.amount.lo, item.amount.hi
+    if low is None or high is None or first.amount.hi is not None or item.amount.lo is not None or low > high:
+        return item
+    del out[-2:]
+    return replace(item, start=first.start, amount=Amount(lo=low, hi=high))
 
 
 def _bound_behind(out: list[Item], bound: Item) -> None:
