@@ -27,7 +27,8 @@ ROAD_WORDS: dict[str, str] = {
     " | perpendicular",
     "deg90 turn": "l shaped | l shape | quarter turn | square corner",
     "deg45": "half right angle",
-    "straight": "straight | straightaway | straight line | straight ahead | straight on | dead straight"
+    "straight": "straight | of straight road | of straight"
+    " | straightaway | straight line | straight ahead | straight on | dead straight"
     " | straight away | perfectly straight | straightens | straightens out | straighten out"
     " | straightening out | beeline",
     "straight+": "straights | straightaways | straight lines",

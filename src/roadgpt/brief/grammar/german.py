@@ -23,7 +23,8 @@ GERMAN: dict[str, str] = {
     "s_bend+": "s kurven",
     "chicane": "schikane",
     "chicane+": "schikanen",
-    "serpentine": "serpentinen | serpentinenstrasse | serpentinenstrecke",
+    "serpentine": "serpentinen | schlangenlinie | schlangenlinien | schlangenlinienkurs"
+    " | in schlangenlinien | serpentinenstrasse | serpentinenstrecke",
     "zigzag": "zickzack | zick zack | im zickzack",
     "winding": "kurvig | kurvige | kurviger | kurvenreich | kurvenreiche | kurvenreicher | gewunden"
     " | gewundene | schlangelt | verwinkelt | kurviges | kurvenreiches | windet",

@@ -68,6 +68,9 @@ class Units:
         if self._joins(thing):
             return
         last = self.last
+        if last and last.same_hand and thing.kind is None and thing.side and thing.joint == ",":
+            last.side, last.same_hand = thing.side, False  # 'in the same direction, to the right'
+            return
         if (
             last
             and last.kind is None
