@@ -71,6 +71,8 @@ class Units:
         if last and last.same_hand and thing.kind is None and thing.side and thing.joint == ",":
             last.side, last.same_hand = thing.side, False  # 'in the same direction, to the right'
             return
+        if last and thing.kind is None and thing.side and thing.count is None:
+            self._begin_sides(last, thing)
         if (
             last
             and last.kind is None
@@ -103,6 +105,15 @@ class Units:
         else:
             self._note_list(thing)
             self.things.append(thing)
+
+    def _begin_sides(self, heading: Phrase, side: Phrase) -> None:
+        """'turns left, right' and 'turns: left, right' are two, and 'turns' is none besides."""
+        if not heading.many or heading.counted:
+            return
+        if heading.side and side.joint == ",":
+            heading.count, heading.many = None, False
+        elif side.joint == "colon" and not (heading.side or heading.sharpness or heading.degrees):
+            self.things.pop()
 
     def _is_between(self, thing: Phrase, middle: Phrase) -> bool:
         """'a hairpin between two bends'; but in 'two bends separated by a hairpin' there is one."""
