@@ -104,6 +104,22 @@ def test_a_command_that_is_misspelt_is_guessed(typed: str, meant: str) -> None:
     assert f"No such command '{typed}'. Did you mean '{meant}'?" in result.stderr
 
 
+@pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        (["run"], 'roadgpt run "an uphill road with 3 turns"'),
+        (["drive"], "Name one or more road files"),
+        (["show"], "Name the folder of a run"),
+        (["learn", "data"], "Name the folder to write into"),
+        (["uphill"], 'Is it a description? Say: roadgpt run "uphill"'),
+    ],
+)
+def test_what_is_missing_is_told_with_what_to_do(typed: list[str], told: str) -> None:
+    result = invoke(*typed)
+    assert result.exit_code == 2
+    assert told in result.stderr
+
+
 def test_an_option_before_a_command_is_told_where_it_belongs() -> None:
     result = invoke("--seed", "7")
     assert result.exit_code == 2

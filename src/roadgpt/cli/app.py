@@ -27,6 +27,14 @@ COMMANDS = {
     "doctor": "Find out whether this installation works.",
 }
 
+# What to say where an argument is missing, by the name that its help gives it.
+MISSING = {
+    "DESCRIPTION": 'Say what road you want: roadgpt run "an uphill road with 3 turns"',
+    "ROAD.json...": "Name one or more road files, or folders of runs.",
+    "RUN...": "Name the folder of a run or of a campaign.",
+    "OUT": "Name the folder to write into.",
+}
+
 INTERRUPTED = 130  # exit status after Ctrl-C, as shells have it: 128 + SIGINT
 NO_READER = 141  # whoever read the output went away; as shells have it: 128 + SIGPIPE
 REFUSED = 1  # the machine does not take what was to be written
@@ -62,6 +70,13 @@ class Commands(click.Group):
         near = get_close_matches(name.lower(), COMMANDS, 1)
         if name not in COMMANDS and near and not name.startswith("-"):
             raise click.UsageError(f"No such command '{name}'. Did you mean '{near[0]}'?", ctx)
+        if name not in COMMANDS and not name.startswith("-"):
+            known = ", ".join(COMMANDS)
+            raise click.UsageError(
+                f"No such command '{name}'; there are: {known}. Is it a description? "
+                f'Say: roadgpt run "{name}"',
+                ctx,
+            )
         return super().resolve_command(ctx, args)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -96,7 +111,7 @@ class Commands(click.Group):
             if not error.is_reader_gone:
                 click.echo(f"roadgpt: {error}", err=True)
         except click.ClickException as error:
-            error.show()
+            _with_advice(error).show()
             status = error.exit_code
         except RoadGPTError as error:
             click.echo(f"roadgpt: {error}", err=True)
@@ -107,6 +122,14 @@ class Commands(click.Group):
             click.echo(f"roadgpt: {report_crash(error)}", err=True)
             status = INTERNAL
         sys.exit(status if isinstance(status, int) else 0)
+
+
+def _with_advice(error: click.ClickException) -> click.ClickException:
+    """Where an argument is missing, also what it would be."""
+    if not isinstance(error, click.MissingParameter) or not error.param:
+        return error
+    advice = MISSING.get(error.param.human_readable_name, "")
+    return click.UsageError(f"{error.format_message()} {advice}".strip(), error.ctx)
 
 
 @click.group(

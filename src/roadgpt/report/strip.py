@@ -59,12 +59,7 @@ def strip(run: Run) -> Figure:
 def _curvature(axes: Axes, run: Run, s: Array) -> None:
     assert run.road is not None
     bend, limit = run.road.curvature(s), 1 / run.world.min_radius
-    reach = max(1.35 * limit, 1.1 * float(np.abs(bend).max()))
-    axes.set_ylim(-reach, reach)
-    axes.fill_between(s, bend, 0, where=bend >= 0, color=BLUE, alpha=0.35, lw=0)
-    axes.fill_between(s, bend, 0, where=bend <= 0, color=ORANGE, alpha=0.45, lw=0)
-    axes.plot(s, bend, color=INK, lw=1.4)
-    axes.axhline(0, color=SOFT, lw=0.8)
+    reach = _fill(axes, s, bend, limit)
     _limits(axes, limit, f"limit: radius {run.world.min_radius:.1f} m")
     axes.set_ylabel("curvature, 1/m")
     _name_sides(axes, "left", "right")
@@ -76,6 +71,17 @@ def _curvature(axes: Axes, run: Run, s: Array) -> None:
     other.tick_params(labelsize=8, colors=SOFT, length=3)
     for side in other.spines.values():
         side.set_visible(False)
+
+
+def _fill(axes: Axes, s: Array, values: Array, limit: float) -> float:
+    """Draws values that may have either sign, with their limit in view; how far the axis reaches."""
+    reach = max(1.35 * limit, 1.1 * float(np.abs(values).max()))
+    axes.set_ylim(-reach, reach)
+    axes.fill_between(s, values, 0, where=values >= 0, color=BLUE, alpha=0.35, lw=0)
+    axes.fill_between(s, values, 0, where=values <= 0, color=ORANGE, alpha=0.45, lw=0)
+    axes.plot(s, values, color=INK, lw=1.4)
+    axes.axhline(0, color=SOFT, lw=0.8)
+    return reach
 
 
 def _told_radii(reach: float) -> list[float]:
@@ -91,12 +97,7 @@ def _told_radii(reach: float) -> list[float]:
 def _grade(axes: Axes, run: Run, s: Array) -> None:
     assert run.road is not None
     grade, limit = run.road.grade(s) * 100, run.world.max_grade * 100
-    reach = max(1.35 * limit, 1.1 * float(np.abs(grade).max()))
-    axes.set_ylim(-reach, reach)
-    axes.fill_between(s, grade, 0, where=grade >= 0, color=BLUE, alpha=0.35, lw=0)
-    axes.fill_between(s, grade, 0, where=grade <= 0, color=ORANGE, alpha=0.45, lw=0)
-    axes.plot(s, grade, color=INK, lw=1.4)
-    axes.axhline(0, color=SOFT, lw=0.8)
+    _fill(axes, s, grade, limit)
     _limits(axes, limit, f"limit: {limit:.0f} %")
     axes.set_ylabel("grade, %")
     _name_sides(axes, "up", "down")
