@@ -37,3 +37,30 @@ class PartError(UsageError):
 
 class LearnError(UsageError):
     """Pairs of descriptions and plans, or a grammar of phrases, that cannot be used."""
+
+
+class ChatError(RoadGPTError):
+    """A language model's server could not be reached, or did not do what it was asked for."""
+
+    exit_status = 4
+
+
+class BudgetError(ChatError):
+    """The next question would pass the limit of tokens or money that the campaign was given."""
+
+
+class ReplyError(ChatError):
+    """The server answered, but not with what was asked for: costs one road, not the campaign."""
+
+    def __init__(self, sentence: str, text: str = "") -> None:
+        super().__init__(sentence)
+        self.text = text[:2000]
+        """What the model wrote, cut after 2,000 characters; to be looked at, never to be trusted."""
+
+
+class RefusedError(ReplyError):
+    """The model declined to answer."""
+
+
+class UnparsableError(ReplyError):
+    """No reply fits the schema that was asked for, in whatever way it was asked for."""

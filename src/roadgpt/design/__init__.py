@@ -1,12 +1,16 @@
 """Drafts: makes Designs from Briefs, with geometry and rules at hand. Verb: ``draft``.
 
-A designer is a class without arguments whose objects have one method:
+A designer is a class without arguments, or one that takes ChatSettings as ``settings``, whose objects have one
+method:
 
     def draft(self, brief, world, notes, earlier, seed) -> Design
 
 ``notes`` are the sentences of rules that objected to a draft before; ``earlier`` are the designs of the
 campaign so far, none of which it repeats. The same arguments give the same Design. It raises DesignError,
 with one sentence of advice, where no road can keep every promise on this map.
+
+Besides, a designer may have ``report``: what happened in its last draft. One whose class says
+``redrafts = False`` is not asked again when rules object.
 """
 
 from collections.abc import Sequence
@@ -15,6 +19,7 @@ from typing import Protocol, cast
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
+from roadgpt.chat import ChatSettings, made
 from roadgpt.road import Design, World
 
 
@@ -39,6 +44,7 @@ def draft(
     earlier: Sequence[Design] = (),
     seed: int = 0,
     designer: str = "planner",
+    chat: ChatSettings | None = None,
 ) -> Design:
     """A Design for a Brief, by the designer of that name.
 
@@ -49,18 +55,20 @@ def draft(
         earlier: designs of the campaign so far, which are not repeated.
         seed: of all that is left to chance.
         designer: name of a part on the shelf ``designers``.
+        chat: the language model, for designers that ask one; None: what the user's settings say.
 
     Raises:
         DesignError: no road keeps every promise on this map.
         PartError: there is no designer of that name.
+        ChatError: a language model could not be asked.
     """
-    return _designer(designer).draft(brief, world, notes, earlier, seed)
+    return designer_of(designer, chat).draft(brief, world, notes, earlier, seed)
 
 
 @cache
-def _designer(name: str) -> Designer:
+def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
     """The one designer of that name: it remembers the shapes of earlier designs."""
-    return cast(Designer, plugins.find("designers", name)())
+    return cast(Designer, made(plugins.find("designers", name), chat))
 
 
-__all__ = ["Designer", "draft"]
+__all__ = ["Designer", "designer_of", "draft"]
