@@ -21,17 +21,17 @@ ROWS = [
 
 @pytest.mark.parametrize("words", EXAMPLES)
 def test_examples_are_read_in_full(words: str) -> None:
-    assert read(words).unused == ()
+    assert read(words, "grammar").unused == ()
 
 
 @pytest.mark.parametrize(("words", "instead"), ROWS, ids=[row[0] for row in ROWS])
 def test_limits_are_told_and_the_way_around_is_read(words: str, instead: str) -> None:
     try:
-        told = bool(read(words).unused)
+        told = bool(read(words, "grammar").unused)
     except BriefError:
         told = True
     assert told
-    assert read(instead).unused == ()
+    assert read(instead, "grammar").unused == ()
 
 
 def test_there_are_examples_and_limits() -> None:

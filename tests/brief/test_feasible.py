@@ -112,4 +112,4 @@ def test_a_larger_map_holds_more() -> None:
 )
 def test_words_that_ask_for_the_impossible(words: str, reason: str) -> None:
     with pytest.raises(BriefError, match=reason):
-        read(words)
+        read(words, "grammar")

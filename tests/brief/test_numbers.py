@@ -100,7 +100,7 @@ def test_words_that_are_left_over_are_as_they_were_written() -> None:
 )
 def test_a_road_too_short_for_its_heights_is_refused_both_ways(words: str, reason: str) -> None:
     with pytest.raises(BriefError, match=reason):
-        read(words)
+        read(words, "grammar")
 
 
 def test_limits_are_those_of_the_world() -> None:
@@ -117,11 +117,11 @@ def test_the_limits_of_another_world_count() -> None:
     with pytest.raises(BriefError, match="too tight"):
         check(tighter)
     check(tighter, min_radius=8.0)
-    assert read("a turn with a radius of 9 m", min_radius=8.0).clauses == tighter.clauses
+    assert read("a turn with a radius of 9 m", "grammar", min_radius=8.0).clauses == tighter.clauses
     with pytest.raises(BriefError, match="ask for 6 percent or less"):
-        read("a 10 % climb", max_grade=0.06)
+        read("a 10 % climb", "grammar", max_grade=0.06)
     with pytest.raises(BriefError, match="ask for 15 percent or less"):
-        read("a 20 % climb", max_grade=0.3)  # designs have no more
+        read("a 20 % climb", "grammar", max_grade=0.3)  # designs have no more
 
 
 def test_changes_of_slope_that_are_counted_hold_beside_a_crest() -> None:

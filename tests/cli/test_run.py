@@ -30,7 +30,7 @@ def test_it_says_what_it_understood_before_the_first_road_and_ends_with_the_plac
     result = invoke(f"{WORDS}, and it is flurbed", "-n", "2", "--seed", "7", "--out", "here")
     assert result.exit_code == 0
     lines = result.stdout.splitlines()
-    assert lines[0].startswith("understood: ")
+    assert lines[0].startswith("I read this as: ")
     assert "3 turns" in lines[0]
     assert "not understood: " in lines[0]
     assert "flurbed" in lines[0]
@@ -63,7 +63,7 @@ def test_with_json_the_talk_goes_to_standard_error_and_with_quiet_nowhere() -> N
     words = (WORDS, "--seed", "1", "--no-drive", "--no-plot")
     loud = invoke(*words, "--json")
     assert loud.stdout.count("\n") == 1
-    assert "understood: " in loud.stderr
+    assert "I read this as: " in loud.stderr
     assert invoke(*words, "--json", "--quiet").stderr == ""
     quiet = invoke(*words, "--quiet")
     assert (quiet.stdout, quiet.stderr, quiet.exit_code) == ("", "", 0)

@@ -9,7 +9,8 @@ a road, in contradiction with each other or ask for the impossible. It lists the
 understand in ``Brief.unused``. What the words mean is one table for all readers: ``words.py``.
 """
 
-from typing import Protocol
+from functools import cache
+from typing import Protocol, cast, runtime_checkable
 
 from roadgpt import plugins
 from roadgpt.brief.feasible import check
@@ -31,6 +32,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, Range
+from roadgpt.errors import BriefError
 
 __all__ = [
     "Amount",
@@ -46,6 +48,7 @@ __all__ = [
     "Side",
     "Size",
     "Slope",
+    "alternatives",
     "at_least",
     "at_most",
     "between",
@@ -66,9 +69,18 @@ class Reader(Protocol):
         ...
 
 
+@runtime_checkable
+class Doubtful(Protocol):
+    """A reader that knows more than one reading of vague words."""
+
+    def alternatives(self, words: str, number: int, temperature: float, seed: int) -> tuple[Brief, ...]:
+        """Different readings, the likeliest first."""
+        ...
+
+
 def read(
     words: str,
-    reader: str = "grammar",
+    reader: str = "model",
     map_size: float | None = 250.0,
     min_radius: float = LEAST_RADIUS,
     max_grade: float = STEEPEST / 100,
@@ -86,8 +98,46 @@ def read(
         BriefError: no road can be read out of the words; says what to change.
         PartError: no such reader.
     """
-    part = plugins.find("readers", reader)
     words = words.encode("utf-8", "replace").decode()  # half letters from a broken terminal fit into no file
-    brief: Brief = (part() if isinstance(part, type) else part).read(words)
+    brief = _reader(reader).read(words)
     check(brief, map_size, min_radius, max_grade)
     return brief
+
+
+def alternatives(
+    words: str,
+    number: int = 3,
+    reader: str = "model",
+    map_size: float | None = 250.0,
+    temperature: float = 1.0,
+    seed: int = 0,
+) -> tuple[Brief, ...]:
+    """Up to ``number`` different readings of a description, the likeliest first.
+
+    Readers that know only one reading give that one. Readings that no road of this map can keep are left out.
+
+    Raises:
+        BriefError: as ``read``, of the likeliest one.
+        PartError: no such reader.
+    """
+    first = read(words, reader, map_size)
+    part = _reader(reader)
+    if not isinstance(part, Doubtful):
+        return (first,)
+    others = part.alternatives(first.words, number, temperature, seed)[1:]
+    return (first, *(brief for brief in others if _is_possible(brief, map_size)))
+
+
+def _is_possible(brief: Brief, map_size: float | None) -> bool:
+    try:
+        check(brief, map_size)
+    except BriefError:
+        return False
+    return True
+
+
+@cache
+def _reader(name: str) -> Reader:
+    """The one reader of that name: a network is loaded once."""
+    part = plugins.find("readers", name)
+    return cast(Reader, part() if isinstance(part, type) else part)

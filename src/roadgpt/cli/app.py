@@ -18,11 +18,12 @@ from roadgpt.errors import RoadGPTError
 # so that `roadgpt --help` need not import it.
 COMMANDS = {
     "run": "Design, check, drive and judge roads from a description.",
+    "read": "Say how a description is read, and how sure the reader is.",
     "drive": "Drive roads that exist.",
     "check": "Check roads that exist against the rules.",
     "plot": "Draw roads that exist.",
     "show": "Tell what is in the folder of a run or a campaign.",
-    "learn": "Descriptions by hand and by the thousand, and how well readers read them.",
+    "learn": "Descriptions by hand and by the thousand; train, judge and export a reader of your own.",
     "parts": "List what is installed on each shelf.",
     "doctor": "Find out whether this installation works.",
 }

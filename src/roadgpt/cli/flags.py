@@ -97,7 +97,7 @@ WORLD = (
 )
 
 SETUP = (
-    Flag("--reader", "reader", "grammar", "What reads the description."),
+    Flag("--reader", "reader", "model", "What reads the description: model, or grammar, by rules."),
     Flag("--designer", "designer", "planner", "What designs the roads."),
     Flag("--driver", "driver", "beamng_like", "Who drives: a name, or FILE.py:CLASS."),
     Flag("--simulator", "simulator", "mujoco", "What simulates the car."),

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from roadgpt.run import Campaign, Setup
     from roadgpt.run.folder import Draw
 
+SURE = 0.6  # confidence under which a reading is right less often than two times in three
 SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be typed again
 
 
@@ -71,12 +72,16 @@ def _seed(wish: Wish) -> int:
 
 
 def understood(brief: "Brief") -> str:
-    """What was understood of the words, and which of them were not."""
+    """What was understood of the words, which of them were not, and whether the reader doubts it."""
     from roadgpt.brief import sentence
 
     said = sentence(brief).removesuffix(".")
-    unused = ", ".join(f"'{word}'" for word in brief.unused)
-    return f"understood: {said[:1].lower()}{said[1:]}" + (f"; not understood: {unused}" if unused else "")
+    told = f"I read this as: {said[:1].lower()}{said[1:]}"
+    if brief.unused:
+        told += "; not understood: " + ", ".join(f"'{word}'" for word in brief.unused)
+    if brief.confidence < SURE:
+        told += f"; not sure of this ({100 * brief.confidence:.0f} %), so check it or say it in other words"
+    return told
 
 
 def _watch(work: "Campaign", screen: Screen) -> None:

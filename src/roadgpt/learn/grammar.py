@@ -21,8 +21,8 @@ from itertools import accumulate
 
 import numpy as np
 
+from roadgpt.brief.readers.model.numerals import spell
 from roadgpt.errors import LearnError
-from roadgpt.learn.numerals import spell
 
 CHOICE = re.compile(r"\{([^{}]*)\}")
 OPTION = re.compile(r"\[(?:(\d+):)?([^\[\]]*)\]")

@@ -3,7 +3,7 @@
 import re
 from hashlib import sha256
 
-from roadgpt.learn.numerals import plain
+from roadgpt.brief.readers.model.numerals import plain
 
 HELD_OUT = frozenset(
     {

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from roadgpt.learn.numerals import plain, words
+from roadgpt.brief.readers.model.numerals import plain, words
 
 GRAM = 5
 MOST_SHARED = 0.6

@@ -6,8 +6,8 @@ from importlib.resources import files
 
 import numpy as np
 
+from roadgpt.brief.readers.model.numerals import spell
 from roadgpt.learn.noise import tidy
-from roadgpt.learn.numerals import spell
 
 TURNING = re.compile(
     r"\b(?:turn|hairpin|switchback|u_turn|s_bend|chicane|slalom|serpentine|zigzag|winding)\b"

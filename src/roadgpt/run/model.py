@@ -19,7 +19,7 @@ Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
 class Setup(Frozen):
     """Who does the work, and how."""
 
-    reader: str = "grammar"
+    reader: str = "model"
     designer: str = "planner"
     rules: Literal["strict", "sbft"] = "strict"
     driver: str = "beamng_like"

@@ -1,8 +1,9 @@
-"""``roadgpt learn``: descriptions with what they ask for, and how well readers read them."""
+"""``roadgpt learn``: descriptions with what they ask for; trains readers and shows how well they read."""
 
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,10 +13,12 @@ from roadgpt.cli.options import SEED, folder, whole
 from roadgpt.errors import LearnError
 
 if TYPE_CHECKING:
+    from roadgpt.learn.evaluate import Reading
     from roadgpt.learn.generator import Pair
 
 SPLITS = ("train", "validation", "test")
 COUNT = whole(1, 10_000_000, "a number")
+EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
 hand_option = click.option(
     "--hand",
     type=folder,
@@ -27,7 +30,7 @@ hand_option = click.option(
 
 @click.group()
 def command() -> None:
-    """Descriptions by hand and by the thousand, and how well readers read them."""
+    """Descriptions by hand and by the thousand; train, judge and export a reader of your own."""
 
 
 @command.command()
@@ -67,11 +70,107 @@ def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
 
 
 @command.command()
+@click.argument("out", type=folder)
+@hand_option
+@click.option("--weights", type=folder, help="Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.")
+@click.option("--steps", type=COUNT, default=8000, show_default=True, help="Batches of each process.")
+@click.option("--size", type=COUNT, default=48, show_default=True, help="Pairs in a batch.")
+@click.option("--workers", type=whole(1, 64, "processes"), default=2, show_default=True, help="One per core.")
+@click.option("--own", type=folder, help="Folder with pairs of your own, trained on too.")
+@click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
+def train(
+    out: Path,
+    hand: Path,
+    weights: Path | None,
+    steps: int,
+    size: int,
+    workers: int,
+    own: Path | None,
+    seed: int,
+) -> None:
+    """Train, or go on training, with the checkpoint in the folder OUT.
+
+    Ctrl-C loses the batches since the last save; the same command goes on from there.
+
+    \b
+    roadgpt learn train runs/reader --weights MINILM
+    roadgpt learn train runs/reader --steps 12000 --own my-pairs
+    """
+    try:
+        from roadgpt.learn.team import train_together
+        from roadgpt.learn.train import Plan
+    except ImportError as error:
+        raise LearnError(EXTRA) from error
+    from roadgpt.learn.origin import begin
+
+    pairs = [*_pairs_of(hand / "train"), *(_pairs_of(own) if own else [])]
+    pieces = begin(out, weights)
+    start = weights / "model.safetensors" if weights else None
+    train_together(
+        out, pieces, start, pairs, Plan(steps=steps, size=size, seed=seed, workers=workers), click.echo
+    )
+
+
+@command.command()
+@click.argument("checkpoint", type=folder)
+@click.argument("out", type=folder)
+@hand_option
+@click.option(
+    "--chats", type=COUNT, default=None, help="Also write so many pairs as chats, for larger models."
+)
+@click.option(
+    "--seed", type=SEED, default=1, show_default=True, help="Of the pairs that words are counted in."
+)
+def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int) -> None:
+    """Write the reader of a CHECKPOINT folder in int8 into the folder OUT, ready for use."""
+    try:
+        from roadgpt.learn.export import export_checkpoint
+    except ImportError as error:
+        raise LearnError(EXTRA) from error
+
+    export_checkpoint(checkpoint, out, _pairs_of(hand / "train"), _pairs_of(hand / "validation"), seed)
+    click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
+    if chats:
+        _write_chats(out, chats, seed)
+
+
+@command.command()
+@click.argument("out", type=folder)
+@click.option("--number", "-n", type=COUNT, default=1000, show_default=True, help="Pairs to write.")
+@click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same chats.")
+def chats(out: Path, number: int, seed: int) -> None:
+    """Write pairs as chats into the folder OUT, for fine-tuning any larger model.
+
+    chat-brief.jsonl goes from the description to the Brief, chat-design.jsonl to the design of a road.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    _write_chats(out, number, seed)
+
+
+def _write_chats(out: Path, number: int, seed: int) -> None:
+    from roadgpt.learn.chat import brief_chats, design_chats
+    from roadgpt.learn.generator import pairs
+    from roadgpt.road import World
+
+    made = list(islice(pairs(seed), number))
+    for name, lines in (("brief", brief_chats(made)), ("design", design_chats(made, World(), seed))):
+        path = out / f"chat-{name}.jsonl"
+        with path.open("w", encoding="utf-8") as file:
+            written = sum(bool(file.write(line + "\n")) for line in lines)
+        click.echo(f"{written} chats in {path}")
+
+
+@command.command()
 @hand_option
 @click.option("--split", type=click.Choice(SPLITS), default="validation", show_default=True)
-@click.option("--reader", "names", multiple=True, default=("grammar",), show_default=True, help="Repeatable.")
+@click.option(
+    "--reader", "names", multiple=True, default=("model", "grammar"), show_default=True, help="Repeatable."
+)
 @click.option("--misses", type=whole(0, 10_000, "a number"), default=0, help="Show so many of the misses.")
-def evaluate(hand: Path, split: str, names: Sequence[str], misses: int) -> None:
+@click.option(
+    "--card", type=click.Path(path_type=Path), help="Write the card of the first reader to this file."
+)
+def evaluate(hand: Path, split: str, names: Sequence[str], misses: int, card: Path | None) -> None:
     """Hold readers against hand-written labels."""
     from roadgpt import plugins
     from roadgpt.learn.evaluate import HEAD, readings, score, worst
@@ -88,6 +187,20 @@ def evaluate(hand: Path, split: str, names: Sequence[str], misses: int) -> None:
     for name, its in found.items():
         for miss in worst(its, misses):
             click.echo(f"{name}: '{miss.pair.text}'\n  asked for {miss.pair.plan}\n  read as {miss.got}")
+    if card:
+        _write_card(card, hand, found)
+
+
+def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]") -> None:
+    from roadgpt.brief.readers.model import WEIGHTS
+    from roadgpt.learn.card import card
+
+    counts = {f"hand-written, {name}": len(_pairs_of(hand / name)) for name in SPLITS}
+    first, *others = found
+    told = (WEIGHTS / "training.txt").read_text(encoding="utf-8").strip()
+    text = card(WEIGHTS, counts, found[first], {name: found[name] for name in others}, told)
+    path.write_text(text, encoding="utf-8")
+    click.echo(f"the card is in {path}")
 
 
 def _key(pair: "Pair") -> str:

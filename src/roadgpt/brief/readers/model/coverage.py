@@ -1,0 +1,43 @@
+"""Which words left no trace in the plan: numbers not copied, sides not said, words never learnt."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadgpt.brief.readers.model.slots import Slotted
+from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+
+SIDES = frozenset({"left", "right"})
+TRACES = frozenset({"left", "right", "lefts=", "rights=", "alternating"})
+"""What a side leaves in a plan; "first left, then right" leaves only its first."""
+SHORTEST = 3  # letters; shorter words are joints of the sentence in all five languages
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """Words that were frequent in training: those that change plans, and those that are only joints."""
+
+    known: frozenset[str]
+
+    @classmethod
+    def read(cls, path: Path) -> "Coverage":
+        """The words of a file, one on each line."""
+        return cls(frozenset(path.read_text(encoding="utf-8").split("\n")))
+
+    def unused(self, text: Slotted, tokens: Sequence[str]) -> tuple[str, ...]:
+        """Words, as they were said, that the plan does not show, each once and in order."""
+        out: list[str] = []
+        slot = 0
+        has_side = bool(TRACES & {*tokens})
+        for word in text.words:
+            if word.text.startswith("[unused") and word.said:
+                if slot < len(text.slots) and SLOT_TOKENS[slot] not in tokens:
+                    out.append(word.said)
+                slot += 1
+            elif word.said and (self._is_strange(word.text) or (word.text in SIDES and not has_side)):
+                out.append(word.said)
+        return tuple(dict.fromkeys(out))
+
+    def _is_strange(self, word: str) -> bool:
+        is_long = len(word) >= SHORTEST or not word.isascii()  # a letter of Chinese is a word
+        return word.isalpha() and is_long and word not in self.known

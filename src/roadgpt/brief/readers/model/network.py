@@ -1,0 +1,185 @@
+"""The network behind the reader: two ONNX graphs, run by onnxruntime on one core."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import onnxruntime
+
+from roadgpt.brief.readers.model.evidence import Evidence
+from roadgpt.brief.readers.model.slots import Slotted
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
+from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.brief.readers.model.writer import END, PlanWriter
+
+Array = npt.NDArray[np.float32]
+START = NUMBER_OF["<start>"]
+MOST_TOKENS = 90
+WIDTH = 4
+FAVOUR = 0.3
+"""Exponent of the length by which log-chances are divided."""
+MARGIN = 1.0
+"""Log-chance by which unfinished drafts may be worse than a finished one and still be followed."""
+REFUSED = [NUMBER_OF[word] for word in REFUSALS]
+LAYERS, HEADS, SIZE = 3, 6, 64
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """A plan as the network wrote it."""
+
+    tokens: tuple[str, ...]
+    log_chances: tuple[float, ...]
+    """Of each token, the end included, among all tokens that were allowed."""
+    refusal: float
+    """The chance that the words make no road, before anything was written."""
+
+
+class Network:
+    """Pieces in, plans out."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.pieces = WordPieces((folder / "pieces.txt").read_text(encoding="utf-8").split("\n"))
+
+    @cached_property
+    def _encoder(self) -> onnxruntime.InferenceSession:
+        return _session(self.folder / "encoder.onnx")
+
+    @cached_property
+    def _decoder(self) -> onnxruntime.InferenceSession:
+        return _session(self.folder / "decoder.onnx")
+
+    def encode(self, text: Slotted) -> Array:
+        """Keys and values of a description, (layers, 2, 1, heads, n, size)."""
+        numbers, _ = self.pieces.encode(word.text for word in text.words)
+        out: Array = self._encoder.run(None, {"pieces": np.array([numbers], dtype=np.int64)})[0]
+        return out
+
+    def write(
+        self, across: Array, text: Slotted, refuse_from: float = 0.5, width: int = WIDTH
+    ) -> tuple[Written, ...]:
+        """The likeliest plans for a description, best first, found by a beam of ``width`` drafts."""
+        drafts, done = [Draft.of(text)], list[Draft]()
+        own, refusal = _nothing(), 0.0
+        for place in range(MOST_TOKENS):
+            scores, own = self._step(drafts, place, own, across)
+            logs = np.stack(
+                [_log_chances(row, d.writer.allowed()) for row, d in zip(scores, drafts, strict=True)]
+            )
+            if place == 0:
+                refusal = float(np.exp(logs[0, REFUSED]).sum())
+                if refusal < refuse_from:
+                    logs[0] = _without(logs[0], REFUSED)
+            total = logs + np.array([[sum(draft.chances)] for draft in drafts], dtype=np.float32)
+            likeliest = np.argsort(total, axis=None)[::-1][: 2 * width]
+            longer, rows = list[Draft](), list[int]()
+            for row, token in zip(*np.unravel_index(likeliest, total.shape), strict=True):
+                if np.isfinite(total[row, token]) and len(longer) < width:
+                    draft = drafts[row].longer(int(token), float(logs[row, token]))
+                    if draft.is_done:
+                        done.append(draft)
+                    else:
+                        longer.append(draft)
+                        rows.append(int(row))
+            if not longer or (
+                len(done) >= width and max(d.worth for d in done) >= max(d.worth for d in longer)
+            ):
+                break
+            drafts, own = longer, own[:, :, rows]
+        best_first = sorted(done or drafts, key=lambda draft: -draft.worth)
+        return tuple(draft.written(refusal) for draft in best_first)
+
+    def drawn(self, across: Array, text: Slotted, rng: np.random.Generator, temperature: float) -> Written:
+        """A plan drawn token by token; the higher the temperature, the more daring. It never refuses."""
+        draft, own = Draft.of(text), _nothing()
+        for place in range(MOST_TOKENS):
+            scores, own = self._step([draft], place, own, across)
+            logs = _log_chances(scores[0], draft.writer.allowed())
+            logs = _without(logs, REFUSED) if place == 0 else logs
+            chances = np.exp((logs - logs.max()) / temperature)
+            token = int(rng.choice(len(logs), p=chances / chances.sum()))
+            draft = draft.longer(token, float(logs[token]))
+            if draft.is_done:
+                break
+        return draft.written(0.0)
+
+    def _step(self, drafts: "Sequence[Draft]", place: int, own: Array, across: Array) -> tuple[Array, Array]:
+        feed = {
+            "token": np.array([[draft.last] for draft in drafts]),
+            "place": np.array([place]),
+            "own": own,
+            "across": np.repeat(across, len(drafts), axis=2),
+            "seen": np.zeros((len(drafts), 1, 1, across.shape[4]), dtype=np.float32),
+        }
+        scores, kept = self._decoder.run(None, feed)
+        return scores, kept
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A plan that is being written."""
+
+    writer: PlanWriter
+    tokens: tuple[str, ...] = ()
+    chances: tuple[float, ...] = ()
+    last: int = START
+    is_done: bool = False
+
+    @classmethod
+    def of(cls, text: Slotted) -> "Draft":
+        """An empty plan for a description."""
+        said = frozenset(word.text for word in text.words)
+        return cls(PlanWriter(text.slots, said, Evidence.of(text.text)))
+
+    @property
+    def worth(self) -> float:
+        """Log-chance, a little in favour of long plans: each token costs something, however sure."""
+        return sum(self.chances) / float(max(1, len(self.chances)) ** FAVOUR)
+
+    def longer(self, token: int, chance: float) -> "Draft":
+        """The plan with one token more."""
+        if TOKENS[token] == END:
+            return Draft(self.writer, self.tokens, (*self.chances, chance), token, True)
+        writer = self.writer.copy()
+        writer.push(TOKENS[token])
+        return Draft(writer, (*self.tokens, TOKENS[token]), (*self.chances, chance), token)
+
+    def written(self, refusal: float) -> "Written":
+        """The plan as it stands."""
+        return Written(self.tokens, self.chances, refusal)
+
+
+def _is_over(done: Sequence[Draft], longer: Sequence[Draft]) -> bool:
+    """Has every draft that is still being written fallen behind by MARGIN?"""
+    return bool(done) and max(d.worth for d in done) >= max(d.worth for d in longer) + MARGIN
+
+
+def _nothing() -> Array:
+    return np.zeros((LAYERS, 2, 1, HEADS, 0, SIZE), dtype=np.float32)
+
+
+def _without(logs: Array, tokens: Sequence[int]) -> Array:
+    """Chances if some tokens were not allowed either."""
+    out = logs.copy()
+    out[list(tokens)] = -np.inf
+    top: Array = out - np.log(np.exp(out[np.isfinite(out)]).sum())
+    return top
+
+
+def _session(path: Path) -> onnxruntime.InferenceSession:
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = 1
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+
+
+def _log_chances(scores: Array, allowed: Sequence[int]) -> Array:
+    out = np.full(len(scores), -np.inf, dtype=np.float32)
+    some = scores[list(allowed)]
+    out[list(allowed)] = some - (some.max() + np.log(np.exp(some - some.max()).sum()))
+    return out

@@ -1,0 +1,154 @@
+"""Units and other words that stand beside numbers, in five languages, as plain words."""
+
+from typing import Literal
+
+Unit = Literal["metres", "percent", "degrees", "kmh", ""]
+
+UNITS: dict[tuple[str, ...], tuple[Unit, float]] = {}
+"""A unit's words -> what it measures, and how many metres, percent or degrees one of it is."""
+
+_SAID: tuple[tuple[str, Unit, float], ...] = (
+    (
+        "m mt mts mtr mtrs metre metres meter meters metern metro metros metri mètre mètres meteres",
+        "metres",
+        1.0,
+    ),
+    ("km kms kilometre kilometres kilometer kilometers kilometern kilomètre kilomètres", "metres", 1000.0),
+    ("kilometro kilometros chilometro chilometri", "metres", 1000.0),
+    ("ft feet foot fuß fuss pied pieds pie pies piede piedi", "metres", 0.3048),
+    ("yd yds yard yards yarda yardas iarde", "metres", 0.9144),
+    ("mile miles meile meilen mille_marin milla millas miglio miglia", "metres", 1609.344),
+    (
+        "% pct percent procent prozent per_cent pour_cent por_ciento per_cento pourcent porciento",
+        "percent",
+        1.0,
+    ),
+    ("° º deg degs degree degrees degre degrees grad degrés degré grado grados gradi", "degrees", 1.0),
+    ("kmh kph mph km/h", "kmh", 1.0),
+)
+
+
+def plain_unit(text: str) -> str:
+    """A unit's word without accents."""
+    return text.translate(str.maketrans("èéí", "eei"))
+
+
+for _words, _unit, _size in _SAID:
+    for _word in _words.split():
+        UNITS[tuple(plain_unit(_word).split("_"))] = (_unit, _size)
+
+ONES = frozenset(["a", "an", "one", "ein", "eine", "einen", "einem", "eins", "un", "une", "uno", "una"])
+"""Words that are the number one before a unit ("a kilometre") or in a ratio ("one in ten")."""
+SHARES: dict[str, float] = {
+    word: share
+    for share, words in {
+        1 / 2: "half halber halben halbe halbes demi medio media mezzo mezza",
+        1 / 4: "quarter quarters viertel quart quarts cuarto cuartos quarto quarti",
+        1 / 3: "third thirds drittel tiers tercio tercios terzo terzi",
+        1 / 5: "fifth fifths fuenftel cinquieme quinto quinti quintos",
+        1 / 10: "tenth tenths zehntel dixieme decimo decimi decimos",
+    }.items()
+    for word in words.split()
+}
+"""Parts of a unit: "half a mile", "drei viertel Kilometer"."""
+AND_A_HALF: dict[str, float] = {"anderthalb": 1.5, "eineinhalb": 1.5, "zweieinhalb": 2.5}
+SHARE_FILLERS = frozenset(
+    {"of", "a", "an", "de", "d", "'", "un", "di", "eines", "einem", "-", "full", "whole", "ganzer"}
+)
+"""Between a share and its unit."""
+RATIO = frozenset({":", "in", "zu", "sur", "su", "en", "auf"})
+"""Between the two numbers of a ratio: "1:8", "one in eight", "1 zu 8"."""
+JOINTS = frozenset(
+    [
+        "to",
+        "-",
+        "and",
+        "or",
+        "through",
+        "bis",
+        "und",
+        "oder",
+        "a",
+        "et",
+        "ou",
+        "y",
+        "o",
+        "e",
+        "u",
+        "ed",
+        "od",
+        ",",
+        "al",
+        "/",
+        "till",
+        "until",
+        "..",
+    ]
+)
+"""Between two numbers of which only the last has its unit: "40 to 60 metres"."""
+SETS: dict[tuple[str, ...], int] = {
+    tuple(key.split()): number
+    for number, keys in {
+        2: "a couple of|couple of|a pair of|pair of|a couple|un par de|un paio di|une paire de|ein paar zwei",
+        6: "half a dozen|half dozen|a half dozen"
+        "|ein halbes dutzend|halbes dutzend|une demi douzaine|demi douzaine"
+        "|media docena|una media docena|mezza dozzina|una mezza dozzina|half a dozen of|media docena de"
+        "|une demi douzaine de|mezza dozzina di|una mezza dozzina di|una media docena de",
+        12: "a dozen|dozen|ein dutzend|dutzend|une douzaine|une douzaine de|una docena|una docena de"
+        "|una dozzina|una dozzina di",
+    }.items()
+    for key in keys.split("|")
+}
+"""Words for a set of things, and how many they are."""
+ORDINALS = frozenset(["st", "nd", "rd", "th", "er", "ere", "eme", "e", "a", "o", "nde", "ste", "te"])
+FUNCTION_WORDS: dict[str, frozenset[str]] = {
+    code: frozenset(its.split())
+    for code, its in {
+        "en": "the a an and with then of to road turn turns bend bends that left right for is it in all",
+        "de": "der die das und mit eine ein einer dann nach strasse straße kurve kurven links"
+        " rechts bergauf bergab"
+        " nicht auf den dem es ist",
+        "fr": "le la les et avec une un des puis route virage virages gauche droite de du en pas"
+        " est sur a montee"
+        " descente",
+        "es": "el la los las y con una un carretera curva curvas izquierda derecha de del luego"
+        " que por sin en es"
+        " despues",
+        "it": "il la le e con una un strada curva curve sinistra destra di poi che per senza in"
+        " del salita discesa"
+        " dopo",
+    }.items()
+}
+"""Frequent words by which a language is guessed; needed where a number word means something else."""
+AMBIGUOUS = frozenset(
+    [
+        "once",
+        "due",
+        "sei",
+        "cent",
+        "mille",
+        "elf",
+        "dos",
+        "sept",
+        "tres",
+        "tre",
+        "mil",
+        "cien",
+        "six",
+        "dix",
+        "nove",
+        "seis",
+        "sette",
+        "null",
+        "zero",
+        "cento",
+        "dieci",
+        "fourty",
+        "vier",
+        "acht",
+        "neuf",
+        "huit",
+        "ochenta",
+    ]
+)
+"""Number words that other languages use for something else ("once", "très", "due to")."""

@@ -1,0 +1,72 @@
+"""How sure is sure? A reader's confidence fitted to how often it was right on descriptions held back."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from roadgpt.brief.normal import normal
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.coverage import Coverage
+from roadgpt.brief.readers.model.network import Network
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
+from roadgpt.errors import BriefError
+from roadgpt.learn.generator import Pair
+
+Floats = npt.NDArray[np.float64]
+MOST_WRONGLY = 0.005  # share of honest descriptions that may be refused
+STEPS = 4000
+RATE = 0.05
+PULL = 0.01  # towards zero, so that few pairs do not make bold weights
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What stands in ``settings.json``."""
+
+    refuse_from: float
+    confidence: dict[str, float]
+
+
+def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> Settings:
+    """Settings fitted on pairs that the network was not trained on."""
+    honest = [pair for pair in pairs if pair.plan not in REFUSALS]
+    threshold = _threshold(network, honest)
+    rows, rights = [], []
+    for pair in honest:
+        text = slotted(pair.text)
+        written = network.write(network.encode(text), text, refuse_from=2.0)[0]
+        unused = len(coverage.unused(text, written.tokens))
+        rows.append((1.0, sum(written.log_chances), min(written.log_chances), float(unused)))
+        rights.append(_plan(plan_of(written.tokens, text.slots)) == _plan(pair.plan))
+    bias, every, worst, unused_weight = _fitted(np.array(rows), np.array(rights, dtype=float))
+    weights = {"bias": bias, "all": every, "worst": worst, "unused": unused_weight}
+    return Settings(threshold, {name: round(float(value), 4) for name, value in weights.items()})
+
+
+def _threshold(network: Network, honest: Sequence[Pair]) -> float:
+    """The chance of a refusal from which it is believed: hardly any honest description reaches it."""
+    chances = []
+    for pair in honest:
+        text = slotted(pair.text)
+        chances.append(network.write(network.encode(text), text, refuse_from=2.0)[0].refusal)
+    most = float(np.quantile(chances, 1 - MOST_WRONGLY)) if chances else 0.5
+    return round(min(max(most, 0.5), 0.95), 3)
+
+
+def _plan(line: str) -> str:
+    try:
+        return plan(normal(read_plan(line)))
+    except BriefError:
+        return "?"
+
+
+def _fitted(rows: Floats, rights: Floats) -> Floats:
+    """Logistic regression by plain descent."""
+    weights = np.zeros(rows.shape[1])
+    for _ in range(STEPS):
+        chances = 1 / (1 + np.exp(-rows @ weights))
+        weights -= RATE * (rows.T @ (chances - rights) / len(rights) + PULL * weights)
+    return weights

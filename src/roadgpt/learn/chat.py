@@ -1,0 +1,48 @@
+"""Pairs as chats, for fine-tuning any larger model: description -> Brief, or description -> Design."""
+
+import json
+from collections.abc import Iterable, Iterator
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model import ADVICE
+from roadgpt.design import draft
+from roadgpt.errors import DesignError
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.labels import REFUSALS
+from roadgpt.road import World
+
+TO_BRIEF = (
+    "Read the description of a road and answer with its Brief as JSON. If no road can be built, say why."
+)
+TO_DESIGN = "Design a road for the description and answer with its road segments as JSON."
+
+
+def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
+    """One line of JSON for each pair."""
+    for pair in pairs:
+        answer = ADVICE[pair.plan] if pair.plan in REFUSALS else _json(read_plan(pair.plan))
+        yield _chat(TO_BRIEF, pair.text, answer)
+
+
+def design_chats(pairs: Iterable[Pair], world: World, seed: int) -> Iterator[str]:
+    """One line of JSON for each pair of which a road can be designed."""
+    for number, pair in enumerate(pairs):
+        if pair.plan in REFUSALS:
+            continue
+        try:
+            design = draft(read_plan(pair.plan), world, seed=seed + number)
+        except DesignError:
+            continue
+        yield _chat(TO_DESIGN, pair.text, json.dumps(design.to_json()))
+
+
+def _json(brief: Brief) -> str:
+    return brief.model_dump_json(exclude_defaults=True)
+
+
+def _chat(system: str, user: str, answer: str) -> str:
+    roles = (("system", system), ("user", user), ("assistant", answer))
+    return json.dumps(
+        {"messages": [{"role": role, "content": text} for role, text in roles]}, ensure_ascii=False
+    )

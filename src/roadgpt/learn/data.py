@@ -1,0 +1,88 @@
+"""Batches for training: generated pairs and hand-written ones, as numbers."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from roadgpt.brief.readers.model.slots import SLOTS, Slot, slot_name, slotted
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, tokens_of
+from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.learn.generator import Pair, pairs
+from roadgpt.learn.held_out import is_held_out
+from roadgpt.learn.variation import varied
+
+Numbers = npt.NDArray[np.int64]
+LONGEST_PLAN = 95
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """A pair as numbers: pieces of the text, tokens of the plan with both ends."""
+
+    pieces: tuple[int, ...]
+    tokens: tuple[int, ...]
+
+
+def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
+    """A pair as numbers; None where its plan has a number that is not in the text.
+
+    With ``rng`` slots get numbers at random, so that all slot tokens are learnt alike.
+    """
+    taken = slotted(pair.text)
+    tokens = tokens_of(pair.plan, taken.slots)
+    if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
+        return None
+    words = [word.text for word in taken.words]
+    if rng is not None and taken.slots:
+        words, tokens = _reslotted(words, tokens, taken.slots, rng)
+    numbers, _ = pieces.encode(words)
+    return Example(tuple(numbers), (1, *(NUMBER_OF[token] for token in tokens), 2))
+
+
+def _reslotted(
+    words: list[str], tokens: list[str], slots: Sequence[Slot], rng: np.random.Generator
+) -> tuple[list[str], list[str]]:
+    """Slots renumbered, still in rising order."""
+    chosen = np.sort(rng.permutation(SLOTS)[: len(slots)])
+    names = {slot_name(index): slot_name(int(new)) for index, new in enumerate(chosen)}
+    written = {SLOT_TOKENS[index]: SLOT_TOKENS[int(new)] for index, new in enumerate(chosen)}
+    return [names.get(word, word) for word in words], [written.get(token, token) for token in tokens]
+
+
+def examples(seed: int, hand: Sequence[Pair], hand_share: float, pieces: WordPieces) -> Iterator[Example]:
+    """Endless examples, a share of them hand-written and typed with noise of their own."""
+    rng = np.random.default_rng([seed, 7])
+    generated = pairs(seed)
+    by_language: dict[str, list[Pair]] = {}
+    for pair in hand:
+        by_language.setdefault(pair.lang, []).append(pair)
+    while True:
+        if hand and rng.random() < hand_share:
+            pair = varied(hand[int(rng.integers(len(hand)))], by_language, rng)
+        else:
+            pair = next(generated)
+        made = None if is_held_out(pair.text) else example(pair, pieces, rng)
+        if made:
+            yield made
+
+
+def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Iterator[tuple[Numbers, Numbers]]:
+    """Padded batches of like length: pieces (size, n) and tokens (size, m), zero where nothing is."""
+    rng = np.random.default_rng([seed, 8])
+    while True:
+        many = sorted(
+            (next(stream) for _ in range(size * pool)), key=lambda e: (len(e.pieces), len(e.tokens))
+        )
+        for index in rng.permutation(pool):
+            batch = many[index * size : (index + 1) * size]
+            yield padded([e.pieces for e in batch]), padded([e.tokens for e in batch])
+
+
+def padded(rows: Sequence[Sequence[int]]) -> Numbers:
+    """Rows of one length, zero where nothing is."""
+    out = np.zeros((len(rows), max(len(row) for row in rows)), dtype=np.int64)
+    for index, row in enumerate(rows):
+        out[index, : len(row)] = row
+    return out

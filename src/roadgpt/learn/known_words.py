@@ -1,0 +1,48 @@
+"""Which words a reader has learnt: those that go along with something in plans, and joints."""
+
+from collections import Counter
+from collections.abc import Iterable
+from importlib.resources import files
+
+from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.vocabulary import tokens_of
+from roadgpt.learn.generator import Pair
+
+LEAST = 4  # times that a word must have been seen with what it means
+LIFT = 2.5
+"""How many times more often than by chance."""
+
+
+def joints() -> frozenset[str]:
+    """Words that only join others, in five languages."""
+    text = (files("roadgpt.learn") / "words" / "joints.txt").read_text(encoding="utf-8")
+    return frozenset(plain(text).split())
+
+
+def known_words(pairs: Iterable[Pair]) -> list[str]:
+    """The words in alphabetical order.
+
+    A word counts as learnt where some token of the plans goes along with it far more often than by chance;
+    'lonely' goes along with nothing, so a lonely road is told that 'lonely' was not used.
+    """
+    word_in: Counter[str] = Counter()
+    token_in: Counter[str] = Counter()
+    both: Counter[tuple[str, str]] = Counter()
+    number = 0
+    for pair in pairs:
+        text = slotted(pair.text)
+        tokens = {*(tokens_of(pair.plan, text.slots) or [])}
+        said = {word.text for word in text.words if word.text.isalpha()}
+        number += 1
+        word_in.update(said)
+        token_in.update(tokens)
+        both.update((word, token) for word in said for token in tokens)
+    learnt = {
+        word
+        for (word, token), times in both.items()
+        if times >= LEAST
+        and times * number > LIFT * word_in[word] * token_in[token]
+        and times > 0.3 * word_in[word]
+    }
+    return sorted(learnt | joints())

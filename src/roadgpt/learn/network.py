@@ -1,0 +1,213 @@
+"""The model: the pretrained MiniLM encoder, and a small decoder that writes plans.
+
+Attention is written by hand, because only so does it leave for ONNX with lengths left open.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """Sizes of the network."""
+
+    pieces: int = 30522
+    tokens: int = 93
+    width: int = 384
+    heads: int = 12
+    inner: int = 1536
+    layers: int = 6
+    decoder_layers: int = 3
+    decoder_inner: int = 1024
+    decoder_heads: int = 6
+    places: int = 128
+    """Longest text, in pieces."""
+    plan_places: int = 96
+    """Longest plan, in tokens."""
+
+    def as_dict(self) -> dict[str, int]:
+        """For a checkpoint."""
+        return asdict(self)
+
+
+class Attention(nn.Module):
+    """Multi-head attention over keys and values made elsewhere."""
+
+    def __init__(self, width: int, heads: int, dropout: float) -> None:
+        super().__init__()
+        self.heads, self.size = heads, width // heads
+        self.query, self.key, self.value, self.out = (nn.Linear(width, width) for _ in range(4))
+        self.dropout = dropout
+
+    def split(self, x: Tensor) -> Tensor:
+        """(batch, length, width) -> (batch, heads, length, size)."""
+        return x.view(x.shape[0], x.shape[1], self.heads, self.size).transpose(1, 2)
+
+    def forward(self, x: Tensor, key: Tensor, value: Tensor, mask: Tensor | None) -> Tensor:
+        """``key`` and ``value`` are split already; ``mask`` is added to the scores."""
+        query = self.split(self.query(x))
+        scores = query @ key.transpose(2, 3) / math.sqrt(self.size)
+        if mask is not None:
+            scores = scores + mask
+        weights = functional.dropout(torch.softmax(scores, -1), self.dropout, self.training)
+        mixed = (weights @ value).transpose(1, 2).reshape(x.shape[0], x.shape[1], -1)
+        out: Tensor = self.out(mixed)
+        return out
+
+
+class EncoderLayer(nn.Module):
+    """A layer of BERT: norms after the sums."""
+
+    def __init__(self, shape: Shape, dropout: float) -> None:
+        super().__init__()
+        self.attention = Attention(shape.width, shape.heads, dropout)
+        self.norm = nn.LayerNorm(shape.width, eps=1e-12)
+        self.wide, self.narrow = nn.Linear(shape.width, shape.inner), nn.Linear(shape.inner, shape.width)
+        self.last_norm = nn.LayerNorm(shape.width, eps=1e-12)
+        self.dropout = nn.Dropout(dropout)
+
+    def forward(self, x: Tensor, mask: Tensor) -> Tensor:
+        """One layer further."""
+        attention = self.attention
+        key, value = attention.split(attention.key(x)), attention.split(attention.value(x))
+        x = self.norm(x + self.dropout(attention(x, key, value, mask)))
+        out: Tensor = self.last_norm(x + self.dropout(self.narrow(functional.gelu(self.wide(x)))))
+        return out
+
+
+class DecoderLayer(nn.Module):
+    """Attention to what was written, then to the description; norms before."""
+
+    def __init__(self, shape: Shape, dropout: float) -> None:
+        super().__init__()
+        self.own = Attention(shape.width, shape.decoder_heads, dropout)
+        self.across = Attention(shape.width, shape.decoder_heads, dropout)
+        self.norms = nn.ModuleList(nn.LayerNorm(shape.width) for _ in range(3))
+        self.wide = nn.Linear(shape.width, shape.decoder_inner)
+        self.narrow = nn.Linear(shape.decoder_inner, shape.width)
+        self.dropout = nn.Dropout(dropout)
+
+    def forward(
+        self,
+        x: Tensor,
+        own: tuple[Tensor, Tensor],
+        across: tuple[Tensor, Tensor],
+        mask: Tensor | None,
+        seen: Tensor,
+    ) -> Tensor:
+        """``own``: keys and values of the plan so far; ``across``: those of the description."""
+        x = x + self.dropout(self.own(self.norms[0](x), *own, mask))
+        x = x + self.dropout(self.across(self.norms[1](x), *across, seen))
+        out: Tensor = x + self.dropout(self.narrow(functional.gelu(self.wide(self.norms[2](x)))))
+        return out
+
+    def own_keys(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """Keys and values of new tokens."""
+        y = self.norms[0](x)
+        return self.own.split(self.own.key(y)), self.own.split(self.own.value(y))
+
+    def across_keys(self, memory: Tensor) -> tuple[Tensor, Tensor]:
+        """Keys and values of the description."""
+        return self.across.split(self.across.key(memory)), self.across.split(self.across.value(memory))
+
+
+class Reader(nn.Module):
+    """Pieces of a description in, scores for the next token of its plan out."""
+
+    def __init__(self, shape: Shape, dropout: float = 0.1) -> None:
+        super().__init__()
+        self.shape = shape
+        width = shape.width
+        self.pieces, self.places = nn.Embedding(shape.pieces, width), nn.Embedding(shape.places, width)
+        self.kind = nn.Parameter(torch.zeros(width))  # BERT's first segment
+        self.norm = nn.LayerNorm(width, eps=1e-12)
+        self.layers = nn.ModuleList(EncoderLayer(shape, dropout) for _ in range(shape.layers))
+        self.tokens, self.plan_places = (
+            nn.Embedding(shape.tokens, width),
+            nn.Embedding(shape.plan_places, width),
+        )
+        self.decoder = nn.ModuleList(DecoderLayer(shape, dropout) for _ in range(shape.decoder_layers))
+        self.final = nn.LayerNorm(width)
+        self.bias = nn.Parameter(torch.zeros(shape.tokens))
+        self.dropout = nn.Dropout(dropout)
+        for embedding in (self.tokens, self.plan_places):
+            nn.init.normal_(embedding.weight, std=0.02)
+
+    def encode(self, pieces: Tensor, seen: Tensor) -> Tensor:
+        """(batch, length) numbers of pieces and the mask to add -> (batch, length, width)."""
+        places = self.places.weight[: pieces.shape[1]]
+        x = self.dropout(self.norm(self.pieces(pieces) + places + self.kind))
+        for layer in self.layers:
+            x = layer(x, seen)
+        return x
+
+    def start(self, memory: Tensor) -> list[tuple[Tensor, Tensor]]:
+        """Keys and values of the description for every decoder layer."""
+        return [layer.across_keys(memory) for layer in self.decoder]
+
+    def write(self, tokens: Tensor, memory: Tensor, seen: Tensor) -> Tensor:
+        """Scores after every token of whole plans (training)."""
+        length = tokens.shape[1]
+        x = self.dropout(self.tokens(tokens) + self.plan_places.weight[:length])
+        ahead = torch.full((length, length), -1e4, device=x.device, dtype=x.dtype).triu(1)
+        for layer, across in zip(self.decoder, self.start(memory), strict=True):
+            x = layer(x, layer.own_keys(x), across, ahead, seen)
+        return self.scores(x)
+
+    def scores(self, x: Tensor) -> Tensor:
+        """Scores of all tokens; their embeddings are used for reading and writing."""
+        return functional.linear(self.final(x), self.tokens.weight) * self.shape.width**-0.5 * 8 + self.bias
+
+    def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
+        """Scores of the next token at every place of the plan; pieces 0 are padding."""
+        seen = (pieces == 0)[:, None, None, :] * -1e4
+        return self.write(tokens, self.encode(pieces, seen), seen)
+
+
+def load_minilm(reader: Reader, path: Path, pieces: Sequence[str]) -> None:
+    """Fills the encoder with the pretrained weights of all-MiniLM-L6-v2 (safetensors).
+
+    ``pieces`` may be a part of BERT's vocabulary, in any order; ``vocab.txt`` must lie beside the weights.
+    """
+    from safetensors.torch import load_file
+
+    whole = (path.parent / "vocab.txt").read_text(encoding="utf-8").splitlines()
+    place = {piece: index for index, piece in enumerate(whole)}
+    rows = torch.tensor([place[piece] for piece in pieces])
+
+    weights = load_file(str(path))
+    prefix = "bert." if "bert.embeddings.word_embeddings.weight" in weights else ""
+    with torch.no_grad():
+        reader.pieces.weight.copy_(weights[f"{prefix}embeddings.word_embeddings.weight"][rows])
+        _copy(weights, prefix, reader)
+
+
+def _copy(weights: Mapping[str, Tensor], prefix: str, reader: Reader) -> None:
+    def get(name: str) -> Tensor:
+        return weights[f"{prefix}{name}"]
+
+    reader.places.weight.copy_(get("embeddings.position_embeddings.weight")[: reader.shape.places])
+    reader.kind.copy_(get("embeddings.token_type_embeddings.weight")[0])
+    own = dict(reader.named_parameters())
+    names = {"norm": "embeddings.LayerNorm"}
+    for index in range(reader.shape.layers):
+        ours, theirs = f"layers.{index}", f"encoder.layer.{index}"
+        names |= {
+            f"{ours}.attention.query": f"{theirs}.attention.self.query",
+            f"{ours}.attention.key": f"{theirs}.attention.self.key",
+            f"{ours}.attention.value": f"{theirs}.attention.self.value",
+            f"{ours}.attention.out": f"{theirs}.attention.output.dense",
+            f"{ours}.norm": f"{theirs}.attention.output.LayerNorm",
+            f"{ours}.wide": f"{theirs}.intermediate.dense",
+            f"{ours}.narrow": f"{theirs}.output.dense",
+            f"{ours}.last_norm": f"{theirs}.output.LayerNorm",
+        }
+    for ours, theirs in names.items():
+        for part in ("weight", "bias"):
+            own[f"{ours}.{part}"].copy_(get(f"{theirs}.{part}"))

@@ -1,0 +1,44 @@
+"""Where a training begins: the public weights that the encoder starts from, known by their hash."""
+
+from collections.abc import Sequence
+from hashlib import file_digest
+from pathlib import Path
+
+from roadgpt.errors import LearnError
+from roadgpt.learn.pieces import read_vocabulary, trimmed
+
+NAME = "sentence-transformers/all-MiniLM-L6-v2 (Apache-2.0)"
+HASH = "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db"
+"""SHA-256 of its public ``model.safetensors``."""
+PIECES = "pieces.txt"
+
+
+def begin(out: Path, weights: Path | None) -> Sequence[str]:
+    """The word pieces of the training in the folder, which is prepared where it is new.
+
+    Args:
+        out: the training's folder.
+        weights: folder with ``model.safetensors`` and ``vocab.txt``; not needed to go on.
+
+    Raises:
+        LearnError: a new training without weights, files missing, or weights that are not the public ones.
+    """
+    kept = out / PIECES
+    if kept.exists():
+        return read_vocabulary(kept)
+    if weights is None:
+        raise LearnError("a new training needs --weights, the folder of all-MiniLM-L6-v2")
+    for name in ("model.safetensors", "vocab.txt"):
+        if not (weights / name).is_file():
+            raise LearnError(f"there is no {name} in {weights}; give the folder of all-MiniLM-L6-v2")
+    with (weights / "model.safetensors").open("rb") as file:
+        found = file_digest(file, "sha256").hexdigest()
+    if found != HASH:
+        raise LearnError(
+            f"model.safetensors in {weights} is not the public all-MiniLM-L6-v2: its SHA-256 is {found}, "
+            f"not {HASH}; get it again"
+        )
+    out.mkdir(parents=True, exist_ok=True)
+    pieces = trimmed(read_vocabulary(weights / "vocab.txt"))
+    kept.write_text("\n".join(pieces), encoding="utf-8")
+    return pieces

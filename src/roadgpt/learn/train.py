@@ -1,0 +1,192 @@
+"""Training: seeded, resumable from its checkpoint, with progress and a loss curve."""
+
+import json
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
+
+from roadgpt.brief.readers.model.vocabulary import TOKENS
+from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.learn.data import Numbers, batches, examples
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.network import Reader, Shape, load_minilm
+
+POOL = 24  # batches that are sorted by length together
+SMOOTHING = 0.03
+FROZEN = ("pieces", "places", "kind", "norm")
+"""Word embeddings of a pretrained encoder stand still, so words that no pair has keep their place."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """How to train."""
+
+    steps: int = 6000
+    size: int = 48
+    """Pairs in a batch."""
+    encoder_rate: float = 1.2e-4
+    decoder_rate: float = 6e-4
+    warm_up: int = 150
+    cool_down: float = 0.3
+    """Share of the steps at the end in which the rate falls to nothing."""
+    hand_share: float = 0.3
+    seed: int = 1
+    save_every: int = 100
+    workers: int = 1
+    """Processes that train side by side and average their weights whenever they save (local SGD)."""
+    rank: int = 0
+    is_pretrained: bool = True
+    """Did the encoder start from MiniLM? Then its embeddings are kept."""
+
+
+def train(
+    folder: Path,
+    pieces: Sequence[str],
+    weights: Path | None,
+    hand: Sequence[Pair],
+    plan: Plan,
+    report: Callable[[str], None] = print,
+    check: Callable[[], None] = lambda: None,
+) -> Reader:
+    """Trains from where the folder's checkpoint stands, and leaves one there.
+
+    Args:
+        folder: holds ``checkpoint.pt`` and ``losses.jsonl``.
+        pieces: the vocabulary of word pieces.
+        weights: ``model.safetensors`` of all-MiniLM-L6-v2; None starts from chance.
+        hand: pairs written by hand, for training.
+        plan: how long, how fast.
+        report: is given a line from time to time.
+        check: called while it waits for other workers; raises where one of them is gone.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    torch.manual_seed(plan.seed)
+    reader = Reader(Shape(pieces=len(pieces), tokens=len(TOKENS)))
+    checkpoint = folder / "checkpoint.pt"
+    state: dict[str, Any] = {}
+    if checkpoint.exists():
+        state = torch.load(checkpoint, map_location="cpu", weights_only=True)
+        reader.load_state_dict(state["reader"])
+    elif weights:
+        load_minilm(reader, weights, pieces)
+    reader.to(device)
+    optimiser = _optimiser(reader, plan)
+    if state:
+        optimiser.load_state_dict(state["optimiser"])
+    first = int(state.get("step", 0))
+    # a stream of its own for every start, so that going on does not read the same pairs again
+    seed = (plan.seed * 1_000_003 + first) * 16 + plan.rank
+    stream = batches(examples(seed, hand, plan.hand_share, WordPieces(pieces)), plan.size, POOL, seed)
+    began, losses = time.monotonic(), []
+    reader.train()
+    for step in range(first, plan.steps):
+        losses.append(_step(reader, optimiser, next(stream), _rate(step, plan), device))
+        if (step + 1) % 50 == 0 and plan.rank == 0:
+            _note(folder, step + 1, plan, losses, (step + 1 - first) / (time.monotonic() - began), report)
+            losses.clear()
+        if (step + 1) % plan.save_every == 0 or step + 1 == plan.steps:
+            if plan.workers > 1:
+                average(folder, reader, plan, step + 1, check)
+            if plan.rank == 0:
+                _save(checkpoint, reader, optimiser, step + 1)
+    return reader
+
+
+def _optimiser(reader: nn.Module, plan: Plan) -> torch.optim.Optimizer:
+    own = ("tokens", "plan_places", "decoder", "final", "bias")
+    groups: dict[bool, list[nn.Parameter]] = {True: [], False: []}
+    for name, parameter in reader.named_parameters():
+        room = name.split(".")[0]
+        parameter.requires_grad_(not (plan.is_pretrained and room in FROZEN))
+        groups[room in own].append(parameter)
+    return torch.optim.AdamW(
+        [
+            {"params": groups[False], "lr": plan.encoder_rate, "top": plan.encoder_rate},
+            {"params": groups[True], "lr": plan.decoder_rate, "top": plan.decoder_rate},
+        ],
+        betas=(0.9, 0.98),
+        weight_decay=0.01,
+        fused=True,
+    )
+
+
+def _rate(step: int, plan: Plan) -> float:
+    """Share of the full rate: up in a line, level, down along a cosine."""
+    if step < plan.warm_up:
+        return (step + 1) / plan.warm_up
+    left = (plan.steps - step) / max(1.0, plan.cool_down * plan.steps)
+    return 1.0 if left >= 1 else 0.5 - 0.5 * math.cos(math.pi * left)
+
+
+def _step(
+    reader: Reader,
+    optimiser: torch.optim.Optimizer,
+    batch: tuple[Numbers, Numbers],
+    rate: float,
+    device: torch.device,
+) -> float:
+    for group in optimiser.param_groups:
+        group["lr"] = group["top"] * rate
+    pieces, tokens = (torch.from_numpy(part).to(device) for part in batch)
+    with torch.autocast(device.type, torch.bfloat16):
+        scores = reader(pieces, tokens[:, :-1])
+    loss = _loss(scores.float(), tokens[:, 1:])
+    optimiser.zero_grad(set_to_none=True)
+    loss.backward()
+    nn.utils.clip_grad_norm_(reader.parameters(), 1.0)
+    optimiser.step()
+    return float(loss.detach())
+
+
+def _loss(scores: Tensor, wanted: Tensor) -> Tensor:
+    return functional.cross_entropy(
+        scores.flatten(0, 1), wanted.flatten(), ignore_index=0, label_smoothing=SMOOTHING
+    )
+
+
+def _note(
+    folder: Path, step: int, plan: Plan, losses: list[float], speed: float, report: Callable[[str], None]
+) -> None:
+    loss = sum(losses) / len(losses)
+    with (folder / "losses.jsonl").open("a", encoding="utf-8") as file:
+        file.write(
+            json.dumps({"step": step, "pairs": step * plan.size * plan.workers, "loss": round(loss, 4)})
+            + "\n"
+        )
+    left = (plan.steps - step) / speed
+    report(
+        f"step {step}/{plan.steps}  loss {loss:.4f}"
+        f"  {speed * plan.size * plan.workers:.0f} pairs/s  {left / 60:.0f} min left"
+    )
+
+
+def average(
+    folder: Path, reader: nn.Module, plan: Plan, step: int, check: Callable[[], None] = lambda: None
+) -> None:
+    """Waits for the weights of all workers at this step, and goes on with their mean."""
+    own = folder / f"weights-{step}-{plan.rank}.pt"
+    torch.save(reader.state_dict(), own.with_suffix(".new"))
+    own.with_suffix(".new").replace(own)
+    paths = [folder / f"weights-{step}-{rank}.pt" for rank in range(plan.workers)]
+    while not all(path.exists() for path in paths):
+        check()
+        time.sleep(0.2)
+    states = [torch.load(path, map_location="cpu", weights_only=True) for path in paths]
+    reader.load_state_dict({name: sum(state[name] for state in states) / len(states) for name in states[0]})
+    older = folder / f"weights-{step - plan.save_every}-{plan.rank}.pt"
+    older.unlink(missing_ok=True)  # by now everybody has read it
+
+
+def _save(path: Path, reader: nn.Module, optimiser: torch.optim.Optimizer, step: int) -> None:
+    """Whole or not at all: written beside, then put in place."""
+    beside = path.with_suffix(".new")
+    torch.save({"reader": reader.state_dict(), "optimiser": optimiser.state_dict(), "step": step}, beside)
+    beside.replace(path)

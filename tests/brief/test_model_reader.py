@@ -1,0 +1,93 @@
+"""The trained reader as it is shipped: what it promises to everybody who calls it."""
+
+import json
+from hashlib import sha256
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import normal
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model import WEIGHTS, ModelReader
+from roadgpt.errors import BriefError
+
+READER = ModelReader()
+MOST_MEGABYTES = 40
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        ("three turns", "turn x3"),
+        ("a downhill road with four turns", "turn x4 | down"),
+        ("left, then right", "turn left; turn right"),
+        ("a straight of 80 metres and then a hairpin to the right", "straight len=80; hairpin right"),
+        ("drei Kurven bergauf", "turn x3 | up"),
+    ],
+)
+def test_plain_words_are_read(words: str, line: str) -> None:
+    assert normal(READER.read(words)) == normal(read_plan(line))
+
+
+@pytest.mark.parametrize(
+    "words", ["", "   ", "x" * 3000, "what time is it in Paris", "a climb of 60 percent"]
+)
+def test_what_is_no_road_is_refused_in_one_sentence(words: str) -> None:
+    with pytest.raises(BriefError) as caught:
+        READER.read(words)
+    assert 20 < len(str(caught.value)) < 300
+
+
+WORDS = st.lists(
+    st.sampled_from(["3", "left", "60", "m", "turns", "%", "up", "the", "hairpin", "|", ";", "1:8"])
+).map(" ".join)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.one_of(st.text(max_size=200), WORDS))
+def test_any_text_is_a_brief_or_refused(words: str) -> None:
+    try:
+        brief = READER.read(words)
+    except BriefError:
+        return
+    assert isinstance(brief, Brief)
+    assert 0 <= brief.confidence <= 1
+    assert brief.words == words
+    assert plan(read_plan(plan(brief))) == plan(brief)
+
+
+def test_numbers_are_those_that_were_said() -> None:
+    brief = READER.read("a left turn with a radius of 37 m, then 143 m straight")
+    assert [(c.radius and c.radius.lo, c.length and c.length.lo) for c in brief.clauses] == [
+        (37, None),
+        (None, 143),
+    ]
+
+
+def test_the_same_words_are_read_the_same_way_twice() -> None:
+    words = "a road over two hills with a bend or two"
+    assert READER.read(words) == READER.read(words)
+    assert READER.alternatives(words, seed=3) == READER.alternatives(words, seed=3)
+
+
+def test_a_vague_wish_has_several_readings() -> None:
+    readings = READER.alternatives("some road with turns", number=4, temperature=1.5, seed=1)
+    assert 2 <= len(readings) <= 4
+    assert readings[0] == READER.read("some road with turns")
+    assert len({plan(brief) for brief in readings}) == len(readings)
+
+
+def test_words_without_meaning_are_told() -> None:
+    assert "purple" in READER.read("two left turns, purple").unused
+
+
+def test_the_weights_are_small_and_come_with_their_notice() -> None:
+    files = [path for path in WEIGHTS.iterdir() if path.is_file()]
+    assert sum(path.stat().st_size for path in files) < MOST_MEGABYTES * 1e6
+    assert "Apache-2.0" in (WEIGHTS / "NOTICE").read_text(encoding="utf-8")
+    sums = json.loads((WEIGHTS / "sums.json").read_text(encoding="utf-8"))
+    assert {*sums} == {"encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json"}
+    for name, digest in sums.items():
+        assert sha256((WEIGHTS / name).read_bytes()).hexdigest() == digest

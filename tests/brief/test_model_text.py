@@ -1,0 +1,120 @@
+"""Before and after the network: numbers taken out of text, plans cut into tokens, the grammar of plans."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadgpt.brief.normal import normal
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.numerals import LANGUAGES, spell, words
+from roadgpt.brief.readers.model.slots import Slot, slotted
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
+from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.brief.readers.model.writer import END, PlanWriter
+
+
+@pytest.mark.parametrize(
+    ("number", "language", "said"),
+    [
+        (21, "en", "twenty-one"), (350, "en", "three hundred and fifty"), (45, "de", "fünfundvierzig"),
+        (120, "de", "hundertzwanzig"), (71, "fr", "soixante et onze"), (80, "fr", "quatre-vingts"),
+        (91, "fr", "quatre-vingt-onze"), (35, "es", "treinta y cinco"), (500, "es", "quinientos"),
+        (28, "it", "ventotto"), (200, "it", "duecento"), (1500, "it", "millecinquecento"),
+    ],
+)  # fmt: skip
+def test_numbers_are_spelled_as_in_a_dictionary(number: int, language: str, said: str) -> None:
+    assert spell(number, language) == said
+
+
+@given(st.integers(2, 200), st.sampled_from(LANGUAGES))
+def test_what_is_spelled_is_read_back(number: int, language: str) -> None:
+    key = tuple(spell(number, language).replace("-", " ").translate(str.maketrans("éóúüö", "eouuo")).split())
+    assert words()[key][language] == number
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("300 ft", [(91.4, "metres")]), ("half a mile", [(804.7, "metres")]),
+        ("a climb of 1:8", [(12.5, "percent")]),
+        ("one in ten", [(10.0, "percent")]), ("0.25 km", [(250.0, "metres")]),
+        ("1,500 m", [(1500.0, "metres")]),
+        ("12,5 %", [(12.5, "percent")]), ("ninety degrees", [(90.0, "degrees")]), ("R30", [(30.0, "")]),
+        ("40 to 60 metres", [(40.0, "metres"), (60.0, "metres")]), ("dreihundert Meter", [(300.0, "metres")]),
+        ("soixante mètres", [(60.0, "metres")]), ("medio kilómetro", [(500.0, "metres")]),
+        ("dieci per cento", [(10.0, "percent")]), ("fifty yards", [(45.7, "metres")]),
+        ("70 km/h", [(70.0, "kmh")]),
+        ("3 turns, the 2nd left", []), ("once over the top", []), ("très serré", []),
+    ],
+)  # fmt: skip
+def test_numbers_become_slots_in_metres_percent_and_degrees(
+    text: str, values: list[tuple[float, str]]
+) -> None:
+    assert [(slot.value, slot.unit) for slot in slotted(text).slots] == values
+
+
+@pytest.mark.parametrize(
+    ("text", "seen"),
+    [
+        ("Three bends", "3 bends"), ("half a dozen bends", "6 bends"),
+        ("une demi-douzaine de virages", "6 virages"),
+        ("sechs Kurven", "6 kurven"), ("60 m", "[unused1] metres"),
+        ("a 40 % climb", "a [unused1] percent [unused21] climb"),
+    ],
+)  # fmt: skip
+def test_small_counts_stay_visible(text: str, seen: str) -> None:
+    assert slotted(text).text == seen
+
+
+@given(st.text(max_size=300))
+def test_any_text_can_be_slotted(text: str) -> None:
+    found = slotted(text)
+    assert len(found.slots) <= 12
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "turn x3 left; straight len=91.4 | up", "| turns=1.. ends(straight up)",
+        "turn deg=15..30; dip | climb=-8",
+        "hairpin x2..5 right sharp r=25.. | hard steepest=..8", "!nonsense",
+    ],
+)  # fmt: skip
+def test_tokens_write_the_plan_that_they_were_cut_from(line: str) -> None:
+    slots = [Slot(91.4, "metres"), Slot(25.0, "metres"), Slot(8.0, "percent"), Slot(8.0, "metres")]
+    tokens = tokens_of(line, slots)
+    assert tokens is not None
+    assert {*tokens} <= {*TOKENS}
+    assert plan_of(tokens, slots) == line
+
+
+def test_a_number_that_nobody_said_has_no_token() -> None:
+    assert tokens_of("straight len=77", [Slot(60.0, "metres")]) is None
+
+
+@given(st.integers(0, 10_000), st.lists(st.floats(1, 900).map(lambda x: round(x, 1)), max_size=4))
+def test_whatever_the_grammar_allows_is_a_brief(seed: int, values: list[float]) -> None:
+    rng = np.random.default_rng(seed)
+    units = ("metres", "percent", "degrees", "")
+    slots = [Slot(value, units[index % 4]) for index, value in enumerate(values)]  # type: ignore[arg-type]
+    writer = PlanWriter(slots, frozenset({"3", "15"}))
+    tokens: list[str] = []
+    while len(tokens) < 60:
+        allowed = writer.allowed()
+        ends = NUMBER_OF[END] in allowed and rng.random() < 0.2
+        word = END if ends else TOKENS[int(rng.choice(allowed))]
+        if word == END:
+            line = plan_of(tokens, slots)
+            if not line.startswith("!"):
+                brief = read_plan(line)
+                assert plan(brief) == line
+                assert plan(normal(brief))
+            return
+        tokens.append(word)
+        writer.push(word)
+
+
+def test_word_pieces_are_the_longest_that_fit() -> None:
+    pieces = WordPieces(["[PAD]", "[UNK]", "[CLS]", "[SEP]", "hair", "##pin", "##p", "##in", "road"])
+    assert pieces.encode(["hairpin", "road", "xyz"]) == ([2, 4, 5, 8, 1, 3], [-1, 0, 0, 1, 2, -1])
