@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 SPLITS = ("train", "validation", "test")
 COUNT = whole(1, 10_000_000, "a number")
+MEASURED = 600  # descriptions of measured roads among the pairs that are trained on
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
 hand_option = click.option(
     "--hand",
@@ -101,9 +102,11 @@ def train(
         from roadgpt.learn.train import Plan
     except ImportError as error:
         raise LearnError(EXTRA) from error
+    from roadgpt.learn.back import measured_pairs
     from roadgpt.learn.origin import begin
 
     pairs = [*_pairs_of(hand / "train"), *(_pairs_of(own) if own else [])]
+    pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights)
     start = weights / "model.safetensors" if weights else None
     train_together(
