@@ -177,11 +177,10 @@ def _number_of_turns(brief: Brief) -> None:
 
 def _sides(brief: Brief) -> None:
     turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
-    for side in ("left", "right"):
-        wished: Amount | None = getattr(brief, side)
+    for wished, side in _sides_of(brief):
         if wished is None:
             continue
-        sure = sum(_sure(clause, side) for clause in turning)
+        sure = _named(turning, side)
         if wished.hi is not None and sure > wished.hi:
             raise BriefError(
                 f"{sure:g} {side} turns are named, but {_figure(wished)} asked for; make the numbers agree"
@@ -191,16 +190,37 @@ def _sides(brief: Brief) -> None:
             raise BriefError(
                 f"{wished.lo:g} {side} turns are more than the {most.hi:g} turns in all; ask for fewer"
             )
+    _both_sides(brief, turning)
+
+
+def _both_sides(brief: Brief, turning: list[Clause]) -> None:
+    """Lefts and rights must make up all turns, and no more."""
     both = [amount for amount in (brief.left, brief.right) if amount]
-    if brief.turns and len(both) == 2 and not turning and brief.turns.lo is not None:
-        most_sides = sum(inf if amount.hi is None else amount.hi for amount in both)
-        if most_sides < brief.turns.lo:
-            raise BriefError(
-                f"{most_sides:g} left and right turns do not make {brief.turns.lo:g} turns; ask for more"
-            )
-    neither = len(both) == 2 and all(amount.hi == 0 for amount in both)
-    if neither and (turning or (brief.turns and (brief.turns.lo or 0) > 1)):
+    turns = total(turning) if turning else brief.turns
+    if (
+        len(both) == 2
+        and all(amount.hi == 0 for amount in both)
+        and (turning or (turns and (turns.lo or 0) > 1))
+    ):
         raise BriefError("a turn goes left or right: allow one of the two")
+    if not turns:
+        return
+    least = sum(max(a.lo or 0 if a else 0, _named(turning, s)) for a, s in _sides_of(brief))
+    if turns.hi is not None and least > turns.hi:
+        raise BriefError(
+            f"{least:g} left and right turns are more than the {turns.hi:g} turns in all; ask for fewer"
+        )
+    most = sum(inf if amount.hi is None else amount.hi for amount in both)
+    if len(both) == 2 and most < (turns.lo or 0):
+        raise BriefError(f"{most:g} left and right turns do not make {turns.lo:g} turns; ask for more")
+
+
+def _sides_of(brief: Brief) -> tuple[tuple[Amount | None, str], ...]:
+    return ((brief.left, "left"), (brief.right, "right"))
+
+
+def _named(turning: list[Clause], side: str) -> float:
+    return sum(_sure(clause, side) for clause in turning)
 
 
 def _sure(clause: Clause, side: str) -> float:
