@@ -1,6 +1,7 @@
 """The room of the Brief: words in, what was asked for out.
 
-A reader is a part on the shelf ``readers``: an object, or a class of objects without arguments, with
+A reader is a part on the shelf ``readers``: an object, or a class that is made without arguments or with
+ChatSettings as ``settings``, with
 
     read(words: str) -> Brief
 
@@ -32,6 +33,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, Range
+from roadgpt.chat import ChatSettings, made
 from roadgpt.errors import BriefError
 
 __all__ = [
@@ -84,6 +86,7 @@ def read(
     map_size: float | None = 250.0,
     min_radius: float = LEAST_RADIUS,
     max_grade: float = STEEPEST / 100,
+    chat: ChatSettings | None = None,
 ) -> Brief:
     """What a description asks for.
 
@@ -93,13 +96,15 @@ def read(
         map_size: metres along one side of the map on which the road shall fit; None: do not ask.
         min_radius: metres, of the tightest turn that the world allows.
         max_grade: ratio, of the steepest slope that it allows.
+        chat: the language model, for readers that ask one; None: what the user's settings say.
 
     Raises:
         BriefError: no road can be read out of the words; says what to change.
         PartError: no such reader.
+        ChatError: a language model could not be asked.
     """
     words = words.encode("utf-8", "replace").decode()  # half letters from a broken terminal fit into no file
-    brief = _reader(reader).read(words)
+    brief = _reader(reader, chat).read(words)
     check(brief, map_size, min_radius, max_grade)
     return brief
 
@@ -137,7 +142,6 @@ def _is_possible(brief: Brief, map_size: float | None) -> bool:
 
 
 @cache
-def _reader(name: str) -> Reader:
+def _reader(name: str, chat: ChatSettings | None = None) -> Reader:
     """The one reader of that name: a network is loaded once."""
-    part = plugins.find("readers", name)
-    return cast(Reader, part() if isinstance(part, type) else part)
+    return cast(Reader, made(plugins.find("readers", name), chat))

@@ -4,10 +4,10 @@
     reply = chat.ask([Message(role="user", text="A road with 3 turns, please.")], schema=Road)
     reply.data      # a Road, validated; or one sentence was raised
 
-A provider is a part on the shelf ``providers``: a class that is made with ChatSettings and has ``ask``. What it
-gives back is data: validated against the schema, and nothing of it is run, formatted into a path, or trusted
-beyond its schema. Keys come from the environment, a .env file or the user's settings, and go nowhere but to the
-server.
+A provider is a part on the shelf ``providers``: a class that is made with ChatSettings and has ``ask``.
+What it gives back is data: validated against the schema, and nothing of it is run, formatted into a path,
+or trusted beyond its schema. Keys come from the environment, a .env file or the user's settings, and go
+nowhere but to the server.
 """
 
 import inspect
@@ -17,8 +17,10 @@ from typing import Any, Protocol
 from pydantic import BaseModel
 
 from roadgpt import plugins
+from roadgpt.chat.config import configured
+from roadgpt.chat.meter import Meter, counting
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
-from roadgpt.errors import BudgetError, ChatError, RefusedError, ReplyError, UnparsableError
+from roadgpt.errors import BudgetError, ChatError, RefusedError, ReplyError, UnparsableError, UsageError
 
 __all__ = [
     "BudgetError",
@@ -26,6 +28,7 @@ __all__ = [
     "ChatError",
     "ChatSettings",
     "Message",
+    "Meter",
     "RefusedError",
     "Reply",
     "ReplyError",
@@ -33,6 +36,8 @@ __all__ = [
     "UnparsableError",
     "Usage",
     "asks_a_model",
+    "configured",
+    "counting",
     "made",
     "open_chat",
 ]
@@ -65,9 +70,25 @@ def open_chat(settings: ChatSettings) -> Chat:
         ChatError: no key, no model, or the library of the provider is not installed.
         PartError: no such provider.
     """
-    provider: Any = plugins.find("providers", settings.provider)
-    chat: Chat = provider(settings)
-    return chat
+    if settings.record is not None and settings.replay is not None:
+        raise UsageError("an exchange is recorded or replayed, not both; say --record or --replay")
+    if settings.replay is not None:
+        replayed: Chat = plugins.find("providers", "replay")(settings)
+        return replayed
+    settings = _filled(settings)
+    live: Chat = plugins.find("providers", settings.provider)(settings)
+    if settings.record is None:
+        return live
+    from roadgpt.chat.recording import Recorder
+
+    return Recorder(settings, live)
+
+
+def _filled(settings: ChatSettings) -> ChatSettings:
+    """With the model and the server that the user has settled on elsewhere, where none are given here."""
+    usual = configured()
+    names = [name for name in ("model", "base_url") if getattr(settings, name) is None]
+    return settings.model_copy(update={name: getattr(usual, name) for name in names})
 
 
 def asks_a_model(part: Any) -> bool:

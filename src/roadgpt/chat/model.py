@@ -44,7 +44,7 @@ class Reply(Frozen):
 
     text: str
     """As the model wrote it: data, to be shown and never to be run."""
-    data: SerializeAsAny[BaseModel] | Any = None
+    data: SerializeAsAny[Any] = None
     """An instance of the schema that was asked for, validated; None where none was."""
     model: str
     """As the server calls the model that answered."""

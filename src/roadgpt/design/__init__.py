@@ -1,7 +1,7 @@
 """Drafts: makes Designs from Briefs, with geometry and rules at hand. Verb: ``draft``.
 
-A designer is a class without arguments, or one that takes ChatSettings as ``settings``, whose objects have one
-method:
+A designer is a class without arguments, or one that takes ChatSettings as ``settings``, whose objects have
+one method:
 
     def draft(self, brief, world, notes, earlier, seed) -> Design
 

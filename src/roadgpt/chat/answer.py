@@ -1,0 +1,87 @@
+"""An Answer: what is read out of a server's JSON, whose every field may be missing or of another kind."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from roadgpt.chat.model import Usage
+from roadgpt.chat.strict import plain
+
+NOTHING = Usage()
+MOST_TOKENS = 100_000_000  # of one exchange; a larger count is no count
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One answer of a server."""
+
+    text: str = ""
+    model: str = ""
+    finish: str = "stop"
+    usage: Usage = NOTHING
+    refusal: str | None = None
+
+
+def of_chat(body: dict[str, Any]) -> Answer:
+    """An answer of Chat Completions."""
+    choices = body.get("choices")
+    choice = choices[0] if isinstance(choices, list) and choices and isinstance(choices[0], dict) else {}
+    message = choice.get("message")
+    message = message if isinstance(message, dict) else {}
+    finish = _word(choice.get("finish_reason")) or "stop"
+    refusal = message.get("refusal")
+    refusal = refusal if isinstance(refusal, str) and refusal.strip() else None
+    if finish == "content_filter" and refusal is None:
+        refusal = "the server's filter stopped the answer"
+    return Answer(
+        _text_of(message.get("content")),
+        _word(body.get("model")),
+        finish,
+        _usage(body.get("usage"), "prompt_tokens", "completion_tokens"),
+        refusal,
+    )
+
+
+def of_responses(body: dict[str, Any]) -> Answer:
+    """An answer of Responses."""
+    said: list[str] = []
+    refusal: str | None = None
+    output = body.get("output")
+    for item in output if isinstance(output, list) else []:
+        content = item.get("content") if isinstance(item, dict) and item.get("type") == "message" else None
+        for part in content if isinstance(content, list) else []:
+            if isinstance(part, dict) and part.get("type") == "refusal":
+                refusal = str(part.get("refusal") or "no reason given")
+        said.append(_text_of(content))
+    finish = "stop"
+    if body.get("status") == "incomplete":
+        details = body.get("incomplete_details")
+        reason = _word(details.get("reason")) if isinstance(details, dict) else ""
+        finish = "length" if "token" in reason else reason or "length"
+    if finish == "content_filter" and refusal is None:
+        refusal = "the server's filter stopped the answer"
+    usage = _usage(body.get("usage"), "input_tokens", "output_tokens")
+    return Answer("".join(said), _word(body.get("model")), finish, usage, refusal)
+
+
+def _text_of(content: Any) -> str:
+    """A text, or the texts of a list of parts."""
+    if isinstance(content, str):
+        return content
+    parts = content if isinstance(content, list) else []
+    return "".join(
+        part["text"] for part in parts if isinstance(part, dict) and isinstance(part.get("text"), str)
+    )
+
+
+def _word(value: Any) -> str:
+    return plain(value, 100) if isinstance(value, str) else ""
+
+
+def _usage(told: Any, prompt: str, completion: str) -> Usage:
+    told = told if isinstance(told, dict) else {}
+    return Usage(prompt=_count(told.get(prompt)), completion=_count(told.get(completion)))
+
+
+def _count(value: Any) -> int:
+    is_count = isinstance(value, (int, float)) and not isinstance(value, bool) and 0 <= value <= MOST_TOKENS
+    return int(value) if is_count else 0

@@ -1,0 +1,67 @@
+"""Recorded exchanges instead of a server: the same answers, byte for byte, without a network or a key."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from pydantic import BaseModel
+
+from roadgpt.chat.meter import Account, occasion
+from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
+from roadgpt.chat.recording import question_of, replayed
+from roadgpt.chat.store import Store
+from roadgpt.errors import ChatError, UsageError
+
+
+class Replay:
+    """Answers from a folder that ``--record`` filled."""
+
+    def __init__(self, settings: ChatSettings) -> None:
+        if settings.replay is None:
+            raise UsageError("which recording is to be replayed? Say --replay FOLDER")
+        if not Path(settings.replay).is_dir():
+            raise UsageError(f"there is no recording in {settings.replay}; make one with --record")
+        self._store = Store(settings.replay)
+        self._account = Account(settings)
+        if settings.provider == "replay":  # asked for by that name; recordings are made of servers
+            settings = settings.model_copy(update={"provider": "openai"})
+        self._settings = self._with_model(settings)
+
+    def _with_model(self, settings: ChatSettings) -> ChatSettings:
+        """Of a recording of one model, that model need not be named."""
+        models = self._store.models()
+        if not models:
+            raise UsageError(f"there is no recording in {settings.replay}; make one with --record")
+        if settings.model is None and len(models) == 1:
+            return settings.model_copy(update={"model": models[0]})
+        return settings
+
+    @property
+    def spent(self) -> Spent:
+        """What the recorded exchanges had cost."""
+        return self._account.spent
+
+    def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
+        """The answer that was recorded to this very question.
+
+        Raises:
+            ChatError: there is none.
+            ReplyError: as it was recorded.
+        """
+        self._account.room(messages, self._settings.model or "")
+        question = question_of(self._settings, messages, schema)
+        kept = self._store.take(question, occasion(), self._account.meter.turns)
+        if kept is None:
+            raise ChatError(self._missing())
+        try:
+            return replayed(kept, schema, self._account)
+        except (KeyError, TypeError, ValueError):
+            raise UsageError(
+                f"a recording in {self._settings.replay} cannot be read; record it again with --record"
+            ) from None
+
+    def _missing(self) -> str:
+        models = ", ".join(str(model) for model in self._store.models())
+        return (
+            f"the recording in {self._settings.replay} holds no answer to this question; give the same "
+            f"description, seed and options as when it was made (model {models}), or record it with --record"
+        )

@@ -1,0 +1,82 @@
+"""Keeps every exchange with a provider, so that it can be replayed without one."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from pydantic import BaseModel
+
+from roadgpt.chat.flat import schema_of
+from roadgpt.chat.meter import Account, occasion
+from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
+from roadgpt.chat.store import Store
+from roadgpt.errors import RefusedError, ReplyError, UnparsableError
+
+FAILURES = {kind.__name__: kind for kind in (RefusedError, UnparsableError, ReplyError)}
+
+
+def question_of(
+    settings: ChatSettings, messages: Sequence[Message], schema: type[BaseModel] | None
+) -> dict[str, Any]:
+    """All that a question says, and whom it is put to."""
+    parameters = {
+        "api": settings.api,
+        "temperature": settings.temperature,
+        "max_completion": settings.max_completion,
+    }
+    return {
+        "provider": settings.provider,
+        "model": settings.model,
+        "messages": [message.model_dump() for message in messages],
+        "schema": None if schema is None else schema_of(schema),
+        "parameters": parameters,
+    }
+
+
+class Recorder:
+    """Asks a Chat, and writes down what it answers, whether that could be used or not."""
+
+    def __init__(self, settings: ChatSettings, live: Any) -> None:
+        assert settings.record is not None
+        self._settings, self._live = settings, live
+        self._store = Store(settings.record)
+        self._account = Account(settings)
+
+    @property
+    def spent(self) -> Spent:
+        """What the Chat behind has spent."""
+        spent: Spent = self._live.spent
+        return spent
+
+    def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
+        """As the Chat behind answers."""
+        question = question_of(self._settings, messages, schema)
+        before = self.spent
+        try:
+            reply: Reply = self._live.ask(messages, schema)
+        except ReplyError as error:
+            failure = {"kind": type(error).__name__, "sentence": str(error), "text": error.text}
+            self._keep(question, {"failure": failure, "spent": self.spent.since(before).model_dump()})
+            raise
+        kept = {"reply": reply.model_dump(mode="json"), "spent": self.spent.since(before).model_dump()}
+        self._keep(question, kept)
+        return reply
+
+    def _keep(self, question: dict[str, Any], answer: dict[str, Any]) -> None:
+        self._store.keep(question, occasion(), answer, self._account.meter.turns)
+
+
+def replayed(kept: dict[str, Any], schema: type[BaseModel] | None, account: Account) -> Reply:
+    """The Reply that was kept, its data validated again, its cost counted again.
+
+    Raises:
+        ReplyError: what was kept is a failure.
+        ValueError: it is neither.
+    """
+    account.add(Spent.model_validate(kept["spent"]))
+    if "failure" in kept:
+        failure = kept["failure"]
+        raise FAILURES[failure["kind"]](failure["sentence"], failure["text"])
+    reply = {name: value for name, value in kept["reply"].items() if name != "data"}
+    data = kept["reply"]["data"]
+    usage = Usage.model_validate(reply.pop("usage"))
+    return Reply(**reply, usage=usage, data=None if schema is None else schema.model_validate(data))

@@ -1,0 +1,101 @@
+"""Exchanges on the disk: a question's content gives the name of the file that holds its answers.
+
+    DIR/3f/3f9a...json    {"question": {provider, model, messages, schema, parameters},
+                           "answers": {occasion: [...]}}
+
+The same question may be asked for several roads, and more than once for one: answers stand under the
+occasion (the number of the road), in the order in which they came. No key is ever part of a question or an
+answer.
+"""
+
+import hashlib
+import json
+import os
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from roadgpt.errors import ChatError, UsageError
+
+FORMAT = 1
+Turns = Counter[tuple[str, str, str]]
+"""How often a question was kept or taken in this campaign, by its name and occasion."""
+
+
+class Store:
+    """A folder of exchanges."""
+
+    def __init__(self, folder: str) -> None:
+        self.folder = Path(folder)
+
+    def keep(self, question: dict[str, Any], occasion: str, answer: dict[str, Any], turns: Turns) -> None:
+        """Write an answer down; the first of a campaign for its occasion takes the place of older ones.
+
+        Raises:
+            ChatError: the folder takes no files.
+        """
+        name = name_of(question)
+        there = self._answers(name)
+        mine = there.get(occasion, []) if turns["kept", name, occasion] else []
+        turns["kept", name, occasion] += 1
+        whole = {"format": FORMAT, "question": question, "answers": {**there, occasion: [*mine, answer]}}
+        path = self._path(name)
+        draft = path.with_name(f"{path.name}.{os.getpid()}.part")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            draft.write_text(text_of(whole, indent=1) + "\n", encoding="utf-8")
+            draft.replace(path)
+        except OSError as error:
+            raise ChatError(
+                f"cannot record into {self.folder}: {error.strerror}; name another folder"
+            ) from None
+
+    def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
+        """The next answer to a question on an occasion; None where there is none left.
+
+        What was recorded outside of any campaign serves on every occasion; outside of one, all recordings do.
+        """
+        name = name_of(question)
+        answers = self._answers(name)
+        listed = answers.get(occasion) or answers.get("")
+        if listed is None and not occasion:
+            listed = [answer for one in answers.values() for answer in one]
+        turn = turns["taken", name, occasion]
+        if not listed or turn >= len(listed):
+            return None
+        turns["taken", name, occasion] += 1
+        return listed[turn]
+
+    def models(self) -> list[str | None]:
+        """The models that were asked, as they were named."""
+        names = {self._read(path).get("question", {}).get("model") for path in self.folder.glob("??/*.json")}
+        return sorted(names, key=str)
+
+    def _answers(self, name: str) -> dict[str, list[dict[str, Any]]]:
+        path = self._path(name)
+        answers: dict[str, list[dict[str, Any]]] = (
+            self._read(path).get("answers", {}) if path.is_file() else {}
+        )
+        return answers
+
+    def _path(self, name: str) -> Path:
+        return self.folder / name[:2] / f"{name}.json"
+
+    def _read(self, path: Path) -> dict[str, Any]:
+        try:
+            found = json.loads(path.read_text(encoding="utf-8"))
+            if found["format"] == FORMAT and isinstance(found["answers"], dict):
+                return dict(found)
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            pass
+        raise UsageError(f"{path} is no recording that can be read; record it again with --record")
+
+
+def name_of(question: dict[str, Any]) -> str:
+    """64 letters that stand for a question's content."""
+    return hashlib.sha256(text_of(question).encode("utf-8", "backslashreplace")).hexdigest()
+
+
+def text_of(value: Any, indent: int | None = None) -> str:
+    """JSON with one form only."""
+    return json.dumps(value, sort_keys=True, ensure_ascii=True, indent=indent, allow_nan=False)

@@ -1,0 +1,195 @@
+"""Reading JSON out of what a model wrote: strictly, and whatever it put around it.
+
+Fences, talk before and after, and a model's thoughts are passed over. NaN and infinities, keys that are
+said twice with different values, nesting without end and floods of text are not JSON that anyone meant, and
+are refused with one sentence. Nothing is evaluated.
+"""
+
+import json
+import math
+import re
+from collections.abc import Iterator
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+MOST_CHARACTERS = 1_000_000
+MOST_DEPTH = 32  # brackets inside brackets; ours have 3
+MOST_TRIES = 20  # places at which an object may begin
+MOST_DIGITS = 30
+THOUGHTS_END = ("</think>", "</thinking>")
+FENCE = re.compile(r"```[ \t]*[\w-]*[ \t]*\r?\n(.*?)(?:```|\Z)", re.DOTALL)
+NUMBER = re.compile(
+    r"\s*([-+−]?\d{1,15}(?:[.,]\d{1,15})?)\s*(?:°|%|m|deg|degs|degrees?|percent|met(?:er|re)s?)?\s*"
+)
+NUMERIC = {"int_parsing", "float_parsing", "int_type", "float_type"}
+Schema = TypeVar("Schema", bound=BaseModel)
+
+
+class NotReadableError(ValueError):
+    """What a model wrote is not what was asked for; says why in a few words."""
+
+
+def plain(text: str, most: int = 80) -> str:
+    """A model's or a server's words on one line of a sentence: printable, and cut."""
+    shown = "".join(letter if letter.isprintable() else " " for letter in text[: 4 * most])
+    shown = " ".join(shown.split())
+    return shown if len(shown) <= most else f"{shown[:most].rstrip()} ..."
+
+
+def read_as(schema: type[Schema], text: str) -> Schema:
+    """The first object in a text, as an instance of the schema.
+
+    Raises:
+        NotReadableError: there is none, or it does not fit.
+    """
+    data = read_object(text)
+    try:
+        return schema.model_validate(data)
+    except ValidationError as error:
+        first = error
+    if _with_numbers(data, first):
+        try:
+            return schema.model_validate(data)
+        except ValidationError as error:
+            first = error
+    problem = first.errors(include_url=False, include_input=False, include_context=False)[0]
+    place = plain(".".join(str(part) for part in problem["loc"])) or "the whole"
+    raise NotReadableError(f"{place}: {plain(problem['msg'], 120)}") from None
+
+
+def read_object(text: str) -> dict[str, Any]:
+    """The first JSON object in a text.
+
+    Raises:
+        NotReadableError: no text, too much of it, or no object that can be read.
+    """
+    if not text.strip():
+        raise NotReadableError("it is blank")
+    if len(text) > MOST_CHARACTERS:
+        raise NotReadableError(f"it has more than {MOST_CHARACTERS:,} characters")
+    why = NotReadableError("it holds no JSON object")
+    for number, candidate in enumerate(_candidates(text.lstrip("\ufeff"))):
+        try:
+            found = _loads(candidate)
+        except NotReadableError as error:
+            why = error if number == 0 or candidate.startswith("{") else why
+            continue
+        if isinstance(found, dict):
+            return found
+        why = NotReadableError("it is JSON, but not an object")
+    raise why
+
+
+def _candidates(text: str) -> Iterator[str]:
+    """The whole; what stands in fences; what stands in balanced braces."""
+    said = text
+    for end_mark in THOUGHTS_END:
+        said = said.rpartition(end_mark)[2]
+    if said.lstrip()[:1] in ("{", "["):
+        yield said.strip()
+    for fence in FENCE.findall(said):
+        yield fence.strip()
+    tries, at = 0, said.find("{")
+    while at >= 0 and tries < MOST_TRIES:
+        end = _end_of_object(said, at)
+        if end is not None:
+            yield said[at:end]
+        tries, at = tries + 1, said.find("{", end or at + 1)
+
+
+def _end_of_object(text: str, start: int) -> int | None:
+    """Behind the brace that closes the one at ``start``; None where none does."""
+    depth, in_string = 0, False
+    for match in re.compile(r'\\.|["{}]', re.DOTALL).finditer(text, start):
+        sign = match.group()
+        if sign == '"':
+            in_string = not in_string
+        elif not in_string and sign in "{}":
+            depth += 1 if sign == "{" else -1
+            if depth == 0:
+                return match.end()
+    return None
+
+
+def _loads(text: str) -> Any:
+    if _depth(text) > MOST_DEPTH:
+        raise NotReadableError(f"it has brackets inside brackets, more than {MOST_DEPTH} deep")
+    try:
+        return json.loads(
+            text,
+            object_pairs_hook=_object,
+            parse_constant=_constant,
+            parse_float=_number,
+            parse_int=_whole_number,
+        )
+    except json.JSONDecodeError as error:
+        raise NotReadableError(f"it is not JSON ({error.msg} at character {error.pos:,})") from None
+
+
+def _depth(text: str) -> int:
+    depth = deepest = 0
+    in_string = False
+    for match in re.compile(r'\\.|["{}\[\]]', re.DOTALL).finditer(text):
+        sign = match.group()
+        if sign == '"':
+            in_string = not in_string
+        elif not in_string and sign in "{[":
+            depth += 1
+            deepest = max(deepest, depth)
+        elif not in_string and sign in "}]":
+            depth -= 1
+    return deepest
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found and found[key] != value:
+            raise NotReadableError(f"it says '{plain(key, 40)}' twice, and not the same")
+        found[key] = value
+    return found
+
+
+def _constant(name: str) -> float:
+    raise NotReadableError(f"it holds {name}, which is no number")
+
+
+def _number(text: str) -> float:
+    found = float(text)
+    if not math.isfinite(found):
+        raise NotReadableError(f"it holds {plain(text, 20)}, which is no number")
+    return found
+
+
+def _whole_number(text: str) -> int:
+    if len(text) > MOST_DIGITS:
+        raise NotReadableError(f"it holds a number of {len(text):,} digits")
+    return int(text)
+
+
+def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:
+    """Turn texts like "15 %" into numbers where the schema wants them; was there any?"""
+    turned = False
+    for problem in error.errors(include_url=False, include_context=False):
+        if problem["type"] not in NUMERIC or not isinstance(problem["input"], str):
+            continue
+        match = NUMBER.fullmatch(problem["input"])
+        if match:
+            turned |= _put(data, problem["loc"], float(match[1].replace(",", ".").replace("−", "-")))
+    return turned
+
+
+def _put(data: Any, place: tuple[int | str, ...], number: float) -> bool:
+    """Put a number in the place of a text; a place may also name branches of unions: those are passed over."""
+    holder: Any = None
+    last: int | str = ""
+    for part in place:
+        inside = isinstance(data, dict) and part in data
+        inside = inside or (isinstance(data, list) and isinstance(part, int) and 0 <= part < len(data))
+        if inside:
+            holder, last, data = data, part, data[part]
+    if holder is None or not isinstance(data, str):
+        return False
+    holder[last] = number
+    return True

@@ -1,0 +1,281 @@
+"""One request and its answer, through the library ``openai``: time limits, retries, and errors as sentences.
+
+The answer is read as bytes under a limit of time and size, and as JSON under our own rules, because servers
+that call themselves compatible leave out and add what they like. Whatever comes back is rid of the key
+first.
+"""
+
+import contextvars
+import json
+import random
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from email.utils import parsedate_to_datetime
+from typing import Any
+from urllib.parse import urlsplit
+
+from roadgpt.chat.model import ChatSettings
+from roadgpt.chat.prices import OPENAI, is_sold
+from roadgpt.chat.secret import NOBODY, Key, cleaned
+from roadgpt.chat.strict import NotReadableError, plain
+from roadgpt.errors import ChatError
+
+BUSY = {408, 409, 425, 429, 500, 502, 503, 504, 529}  # statuses after which the same question may be answered
+SPENT_UP = ("insufficient_quota", "billing", "credit")  # what a 429 says that no waiting helps
+FIRST_WAIT, LONGEST_WAIT = 0.5, 8.0  # s, between retries where the server does not say how long
+PATIENCE = 120.0  # s, the longest wait that a server may ask for
+CONNECT = 10.0  # s, to reach it
+GRACE = 0.2  # s behind the time limit, in which the request itself may say what is wrong
+BYTES_PER_TOKEN = 24  # generous: JSON that escapes every letter
+ROOM = 200_000  # bytes, for all around a reply
+
+sleep = time.sleep
+
+
+@dataclass
+class FaultError(Exception):
+    """A request that came to nothing."""
+
+    sentence: str
+    status: int | None = None
+    said: str = ""
+    """What the server says about it, in small letters."""
+    parameter: str = ""
+    wait: float | None = None
+    """Seconds that the server asks for."""
+    may_pass: bool = False
+    """Can the same request do better later?"""
+
+
+class Wire:
+    """To one server, with one key."""
+
+    def __init__(self, settings: ChatSettings, key: Key | None) -> None:
+        self.place = place_of(settings.base_url)
+        self.settings = settings
+        if key is None and is_sold(self.place):
+            raise ChatError(
+                f"no key for {self.place}; put it into the environment as OPENAI_API_KEY or into a file "
+                ".env, or name another server with --base-url"
+            )
+        self._key = key or NOBODY
+        self._client = self._opened()
+
+    def _opened(self) -> Any:
+        try:
+            import openai
+        except ImportError:
+            raise ChatError(
+                "language models need the package 'openai'; say python -m pip install 'roadgpt[chat]'"
+            ) from None
+        limit = self.settings.timeout
+        try:
+            return openai.OpenAI(
+                api_key=self._key.value,
+                base_url=self.place,
+                timeout=openai.Timeout(limit, connect=min(CONNECT, limit)),
+                max_retries=0,
+            )
+        except Exception as error:
+            why = plain(cleaned(str(error), self._key), 200)
+            raise ChatError(f"a connection to {self.place} cannot be made: {why}") from None
+
+    def chat(self, body: dict[str, Any]) -> dict[str, Any]:
+        """The answer of Chat Completions."""
+        return self._with_patience(self._client.chat.completions.with_streaming_response.create, body)
+
+    def respond(self, body: dict[str, Any]) -> dict[str, Any]:
+        """The answer of Responses."""
+        return self._with_patience(self._client.responses.with_streaming_response.create, body)
+
+    def begin_conversation(self) -> dict[str, Any]:
+        """A conversation that the server keeps."""
+        return self._with_patience(self._client.conversations.with_streaming_response.create, {})
+
+    def models(self) -> list[dict[str, Any]]:
+        """The models that the server has, as it describes them."""
+        found = self._with_patience(self._client.models.with_streaming_response.list, {}).get("data")
+        return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+
+    def _with_patience(self, call: Callable[..., Any], body: dict[str, Any]) -> dict[str, Any]:
+        """Ask again, later and later, as long as that may help.
+
+        Raises:
+            FaultError: it does not.
+        """
+        for attempt in range(self.settings.retries + 1):
+            try:
+                return self._once(call, body)
+            except FaultError as fault:
+                wait = _wait(fault, attempt)
+                if not fault.may_pass or wait is None:
+                    raise
+                if attempt == self.settings.retries:
+                    tries = f" (tried {attempt + 1} times)" if attempt else ""
+                    fault.sentence += tries
+                    raise
+                sleep(wait)
+        raise AssertionError("unreachable")
+
+    def _once(self, call: Callable[..., Any], body: dict[str, Any]) -> dict[str, Any]:
+        """One request, given up after the time limit even where bytes drip in."""
+        box: list[Any] = []
+        deadline = time.monotonic() + self.settings.timeout
+        context = contextvars.copy_context()
+
+        def work() -> None:
+            try:
+                box.append(self._bytes(call, body, deadline))
+            except BaseException as error:  # handed to the thread that waits
+                box.append(error)
+
+        thread = threading.Thread(target=context.run, args=(work,), daemon=True)
+        thread.start()
+        thread.join(self.settings.timeout + GRACE)
+        if not box:
+            raise self._late()
+        if isinstance(box[0], BaseException):
+            raise self._fault_of(box[0]) from None
+        return self._decoded(box[0])
+
+    def _bytes(self, call: Callable[..., Any], body: dict[str, Any], deadline: float) -> bytes:
+        most = ROOM + BYTES_PER_TOKEN * self.settings.max_completion
+        parts: list[bytes] = []
+        size = 0
+        with call(**body) as response:
+            for part in _within(response.iter_bytes(), deadline, self._late):
+                parts.append(part)
+                size += len(part)
+                if size > most:
+                    raise NotReadableError(f"it has more than {most:,} bytes, and a short one was asked for")
+        return b"".join(parts)
+
+    def _late(self) -> FaultError:
+        return FaultError(
+            f"{self.place} gave no whole answer within {self.settings.timeout:g} s", may_pass=True
+        )
+
+    def _decoded(self, content: bytes) -> dict[str, Any]:
+        try:
+            found = json.loads(content)
+        except (ValueError, RecursionError):
+            found = None
+        if not isinstance(found, dict):
+            start = plain(cleaned(content[:400].decode("utf-8", "replace"), self._key), 60)
+            raise FaultError(
+                f"{self.place} answers with something else than JSON ('{start}'); "
+                "does the base URL end in /v1?"
+            )
+        answer: dict[str, Any] = cleaned(found, self._key)
+        return answer
+
+    def cleaned(self, value: Any) -> Any:
+        """Without the key, wherever it stands."""
+        return cleaned(value, self._key)
+
+    def _fault_of(self, error: BaseException) -> BaseException:
+        """What an error of the library means, in a sentence without the key."""
+        import openai
+
+        if isinstance(error, (FaultError, NotReadableError, KeyboardInterrupt, SystemExit)):
+            return error
+        if isinstance(error, openai.APIStatusError):
+            return self._refusal(error)
+        if isinstance(error, openai.APITimeoutError) or "Timeout" in type(error).__name__:
+            return self._late()
+        cause = error.__cause__ or error
+        why = plain(cleaned(str(cause), self._key), 100) or type(cause).__name__
+        if isinstance(error, openai.APIConnectionError):
+            return FaultError(
+                f"{self.place} cannot be reached ({why}); is the server running?", may_pass=True
+            )
+        if type(error).__module__.partition(".")[0] in ("httpx2", "httpcore2", "h11", "ssl", "builtins"):
+            return FaultError(
+                f"{self.place} broke off its answer ({why})", may_pass=isinstance(error, Exception)
+            )
+        return FaultError(f"the request to {self.place} failed ({type(error).__name__}: {why})")
+
+    def _refusal(self, error: Any) -> FaultError:
+        status, body = error.status_code, cleaned(error.body, self._key)
+        inner = body.get("error", body) if isinstance(body, dict) else body
+        told = inner if isinstance(inner, dict) else {"message": inner}
+        message = str(told.get("message") or "")
+        if not message and isinstance(body, dict):
+            message = json.dumps(body)
+        message = message or plain(cleaned(str(error.message), self._key))
+        code = f"{told.get('code') or ''} {told.get('type') or ''}"
+        said = f"{message} {code}".lower()
+        used_up = status == 429 and any(word in said for word in SPENT_UP)
+        return FaultError(
+            self._sentence(status, plain(message, 200), used_up),
+            status,
+            said,
+            str(told.get("param") or ""),
+            _asked_wait(error.response.headers),
+            may_pass=status in BUSY and not used_up,
+        )
+
+    def _sentence(self, status: int, message: str, used_up: bool) -> str:
+        told = f": {message}" if message else ""
+        if status == 401 and self._key is NOBODY:
+            return f"{self.place} wants a key, and none is set; put one into OPENAI_API_KEY{told}"
+        if status == 401:
+            return f"{self.place} does not take the key from {self._key.origin}{told}"
+        if status == 403:
+            return f"{self.place} does not allow this with the key from {self._key.origin}{told}"
+        if status == 404:
+            return f"{self.place} knows no such model or address{told}; see --model and --base-url"
+        if used_up:
+            return f"the account at {self.place} has nothing left to spend{told}"
+        if status == 429:
+            return f"{self.place} has too much to do{told}"
+        if status >= 500:
+            return f"{self.place} failed with status {status}{told}"
+        return f"{self.place} refuses the question with status {status}{told}"
+
+
+def place_of(base_url: str | None) -> str:
+    """The address of a server, with the path that its kind has where none was given."""
+    place = (base_url or OPENAI).rstrip("/")
+    parts = urlsplit(place)
+    if parts.path:
+        return place
+    return place + ("/openai/v1" if (parts.hostname or "").endswith(".azure.com") else "/v1")
+
+
+def _within(parts: Iterator[bytes], deadline: float, late: Callable[[], FaultError]) -> Iterator[bytes]:
+    for part in parts:
+        if time.monotonic() > deadline:
+            raise late()
+        yield part
+
+
+def _asked_wait(headers: Any) -> float | None:
+    """Seconds of retry-after, however it is said."""
+    for name, unit in (("retry-after-ms", 0.001), ("retry-after", 1.0)):
+        text = headers.get(name)
+        if not text:
+            continue
+        try:
+            seconds = float(text) * unit
+        except ValueError:
+            try:
+                seconds = parsedate_to_datetime(text).timestamp() - time.time()
+            except (ValueError, TypeError, OverflowError):
+                continue
+        if seconds == seconds:
+            return max(0.0, seconds)
+    return None
+
+
+def _wait(fault: FaultError, attempt: int) -> float | None:
+    """Seconds until the next try; None: longer than anyone waits."""
+    if fault.wait is not None:
+        if fault.wait > PATIENCE:
+            fault.sentence += f"; it asks to wait {fault.wait:.0f} s, come back then"
+            return None
+        return fault.wait
+    usual: float = min(FIRST_WAIT * 2.0**attempt, LONGEST_WAIT)
+    return usual * random.uniform(0.75, 1.25)
