@@ -1,0 +1,203 @@
+"""Repairs: makes a proposed Design valid and true to its Brief by the smallest change. Verb: ``repair``.
+
+    none   nothing is touched
+    place  the road is moved, turned only where that is not enough, and raised above the ground
+    full   then lengths and angles, radii and grades are changed as little as it takes; turns, their sides and
+           whether they go up, down or level stay those that were proposed
+
+What cannot be repaired comes back placed at best; ``check.inspect`` says what is still wrong with it.
+"""
+
+from math import ceil, floor
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from roadgpt import check
+from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.check.extremes import lowest
+from roadgpt.check.measures import measure
+from roadgpt.check.rules.promises import promises_of
+from roadgpt.design.repair.changes import changes_between
+from roadgpt.design.repair.figure import figure_of
+from roadgpt.design.repair.limits import MARGINS, Margins, limits_of
+from roadgpt.design.repair.placing import placed
+from roadgpt.design.repair.proposal import Part, mean_incline, parts_of, shows
+from roadgpt.design.repair.slopes import sloped
+from roadgpt.design.repair.solving import Aim, solved
+from roadgpt.design.repair.wishes import wishes_of
+from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Design, Segment, World, build
+from roadgpt.road.grades import profile_of
+
+How = Literal["none", "place", "full"]
+MOST_SEGMENTS = 80  # of a list that is repaired in full; on more, a road of a map's size is no longer a list
+ROUNDS = 2  # of solving: the second with the transitions that came of the first
+TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
+ABOVE_GROUND = 1.0  # m that a road which lay under the ground is raised above it
+SHORTEST_RAMP = 0.1  # m
+
+
+class Repaired(NamedTuple):
+    """A Design, and what was changed of the one that was proposed, in sentences."""
+
+    design: Design
+    changes: tuple[str, ...]
+
+
+def repair(design: Design, brief: Brief | None, world: World, how: How = "none") -> Repaired:
+    """The proposed design, made valid as far as ``how`` allows.
+
+    Args:
+        design: as proposed.
+        brief: what was asked for, if anything was.
+        world: map and limits.
+        how: "none", "place" or "full"; see above.
+    """
+    if how == "none":
+        return Repaired(design, ())
+    try:
+        after = _in_place(design, world)
+        if how == "full" and not _is_fine(after, design, brief, world):
+            after = _mended(design, brief, world) or after
+    except (UsageError, ValueError, np.linalg.LinAlgError):  # of no such geometry a road can be built
+        return Repaired(design, ())
+    return Repaired(after, changes_between(design, after))
+
+
+def _is_fine(design: Design, proposed: Design, brief: Brief | None, world: World) -> bool:
+    """Is the road valid, true to its Brief, and does it show what was proposed?"""
+    road = build(design)
+    return not check.inspect(road, brief, world) and shows(measure(road.centreline()), proposed.segments)
+
+
+def _in_place(design: Design, world: World) -> Design:
+    """The design inside the map and above the ground; as it is, where it lies there or is too large."""
+    found = {finding.rule for finding in check.inspect(build(design), None, world)}
+    if "inside_map" in found:
+        design = placed(design, world) or design
+    if "below_floor" in found:
+        x, y, z = design.starting_point
+        profile = profile_of(design.segments, z)
+        missing = world.z_floor + ABOVE_GROUND - lowest(profile, profile.stations[-1])[1]
+        design = design.model_copy(
+            update={"starting_point": (x, y, ceil((z + missing) * CENTIMETRE) / CENTIMETRE)}
+        )
+    return design
+
+
+def _mended(design: Design, brief: Brief | None, world: World) -> Design | None:
+    """The design with the smallest change of its measures; None where none was found."""
+    if len(design.segments) > MOST_SEGMENTS:
+        return None
+    best: Design | None = None
+    for held_to in (brief, None) if brief else (None,):
+        for margins in MARGINS:
+            mended = _with_margins(design, held_to, world, margins)
+            if mended is None:
+                continue
+            if _is_fine(mended, design, brief, world):
+                return _restored(mended, design, brief, world)
+            if best is None and not check.inspect(build(mended), None, world):
+                best = mended  # valid at least; which promise it breaks, the rules say
+    return best
+
+
+def _with_margins(design: Design, brief: Brief | None, world: World, margins: Margins) -> Design | None:
+    proposed = design.segments
+    parts = parts_of(proposed)
+    outline = promises_of(brief or Brief(), world)
+    wishes = wishes_of(parts, [mean_incline(part, proposed) for part in parts], outline) if brief else None
+    features: tuple[Feature | None, ...] = wishes.features if wishes else (None,) * len(parts)
+    if wishes is None:
+        outline = promises_of(Brief(), world)
+    segments = _solved(proposed, parts, features, outline, world, margins)
+    if segments is None:
+        return None
+    mended = sloped(
+        design.model_copy(update={"segments": segments}), proposed, parts, features, outline, world
+    )
+    return _in_place(mended, world)
+
+
+def _solved(
+    proposed: tuple[Segment, ...],
+    parts: tuple[Part, ...],
+    wishes: tuple[Feature | None, ...],
+    outline: Outline,
+    world: World,
+    margins: Margins,
+) -> tuple[Segment, ...] | None:
+    """The segments with lengths and turns that keep the limits."""
+    lengths = np.array([s.distance for s in proposed])
+    turns = np.radians([s.turn_degrees for s in proposed])
+    now: tuple[Segment, ...] | None = None
+    for _ in range(ROUNDS):
+        figure = figure_of(now or proposed)
+        rows, most = limits_of(proposed, parts, wishes, figure, outline, world, margins)
+        found = solved(Aim(lengths, turns, figure, rows, most, world, margins))
+        if found is None:
+            break
+        now = _written(proposed, found.lengths, found.turns, world.min_radius * margins.radius)
+    return now
+
+
+def _written(
+    proposed: tuple[Segment, ...], lengths: Array, turns: Array, radius: float
+) -> tuple[Segment, ...]:
+    """Segments with new measures, rounded; radii and transitions grow with them, or give way."""
+    out = []
+    for segment, length, turn in zip(proposed, lengths, turns, strict=True):
+        distance, degrees = (
+            _rounded(float(length), segment.distance),
+            _rounded(float(np.degrees(turn)), segment.turn_degrees),
+        )
+        update: dict[str, float | None] = {"distance": distance, "turn_degrees": degrees}
+        if segment.radius and degrees:
+            grown = segment.radius * (distance / segment.distance) * (segment.turn_degrees / degrees)
+            fits = grown >= radius
+            update["radius"] = (
+                ceil(grown * CENTIMETRE) / CENTIMETRE
+                if fits and grown != segment.radius
+                else segment.radius
+                if fits
+                else None
+            )
+            if not fits:
+                update["transition"] = None
+        ramp = update.get("transition", segment.transition)
+        if degrees and not update.get("radius"):
+            most = max(distance - radius * abs(np.radians(degrees)), SHORTEST_RAMP)
+            if (ramp or min(distance / 4, 12.0)) > most:
+                update["transition"] = floor(most * TENTH) / TENTH
+        out.append(segment.model_copy(update=update))
+    return tuple(out)
+
+
+def _rounded(value: float, before: float) -> float:
+    """To a tenth; what was written, where hardly anything changed."""
+    return before if abs(value - before) <= 0.005 * abs(before) else round(value * TENTH) / TENTH
+
+
+def _restored(mended: Design, design: Design, brief: Brief | None, world: World) -> Design:
+    """With all that need not have changed put back as it was proposed, the smallest changes first."""
+    trials: list[tuple[float, int, str]] = []
+    for index, (one, other) in enumerate(zip(design.segments, mended.segments, strict=True)):
+        for name in ("distance", "turn_degrees", "incline", "transition"):
+            before, after = getattr(one, name), getattr(other, name)
+            if before != after:
+                away = abs((before or 12.0) - (after or 12.0)) / max(abs(before or 12.0), 1.0)
+                trials.append((away, index, name))
+    for _, index, name in sorted(trials):
+        segments = list(mended.segments)
+        segments[index] = segments[index].model_copy(update={name: getattr(design.segments[index], name)})
+        tried = design.model_copy(update={"segments": tuple(segments)})
+        tried = _in_place(tried, world)
+        if _is_fine(tried, design, brief, world):
+            mended = tried
+    return mended
+
+
+__all__ = ["How", "Repaired", "repair"]

@@ -1,0 +1,169 @@
+"""The limits that lengths and turns are held to, as rows: a . lengths + b . |turns| <= c, all in metres.
+
+A radius is one of them: a turn of ``turn`` radians over ``length`` metres, whose curvature is ``peak`` times
+as large at its tightest place as on average, has a least radius of   length / (peak * turn).
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import inf, radians
+from typing import NamedTuple
+
+import numpy as np
+
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.words import Range
+from roadgpt.check.measures import LEAST_TURN
+from roadgpt.design.repair.figure import Figure
+from roadgpt.design.repair.proposal import Part
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Segment, World
+
+LEAST_RAMP = 0.1  # of a segment that turns, for each clothoid: as short as it may be made
+METRES_PER_RADIAN = 30.0  # how heavy a missing radian weighs beside a missing metre
+SHARE_KEPT = 0.2  # of every length and turn: less would not be the segment that was proposed
+CLEARLY = 260.0  # m: of a turn that is to be seen as one, the largest radius (the measure says 300)
+SLIGHT_BEND = 9.0  # degrees: what was proposed as no turn stays less
+WIDTH_KEPT_OFF = 0.2  # of a promised range, at either end, besides the margin of promises
+ANGLE_MARGIN = 0.4  # degrees, off what was promised
+
+
+class Margins(NamedTuple):
+    """How far from the limits of the rules a repaired road keeps; wider where the first were too narrow."""
+
+    radius: float = 1.045
+    """Of the least one: the competition's spline cuts corners."""
+    seen: float = 12.0
+    """Degrees of the least turn."""
+    apart: float = 15.5
+    """Metres between two turns of one hand."""
+    clear: float = 0.9
+    """Metres between two stretches of the road, more than it is wide."""
+    edge: float = 0.6
+    """Metres between the road and the border of the map."""
+    promise: float = 0.04
+    """Of a length or radius that was promised."""
+
+
+MARGINS = (Margins(), Margins(1.07, 13.5, 18.0, 1.5, 1.0, 0.1), Margins(1.12, 15.0, 22.0, 2.5, 1.5, 0.2))
+
+
+class Rows:
+    """Rows of limits, gathered."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.rows: list[Array] = []
+        self.most: list[float] = []
+
+    def add(self, lengths: dict[int, float], turns: dict[int, float], most: float) -> None:
+        """``lengths . d + turns . |t| <= most``."""
+        row = np.zeros(2 * self.count)
+        for index, factor in lengths.items():
+            row[index] += factor
+        for index, factor in turns.items():
+            row[self.count + index] += factor
+        self.rows.append(row)
+        self.most.append(most)
+
+    def within(self, members: Sequence[int], span: Range | None) -> None:
+        """The lengths of some segments add up to what is in the range."""
+        if span and span.lo > 0:
+            self.add(dict.fromkeys(members, -1.0), {}, -span.lo)
+        if span and span.hi < inf:
+            self.add(dict.fromkeys(members, 1.0), {}, span.hi)
+
+    def turned(self, members: Sequence[int], span: Range | None) -> None:
+        """The turns of some segments add up to what is in the range, degrees."""
+        if span and span.lo > 0:
+            self.add({}, dict.fromkeys(members, -METRES_PER_RADIAN), -METRES_PER_RADIAN * radians(span.lo))
+        if span and span.hi < inf:
+            self.add({}, dict.fromkeys(members, METRES_PER_RADIAN), METRES_PER_RADIAN * radians(span.hi))
+
+    def done(self) -> tuple[Array, Array]:
+        """The matrix ``(m, 2 n)`` and the right side ``(m,)``."""
+        return np.array(self.rows).reshape(-1, 2 * self.count), np.array(self.most)
+
+
+def limits_of(
+    segments: Sequence[Segment],
+    parts: Sequence[Part],
+    wishes: Sequence[Feature | None],
+    figure: Figure,
+    outline: Outline,
+    world: World,
+    margins: Margins,
+) -> tuple[Array, Array]:
+    """Rows of all that lengths and turns must keep, ``(m, 2 n)`` and ``(m,)``."""
+    rows = Rows(len(segments))
+    radius = world.min_radius * margins.radius
+    shortest = 1 / (1 - LEAST_RAMP)
+    for index, segment in enumerate(segments):
+        rows.add({index: -1.0}, {}, -SHARE_KEPT * segment.distance)
+        if segment.turn_degrees:
+            turn = abs(radians(segment.turn_degrees))
+            rows.add({}, {index: -METRES_PER_RADIAN}, -METRES_PER_RADIAN * SHARE_KEPT * turn)
+            rows.add({index: -1.0}, {index: radius * min(figure.peak[index], shortest)}, 0.0)
+    for number, part in enumerate(parts):
+        _part(rows, segments, part, figure, margins)
+        wish = wishes[number]
+        if wish:
+            _wish(rows, part, wish, figure, margins)
+    _separate(rows, parts, margins)
+    whole = range(len(segments))
+    rows.within(whole, Range(world.min_length + 2.0))
+    if outline.length:
+        rows.within(whole, _drawn_in(outline.length, margins.promise / 4))
+    return rows.done()
+
+
+def _part(rows: Rows, segments: Sequence[Segment], part: Part, figure: Figure, margins: Margins) -> None:
+    """A turn stays one that is seen, and whole; a slighter bend stays slight."""
+    members = list(part.members)
+    if not part.degrees:
+        return
+    if not part.is_turn:
+        rows.turned(members, Range(0, max(SLIGHT_BEND, abs(part.degrees))))
+        return
+    least = LEAST_TURN + 0.4 * (margins.seen - LEAST_TURN)  # of a turn that was proposed with hardly as many
+    rows.turned(members, Range(max(min(abs(part.degrees), margins.seen), least)))
+    tightest = max(members, key=lambda i: abs(segments[i].turn_degrees) / segments[i].distance)
+    for index in {*members[1:-1], tightest}:
+        peak = figure.peak[index] if index == tightest else 1.0
+        rows.add({index: 1.0}, {index: -peak * CLEARLY}, 0.0)
+
+
+def _wish(rows: Rows, part: Part, wish: Feature, figure: Figure, margins: Margins) -> None:
+    members = list(part.members)
+    length = _drawn_in(wish.length, margins.promise) if wish.length else None
+    if not part.degrees:
+        rows.within(members, Range(length.lo + 3.0, length.hi) if length and length.lo > 0 else length)
+        return
+    rows.within(members, Range(length.lo + 2.0, length.hi) if length else None)
+    if wish.degrees:
+        margin = min(ANGLE_MARGIN, 0.2 * (wish.degrees.hi - wish.degrees.lo))
+        rows.turned(members, Range(wish.degrees.lo + margin, wish.degrees.hi - margin))
+    if wish.radius:
+        radius = _drawn_in(wish.radius, margins.promise)
+        for index in members:
+            if radius.lo > 0:
+                rows.add({index: -1.0}, {index: radius.lo * max(figure.peak[index], 1.0)}, 0.0)
+        if radius.hi < inf:
+            tightest = max(members, key=lambda i: figure.peak[i])
+            rows.add({tightest: 1.0}, {tightest: -radius.hi * max(figure.peak[tightest], 1.0)}, 0.0)
+
+
+def _drawn_in(span: Range, share: float) -> Range:
+    """A range without its edges: that share of them, and no more than some of its width."""
+    most = min(WIDTH_KEPT_OFF + share, 0.4) * (span.hi - span.lo)
+    low = span.lo + min(share * abs(span.lo), most) if span.lo > -inf else span.lo
+    return Range(low, span.hi - min(share * span.hi, most) if span.hi < inf else inf)
+
+
+def _separate(rows: Rows, parts: Sequence[Part], margins: Margins) -> None:
+    """Between two turns of one hand lies so much that they are seen as two."""
+    turns = [i for i, part in enumerate(parts) if part.is_turn]
+    for one, other in pairwise(turns):
+        if parts[one].side == parts[other].side:
+            between = [index for part in parts[one + 1 : other] for index in part.members]
+            rows.within(between, Range(margins.apart))

@@ -1,0 +1,185 @@
+"""The smallest change of lengths and turns that keeps all limits: least squares with penalties.
+
+What is made small is the sum of squares of all relative changes, each weighed so that a few larger ones are
+no dearer than many small ones; what breaks a limit is added to it, in metres, ever more heavily. Every step
+solves for all lengths, all turns and the place on the map at once (Levenberg and Marquardt).
+"""
+
+from math import radians
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.design.repair.figure import Complex, Figure
+from roadgpt.design.repair.limits import Margins
+from roadgpt.geometry.curve import Array
+from roadgpt.road import World
+
+Indices = NDArray[np.intp]
+
+LENGTH_WEIGHT, TURN_WEIGHT = 1.0, 1.4  # of a relative change
+LEAST_TURN_COUNTED = radians(15)  # changes of slighter turns are taken as relative to this
+NEIGHBOURS = 27.0  # m along the road: places nearer than this cannot meet
+PENALTIES = (0.05, 1.0, 20.0)  # of a square metre that breaks a limit
+STEPS = 25  # at every penalty, at most
+SETTLED = 1e-5  # relative gain
+FEW = 0.04  # a relative change below which it is no longer dearer to change one thing more
+BROKEN = 0.15  # m: by so much, margins included, a limit may be missed
+CHEAP = 0.05  # of a change, for each segment: then no other start is tried
+STARTS = (
+    1.0,
+    0.8,
+    0.6,
+    0.45,
+    0.3,
+    0.2,
+)  # of all turns: where the search sets out; a straight road keeps clear
+
+
+class Aim(NamedTuple):
+    """What was proposed, and what it is held to."""
+
+    lengths: Array
+    turns: Array
+    """Radians, left positive."""
+    figure: Figure
+    rows: Array
+    most: Array
+    world: World
+    margins: Margins
+
+
+class Solution(NamedTuple):
+    """Lengths in metres, turns in radians, the cost of the change, and metres by which a limit is missed."""
+
+    lengths: Array
+    turns: Array
+    cost: float
+    broken: float
+
+
+def solved(aim: Aim) -> Solution | None:
+    """The cheapest change that was found; None where none keeps the limits."""
+    found: list[Solution] = []
+    for share in STARTS:
+        one = _descended(aim, share)
+        if one.broken <= BROKEN:
+            found.append(one)
+            if (share == 1.0 and one.cost < CHEAP * len(aim.lengths)) or len(found) == 2:
+                break
+    return min(found, key=lambda one: one.cost, default=None)
+
+
+def _descended(aim: Aim, share: float) -> Solution:
+    n = len(aim.lengths)
+    hands = np.where(aim.turns < 0, -1.0, 1.0)
+    start = np.concatenate([aim.lengths, share * np.abs(aim.turns), [0.0, 0.0, 0.0]])
+    start[2 * n + 1 :] = _centred(aim, start, hands)
+    units = _units(aim)
+    weights = np.ones(2 * n)
+    v = start
+    for round_ in range(2):
+        for penalty in PENALTIES[round_:]:
+            v = _settled(aim, hands, units, weights, v, penalty)
+        change = np.abs(units * (v[: 2 * n] - _proposed(aim)))
+        weights = np.sqrt(FEW / (change + FEW))
+    change = units * (v[: 2 * n] - _proposed(aim))
+    broken = _misses(aim, hands, v, with_slopes=False)[0]
+    return Solution(v[:n], hands * v[n : 2 * n], float(change @ change), float(broken.max(initial=0.0)))
+
+
+def _proposed(aim: Aim) -> Array:
+    return np.concatenate([aim.lengths, np.abs(aim.turns)])
+
+
+def _units(aim: Aim) -> Array:
+    turns = np.abs(aim.turns)
+    by_turn = np.where(turns > 0, TURN_WEIGHT / np.maximum(turns, LEAST_TURN_COUNTED), 100.0)
+    return np.concatenate([LENGTH_WEIGHT / aim.lengths, by_turn])
+
+
+def _centred(aim: Aim, v: Array, hands: Array) -> Array:
+    """Where the start lies when the middle of the road is the middle of the map."""
+    n = len(aim.lengths)
+    z, _ = aim.figure.walk(v[:n], hands * v[n : 2 * n], 0.0)
+    middle = np.array([np.ptp(z.real) / 2 + z.real.min(), np.ptp(z.imag) / 2 + z.imag.min()])
+    return np.asarray(aim.world.map_size / 2 - middle)
+
+
+def _settled(aim: Aim, hands: Array, units: Array, weights: Array, v: Array, penalty: float) -> Array:
+    """The bottom of the valley that ``v`` lies in, at one penalty."""
+    n, damping = len(aim.lengths), 1e-3
+    scale = np.concatenate([1 / units, [0.3, 20.0, 20.0]])
+    own = np.diag(np.concatenate([weights**2, np.full(3, 1e-8)]))
+
+    def total(at: Array) -> float:
+        change = weights * units * (at[: 2 * n] - _proposed(aim))
+        missed = _misses(aim, hands, at, with_slopes=False)[0]
+        return float(change @ change + penalty * (missed @ missed))
+
+    now = total(v)
+    for _ in range(STEPS):
+        missed, slopes = _misses(aim, hands, v, with_slopes=True)
+        slopes = slopes * scale
+        change = np.concatenate([weights**2 * units * (v[: 2 * n] - _proposed(aim)), np.zeros(3)])
+        matrix = own + penalty * (slopes.T @ slopes)
+        down = change + penalty * (slopes.T @ missed)
+        for _ in range(6):
+            step = np.linalg.solve(matrix + damping * np.diag(np.diag(matrix) + 1e-6), -down)
+            step *= min(1.0, 0.5 / max(np.abs(step[:n]).max(), np.abs(step[n : 2 * n]).max(), 1e-12))
+            after = v + scale * step
+            after[: 2 * n] = np.maximum(after[: 2 * n], 0.0)
+            after[:n] = np.maximum(after[:n], 0.1 * aim.lengths)
+            then = total(after)
+            if then < now:
+                break
+            damping *= 6
+        else:
+            return v
+        v, gained, now, damping = after, now - then, then, max(damping / 8, 1e-9)
+        if gained < SETTLED * (now + 1e-9):
+            break
+    return v
+
+
+def _misses(aim: Aim, hands: Array, v: Array, with_slopes: bool) -> tuple[Array, Array]:
+    """Metres by which limits are missed, ``(m,)``, and how each changes with every unknown."""
+    n = len(aim.lengths)
+    by_rows = aim.rows @ v[: 2 * n] - aim.most
+    over = by_rows > 0
+    z, steps = aim.figure.walk(v[:n], hands * v[n : 2 * n], v[2 * n])
+    border = aim.world.road_width / 2 + aim.margins.edge
+    x, y = z.real + v[2 * n + 1], z.imag + v[2 * n + 2]
+    outside = np.stack(
+        [border - x, border - y, x + border - aim.world.map_size, y + border - aim.world.map_size]
+    )
+    out = outside > 0
+    one, other = _meeting(z, v[:n], aim)
+    apart = aim.world.road_width + aim.margins.clear
+    away = z[other] - z[one]
+    size = np.maximum(np.abs(away), 1e-6)
+    missed = np.concatenate([by_rows[over], outside[out], apart - size])
+    if not with_slopes:
+        return missed, missed
+    by_length, by_turn = aim.figure.slopes(v[:n], steps)
+    moves = np.concatenate([by_length, by_turn * (hands * (aim.turns != 0)), 1j * z[:, None]], axis=1)
+    rows = np.concatenate([aim.rows[over], np.zeros((int(over.sum()), 3))], axis=1)
+    which, point = np.nonzero(out)
+    sign = np.where(which < 2, -1.0, 1.0)[:, None]
+    along_y = (which % 2)[:, None]
+    own = np.where(along_y, moves[point].imag, moves[point].real)
+    box = sign * np.concatenate([own, 1 - along_y, along_y], axis=1)
+    part = (moves[other] - moves[one]) * (away.conj() / size)[:, None]
+    clear = np.concatenate([-part.real, np.zeros((len(one), 2))], axis=1)
+    return missed, np.concatenate([rows, box, clear])
+
+
+def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
+    """Pairs of points that lie nearer to each other than the road may come to itself."""
+    count = np.bincount(aim.figure.owner, minlength=len(lengths))
+    s = np.concatenate([[0.0], np.cumsum((lengths / count)[aim.figure.owner])])
+    near = np.abs(z[:, None] - z) < aim.world.road_width + aim.margins.clear
+    near &= s - s[:, None] > NEIGHBOURS
+    one, other = np.nonzero(near)
+    return one, other
