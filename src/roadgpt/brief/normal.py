@@ -8,6 +8,7 @@
 - What holds for every turn (sharpness, degrees, radius) stands on the clauses where they name the turns.
 - Where everything that is named has one slope, the whole road has it.
 - What only repeats the clauses (number of turns, left or right, the slope, first and last thing) goes.
+- Of 5 turns of which 4 go left, 1 goes right; where none goes left, the turns go right.
 - 'N turns' and nothing more is one clause; 'N or more turns' and nothing more is a wish for the road.
 - Where nothing is said of turns, at least one is meant; where only straights are named, none;
   there, and only there, '0 or more turns' is kept.
@@ -16,6 +17,7 @@
 from math import inf
 
 from roadgpt.brief.model import Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly
+from roadgpt.brief.sides import as_clause, forced_side, with_other_side
 from roadgpt.brief.words import KINDS
 
 STRAIGHT: frozenset[Kind] = frozenset({"straight", "crest", "dip"})
@@ -49,6 +51,8 @@ def _simpler(brief: Brief) -> Brief:
     whole = whole.model_copy(update={"words": "", "unused": (), "confidence": 1.0})
     whole, clauses = _ends(whole, clauses)
     whole, clauses = _turns_as_clause(whole, clauses)
+    whole, clauses = as_clause(whole, clauses)
+    whole, clauses = _sided(whole, clauses)
     whole, clauses = _pushed_down(whole, clauses)
     whole = _with_one_slope(whole, clauses)
     clauses = _merged([_without_slope_of(whole, clause) for clause in clauses])
@@ -215,6 +219,21 @@ def _turns_as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[C
     if clauses or not turns or not turns.exact or not turns.lo or whole.starts or whole.ends:
         return whole, clauses
     return whole.model_copy(update={"turns": None}), [Clause(kind="turn", count=turns)]
+
+
+def _sided(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+    """Sides that numbers leave no choice about."""
+    if not clauses_turn(clauses):
+        return whole, clauses
+    whole = with_other_side(whole, total(clauses))
+    side = forced_side(whole)
+    open_kinds = SINGLE - {"switchback"}
+    if not side:
+        return whole, clauses
+    return whole, [
+        c.model_copy(update={"side": side}) if c.kind in open_kinds and not (c.side or c.alternating) else c
+        for c in clauses
+    ]
 
 
 def _turns_as_wish(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:

@@ -1,0 +1,36 @@
+"""How many turns go left and how many right: what the numbers leave no choice about is said outright.
+
+Of 5 turns of which 4 go left, 1 goes right; of 3 turns of which none goes left, all go right.
+"""
+
+from roadgpt.brief.model import Amount, Brief, Clause, Side, exactly
+
+SIDES: tuple[tuple[Side, Side], ...] = (("left", "right"), ("right", "left"))
+NONE = exactly(0)
+
+
+def with_other_side(whole: Brief, turns: Amount) -> Brief:
+    """Where all turns and those to one side are counted, those to the other follow."""
+    if not turns.exact or turns.lo is None:
+        return whole
+    for one, other in SIDES:
+        counted: Amount | None = getattr(whole, one)
+        if counted and counted.exact and getattr(whole, other) is None and (counted.lo or 0) <= turns.lo:
+            return whole.model_copy(update={other: exactly(turns.lo - (counted.lo or 0))})
+    return whole
+
+
+def forced_side(whole: Brief) -> Side | None:
+    """The side to which all turns go, because none may go to the other."""
+    sides = [one for one, other in SIDES if getattr(whole, other) == NONE]
+    return sides[0] if len(sides) == 1 else None
+
+
+def as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
+    """'4 turns or more, none to the right' as a clause of turns to the left."""
+    side, turns = forced_side(whole), whole.turns
+    if clauses or not side or not turns or not turns.lo or whole.starts or whole.ends:
+        return whole, clauses
+    return whole.model_copy(update={"turns": None, "alternating": False}), [
+        Clause(kind="turn", count=turns, side=side)
+    ]
