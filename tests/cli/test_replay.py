@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roadgpt.chat import ChatSettings
 from roadgpt.cli import app
-from roadgpt.cli.flags import SETUP, WORLD
+from roadgpt.cli.flags import CHAT, SETUP, WORLD
 from roadgpt.cli.options import world_of
 from roadgpt.cli.replay import replay_lines
 from roadgpt.cli.summary import show
@@ -104,7 +105,8 @@ def test_the_command_line_reads_from_the_lines_what_the_run_was_made_with(
 def test_the_defaults_of_the_options_are_those_of_world_and_setup() -> None:
     assert world_of({flag.field: flag.default for flag in WORLD}) == World()
     assert Setup(**{flag.field: flag.default for flag in SETUP}) == Setup()
-    assert {flag.field for flag in SETUP} | {"drives"} == set(Setup.model_fields)
+    assert {flag.field for flag in SETUP} | {"drives", "chat"} == set(Setup.model_fields)
+    assert {flag.field for flag in CHAT} == set(ChatSettings.model_fields)
 
 
 def test_a_campaign_tells_of_roads_that_cannot_be_read(tmp_path: Path) -> None:

@@ -138,10 +138,10 @@ def test_one_road_that_could_not_be_designed_does_not_stop_the_others(
 ) -> None:
     honest = run_room.perform
 
-    def sometimes(words, seed, world, setup, index, earlier):  # type: ignore[no-untyped-def]
+    def sometimes(words, seed, world, setup, index, *rest):  # type: ignore[no-untyped-def]
         if index == 2:
             raise DesignError("no road fits; ask for less")
-        return honest(words, seed, world, setup, index, earlier)
+        return honest(words, seed, world, setup, index, *rest)
 
     monkeypatch.setattr(run_room, "perform", sometimes)
     result = invoke(WORDS, "-n", "3", "--no-plot", "--no-drive", "--json")
@@ -155,10 +155,10 @@ def test_an_interrupted_campaign_is_complete_as_far_as_it_went_and_goes_on(
 ) -> None:
     honest = run_room.perform
 
-    def stopped(words, seed, world, setup, index, earlier):  # type: ignore[no-untyped-def]
+    def stopped(words, seed, world, setup, index, *rest):  # type: ignore[no-untyped-def]
         if index == 3:
             raise KeyboardInterrupt
-        return honest(words, seed, world, setup, index, earlier)
+        return honest(words, seed, world, setup, index, *rest)
 
     words = (WORDS, "-n", "4", "--seed", "3", "--no-drive", "--no-plot", "--out", "here")
     with monkeypatch.context() as patched:

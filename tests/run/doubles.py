@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from roadgpt import plugins
+from roadgpt import design, plugins
 from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Segment, World
@@ -71,11 +71,8 @@ def put_on_shelf(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> None:
     def find(shelf: str, name: str) -> Any:
         return (lambda: parts[name]) if shelf == "designers" and name in parts else installed(shelf, name)
 
-    def draft(
-        brief: Brief, world: World, notes: tuple[str, ...], earlier: Any, seed: int, designer: str
-    ) -> Design:
-        drafted: Design = parts[designer].draft(brief, world, notes, earlier, seed)
-        return drafted
+    def designer_of(name: str, chat: Any = None) -> Any:
+        return parts[name] if name in parts else design.designer_of(name, chat)
 
     monkeypatch.setattr(plugins, "find", find)
-    monkeypatch.setattr("roadgpt.run.draft", draft)
+    monkeypatch.setattr("roadgpt.run.designer_of", designer_of)

@@ -33,7 +33,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, Range
-from roadgpt.chat import ChatSettings, made
+from roadgpt.chat import ChatSettings, made, meant_for
 from roadgpt.errors import BriefError
 
 __all__ = [
@@ -141,7 +141,12 @@ def _is_possible(brief: Brief, map_size: float | None) -> bool:
     return True
 
 
-@cache
 def _reader(name: str, chat: ChatSettings | None = None) -> Reader:
+    """The reader of that name."""
+    return _made(name, meant_for(plugins.find("readers", name), chat))
+
+
+@cache
+def _made(name: str, chat: ChatSettings | None) -> Reader:
     """The one reader of that name: a network is loaded once."""
     return cast(Reader, made(plugins.find("readers", name), chat))

@@ -12,9 +12,11 @@ from dataclasses import dataclass
 
 from roadgpt.chat.model import ChatSettings, Message, Spent, Usage
 from roadgpt.chat.prices import cost_of, price_of
+from roadgpt.chat.strict import plain
 from roadgpt.errors import BudgetError
 
 LETTERS_PER_TOKEN = 4  # bytes of English and JSON; only guesses what is still to be counted by the server
+ENDLESS = 10**15
 LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 
 
@@ -48,29 +50,36 @@ class Meter:
         Raises:
             BudgetError: too few for an answer.
         """
-        room = most
-        if self.max_tokens is not None:
-            left = self.max_tokens - self.spent.usage.total
-            room = min(room, left - prompt)
-            if room < LEAST_REPLY:
-                raise BudgetError(
-                    f"the limit of {self.max_tokens:,} tokens is reached "
-                    f"({self.spent.usage.total:,} are spent); go on with the same command and a higher --max-tokens"
-                )
-        if self.max_cost is not None:
-            if price is None or self.spent.cost is None:
-                raise BudgetError(
-                    f"what '{model}' costs is not known, so --max-cost cannot be kept; "
-                    "say --price 0.15/0.60 (USD per million tokens of question and answer)"
-                )
-            left_usd = self.max_cost - self.spent.cost - prompt * price[0] / 1e6
-            room = min(room, int(left_usd * 1e6 / price[1])) if price[1] else room * (left_usd >= 0)
-            if room < LEAST_REPLY:
-                raise BudgetError(
-                    f"the limit of {self.max_cost:g} USD is reached ({self.spent.cost:.4f} are spent); "
-                    "go on with the same command and a higher --max-cost"
-                )
-        return room
+        room = min(most, self._tokens_left(prompt), self._affordable(prompt, price, model))
+        if room >= LEAST_REPLY:
+            return room
+        spent = self.spent
+        limit, so_far, flag = f"{self.max_tokens or 0:,} tokens", f"{spent.usage.total:,}", "--max-tokens"
+        if self._tokens_left(prompt) > room:
+            limit, so_far, flag = f"{self.max_cost or 0:g} USD", f"{spent.cost or 0:.4f}", "--max-cost"
+        raise BudgetError(
+            f"the limit of {limit} leaves no room for the next question ({so_far} are spent); "
+            f"go on with the same command, --out and a higher {flag}"
+        )
+
+    def _tokens_left(self, prompt: int) -> int:
+        if self.max_tokens is None:
+            return ENDLESS
+        return self.max_tokens - self.spent.usage.total - prompt
+
+    def _affordable(self, prompt: int, price: tuple[float, float] | None, model: str) -> int:
+        """Tokens of an answer that the money is enough for."""
+        if self.max_cost is None:
+            return ENDLESS
+        if price is None or self.spent.cost is None:
+            raise BudgetError(
+                f"what '{plain(model)}' costs is not known, so --max-cost cannot be kept; "
+                "say --price 0.15/0.60 (USD per million tokens of question and answer)"
+            )
+        left = self.max_cost - self.spent.cost - prompt * price[0] / 1e6
+        if price[1] > 0:
+            return int(left * 1e6 / price[1])
+        return ENDLESS if left >= 0 else 0
 
 
 @dataclass(frozen=True)
@@ -84,7 +93,7 @@ _now: ContextVar[_Now | None] = ContextVar("roadgpt_meter", default=None)
 
 @contextmanager
 def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
-    """Count all questions of a block with this meter; recordings are told apart by the occasion: which road."""
+    """Count all questions of a block with this meter; the occasion, which road, tells recordings apart."""
     before = _now.set(_Now(meter, occasion))
     try:
         yield meter

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, field_validat
 Api = Literal["chat", "responses"]
 Repair = Literal["none", "place", "full"]
 Strategy = Literal["whole", "stepwise"]
+DECIMALS = 9  # of seconds and USD: a difference of sums is the same whatever came before
 Role = Literal["system", "user", "assistant"]
 
 
@@ -78,14 +79,14 @@ class Spent(Frozen):
 
     def since(self, before: "Spent") -> "Spent":
         """What was spent after ``before``."""
-        cost = None if self.cost is None or before.cost is None else self.cost - before.cost
+        cost = None if self.cost is None or before.cost is None else round(self.cost - before.cost, DECIMALS)
         return Spent(
             calls=self.calls - before.calls,
             usage=Usage(
                 prompt=self.usage.prompt - before.usage.prompt,
                 completion=self.usage.completion - before.usage.completion,
             ),
-            seconds=self.seconds - before.seconds,
+            seconds=round(self.seconds - before.seconds, DECIMALS),
             cost=cost,
         )
 
@@ -115,9 +116,9 @@ class ChatSettings(Frozen):
     """USD, of the whole campaign."""
     price: str | None = None
     """USD per million tokens of prompt and completion, as "0.15/0.60"; None: from the table."""
-    record: str | None = None
-    """Folder in which every exchange is kept."""
-    replay: str | None = None
+    record: str | None = Field(default=None, exclude=True)
+    """Folder in which every exchange is kept; stands in no file, so that a replay gives the same files."""
+    replay: str | None = Field(default=None, exclude=True)
     """Folder from which every exchange is taken, instead of asking a server."""
     rounds: Annotated[int, Field(ge=1, le=20)] = 3
     """Questions for one road, at most."""

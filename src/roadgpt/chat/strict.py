@@ -181,7 +181,7 @@ def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:
 
 
 def _put(data: Any, place: tuple[int | str, ...], number: float) -> bool:
-    """Put a number in the place of a text; a place may also name branches of unions: those are passed over."""
+    """Put a number in the place of a text; a place may name branches of unions, which are passed over."""
     holder: Any = None
     last: int | str = ""
     for part in place:

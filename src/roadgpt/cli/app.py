@@ -25,6 +25,7 @@ COMMANDS = {
     "show": "Tell what is in the folder of a run or a campaign.",
     "learn": "Descriptions by hand and by the thousand; train, judge and export a reader of your own.",
     "parts": "List what is installed on each shelf.",
+    "config": "Tell which language model is asked, and where each setting comes from.",
     "doctor": "Find out whether this installation works.",
 }
 

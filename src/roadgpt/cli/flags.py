@@ -1,4 +1,4 @@
-"""The options that describe a World and a Setup, in one table: commands take them, and replays write them."""
+"""The options of a World, a Setup and a language model: commands take them, and replays write them."""
 
 import math
 from collections.abc import Callable
@@ -25,9 +25,25 @@ def measure(low: float, high: float, unit: str = "", above: bool = False) -> Cal
     return number
 
 
+def whole(low: int, high: int, what: str) -> Callable[[str], int]:
+    """The type of an option that takes a whole number within bounds."""
+    advice = f"give {what}, a whole number from {low} to {high}"
+
+    def number(value: str) -> int:
+        try:
+            found = int(value)
+        except ValueError:
+            raise click.BadParameter(f"'{value}' is no whole number; {advice}") from None
+        if not low <= found <= high:
+            raise click.BadParameter(f"{value} is not possible; {advice}")
+        return found
+
+    return number
+
+
 @dataclass(frozen=True)
 class Flag:
-    """One option that sets one field of the World or of the Setup; a default of False makes a switch."""
+    """One option for one field of a World, a Setup or ChatSettings; a default of False makes a switch."""
 
     flag: str
     field: str
@@ -48,11 +64,11 @@ class Flag:
 
     def read(self, given: Any) -> Any:
         """The field's value for what the option was given."""
-        return given if self.unit is None else given / self.unit
+        return given if self.unit is None or given is None else given / self.unit
 
-    def written(self, value: Any) -> list[str]:
-        """The words of the command line that set the field; none where the default does."""
-        if value == self.read(self.default):
+    def written(self, value: Any, usual: Any = None) -> list[str]:
+        """The words of the command line that set the field; none where it is as usual."""
+        if value is None or value == (self.read(self.default) if usual is None else usual):
             return []
         if value is True:
             return [self.flag]
@@ -120,5 +136,69 @@ SETUP = (
         "strict",
         "Is the road sound, or what would the SBFT tool competition's validator say?",
         click.Choice(["strict", "sbft"]),
+    ),
+)
+
+# Where one is not given, the environment, .env or a file of settings may say it: roadgpt.chat.config.
+CHAT = (
+    Flag("--model", "model", None, "Language model, as its server calls it."),
+    Flag("--base-url", "base_url", None, "Of the server, up to /v1. [default: OpenAI's]"),
+    Flag("--provider", "provider", None, "How the server is spoken to. [default: openai]"),
+    Flag(
+        "--api",
+        "api",
+        None,
+        "Chat Completions, or Responses with a conversation kept by the server. [default: chat]",
+        click.Choice(["chat", "responses"]),
+    ),
+    Flag("--temperature", "temperature", None, "Of the model. [default: its own]", measure(0, 2), 1.0),
+    Flag(
+        "--timeout",
+        "timeout",
+        None,
+        "Seconds for an answer. [default: 60]",
+        measure(0, 86_400, "s", above=True),
+        1.0,
+    ),
+    Flag("--retries", "retries", None, "When the server fails. [default: 3]", whole(0, 20, "retries")),
+    Flag(
+        "--max-completion",
+        "max_completion",
+        None,
+        "Tokens of one answer. [default: 4096]",
+        whole(16, 1_000_000, "tokens"),
+    ),
+    Flag(
+        "--max-tokens",
+        "max_tokens",
+        None,
+        "Of the whole campaign; then it stops.",
+        whole(1, 10**12, "tokens"),
+    ),
+    Flag(
+        "--max-cost",
+        "max_cost",
+        None,
+        "USD, of the whole campaign; then it stops.",
+        measure(0, 1e6, "USD", above=True),
+        1.0,
+    ),
+    Flag("--price", "price", None, "USD per million tokens asked/answered, as 0.15/0.60. [default: a table]"),
+    Flag("--record", "record", None, "Folder in which every exchange is kept."),
+    Flag("--replay", "replay", None, "Folder whose exchanges are taken instead of asking."),
+    Flag("--rounds", "rounds", None, "Questions for one road, at most. [default: 3]", whole(1, 20, "rounds")),
+    Flag(
+        "--repair",
+        "repair",
+        None,
+        "Of the model's roads: none; move and turn them; also change lengths and angles. [default: full]",
+        click.Choice(["none", "place", "full"]),
+    ),
+    Flag(
+        "--strategy",
+        "strategy",
+        None,
+        "Ask for the whole road, or segment by segment. [default: whole]",
+        click.Choice(["whole", "stepwise"]),
     ),
 )

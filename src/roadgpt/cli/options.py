@@ -7,30 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.flags import SETUP, WORLD
+from roadgpt.cli.flags import CHAT, SETUP, WORLD
+from roadgpt.cli.flags import whole as whole
+from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
+    from roadgpt.chat import ChatSettings
     from roadgpt.road import World
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 MOST_ROADS = 1_000_000
-
-
-def whole(low: int, high: int, what: str) -> Callable[[str], int]:
-    """The type of an option that takes a whole number within bounds."""
-    advice = f"give {what}, a whole number from {low} to {high}"
-
-    def number(value: str) -> int:
-        try:
-            found = int(value)
-        except ValueError:
-            raise click.BadParameter(f"'{value}' is no whole number; {advice}") from None
-        if not low <= found <= high:
-            raise click.BadParameter(f"{value} is not possible; {advice}")
-        return found
-
-    return number
 
 
 def folder(value: str) -> Path:
@@ -71,6 +58,31 @@ def setup_options(*fields: str) -> Decorator:
     """Options that set these fields of the Setup, in this order."""
     known = {flag.field: flag for flag in SETUP}
     return together(*(known[field].option() for field in fields))
+
+
+chat_options = together(*(flag.option() for flag in CHAT))
+
+
+def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":
+    """The language model that the options and the user's settings name; takes the options out of ``values``.
+
+    None where neither the reader nor the designer asks one.
+
+    Raises:
+        UsageError: an option is given that nobody heeds, or a setting cannot be.
+    """
+    given = {flag: flag.read(values.pop(flag.field, None)) for flag in CHAT}
+    told = {flag.field: value for flag, value in given.items() if value is not None}
+    from roadgpt import plugins
+    from roadgpt.chat import asks_a_model, configured
+
+    shelves = (("readers", reader), ("designers", designer))
+    if any(asks_a_model(plugins.find(shelf, name)) for shelf, name in shelves if name):
+        return configured(told)
+    if told:
+        flag = next(flag for flag, value in given.items() if value is not None)
+        raise UsageError(f"{flag.flag} is for language models; say --designer chat or --reader chat as well")
+    return None
 
 
 axes_option = click.option(

@@ -4,7 +4,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from roadgpt.cli.flags import SETUP, WORLD, Flag
+from roadgpt.cli.flags import CHAT, SETUP, WORLD, Flag
 from roadgpt.run.model import Request, Run
 
 # Flags of the command that drives a road which exists; the road's file says what its geometry is.
@@ -16,7 +16,14 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
     lines = []
     request = run.request
     if run.words:
-        rest = ["-n", str(run.index), "--seed", str(request.seed), *_written(request, SETUP)]
+        rest = [
+            "-n",
+            str(run.index),
+            "--seed",
+            str(request.seed),
+            *_written(request, SETUP),
+            *_asked(request),
+        ]
         if not request.setup.drives:
             rest.append("--no-drive")
         # words that begin with a dash would pass for an option
@@ -26,6 +33,17 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
         again = ["roadgpt", "drive", str(folder / "road.json"), "--seed", str(run.seed)]
         lines.append(shlex.join(again + _written(request, OF_DRIVES)))
     return lines
+
+
+def _asked(request: Request) -> list[str]:
+    """The language model, where it is not the one that anyone has."""
+    chat = request.setup.chat
+    if chat is None:
+        return []
+    usual = type(chat)()
+    return [
+        word for flag in CHAT for word in flag.written(getattr(chat, flag.field), getattr(usual, flag.field))
+    ]
 
 
 def _written(request: Request, flags: Sequence[Flag]) -> list[str]:

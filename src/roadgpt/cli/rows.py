@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
+    from roadgpt.chat import Spent
     from roadgpt.run.model import Run
 
 Outcome = Literal["PASS", "FAIL", "VALID", "INVALID", "ERROR"]
@@ -34,6 +35,8 @@ class Row:
     seconds: float = 0.0
     name: str = ""
     """What a line calls it, where the path of the file is too long for a line."""
+    spent: "Spent | None" = None
+    """What language models were asked for it."""
 
     @property
     def outcome(self) -> str:
@@ -42,6 +45,11 @@ class Row:
 
     def to_json(self) -> str:
         """One line."""
+        asked = self.spent and {
+            "tokens": self.spent.usage.total,
+            "model_seconds": _rounded(self.spent.seconds),
+            "cost_usd": self.spent.cost,
+        }
         return json.dumps(
             {
                 "file": self.file,
@@ -53,6 +61,7 @@ class Row:
                 "margin_m": _rounded(self.margin_m),
                 "length_m": _rounded(self.length_m),
                 "seconds": _rounded(self.seconds),
+                **(asked or {}),
             }
         )
 
@@ -68,6 +77,13 @@ class Row:
 def metres(margin: float) -> str:
     """A margin, to the millimetre: those that decide are small."""
     return f"{margin:+.3f} m"
+
+
+def spending(spent: "Spent") -> str:
+    """What language models were asked, in a line."""
+    money = "price unknown" if spent.cost is None else f"{spent.cost:.4f} USD"
+    answers = f"{spent.calls:,} answer{'s' * (spent.calls != 1)}"
+    return f"{answers}, {spent.usage.total:,} tokens, {spent.seconds:.1f} s, {money}"
 
 
 def _rounded(number: float | None) -> float | None:
@@ -105,6 +121,7 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
         length_m=run.length if run.road else None,
         seconds=run.seconds.total,
         name=name,
+        spent=run.spent,
     )
 
 

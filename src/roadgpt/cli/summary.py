@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from roadgpt.chat import Spent
 from roadgpt.cli.replay import replay_lines
-from roadgpt.cli.rows import metres, row_of
+from roadgpt.cli.rows import metres, row_of, spending
 from roadgpt.errors import UsageError
 from roadgpt.run.campaign import finished
 from roadgpt.run.card import CARD, read_card
@@ -56,11 +57,22 @@ def _run_lines(run: Run, folder: Path) -> Iterator[str]:
             f"  verdict   at most {run.verdict.max_oob:.0%} of the car outside its lane, "
             f"margin {metres(run.verdict.margin)}"
         )
+    yield from _asked_lines(run)
     yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")
     yield f"  versions  {', '.join(f'{name} {number}' for name, number in run.versions.items())}"
     yield f"  took      {run.seconds.design * 1000:.1f} ms to design, {run.seconds.drive:.2f} s to drive"
     for number, line in enumerate(replay_lines(run, folder)):
         yield f"  {'again' if number == 0 else 'or':<8}  {line}"
+
+
+def _asked_lines(run: Run) -> Iterator[str]:
+    """What language models were asked, and what was changed of what they answered."""
+    told = run.designing
+    if run.spent is not None:
+        by = f"{told.model}, {told.rounds} round{'s' * (told.rounds != 1)}: " if told else ""
+        yield f"  model     {by}{spending(run.spent)}"
+    for number, change in enumerate(told.changes if told else ()):
+        yield f"  {'changed' if number == 0 else '':<8}  {change}"
 
 
 def _road_line(run: Run) -> str:
@@ -78,6 +90,7 @@ def _campaign_lines(folder: Path) -> Iterator[str]:
     yield f"{card.request.words or 'roads that were given'} (seed {card.request.seed})"
     yield f"{'road':>6}  {'outcome':<18} {'length':>7} {'margin':>9}  description"
     counts: Counter[str] = Counter()
+    spent = Spent()
     for index in finished(folder):
         try:
             run = read_run(run_folder(folder, index))
@@ -86,9 +99,12 @@ def _campaign_lines(folder: Path) -> Iterator[str]:
             yield f"{index:>6}  cannot be read: {error}"
             continue
         counts[run.outcome] += 1
+        spent = spent + (run.spent or Spent())
         row = row_of(run, "")
         margin = metres(row.margin_m) if row.margin_m is not None else ""
         yield f"{index:>6}  {row.outcome:<18} {run.length:>5.0f} m {margin:>9}  {run.description}"
     told = ", ".join(f"{number} {outcome}" for outcome, number in counts.most_common())
+    if spent.calls:
+        yield f"language model: {spending(spent)}"
     rest = card.roads - counts.total()
     yield f"{told or 'nothing yet'}" + (f"; {rest} of {card.roads} still to be made" if rest else "")

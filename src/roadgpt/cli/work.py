@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadgpt.cli.crash import crashes_go_to
-from roadgpt.cli.rows import row_of
+from roadgpt.cli.rows import row_of, spending
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
 
@@ -44,12 +44,14 @@ def work_off(wish: Wish, screen: Screen) -> None:
         RoadGPTError: the words, a part or the folder cannot be used, or nothing could be designed.
         KeyboardInterrupt: the user stopped it; what is finished is complete, and was said.
     """
+    from roadgpt.chat import Meter
     from roadgpt.run import brief_of, campaign
 
-    brief = brief_of(wish.words, wish.world, wish.setup)
+    meter = Meter.of(wish.setup.chat)
+    brief = brief_of(wish.words, wish.world, wish.setup, meter)
     seed = _seed(wish)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
-        work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, _pictures(wish))
+        work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, _pictures(wish), meter)
     screen.say(understood(brief))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
@@ -96,6 +98,8 @@ def _watch(work: "Campaign", screen: Screen) -> None:
                 screen.detail(f"  {run.description}")
     finally:
         screen.close()
+        if work.meter.spent.calls:
+            screen.say(f"language model: {spending(work.meter.spent)}")
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
             if work.draw is not None:

@@ -9,8 +9,9 @@ one method:
 campaign so far, none of which it repeats. The same arguments give the same Design. It raises DesignError,
 with one sentence of advice, where no road can keep every promise on this map.
 
-Besides, a designer may have ``report``: what happened in its last draft. One whose class says
-``redrafts = False`` is not asked again when rules object.
+Besides, a designer may have ``report``, a DesignReport of its last draft. One whose class says
+``redrafts = False`` is not asked again when rules object. One whose class has a ``geometry`` means its
+segments so, whatever the user prefers: "spline" for RoadGPT's hops.
 """
 
 from collections.abc import Sequence
@@ -19,7 +20,7 @@ from typing import Protocol, cast
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
-from roadgpt.chat import ChatSettings, made
+from roadgpt.chat import ChatSettings, made, meant_for
 from roadgpt.road import Design, World
 
 
@@ -65,8 +66,13 @@ def draft(
     return designer_of(designer, chat).draft(brief, world, notes, earlier, seed)
 
 
-@cache
 def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
+    """The designer of that name."""
+    return _made(name, meant_for(plugins.find("designers", name), chat))
+
+
+@cache
+def _made(name: str, chat: ChatSettings | None) -> Designer:
     """The one designer of that name: it remembers the shapes of earlier designs."""
     return cast(Designer, made(plugins.find("designers", name), chat))
 

@@ -13,16 +13,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 from roadgpt import plugins
 from roadgpt.brief import read
 from roadgpt.brief.model import Brief
+from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import Finding, inspect, rules_of
-from roadgpt.design import draft
+from roadgpt.design import designer_of
+from roadgpt.design.report import DesignReport
 from roadgpt.drive import simulate
 from roadgpt.drive.custom import load_in_time
 from roadgpt.errors import DesignError, PartError, RoadGPTError
-from roadgpt.road import Design, Road, World, build, in_hops
+from roadgpt.road import Design, Geometry, Road, World, build, in_hops
 from roadgpt.run.campaign import Campaign
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
@@ -63,6 +66,7 @@ def perform(
     setup: Setup = PLAIN,
     index: int = 1,
     earlier: Sequence[Design] = (),
+    meter: Meter | None = None,
 ) -> Run:
     """From words to a Run: read, design until no rule objects, drive, judge.
 
@@ -73,31 +77,50 @@ def perform(
         setup: who does the work, and how.
         index: number of the road in its campaign, from 1.
         earlier: designs that the new one should not repeat.
+        meter: counts what language models are asked, and holds the limits of a campaign.
 
     Raises:
         BriefError: the words cannot be read.
         DesignError: nothing could be designed.
+        ChatError: a language model could not be asked, or did not answer as it should.
         UsageError: a part is not installed, or the driver's file makes no driver.
     """
     roll_call(setup)
     begun = time.perf_counter()
-    brief = words if isinstance(words, Brief) else brief_of(words, world, setup)
+    meter = meter or Meter.of(setup.chat)
+    before = meter.spent
+    brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     own = seed_of(seed, index)
-    design, road, findings, rounds = _designed(brief, request, earlier, own)
+    with counting(meter, f"road {index}"):
+        made = _designed(brief, request, earlier, own)
     designing = time.perf_counter() - begun
-    run = Run(request, index, own, brief=brief, design=design, road=road, findings=findings, rounds=rounds)
+    spent = meter.spent.since(before)
+    run = Run(
+        request,
+        index,
+        own,
+        brief=brief,
+        design=made.design,
+        road=made.road,
+        findings=made.findings,
+        rounds=made.rounds,
+        designing=made.report,
+        spent=spent if spent.calls else None,
+    )
     return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(designing)))
 
 
-def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN) -> Brief:
+def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
     """What the setup's reader reads out of the words, if a road of this world can be like that.
 
     Raises:
         BriefError: the words cannot be read, or ask for what the world does not allow.
         PartError: no such reader.
+        ChatError: a language model could not be asked, or did not answer as it should.
     """
-    return read(words, setup.reader, world.map_size, world.min_radius, world.max_grade)
+    with counting(meter or Meter.of(setup.chat), "reading"):
+        return read(words, setup.reader, world.map_size, world.min_radius, world.max_grade, setup.chat)
 
 
 def prove(
@@ -127,6 +150,7 @@ def campaign(
     setup: Setup = PLAIN,
     out: Path | str | None = None,
     draw: Draw | None = None,
+    meter: Meter | None = None,
 ) -> Campaign:
     """Many Runs of one description, each written into one folder as it ends.
 
@@ -139,20 +163,22 @@ def campaign(
         out: the folder; an interrupted campaign of the same request is continued there, and nothing is done
             where it is finished. None makes a new one under ``roadgpt-runs``.
         draw: puts pictures into the folders, as ``report.drawing()`` does; None draws none.
+        meter: as for ``perform``; what earlier roads of the folder cost is counted to it.
 
     Raises:
         BriefError: the words cannot be read.
         UsageError: the folder holds something else, or a part is not installed.
     """
-    brief = words if isinstance(words, Brief) else brief_of(words, world, setup)
+    meter = meter or Meter.of(setup.chat)
+    brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
-    plugins.find("designers", setup.designer)
+    designer_of(setup.designer, setup.chat)
     roll_call(setup)
 
     def one(index: int, earlier: Sequence[Design]) -> Run:
-        return perform(brief, seed, world, setup, index, earlier)
+        return perform(brief, seed, world, setup, index, earlier, meter)
 
-    return Campaign.opened(request, n, out, one, draw)
+    return Campaign.opened(request, n, out, one, draw, meter)
 
 
 @cache
@@ -169,28 +195,39 @@ def roll_call(setup: Setup) -> None:
         load_in_time(setup.driver)
 
 
-def _designed(
-    brief: Brief, request: Request, earlier: Sequence[Design], seed: int
-) -> tuple[Design, Road, tuple[Finding, ...], int]:
+class _Made(NamedTuple):
+    """A draft, and what was said about it."""
+
+    design: Design
+    road: Road
+    findings: tuple[Finding, ...]
+    rounds: int
+    report: DesignReport | None
+
+
+def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: int) -> _Made:
     """The first draft that no rule objects to, or the last one, with what they say of it."""
     world, setup = request.world, request.setup
-    kept: tuple[Design, Road, tuple[Finding, ...], int] | None = None
+    designer = designer_of(setup.designer, setup.chat)
+    own_geometry: Geometry | None = getattr(designer, "geometry", None)
+    kept: _Made | None = None
     notes: tuple[str, ...] = ()
-    for attempt in range(MOST_ROUNDS):
+    for attempt in range(MOST_ROUNDS if getattr(designer, "redrafts", True) else 1):
         try:
             # another seed each time, so that a designer that does not read notes draws anew
-            design = draft(brief, world, notes, earlier, seed + attempt, setup.designer)
-        except DesignError:
+            design = designer.draft(brief, world, notes, earlier, seed + attempt)
+        except (DesignError, ReplyError):
             if kept is None:
                 raise
             break
-        if setup.geometry == "spline":
+        if setup.geometry == "spline" and own_geometry is None:
             design = in_hops(design)  # designers draw bends, which a spline keeps only through many nodes
-        road = build(design, setup.geometry)
-        kept = design, road, inspect(road, brief, world, setup.rules), attempt + 1
-        if not kept[2]:
+        road = build(design, own_geometry or setup.geometry)
+        findings = inspect(road, brief, world, setup.rules)
+        kept = _Made(design, road, findings, attempt + 1, getattr(designer, "report", None))
+        if not findings:
             break
-        notes = tuple(finding.sentence for finding in kept[2])
+        notes = tuple(finding.sentence for finding in findings)
     assert kept is not None
     return kept
 

@@ -6,6 +6,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design
 from roadgpt.run.atomic import PART, held, json_text, sweep, write_whole
@@ -36,6 +37,8 @@ class Campaign:
     draw: Draw | None = None
     made: tuple[Path, ...] = ()
     """Folders that were made for it, the innermost first; they go again where nothing can be designed."""
+    meter: Meter = field(default_factory=Meter)
+    """Counts what is asked of language models, earlier roads included."""
     _finished: set[int] = field(default_factory=set)
     _tally: Tally = field(default_factory=Tally)
     # Numbers of the roads that have a design, in their order, and those designs.
@@ -44,7 +47,13 @@ class Campaign:
 
     @classmethod
     def opened(
-        cls, request: Request, roads: int, out: Path | str | None, perform: Perform, draw: Draw | None
+        cls,
+        request: Request,
+        roads: int,
+        out: Path | str | None,
+        perform: Perform,
+        draw: Draw | None,
+        meter: Meter | None = None,
     ) -> "Campaign":
         """A campaign in its folder: a new one, or the one that lies there, to be continued.
 
@@ -56,7 +65,7 @@ class Campaign:
         if out is None:
             made = _missing(HOME)
             folder = new_folder(request.words, request.seed)
-            return cls(folder, request, roads, perform, draw, (folder, *made))
+            return cls(folder, request, roads, perform, draw, (folder, *made), meter or Meter())
         folder = Path(out)
         try:
             made = _missing(folder)
@@ -64,7 +73,7 @@ class Campaign:
             is_new = all(_may_lie_in_a_new_folder(path) for path in folder.iterdir())
         except OSError as error:
             raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder") from error
-        campaign = cls(folder, request, roads, perform, draw, made)
+        campaign = cls(folder, request, roads, perform, draw, made, meter or Meter())
         if not is_new:
             campaign._take_up()
         return campaign
@@ -88,6 +97,7 @@ class Campaign:
 
         Raises:
             DesignError: no road could be designed; there is no folder then, unless it was there before.
+            ChatError: a language model cannot be asked, or a limit is reached; roads before it are complete.
             UsageError: a part is not installed, or another process is at work in the folder.
             RoadGPTError: a file cannot be written.
         """
@@ -112,7 +122,7 @@ class Campaign:
         """The roads that are missing; then the page of all of them."""
         try:
             yield from self._made_runs()
-        except DesignError:
+        except (DesignError, ChatError):
             with self._writing():
                 self._go_without_trace()
             raise
@@ -179,11 +189,20 @@ class Campaign:
 
     def _one(self, index: int) -> Run:
         earlier = self._designs[: bisect_left(self._numbers, index)]
+        before = self.meter.spent
         try:
             return self.perform(index, earlier)
-        except DesignError as error:
+        except (DesignError, ReplyError) as error:
             own = seed_of(self.request.seed, index)
-            return Run(self.request, index, own, outcome="ERROR", description=str(error))
+            spent = self.meter.spent.since(before)
+            return Run(
+                self.request,
+                index,
+                own,
+                outcome="ERROR",
+                description=str(error),
+                spent=spent if spent.calls else None,
+            )
 
     def _count(self, run: Run) -> None:
         self._finished.add(run.index)
@@ -214,7 +233,8 @@ class Campaign:
     def _take_up(self) -> Card:
         """Look at what lies in the folder, and keep the roads that are finished."""
         card = read_card(self.folder)
-        other = [name for name, value in self.request if getattr(card.request, name) != value]
+        there_was = card.request.essence()
+        other = [name for name, value in self.request.essence() if getattr(there_was, name) != value]
         if other:
             raise UsageError(
                 f"{self.folder} holds another campaign (other {' and '.join(other)}); name another folder"
@@ -238,6 +258,8 @@ class Campaign:
             return
         if run.index == index:
             self._count(run)
+            if run.spent is not None:
+                self.meter.add(run.spent)
 
 
 def _missing(folder: Path) -> tuple[Path, ...]:

@@ -18,7 +18,9 @@ from typing import Any, Protocol
 from pydantic import ValidationError
 
 from roadgpt.brief.model import Brief
+from roadgpt.chat import Spent
 from roadgpt.check import Finding
+from roadgpt.design.report import DesignReport
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.road import Road, read_design
@@ -78,6 +80,7 @@ def _files(run: Run) -> list[tuple[str, bytes]]:
 
 
 def _card(run: Run) -> dict[str, Any]:
+    asked = {"designing": run.designing, "spent": run.spent}
     return {
         "format": FORMAT,
         "index": run.index,
@@ -88,6 +91,7 @@ def _card(run: Run) -> dict[str, Any]:
         "rounds": run.rounds,
         "request": run.request.model_dump(mode="json"),
         "versions": dict(run.versions),
+        **{name: value.model_dump(mode="json") for name, value in asked.items() if value is not None},
     }
 
 
@@ -148,6 +152,8 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
         drive=Drive.load(folder / "drive.npz") if (folder / "drive.npz").is_file() else None,
         verdict=None if verdict is None else Verdict.from_json(verdict),
         rounds=card["rounds"],
+        designing=DesignReport.model_validate(card["designing"]) if "designing" in card else None,
+        spent=Spent.model_validate(card["spent"]) if "spent" in card else None,
         versions=card["versions"],
         trace=trace.read_text(encoding="utf-8") if trace.is_file() else "",
         seconds=Seconds(**(value("seconds.json") or {})),

@@ -5,7 +5,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from roadgpt.brief.model import Brief, Frozen
+from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
+from roadgpt.design.report import DesignReport
 from roadgpt.road import Design, Geometry, Road, World
 
 if TYPE_CHECKING:
@@ -29,6 +31,8 @@ class Setup(Frozen):
     keep_driving: bool = False
     drives: bool = True
     """False: roads are designed and checked only."""
+    chat: ChatSettings | None = None
+    """The language model, for readers and designers that ask one; None: what the user's settings say."""
 
 
 class Request(Frozen):
@@ -39,6 +43,11 @@ class Request(Frozen):
     seed: int = 0
     world: World = World()
     setup: Setup = Setup()
+
+    def essence(self) -> "Request":
+        """Without what may be another when an interrupted campaign goes on."""
+        chat = self.setup.chat and self.setup.chat.essence()
+        return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
 
 
 @dataclass(frozen=True)
@@ -76,6 +85,10 @@ class Run:
     verdict: "Verdict | None" = None
     rounds: int = 0
     """Drafts that it took."""
+    designing: DesignReport | None = None
+    """What the designer tells of its draft, where it asked a language model."""
+    spent: Spent | None = None
+    """Tokens, seconds and money of all questions for this road; None where none was asked."""
     versions: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
     """Name of the file that the road was read from, to be shown; not kept on the disk."""

@@ -16,6 +16,7 @@ from roadgpt.run.sparseness import Spread, failure_segment
 
 TABLES = ("generation_stats.csv", "oob_stats.csv")
 DESCRIPTION = "experiment_description.csv"
+ELSEWHERE = ("simulator", "designer", "chat")  # columns of their own, or none where nobody is asked
 DEPARTURES = ("out of lane", "fell")  # causes of failures that have a place and a side
 
 
@@ -96,7 +97,8 @@ def write_description(request: Request, roads: int, folder: Path) -> None:
         "description": request.words,
         "roads": roads,
         "seed": request.seed,
-        **{key: value for key, value in setup.model_dump().items() if key not in ("simulator", "designer")},
+        **{key: value for key, value in setup.model_dump().items() if key not in ELSEWHERE},
+        **({} if setup.chat is None else {"chat": setup.chat.model_dump_json(exclude_defaults=True)}),
         **{key: value for key, value in world.model_dump().items() if key not in theirs},
     }
     write_whole(folder / DESCRIPTION, _table([theirs | ours]))

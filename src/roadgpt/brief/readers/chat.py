@@ -14,7 +14,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.grammar import EXAMPLE, MOST_CHARACTERS
-from roadgpt.chat import Chat, ChatSettings, Message, open_chat
+from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
 from roadgpt.errors import BriefError
 
 MOST_PLAN = 1000  # characters of a plan; the longest that makes sense has a few hundred
@@ -64,7 +64,7 @@ class ChatReader:
     """Reads descriptions by asking a language model."""
 
     def __init__(self, settings: ChatSettings | None = None, chat: Chat | None = None) -> None:
-        self._settings = settings or ChatSettings()
+        self._settings = settings or configured()
         self._chat = chat or open_chat(self._settings)
 
     def read(self, words: str) -> Brief:

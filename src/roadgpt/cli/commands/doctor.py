@@ -37,6 +37,7 @@ def examined() -> Iterator[Answer]:
     for name in LIBRARIES:
         yield _library(name)
     yield from _shelves()
+    yield _model()
     yield _tried("numba", _numba)
     yield _tried("test drive", _drive)
     for folder in (Path.cwd(), Path(tempfile.gettempdir())):
@@ -63,6 +64,16 @@ def _shelves() -> Iterator[Answer]:
             yield Answer(f"{part.shelf}: {part.name}", False, part.about)
     working = sum(part.works for part in parts)
     yield Answer("parts", working == len(parts), f"{working} of {len(parts)} can be used (roadgpt parts)")
+
+
+def _model() -> Answer:
+    """Can the language model of the settings be asked? To name none is fine: nothing else needs one."""
+    from roadgpt.chat.looking import looked
+
+    try:
+        return Answer("model", True, looked())
+    except RoadGPTError as error:
+        return Answer("model", False, str(error))
 
 
 def _tried(about: str, look: Callable[[], str]) -> Answer:

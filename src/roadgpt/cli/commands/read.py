@@ -1,15 +1,16 @@
 """``roadgpt read``: what a description is read as, without making a road."""
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from roadgpt.cli.dashes import DescribedCommand
-from roadgpt.cli.options import setup_options, whole, world_of, world_options
+from roadgpt.cli.options import chat_of, chat_options, setup_options, whole, world_of, world_options
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
+    from roadgpt.chat import ChatSettings
 
 FEW = whole(1, 10, "the number of readings")
 TEMPERATURE = 1.3  # of readings beside the likeliest one
@@ -22,8 +23,15 @@ TEMPERATURE = 1.3  # of readings beside the likeliest one
 @click.option("--table", "as_table", is_flag=True, help="One row for each thing along the road.")
 @click.option("--json", "as_json", is_flag=True, help="The Brief as JSON, with its sentence and its plan.")
 @click.option("--alternatives", "number", type=FEW, default=1, help="Show up to so many different readings.")
+@chat_options
 def command(
-    words: tuple[str, ...], reader: str, map_size: float, as_table: bool, as_json: bool, number: int
+    words: tuple[str, ...],
+    reader: str,
+    map_size: float,
+    as_table: bool,
+    as_json: bool,
+    number: int,
+    **asked: Any,
 ) -> None:
     """Say how a description is read, and how sure the reader is.
 
@@ -34,7 +42,8 @@ def command(
     """
     from roadgpt.cli.work import understood
 
-    briefs = _readings(" ".join(words), reader, world_of({"map_size": map_size}).map_size, number)
+    side = world_of({"map_size": map_size}).map_size
+    briefs = _readings(" ".join(words), reader, side, number, chat_of(asked, reader))
     if as_json:
         found = [_as_data(brief) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
@@ -45,11 +54,13 @@ def command(
             click.echo(_table(brief))
 
 
-def _readings(words: str, reader: str, map_size: float, number: int) -> "tuple[Brief, ...]":
+def _readings(
+    words: str, reader: str, map_size: float, number: int, chat: "ChatSettings | None"
+) -> "tuple[Brief, ...]":
     from roadgpt.brief import alternatives, read
 
-    if number == 1:
-        return (read(words, reader, map_size),)
+    if number == 1 or chat is not None:  # a language model says what it takes for likeliest
+        return (read(words, reader, map_size, chat=chat),)
     return alternatives(words, number, reader, map_size, TEMPERATURE)
 
 

@@ -10,6 +10,8 @@ from roadgpt.cli.options import (
     ROADS,
     SEED,
     axes_option,
+    chat_of,
+    chat_options,
     folder,
     screen_options,
     setup_options,
@@ -31,6 +33,7 @@ from roadgpt.cli.work import Wish, work_off
 @click.option("--no-drive", is_flag=True, help="Design and check only.")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @axes_option
+@chat_options
 @screen_options
 def command(
     words: tuple[str, ...],
@@ -48,15 +51,18 @@ def command(
     """Design, check, drive and judge roads from a description.
 
     The exit status is 0 when all roads were worked off, whatever became of them, 2 when something that was
-    typed cannot be used, 3 when nothing could be designed.
+    typed cannot be used, 3 when nothing could be designed, 4 when a language model could not be asked or a
+    limit of tokens or money was reached; roads before that are complete.
 
     \b
     roadgpt run "an uphill road with 3 turns" -n 5
     roadgpt run "two hairpins, then a long straight" -n 20 --seed 7 --friction 0.6 --json
+    roadgpt run "a winding road" --designer chat --model gpt-5-mini --max-cost 0.50
     """
     from roadgpt.run import Setup
 
     world = world_of(rest)
-    setup = Setup(drives=not no_drive, **rest)
+    chat = chat_of(rest, rest["reader"], rest["designer"])
+    setup = Setup(drives=not no_drive, chat=chat, **rest)
     wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, has_pictures=not no_plot)
     work_off(wish, Screen(roads, as_json, quiet, verbose))
