@@ -35,6 +35,10 @@ class PartError(UsageError):
     """A part was asked for by a name that no installed package registers."""
 
 
+class ExportError(RoadGPTError):
+    """A format cannot hold this road, what it needs is not installed, or its file cannot be written."""
+
+
 class LearnError(UsageError):
     """Pairs of descriptions and plans, or a grammar of phrases, that cannot be used."""
 

@@ -1,0 +1,56 @@
+"""How a car moved along a road, as plain arrays: what an exporter may put beside the road."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Where a car was, every array of shape ``(n,)``, n >= 2, times rising.
+
+    Positions are those of the centre of gravity in metres; angles in radians: heading 0 along +x and
+    counter-clockwise, pitch positive nose up, roll positive left side up; time in s, speed in m/s.
+
+    Raises:
+        UsageError: the arrays differ in length, are not finite, or the times do not rise.
+    """
+
+    time: Array
+    x: Array
+    y: Array
+    z: Array
+    heading: Array
+    pitch: Array
+    roll: Array
+    speed: Array
+
+    def __post_init__(self) -> None:
+        columns = [getattr(self, each.name) for each in fields(self)]
+        same = self.time.ndim == 1 and len(self.time) > 1 and {c.shape for c in columns} == {self.time.shape}
+        if not (same and np.isfinite(columns).all() and (np.diff(self.time) > 0).all()):
+            raise UsageError(
+                "these poses cannot be exported; give arrays of one length, two values or more, all finite, "
+                "with rising times"
+            )
+
+    @classmethod
+    def of(cls, columns: Mapping[str, ArrayLike]) -> Self:
+        """The poses in columns that have these names, as those of a Drive; other columns are left out.
+
+        Raises:
+            UsageError: a column is missing, or as for the class.
+        """
+        missing = [each.name for each in fields(cls) if each.name not in columns]
+        if missing:
+            raise UsageError(f"the poses have no {', '.join(missing)}; give those columns as well")
+        return cls(**{each.name: np.asarray(columns[each.name], float) for each in fields(cls)})
+
+    def __len__(self) -> int:
+        return len(self.time)
