@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from authorities import roadgpt_checks
 from llm_like import random_lists
 from roadgpt import check
-from roadgpt.brief import read
 from roadgpt.brief.model import Brief, Clause, exactly
+from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.repair import Repaired, repair
@@ -20,6 +20,7 @@ from roadgpt.road import Design, Segment, World, build, read_design
 from strategies import designs, worlds
 
 WORLD = World()
+read = GrammarReader().read
 
 
 def road_of(*segments: tuple, start=(125.0, 125.0, 0.0), theta=0.0) -> Design:

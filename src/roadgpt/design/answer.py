@@ -1,0 +1,83 @@
+"""What a language model is asked to fill in, and how it becomes a Design: validated data, and nothing else.
+
+Models answer in RoadGPT's format with a list of segments; the numbered fields of the original are taken too.
+"""
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, Field, model_validator
+
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, read_design
+from roadgpt.road.design import KEY, MAX_SEGMENTS
+
+FARTHEST = 100_000.0  # m, of a start: what lies further away is no place on any map
+LETTERS = re.compile(r"[^a-z]")
+
+
+def _plain_direction(value: Any) -> Any:
+    """'Left' is left; what is more than a word of the three is for the schema to refuse."""
+    return LETTERS.sub("", value.lower()) if isinstance(value, str) and len(value) < 20 else value
+
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Way = Annotated[Literal["left", "right", "straight"], BeforeValidator(_plain_direction)]
+
+
+class AnswerSegment(BaseModel):
+    """One segment of an answer."""
+
+    distance: Number = Field(description="Length along the road, metres.")
+    direction: Way = Field(description="left, right or straight.")
+    incline: Number = Field(description="Slope in percent, uphill positive.")
+    turn_degrees: Number = Field(description="Left positive, right negative, 0 of a straight.")
+
+
+class AnswerStart(BaseModel):
+    """Where a road starts, and which way it looks."""
+
+    starting_point: list[Number] = Field(description="x, y and z of the start, metres.")
+    theta: Number = Field(description="Degrees: 0 along +x, 90 along +y.")
+
+
+class AnswerRoad(AnswerStart):
+    """A whole road."""
+
+    segments: list[AnswerSegment] = Field(description="In driving order.")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_numbered_fields(cls, data: Any) -> Any:
+        """RoadGPT's own format: road_segment1, road_segment2, ..."""
+        if not isinstance(data, dict) or "segments" in data:
+            return data
+        numbered = [(int(match[1]), key) for key in data if (match := KEY.fullmatch(str(key)))]
+        return {**data, "segments": [data[key] for _, key in sorted(numbered)]} if numbered else data
+
+
+class AnswerStep(AnswerSegment):
+    """The next segment, and whether it is the last one."""
+
+    last: bool = Field(description="Is the road finished with this segment?")
+
+
+def design_of(start: AnswerStart, segments: list[AnswerSegment]) -> tuple[Design, tuple[str, ...]]:
+    """The Design of an answer, and a sentence for everything that had to be settled.
+
+    Raises:
+        UsageError: it is no design; one sentence, fit to be shown to the model.
+    """
+    if len(segments) > MAX_SEGMENTS:
+        raise UsageError(f"the road has {len(segments):,} segments; {MAX_SEGMENTS} is the limit")
+    point = [*start.starting_point, 0.0] if len(start.starting_point) == 2 else start.starting_point
+    if len(point) != 3 or max(abs(v) for v in point) > FARTHEST:
+        raise UsageError("starting_point is not a place on the map; give x, y and z in metres")
+    numbered = {
+        f"road_segment{number}": segment.model_dump(include=set(AnswerSegment.model_fields))
+        for number, segment in enumerate(segments, 1)
+    }
+    return read_design({"starting_point": point, "theta": start.theta % 360, **numbered})
+
+
+__all__ = ["AnswerRoad", "AnswerSegment", "AnswerStart", "AnswerStep", "design_of"]

@@ -1,0 +1,145 @@
+"""What a language model is told: the rules of the map, what is asked for, and what earlier roads are like."""
+
+from collections.abc import Iterable, Sequence
+from importlib.resources import files
+from math import inf, radians
+
+import numpy as np
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import Feature, Group, Outline
+from roadgpt.brief.sentence import sentence
+from roadgpt.brief.words import Range
+from roadgpt.check.rules.promises import promises_of
+from roadgpt.design.objections import OF_DEFAULT_ARC
+from roadgpt.road import Design, World
+
+EDGE = 2.0  # m between road and border, as told
+EARLIER = 6  # roads that are told of: the last ones
+MOST_WORDS = 2000  # characters of a description
+SHOWN = 12  # segments of an earlier road
+USUAL_HEIGHT = 0.0  # m, of a start that is proposed
+
+
+def rules(name: str, world: World) -> str:
+    """A text that stands beside the designers, with the numbers of this world."""
+    text = files("roadgpt.design.designers").joinpath(name).read_text(encoding="utf-8")
+    half = world.road_width / 2
+    numbers = {
+        "map_size": f"{world.map_size:g}",
+        "bound": f"{0.8 * world.map_size:g}",
+        "road_width": f"{world.road_width:g}",
+        "low": f"{half + EDGE:g}",
+        "high": f"{world.map_size - half - EDGE:g}",
+        "floor": f"{world.z_floor:g}",
+        "grade": f"{100 * world.max_grade:g}",
+        "radius": f"{world.min_radius:.1f}",
+        "length": f"{world.min_length:g}",
+    }
+    for degrees in (70, 45, 30):
+        numbers[f"for_{degrees}"] = f"{OF_DEFAULT_ARC * world.min_radius * radians(degrees) + 1:.0f}"
+    return text.format_map(numbers)
+
+
+def words_of(brief: Brief) -> str:
+    """The description; where there is none, what it would be."""
+    return brief.words.strip()[:MOST_WORDS] or sentence(brief)
+
+
+def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[Design], seed: int) -> str:
+    """The question: description, demands, earlier roads, objections so far, a start to vary them."""
+    demanded = demands(promises_of(brief, world))
+    parts = [
+        f"Description: {words_of(brief)}",
+        f"Understood as: {sentence(brief)}",
+        "It must show:\n" + _listed(demanded) if demanded else "",
+        "Roads of this campaign so far, of which yours must be none:\n"
+        + _listed(map(_told, earlier[-EARLIER:]))
+        if earlier
+        else "",
+        "Objections to an earlier attempt:\n" + _listed(notes) if notes else "",
+        f"To begin with, think of {start_for(world, seed)}; choose another start where the road needs one.",
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def start_for(world: World, seed: int) -> str:
+    """A start drawn from the seed, in words: so that campaigns vary without a model's own chance."""
+    x, y, theta = drawn_start(world, seed)
+    return f"a start near ({x:g}, {y:g}) with theta {theta:g}"
+
+
+def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
+    """A start in metres, and a heading in degrees that looks across the map."""
+    rng = np.random.default_rng(seed)
+    x, y = (round(float(v)) for v in world.map_size * (0.12 + 0.76 * rng.random(2)))
+    to_middle = np.degrees(np.arctan2(world.map_size / 2 - y, world.map_size / 2 - x))
+    theta = round(float(to_middle + 100 * (rng.random() - 0.5)) % 360 / 5) * 5 % 360
+    return float(x), float(y), float(theta)
+
+
+def demands(outline: Outline) -> list[str]:
+    """What a road is held to, one line each, in driving order."""
+    out: list[str] = []
+    for group in outline.groups:
+        sides = "alternating sides" if group.alternating else ""
+        out.append(f"in this order: {_many(group)}{_limits(group.feature, sides)}")
+    if not any(group.feature.kind == "turn" for group in outline.groups):
+        out.append(f"{outline.turns} turns" if outline.turns != Range() else "")
+    out += [
+        f"{span} {side} turns"
+        for side, span in (("left", outline.left), ("right", outline.right))
+        if span != Range()
+    ]
+    out.append("turns alternate between left and right" if outline.alternating else "")
+    each = _limits(outline.each_turn, "")
+    out.append(f"every turn{each}" if each else "")
+    whole = {"up": "the whole road climbs", "down": "the whole road falls", "flat": "the whole road is level"}
+    grade = f" (mean slope {outline.grade_range} %)" if outline.grade_range else ""
+    out.append(whole[outline.grade] + grade if outline.grade else "")
+    quantities = (
+        (outline.steepest, "the steepest place has {} %"),
+        (outline.climb, "the end lies {} m higher than the start"),
+        (outline.hills, "{} changes between climbing and falling"),
+        (outline.length, "{} m long in all"),
+    )
+    out += [text.format(span) for span, text in quantities if span]
+    out.append(
+        f"it starts with a {outline.starts.name}{_limits(outline.starts, '')}" if outline.starts else ""
+    )
+    out.append(f"it ends with a {outline.ends.name}{_limits(outline.ends, '')}" if outline.ends else "")
+    return [line for line in out if line]
+
+
+def _many(group: Group) -> str:
+    """'3 turns', '2 or more hairpins', '1 straight'."""
+    span = Range(group.lo, inf if group.hi is None else group.hi)
+    return f"{span} {group.feature.name}" + ("" if group.hi == 1 else "s")
+
+
+def _limits(feature: Feature, more: str) -> str:
+    spans = (
+        (feature.degrees if feature.kind == "turn" else None, "{} degrees"),
+        (feature.radius, "radius {} m"),
+        (feature.length, "{} m long"),
+        (feature.grade, "slope {} %"),
+    )
+    said = [f"to the {feature.side}"] if feature.side else []
+    said += [text.format(span) for span, text in spans if span] + ([more] if more else [])
+    return ": " + ", ".join(said) if said else ""
+
+
+def _told(design: Design) -> str:
+    """An earlier road in a line."""
+    x, y, _ = design.starting_point
+    shown = [_piece(s.direction, s.turn_degrees, s.distance) for s in design.segments[:SHOWN]]
+    more = ", ..." if len(design.segments) > SHOWN else ""
+    return f"start ({x:.0f}, {y:.0f}), theta {design.theta:.0f}: {', '.join(shown)}{more}"
+
+
+def _piece(direction: str, turn: float, distance: float) -> str:
+    return f"{distance:.0f} m straight" if direction == "straight" else f"{direction} {abs(turn):.0f}"
+
+
+def _listed(lines: Iterable[str]) -> str:
+    return "\n".join(f"- {line}" for line in lines)

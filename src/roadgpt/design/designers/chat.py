@@ -1,0 +1,76 @@
+"""The chat designer: a language model writes the road in RoadGPT's format, and is told what is wrong.
+
+It gets the Brief, the rules of the map and what earlier roads look like. What it proposes is kept where it
+can be: the road is moved inside the map, then changed as little as it takes (``repair``).
+"""
+
+from collections.abc import Sequence
+
+from roadgpt.brief.model import Brief
+from roadgpt.chat import Chat, ChatSettings, configured, open_chat
+from roadgpt.design.asking import request, rules
+from roadgpt.design.dialogue import Outcome, Task, stepwise, whole
+from roadgpt.design.repair.changes import changes_between
+from roadgpt.design.report import DesignReport
+from roadgpt.design.variety import ENOUGH, Shapes, nearest, shape_of
+from roadgpt.road import Design, World, build
+
+RULES = "chat_rules.txt"
+
+
+class ChatDesigner:
+    """Designs by asking a language model, in rounds."""
+
+    redrafts = False
+    """It has asked again itself, as often as it may."""
+
+    def __init__(self, settings: ChatSettings | None = None, chat: Chat | None = None) -> None:
+        self._settings = settings or configured()
+        self._chat = chat
+        self._shapes = Shapes()
+        self.report: DesignReport | None = None
+
+    def draft(
+        self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
+    ) -> Design:
+        """The model's Design for the Brief; the best that came of all rounds, even where it is not valid.
+
+        Raises:
+            DesignError, ReplyError: no answer was a road.
+            ChatError: the model could not be asked.
+        """
+        self.report = None
+        chat = self._chat = self._chat or open_chat(self._settings)
+        before = chat.spent
+        task = Task(
+            brief,
+            world,
+            self._settings,
+            rules(RULES, world),
+            request(brief, world, notes, earlier, seed),
+            lambda design: self._is_new(design, earlier),
+            seed,
+        )
+        outcome = (stepwise if self._settings.strategy == "stepwise" else whole)(chat, task)
+        spent = chat.spent.since(before)
+        self.report = DesignReport(
+            rounds=outcome.questions,
+            changes=_changes(outcome),
+            tokens=spent.usage,
+            seconds=spent.seconds,
+            cost=spent.cost,
+            model=outcome.model,
+            proposed=outcome.proposed.to_json(),
+        )
+        return outcome.design
+
+    def _is_new(self, design: Design, earlier: Sequence[Design]) -> bool:
+        if not earlier:
+            return True
+        samples = build(design).sample()
+        shape = shape_of(samples.s, samples.x + 1j * samples.y)
+        return nearest(shape, self._shapes.of(earlier), by_metres=False) >= ENOUGH
+
+
+def _changes(outcome: Outcome) -> tuple[str, ...]:
+    return (*outcome.remarks, *changes_between(outcome.proposed, outcome.design))

@@ -1,0 +1,74 @@
+"""The method of RoadGPT's thesis as it stands, to be the baseline of every comparison.
+
+One question with the thesis' system prompt, one answer in JSON, no second question and no repair; the road is
+the spline through the ends of the segments, and where it is not valid it counts as invalid. Source: sections
+5.3.1 and 5.3.2 of the thesis. Its prompt is told in our words, and settled where it contradicts itself or its
+program:
+
+* theta 0 is "along the y axis" in the prompt and +x in the program: here +x, as the program builds it;
+* x and y end at 200 in the prompt and at 250 in the checks, "to offer a bit of flexibility": the prompt names
+  four fifths of the map;
+* right turns are negative in the prompt, and its own example has a left turn of -20: the direction wins;
+* the program shifts the start by (5, 5), which is left out, and begins with 5 m of level road, which is kept.
+
+Answers were Python dictionaries that the program ran through ``eval``; here they are JSON, read as data.
+"""
+
+from collections.abc import Sequence
+
+from roadgpt.brief.model import Brief
+from roadgpt.chat import Chat, ChatSettings, Message, UnparsableError, configured, open_chat
+from roadgpt.chat.strict import NotReadableError, read_object
+from roadgpt.design.asking import rules, words_of
+from roadgpt.design.report import DesignReport
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, Geometry, World, build, read_design
+
+RULES = "thesis_rules.txt"
+
+
+class ThesisDesigner:
+    """Designs as RoadGPT's thesis did: one question, and what comes of it."""
+
+    redrafts = False
+    """An invalid road counts as one."""
+    geometry: Geometry = "spline"
+
+    def __init__(self, settings: ChatSettings | None = None, chat: Chat | None = None) -> None:
+        self._settings = settings or configured()
+        self._chat = chat
+        self.report: DesignReport | None = None
+
+    def draft(
+        self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
+    ) -> Design:
+        """The Design that the model answers with; ``notes``, ``earlier`` and ``seed`` are nothing to it.
+
+        Raises:
+            ReplyError: the answer is no design.
+            ChatError: the model could not be asked.
+        """
+        self.report = None
+        chat = self._chat = self._chat or open_chat(self._settings)
+        before = chat.spent
+        asked = [
+            Message(role="system", text=rules(RULES, world)),
+            Message(role="user", text=words_of(brief)),
+        ]
+        reply = chat.ask(asked)
+        try:
+            design, remarks = read_design(read_object(reply.text))
+            build(design, self.geometry)  # of nodes that coincide there is no road
+        except (NotReadableError, UsageError) as error:
+            raise UnparsableError(f"the answer of the model is no road: {error}", reply.text) from None
+        spent = chat.spent.since(before)
+        self.report = DesignReport(
+            rounds=1,
+            changes=remarks,
+            tokens=spent.usage,
+            seconds=spent.seconds,
+            cost=spent.cost,
+            model=reply.model,
+            proposed=design.to_json(),
+        )
+        return design

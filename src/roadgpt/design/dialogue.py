@@ -1,0 +1,264 @@
+"""Conversations in which a language model designs one road: all of it at once, or segment by segment.
+
+Whatever it proposes is repaired as far as the settings allow and looked at; what is still wrong goes back to
+it in sentences. Every question is counted.
+"""
+
+import json
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from pydantic import BaseModel
+
+from roadgpt.brief.model import Brief
+from roadgpt.chat import Chat, ChatSettings, Message, ReplyError, UnparsableError
+from roadgpt.design.answer import AnswerRoad, AnswerStart, AnswerStep, design_of
+from roadgpt.design.asking import USUAL_HEIGHT, drawn_start
+from roadgpt.design.objections import objections
+from roadgpt.design.repair import repair
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.road import Design, World, build
+
+MOST_SHOWN = 6000  # characters of its own answer that a model is shown again
+MOST_SEGMENTS = 60  # of a road that is asked for segment by segment
+MOST_LEFT_OUT = 2  # segments in a row that could not be placed; then the road ends
+
+
+class Task(NamedTuple):
+    """What is to be designed, and under which settings."""
+
+    brief: Brief
+    world: World
+    settings: ChatSettings
+    rules: str
+    """System message."""
+    question: str
+    is_new: Callable[[Design], bool]
+    """Is a design unlike all earlier ones?"""
+    seed: int
+
+
+class Outcome(NamedTuple):
+    """What came of it."""
+
+    design: Design
+    proposed: Design
+    """Before any repair, as far as the model's own road is what the design was made from."""
+    questions: int
+    objections: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
+    """What was settled of the answer, and what was left out of it."""
+    model: str = ""
+
+
+def whole(chat: Chat, task: Task) -> Outcome:
+    """One road per question, until nothing is wrong with it or all rounds are spent; the best one of them.
+
+    Raises:
+        ReplyError, DesignError: no answer was a road.
+        ChatError: the model could not be asked.
+    """
+    opening = [Message(role="system", text=task.rules), Message(role="user", text=task.question)]
+    messages, best = opening, list[Outcome]()
+    problem: Exception | None = None
+    wrong: tuple[str, ...]
+    for number in range(1, task.settings.rounds + 1):
+        try:
+            reply = chat.ask(messages, AnswerRoad)
+            outcome = _outcome(reply.data, task, number, reply.model)
+        except UnparsableError as error:
+            problem, said, wrong = error, error.text, (f"it could not be read: {error}",)
+        except UsageError as error:
+            problem, said, wrong = error, _compact(reply.data), (str(error),)
+        except ReplyError:
+            if not best:
+                raise
+            break
+        else:
+            best = sorted([*best, outcome], key=lambda one: len(one.objections))[:1]
+            wrong = outcome.objections
+            if not wrong:
+                break
+            said = _compact(reply.data)
+        messages = [*opening, Message(role="assistant", text=said or "(nothing)"), _objecting(wrong)]
+    if best:
+        return best[0]._replace(questions=number)
+    if isinstance(problem, ReplyError):
+        raise problem
+    raise DesignError(f"no answer of the model was a road: {problem}; try again, or use another model")
+
+
+def _outcome(answer: AnswerRoad, task: Task, number: int, model: str) -> Outcome:
+    proposed, remarks = design_of(answer, answer.segments)
+    build(proposed)  # of lengths beyond all measure there is no road
+    design = repair(proposed, task.brief, task.world, task.settings.repair).design
+    wrong = objections(design, task.brief, task.world)
+    if not wrong and not task.is_new(design):
+        wrong = ("the road is like an earlier one of this campaign; change its turns and lengths",)
+    return Outcome(design, proposed, number, wrong, remarks, model)
+
+
+def _objecting(wrong: Sequence[str]) -> Message:
+    lines = "\n".join(f"- {sentence}" for sentence in wrong)
+    return Message(role="user", text=f"This road will not do:\n{lines}\nGive the whole road again, mended.")
+
+
+def _compact(answer: BaseModel) -> str:
+    return json.dumps(answer.model_dump(), separators=(",", ":"))[:MOST_SHOWN]
+
+
+def stepwise(chat: Chat, task: Task) -> Outcome:
+    """One segment per question, each looked at before the next is asked for.
+
+    A segment that will not do is asked for again, at most ``rounds`` times, and then left out; so the run
+    goes on whatever the model answers.
+
+    Raises:
+        ReplyError, DesignError: not one segment could be had.
+        ChatError: the model could not be asked.
+    """
+    return _Steps(chat, task).walked()
+
+
+class _Steps:
+    """The road so far, and the conversation about it."""
+
+    def __init__(self, chat: Chat, task: Task) -> None:
+        self.chat, self.task = chat, task
+        self.questions = 0
+        self.model = ""
+        self.remarks: list[str] = []
+        self.steps: list[AnswerStep] = []
+        self.problem: Exception | None = None
+        x, y, theta = drawn_start(task.world, task.seed)
+        self.start = AnswerStart(starting_point=[x, y, USUAL_HEIGHT], theta=theta)
+
+    def walked(self) -> Outcome:
+        """The road, when the model has said that it is finished, or when nothing more can be added."""
+        self._begin()
+        tries, left_out, endings = 0, 0, 0
+        wrong: tuple[str, ...] = ()
+        while len(self.steps) < MOST_SEGMENTS and left_out < MOST_LEFT_OUT:
+            step = self._asked(wrong)
+            if isinstance(step, AnswerStep):
+                wrong = self._added(step)
+                if not wrong:
+                    tries = left_out = 0
+                    if not step.last:
+                        continue
+                    endings += 1
+                    wrong = self._ended()
+                    if not wrong or endings == self.task.settings.rounds:
+                        break
+                    continue
+            elif step is None:  # it declines: what there is will have to do
+                break
+            else:
+                wrong = (step,)
+            tries += 1
+            if tries == self.task.settings.rounds:
+                self.remarks.append(f"segment {len(self.steps) + 1} was left out: {wrong[0]}")
+                tries, left_out = 0, left_out + 1
+        return self._outcome()
+
+    def _begin(self) -> None:
+        """The start, as the model has it; as it was drawn where its answer is none."""
+        try:
+            reply = self.chat.ask(self._messages("Give the start of the road."), AnswerStart)
+            point = reply.data.starting_point
+            self.questions, self.model = self.questions + 1, reply.model
+            size = self.task.world.map_size
+            if len(point) in (2, 3) and all(0 <= v <= size for v in point[:2]):
+                self.start = reply.data
+                return
+            self.problem = DesignError("the start lies outside the map")
+        except ReplyError as error:
+            self.questions, self.problem = self.questions + 1, error
+        self.remarks.append(f"the start was drawn: {self.problem}")
+
+    def _messages(self, question: str) -> list[Message]:
+        task = f"{self.task.question}\n\n{question}"
+        return [Message(role="system", text=self.task.rules), Message(role="user", text=task)]
+
+    def _asked(self, wrong: Sequence[str]) -> AnswerStep | str | None:
+        """The next segment; a sentence where there is none in the answer; None where the model declines."""
+        asked = [self._state(), "Give the next segment."]
+        if wrong:
+            asked.insert(
+                1, "Your last answer will not do:\n" + "\n".join(f"- {sentence}" for sentence in wrong)
+            )
+        self.questions += 1
+        try:
+            reply = self.chat.ask(self._messages("\n".join(asked)), AnswerStep)
+        except UnparsableError as error:
+            self.problem = error
+            return f"it could not be read: {error}"
+        except ReplyError as error:
+            self.problem = error
+            return None
+        self.model = reply.model
+        step = reply.data
+        return step if isinstance(step, AnswerStep) else "it is no segment"
+
+    def _state(self) -> str:
+        """What there is of the road, and where it ends."""
+        if not self.steps:
+            x, y = self.start.starting_point[:2]
+            return (
+                f"The road starts at ({x:g}, {y:g}) with theta {self.start.theta:g}; it has no segment yet."
+            )
+        design = self._design(self.steps)[1]
+        road = build(design)
+        x, y, z = (float(v) for v in road.at(road.length))
+        heading = (design.theta + sum(s.turn_degrees for s in design.segments)) % 360
+        lines = [
+            f"{number}. {s.distance:g} m {s.direction}, turn {s.turn_degrees:g}, incline {s.incline:g}"
+            for number, s in enumerate(design.segments, 1)
+        ]
+        end = f"It has come to ({x:.0f}, {y:.0f}, {z:.0f}) and heads {heading:.0f} degrees."
+        return "The road so far:\n" + "\n".join(lines) + f"\n{end}"
+
+    def _design(self, steps: Sequence[AnswerStep], brief: Brief | None = None) -> tuple[Design, Design]:
+        """As proposed, and repaired."""
+        proposed, _ = design_of(self.start, list(steps))
+        return proposed, repair(proposed, brief, self.task.world, self.task.settings.repair).design
+
+    def _added(self, step: AnswerStep) -> tuple[str, ...]:
+        """Adds a segment to the road, or says why not."""
+        try:
+            proposed, design = self._design([*self.steps, step])
+            build(proposed)
+        except UsageError as error:
+            self.problem = error
+            return (str(error),)
+        wrong = objections(design, None, self.task.world, partly=True)
+        if not wrong:
+            self.steps.append(step)
+        return wrong
+
+    def _ended(self) -> tuple[str, ...]:
+        """What is wrong with the road as it stands; a segment too many is taken back."""
+        _, design = self._design(self.steps, self.task.brief)
+        wrong = objections(design, self.task.brief, self.task.world)
+        if wrong and len(self.steps) > 1:
+            shorter = self._design(self.steps[:-1], self.task.brief)[1]
+            if len(objections(shorter, self.task.brief, self.task.world)) < len(wrong):
+                self.remarks.append(f"segment {len(self.steps)} was taken back: {wrong[0]}")
+                self.steps.pop()
+                wrong = objections(shorter, self.task.brief, self.task.world)
+        return wrong
+
+    def _outcome(self) -> Outcome:
+        if not self.steps:
+            if isinstance(self.problem, ReplyError):
+                raise self.problem
+            raise DesignError(
+                f"the model gave no segment that can be placed: {self.problem}; use another model"
+            )
+        proposed, design = self._design(self.steps, self.task.brief)
+        _, remarks = design_of(self.start, list(self.steps))
+        wrong = objections(design, self.task.brief, self.task.world)
+        return Outcome(design, proposed, self.questions, wrong, (*remarks, *self.remarks), self.model)
+
+
+__all__ = ["Outcome", "Task", "stepwise", "whole"]

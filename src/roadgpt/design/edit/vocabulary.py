@@ -1,0 +1,207 @@
+"""The words of change requests: what is written, without accents, and what it means to the reader.
+
+A phrase of several words wins over its parts. A meaning with blanks stands for several in a row. The five
+languages share one table, as their words hardly collide; where they do, English wins.
+"""
+
+NUMBERS = {
+    1: "one uno una ein eine einen einer",
+    2: "two zwei deux dos due",
+    3: "three drei trois tres tre",
+    4: "four vier quatre cuatro quattro",
+    5: "five funf cinq cinco cinque",
+    6: "six sechs seis sei",
+    7: "seven sieben sept siete sette",
+    8: "eight acht huit ocho otto",
+    9: "nine neun neuf nueve nove",
+    10: "ten zehn dix diez dieci",
+    20: "twenty zwanzig vingt veinte venti",
+    30: "thirty dreissig trente treinta trenta",
+    50: "fifty funfzig cinquante cincuenta cinquanta",
+    90: "ninety neunzig",
+    100: "hundred hundert cent cien cento",
+}
+ORDINALS = {
+    1: "first erste ersten erster erstes premier premiere primera primero primer primo prima",
+    2: "second zweite zweiten zweiter zweites deuxieme seconde segunda segundo seconda secondo",
+    3: "third dritte dritten dritter drittes troisieme tercera tercero tercer terza terzo",
+    4: "fourth vierte vierten vierter viertes quatrieme cuarta cuarto quarta quarto",
+    5: "fifth funfte funften cinquieme quinta quinto",
+    6: "sixth sechste sechsten sixieme sexta sexto sesta sesto",
+    7: "seventh siebte siebten septieme septima septimo settima settimo",
+    8: "eighth achte achten huitieme octava octavo ottava ottavo",
+    9: "ninth neunte neunten neuvieme novena noveno nona nono",
+    10: "tenth zehnte zehnten dixieme decima decimo",
+    11: "eleventh", 12: "twelfth", 13: "thirteenth", 14: "fourteenth", 15: "fifteenth",
+    -1: "last final letzte letzten letzter letztes dernier derniere ultima ultimo",
+    -2: "penultimate vorletzte vorletzten avant-derniere penultima penultimo | second to last | second last"
+    " | last but one | next to last | one before last",
+}  # fmt: skip
+
+# Meaning: phrases, between bars; words between blanks stand alone.
+WORDS: dict[str, str] = {
+    # things on the road
+    "turn": "turn turns bend bends curve curves corner corners kurve kurven kehre kehren virage virages"
+    " tournant tournants courbe courbes curva curvas curve svolta svolte biegung",
+    "hairpin": "hairpin hairpins switchback switchbacks haarnadelkurve haarnadelkurven haarnadel spitzkehre"
+    " spitzkehren horquilla horquillas tornante tornanti | hairpin bend | hairpin turn | hairpin bends"
+    " | hairpin turns | hair pin | epingle | epingles | epingle a cheveux | en epingle | curva de horquilla"
+    " | curva a gomito",
+    "u_turn": "uturn | u turn | u - turn | u turns",
+    "s_bend": "s bend | s - bend | s curve | s - curve | s kurve | s - kurve",
+    "chicane": "chicane chicanes schikane chicana",
+    "straight": "straight straights straightaway gerade geraden geradeaus recta rectas rettilineo rettilinei"
+    " rettifilo | straight bit | straight line | straight section | straight stretch | straight part"
+    " | straight piece | ligne droite | tout droit | lignes droites | tramo recto | tratto dritto",
+    "road": "road track route strasse strecke carretera strada camino percorso ruta circuit everything"
+    " | whole road | entire road | whole thing | ganze strasse | ganze strecke | toute la route"
+    " | toda la carretera | tutta la strada | the lot",
+    "end": "end ending finish ende schluss fin final finale fine | last part | last section | last bit"
+    " | last stretch | final section | final part | final stretch | letzte stuck | very end | tail end"
+    " | end of the road | end of road | end of the track",
+    "start": "start beginning anfang beginn debut depart inicio comienzo principio inizio | first part"
+    " | first section | first bit | first stretch | start of the road | beginning of the road | opening",
+    "it": "it them they this that es sie ihn lo la le les",
+    "radius": "radius rayon radio raggio radii",
+    "angle_noun": "angle winkel angulo angolo",
+    "length_noun": "length lange longueur longitud lunghezza",
+    "slope_noun": "slope grade gradient incline inclination steigung gefalle neigung pente pendiente pendenza",
+    "side_noun": "side sides direction directions hand seite seiten richtung cote lado lato direzione sens",
+    # which of them
+    "a": "a an another un une einem ein eine einen eines una uno | one more | an extra | an additional"
+    " | a new | eine weitere | eine neue | noch eine | another one | un autre | une autre | otra | otro"
+    " | un'altra | un' | un altro | un'",
+    "the": "the der die das den dem des el los las il gli i l' its their",
+    "every": "every each all both jede jeden jedes alle allen beide beiden chaque tous toutes todas todos"
+    " cada tutte tutti ogni | all the | all of the | each of the | every one of the | both of the"
+    " | toutes les | tous les | todas las | todos los | tutte le | tutti i",
+    "left": "left links linke linken linker linkes gauche izquierda izquierdo sinistra lefthand leftward"
+    " leftwards lefthander | to the left | left hand | left - hand | on the left | nach links | a gauche"
+    " | a la izquierda | a sinistra",
+    "right": "right rechts rechte rechten rechter rechtes droite derecha derecho destra righthand rightward"
+    " rightwards righthander | to the right | right hand | right - hand | on the right | nach rechts"
+    " | a droite | a la derecha | a destra",
+    "lefts": "lefts lefthanders | left handers | left - handers",
+    "rights": "rights righthanders | right handers | right - handers",
+    "left turn": "linkskurve linkskurven",
+    "right turn": "rechtskurve rechtskurven",
+    "mid": "middle central centre center mittlere mittleren mitte milieu medio mezzo centrale",
+    "sharpest": "sharpest tightest hardest scharfste scharfsten engste engsten | most severe"
+    " | plus serre | le plus serre",
+    "gentlest": "gentlest softest widest easiest sanfteste weiteste weitesten",
+    "longest": "longest langste langsten | plus longue | la plus longue",
+    "shortest": "shortest kurzeste kurzesten",
+    "steepest": "steepest steilste steilsten",
+    "flattest": "flattest flachste flachsten",
+    "but": "except excluding | except for | apart from | other than | all but | ausser | sauf | excepto"
+    " | menos | tranne",
+    # what to do
+    "make": "make makes let set change turn put have give convert shift adjust modify edit mach mache machen"
+    " lass andere mets rends fais rendre rend faire haz pon haga hacer cambia fai rendi metti soll sollen"
+    " become becomes",
+    "add": "add insert append include attach place hinzu fuge hange einfugen hinzufugen ajoute ajouter"
+    " ajoutez insere inserer anade anadir agrega agregar aggiungi aggiungere inserisci | put in"
+    " | bau ein | fuge hinzu | end with | ends with | ending with",
+    "remove": "remove delete drop cut erase eliminate scrap omit skip entferne entfernen losche loschen"
+    " streiche supprime supprimer enleve enlever retire quita quitar elimina eliminar borra rimuovi togli"
+    " cancella eliminare weg | take out | take away | leave out | get rid of | cut out | lass weg",
+    "swap": "swap flip reverse switch invert vertausche wechsle inverse inverser invierte inverti"
+    " umdrehen | other way | the other way | other side | other direction | opposite side"
+    " | opposite direction | opposite way | the other way round | change the side | change sides"
+    " | andere richtung | andere seite | autre cote | otro lado | altro lato",
+    "mirror": "mirror mirrored mirrors spiegel spiegle spiegeln gespiegelt miroir symetrique refleja"
+    " espeja specchia specchiare",
+    "straighten": "straighten | straighten out | begradige | begradigen | redresse | endereza | raddrizza",
+    "not": "not don't dont never no nicht kein keine keinen ne pas jamais nunca non if unless wenn falls si"
+    " cannot doesn't shouldn't without ohne sans sin senza",
+    # how
+    "sharper": "sharper sharpen harder scharfer | more sharp | more acute | plus prononce | plus prononcee"
+    " | mas pronunciada | more pronounced | sharper angle | plus fort | piu accentuata | more severe",
+    "gentler": "gentler softer smoother easier soften ease smooth gentle-er sanfter weicher | more gentle"
+    " | less sharp | less tight | less severe | plus doux | plus douce | mas suave | piu dolce"
+    " | less pronounced | weniger scharf | moins serre | moins serree | menos cerrada | meno stretta",
+    "tighter": "tighter tighten narrower enger | more tight | plus serre | plus serree | plus serres"
+    " | plus serrees | mas cerrada | mas cerradas | mas cerrado | piu stretta | piu stretto | piu strette",
+    "wider": "wider widen broader opener weiter | more open | more sweeping | plus large | plus ouvert"
+    " | mas abierta | mas ancha | piu ampia | piu larga",
+    "sharp": "sharp tight hard acute scharf scharfe scharfen enge serre serree cerrada stretta",
+    "gentle": "gentle soft easy slight mild sanft sanfte sanften leichte doux douce suave dolce",
+    "sweeping": "sweeping wide broad weite ample large ampia",
+    "longer": "longer lengthen extend stretch prolong elongate verlangere verlangern langer allonge allonger"
+    " rallonge alarga alargar prolonga allunga allungare | more long | plus long | plus longue"
+    " | plus longues | mas larga | mas largo | mas larga | piu lungo | piu lunga | plus longs",
+    "shorter": "shorter shorten reduce trim kurzer verkurze verkurzen kurze raccourcis raccourcir acorta"
+    " acortar accorcia accorciare | less long | plus court | plus courte | mas corta | mas corto"
+    " | piu corto | piu corta | piu breve",
+    "long": "long lang lange langen longue larga largo lunga lungo",
+    "short": "short kurz kurzen court courte corta corto corta breve",
+    "steeper": "steeper steepen steiler | more steep | plus raide | plus raides | plus pentu | plus pentue"
+    " | mas empinada | mas empinado | mas inclinada | piu ripida | piu ripido | steeper slope"
+    " | more inclined",
+    "flatter": "flatter shallower flacher | less steep | less inclined | weniger steil | plus plat"
+    " | plus plate | moins raide | mas llana | mas plana | menos empinada | piu piano | meno ripida"
+    " | meno ripido | piu pianeggiante | more level | more flat",
+    "flat": "flat level even flatten horizontal eben ebene flach flache plat plate llana llano plana plano"
+    " pianeggiante piatto piatta waagerecht | level out | de niveau | without slope | no slope",
+    "up": "up uphill climb climbs climbing rise rises rising ascend ascending upward upwards ascent bergauf"
+    " aufwarts ansteigend steigend montee montant montante salita subida ascendente | go up | goes up"
+    " | going up | en montee | qui monte | cuesta arriba | in salita | hacia arriba | uphill slope"
+    " | bergauf gehen",
+    "down": "down downhill descend descends descending drop-off falling fall falls downward downwards descent"
+    " bergab abwarts abfallend descente descendant descendante bajada discesa descendente | go down"
+    " | goes down | going down | en descente | qui descend | cuesta abajo | in discesa | hacia abajo"
+    " | bergab gehen",
+    "steep": "steep steeply steil raide empinada ripida",
+    "more": "more mehr mas piu plus",
+    "less": "less weniger moins menos meno",
+    "much": "much far considerably significantly really lot strongly viel deutlich beaucoup mucho molto"
+    " | a lot | a great deal | a good deal | by far | sehr viel",
+    "slightly": "slightly somewhat bit little touch tad etwas leicht peu poco leggermente | a bit | a little"
+    " | a touch | a tad | a little bit | ein wenig | ein bisschen | un peu | un poco | un po' | un po",
+    # numbers
+    "by": "by um",
+    "to": "to auf into towards zu",
+    "at": "at bei",
+    "of": "of von de del della di du d' vom",
+    "with": "with mit avec con having",
+    "as": "as so wie que come tan aussi",
+    "deg": "degrees degree deg ° grad grados grado gradi degre degres",
+    "m": "m metres meters metre meter metros metro metri mt mtr",
+    "km": "km kilometres kilometers kilometre kilometer",
+    "ft": "ft feet foot",
+    "%": "% percent per-cent prozent pourcent porcento | per cent | pour cent | por ciento | per cento",
+    "times": "times mal fois veces volte x",
+    "twice": "twice double doubled doppelt doppelte doppelten verdopple doublez doble duplica doppio doppia"
+    " raddoppia | two times | deux fois | doble de | il doppio",
+    "thrice": "thrice triple treble dreifach dreimal | three times",
+    "half": "half halve halved halb halbe halbiere halbieren moitie mitad meta dimezza | half the",
+    # where
+    "after": "after following behind past nach hinter apres despues dopo | right after | just after"
+    " | directly after | despues de | after that",
+    "before": "before preceding vor avant antes prima-di | ahead of | right before | just before | in front of"
+    " | antes de | prima della | prima del | prima di",
+    "between": "between zwischen entre tra fra | in between",
+    "at_end": "| at the end | at the very end | to the end | at end | am ende | am schluss | ans ende"
+    " | zum schluss | a la fin | al final | alla fine | on the end | at the finish | onto the end"
+    " | in the end | end of the road",
+    "at_start": "| at the start | at the beginning | to the start | to the beginning | at the very start"
+    " | am anfang | au debut | al principio | al inicio | all'inizio | at the very beginning"
+    " | in the beginning | onto the start",
+    "at_mid": "| in the middle | in der mitte | au milieu | en el medio | nel mezzo | halfway",
+    "on": "in on within im ins inside dans en nella nel sur sulla",
+    # between clauses
+    "and": "and und et y e plus & + as-well",
+    "then": "then also but dann danach puis ensuite luego poi while whereas aber pero mais ma besides"
+    " | and then | and also | as well as | afterwards",
+    # that say nothing here
+    "-": "please could can you would like want i we need to-be be is are should must go goes going run runs"
+    " just only now so very quite too there here do does me us bitte ich mochte will sein werden wird ist"
+    " sind s'il vous plait je veux que soit sea quiero por favor vorrei sia per for from where which who"
+    " one ones number no. nr numero nummer some any more-or-less about around approximately roughly exactly"
+    " ungefahr circa etwa environ current existing new present same thing way road's turn's instead really"
+    " actually maybe perhaps together completely entirely fully totally hey hi ok okay thanks thank again even"
+    " still roadgpt shape section part stretch bit piece segment segments angle's long-er out off other over"
+    " au aux se al alla zur zum im am an auch nur bitte-schon have been get gets got makes making made whole"
+    " entire ganze ganzen total rather fairly pretty such sort kind my our your was were what that's i'd"
+    " let's it's amount value radius-of additional extra bergwarts sich mir uns dalla dal nello su",
+}

@@ -1,0 +1,78 @@
+"""What is wrong with a design, in sentences that whoever wrote its segments can act on.
+
+segment 3: grade 17 % > 15 %
+turn count is 4, asked for 3
+segment 5: leaves the map at (214, 35); x and y run from 0 to 200 m
+"""
+
+import re
+from math import radians
+
+from roadgpt import check
+from roadgpt.brief.model import Brief
+from roadgpt.check import Finding
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, World, build
+
+MOST = 12  # sentences: whoever is told more mends nothing
+PLACE = re.compile(r"^(?:at s = [^:]*|near \([^:]*\)): ")
+COUNT = re.compile(r"asked for (.+?) (left |right )?turns?, has (\d+)")
+OF_DEFAULT_ARC = 1.36  # length of a turn whose transitions are left open, over that of its tightest arc
+
+
+def objections(design: Design, brief: Brief | None, world: World, partly: bool = False) -> tuple[str, ...]:
+    """Sentences; none where the road is valid and true to its Brief.
+
+    Args:
+        design: to be looked at.
+        brief: what was asked for, if anything.
+        world: map and limits.
+        partly: it goes on, so that it may still be too short.
+    """
+    try:
+        found = check.inspect(build(design), brief, world)
+    except UsageError as error:
+        return (str(error),)
+    limit = 100 * world.max_grade
+    steep = [
+        f"segment {number}: grade {segment.incline:g} % {'> ' if segment.incline > 0 else '< -'}{limit:g} %"
+        for number, segment in enumerate(design.segments, 1)
+        if abs(segment.incline) > limit + 1e-4
+    ]
+    said = [*steep]
+    for finding in found:
+        if (finding.rule == "too_steep" and steep) or (finding.rule == "too_short" and partly):
+            continue
+        said.append(_said(finding, design, world))
+    said = list(dict.fromkeys(said))
+    return (*said[:MOST], *([f"and {len(said) - MOST} more"] if len(said) > MOST else []))
+
+
+def _said(finding: Finding, design: Design, world: World) -> str:
+    sentence = PLACE.sub("", finding.sentence)
+    count = COUNT.fullmatch(sentence)
+    if count:
+        return f"{count[2] or ''}turn count is {count[3]}, asked for {count[1]}"
+    if finding.s is None:
+        return sentence
+    number = _segment_at(design, finding.s)
+    if finding.rule == "inside_map" and finding.x is not None and finding.y is not None:
+        verb = "leaves the map at" if finding.s > 0 else "starts outside the map at"
+        place = f"({finding.x:.0f}, {finding.y:.0f}); x and y run from 0 to {world.map_size:g} m"
+        return f"segment {number}: {verb} {place}"
+    if finding.rule == "too_tight":
+        turn = abs(radians(design.segments[number - 1].turn_degrees))
+        needed = OF_DEFAULT_ARC * world.min_radius * turn
+        if needed > design.segments[number - 1].distance:
+            sentence += f"; give it a distance of {needed:.0f} m or turn it less"
+    return f"segment {number}: {sentence}"
+
+
+def _segment_at(design: Design, s: float) -> int:
+    """Number of the segment at a station, from 1."""
+    at = 0.0
+    for number, segment in enumerate(design.segments, 1):
+        at += segment.distance
+        if s < at:
+            return number
+    return len(design.segments)
