@@ -6,7 +6,7 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.labels import REFUSALS
-from roadgpt.learn.mirror import mirrored
+from roadgpt.brief.readers.model.mirror import mirrored
 from roadgpt.learn.refusing import contradicted, overdone
 from roadgpt.learn.variation import joined, recounted
 

@@ -9,9 +9,10 @@ import numpy.typing as npt
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.coverage import Coverage
+from roadgpt.brief.readers.model.looks import drafts, refusal
 from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
+from roadgpt.brief.readers.model.vocabulary import REFUSALS
 from roadgpt.errors import BriefError
 from roadgpt.learn.generator import Pair
 
@@ -36,22 +37,19 @@ def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> S
     threshold = _threshold(network, honest)
     rows, rights = [], []
     for pair in honest:
-        text = slotted(pair.text)
-        written = network.write(network.encode(text), text, refuse_from=2.0)[0]
-        unused = len(coverage.unused(text, written.tokens))
-        rows.append((1.0, sum(written.log_chances), min(written.log_chances), float(unused)))
-        rights.append(_plan(plan_of(written.tokens, text.slots)) == _plan(pair.plan))
-    bias, every, worst, unused_weight = _fitted(np.array(rows), np.array(rights, dtype=float))
-    weights = {"bias": bias, "all": every, "worst": worst, "unused": unused_weight}
-    return Settings(threshold, {name: round(float(value), 4) for name, value in weights.items()})
+        draft = drafts(network, pair.text, refuse_from=2.0)[0]
+        unused = len(coverage.unused(slotted(pair.text), draft.tokens))
+        rows.append((1.0, *draft.features.values(), float(unused)))
+        rights.append(_plan(draft.line) == _plan(pair.plan))
+    fitted = _fitted(np.array(rows), np.array(rights, dtype=float))
+    names = ("bias", *draft.features, "unused")
+    weights = {name: round(float(value), 4) for name, value in zip(names, fitted, strict=True)}
+    return Settings(threshold, weights)
 
 
 def _threshold(network: Network, honest: Sequence[Pair]) -> float:
     """The chance of a refusal from which it is believed: hardly any honest description reaches it."""
-    chances = []
-    for pair in honest:
-        text = slotted(pair.text)
-        chances.append(network.write(network.encode(text), text, refuse_from=2.0)[0].refusal)
+    chances = [refusal(network, pair.text) for pair in honest]
     most = float(np.quantile(chances, 1 - MOST_WRONGLY)) if chances else 0.5
     return round(min(max(most, 0.5), 0.95), 3)
 

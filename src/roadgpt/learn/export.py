@@ -4,6 +4,7 @@ import json
 import tempfile
 from collections.abc import Sequence
 from dataclasses import asdict
+from hashlib import sha256
 from itertools import islice
 from pathlib import Path
 
@@ -18,8 +19,10 @@ from roadgpt.learn.calibrate import calibrated
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.known_words import known_words
 from roadgpt.learn.network import Reader, Shape
+from roadgpt.learn.origin import NOTICE
 from roadgpt.learn.pieces import read_vocabulary
 
+FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 OPSET = 17
 COUNTED = 20_000
 """Generated pairs among which the words are counted."""
@@ -135,3 +138,6 @@ def export_checkpoint(
     (folder / "words.txt").write_text("\n".join(words), encoding="utf-8")
     settings = calibrated(Network(folder), Coverage(frozenset(words)), held_back)
     (folder / "settings.json").write_text(json.dumps(asdict(settings), indent=2) + "\n", encoding="utf-8")
+    (folder / "NOTICE").write_text(NOTICE, encoding="utf-8")
+    sums = {name: sha256((folder / name).read_bytes()).hexdigest() for name in FILES}
+    (folder / "sums.json").write_text(json.dumps(sums, indent=2) + "\n", encoding="utf-8")

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.mirror import mirrored
 from roadgpt.brief.readers.model.numerals import plain, spell
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.errors import BriefError
 from roadgpt.learn.generator import Pair, assembled, refused
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
-from roadgpt.learn.mirror import mirrored
 from roadgpt.learn.noise import noisy, tidy
 from roadgpt.learn.sense import makes_sense
 from roadgpt.learn.standard import standard

@@ -18,15 +18,16 @@ from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.brief.readers.model.coverage import Coverage
-from roadgpt.brief.readers.model.network import Network, Written
+from roadgpt.brief.readers.model.looks import Draft, drafts
+from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.recheck import rechecked
 from roadgpt.brief.readers.model.slots import Slotted, slotted
-from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
+from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.errors import BriefError
 
 WEIGHTS = Path(__file__).parent / "weights"
 MOST_LETTERS = 2000
-ALMOST = 4.0  # difference of log-chances
+ALMOST = 2.0  # difference of worth
 NO_ROAD = "does not describe a road"
 MAP_SIZE = 250.0  # metres, of the usual map
 ADVICE = {
@@ -50,8 +51,9 @@ class ModelReader:
             BriefError: the words are empty, too many, no road, contradictory or ask for the impossible.
         """
         text = _text(words)
-        drafts = self._network.write(self._network.encode(text), text, self._settings["refuse_from"])
-        return self._brief(words, text, _consistent(drafts, text))
+        return self._brief(
+            words, text, _consistent(drafts(self._network, words, self._settings["refuse_from"]))
+        )
 
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
@@ -68,29 +70,29 @@ class ModelReader:
         found: dict[str, Brief] = {}
         for _ in range(4 * number):
             written = self._network.drawn(across, text, rng, temperature)
-            brief = self._brief(words, text, written)
-            found.setdefault(" ".join(written.tokens), brief)
+            line = plan_of(written.tokens, text.slots)
+            draft = Draft(written.tokens, line, written.worth, written.log_chances, agreement=0.0)
+            found.setdefault(line, self._brief(words, text, draft))
         others = sorted(found.values(), key=lambda brief: -brief.confidence)
         same = first.model_copy(update={"confidence": 1.0})
         return (first, *(b for b in others if b.model_copy(update={"confidence": 1.0}) != same))[:number]
 
-    def _brief(self, words: str, text: Slotted, written: Written) -> Brief:
-        if written.tokens[0] in REFUSALS:
-            kind = written.tokens[0]
-            raise BriefError((kind != "!nonsense" and _reason(words)) or ADVICE[kind])
+    def _brief(self, words: str, text: Slotted, draft: Draft) -> Brief:
+        if draft.is_refusal:
+            raise BriefError((draft.line != "!nonsense" and _reason(words)) or ADVICE[draft.line])
         try:
-            brief = rechecked(read_plan(plan_of(written.tokens, text.slots)), text)
+            brief = rechecked(read_plan(draft.line), text)
         except BriefError as error:
             raise BriefError("this could not be read as one road; say it in shorter sentences") from error
-        unused = self._coverage.unused(text, written.tokens)
-        sure = self._confidence(written, len(unused))
+        unused = self._coverage.unused(text, draft.tokens)
+        sure = self._confidence(draft, len(unused))
         return brief.model_copy(update={"words": words, "unused": unused, "confidence": sure})
 
-    def _confidence(self, written: Written, unused: int) -> float:
+    def _confidence(self, draft: Draft, unused: int) -> float:
         """How often a reading like this one was right on descriptions held back from training."""
         weights = self._settings["confidence"]
-        score = weights["bias"] + weights["all"] * sum(written.log_chances)
-        score += weights["worst"] * min(written.log_chances) + weights["unused"] * unused
+        features = {**draft.features, "unused": unused}
+        score = weights["bias"] + sum(weights[name] * value for name, value in features.items())
         return round(float(1 / (1 + np.exp(-score))), 3)
 
     @cached_property
@@ -107,15 +109,16 @@ class ModelReader:
         return settings
 
 
-def _consistent(drafts: Sequence[Written], text: Slotted) -> Written:
+def _consistent(found: Sequence[Draft]) -> Draft:
     """The likeliest draft; or one almost as likely, where that contradicts itself and this one does not."""
-    first = drafts[0]
-    for draft in drafts:
-        if sum(draft.log_chances) < sum(first.log_chances) - ALMOST:
-            continue
-        if draft.tokens[0] in REFUSALS or _can_be_kept(plan_of(draft.tokens, text.slots)):
+    if not found:
+        raise BriefError("this could not be read as one road; say it in shorter sentences")
+    for draft in found:
+        if draft.worth < found[0].worth - ALMOST:
+            break
+        if draft.is_refusal or _can_be_kept(draft.line):
             return draft
-    return first
+    return found[0]
 
 
 def _reason(words: str) -> str:

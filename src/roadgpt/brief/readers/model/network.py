@@ -37,6 +37,11 @@ class Written:
     refusal: float
     """The chance that the words make no road, before anything was written."""
 
+    @property
+    def worth(self) -> float:
+        """Log-chance, a little in favour of long plans: each token costs something, however sure."""
+        return sum(self.log_chances) / float(max(1, len(self.log_chances)) ** FAVOUR)
+
 
 class Network:
     """Pieces in, plans out."""

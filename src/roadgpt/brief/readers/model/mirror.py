@@ -1,6 +1,7 @@
 """The same description seen in a mirror: left for right, in the text and in the plan."""
 
 import re
+from collections.abc import Sequence
 
 PAIRED = (
     "left/right lefts/rights leftward/rightward leftwards/rightwards lefthand/righthand "
@@ -21,14 +22,28 @@ UNSAFE = re.compile(
 )
 
 
+TOKENS = {"left": "right", "right": "left", "lefts=": "rights=", "rights=": "lefts="}
+
+
 def mirrored(text: str, plan: str) -> tuple[str, str] | None:
     """Text and plan with sides swapped; None where a word may not mean a side."""
-    if UNSAFE.search(text) or not re.search(r"\b(?:left|right|lefts|rights)\b", plan):
+    if not re.search(r"\b(?:left|right|lefts|rights)\b", plan):
         return None
-    swapped = re.sub(r"[^\W\d_]+", lambda match: _other(match[0]), text)
-    if swapped == text:
+    swapped = in_mirror(text)
+    if swapped is None:
         return None
     return swapped, re.sub(r"\b(lefts|rights|left|right)\b", lambda match: OTHER[match[1]], plan)
+
+
+def in_mirror(text: str) -> str | None:
+    """The text with sides swapped; None where it names none, or a word may not mean one."""
+    swapped = re.sub(r"[^\W\d_]+", lambda match: _other(match[0]), text)
+    return None if swapped == text or UNSAFE.search(text) else swapped
+
+
+def in_mirror_tokens(tokens: Sequence[str]) -> tuple[str, ...]:
+    """The tokens of a plan with sides swapped."""
+    return tuple(TOKENS.get(token, token) for token in tokens)
 
 
 def _other(word: str) -> str:
