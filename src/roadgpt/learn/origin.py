@@ -11,14 +11,15 @@ NAME = "sentence-transformers/all-MiniLM-L6-v2 (Apache-2.0)"
 HASH = "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db"
 """SHA-256 of its public ``model.safetensors``."""
 PIECES = "pieces.txt"
-NOTICE = """\
+NOTICE = f"""\
 These weights were trained for RoadGPT and are under its licence, Apache-2.0.
 
 The encoder was fine-tuned from all-MiniLM-L6-v2 (sentence-transformers, Apache-2.0; based on
-nreimers/MiniLM-L6-H384-uncased, and that on microsoft/MiniLM-L12-H384-uncased), whose model.safetensors has the SHA-256
-53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db. Changes: the vocabulary was cut to 16,201 pieces,
-all weights were trained further, and they were rounded to 8 bits. pieces.txt is a part of the vocabulary of BERT
-(Google, Apache-2.0).
+nreimers/MiniLM-L6-H384-uncased, and that on microsoft/MiniLM-L12-H384-uncased), whose
+model.safetensors has the SHA-256
+{HASH}.
+Changes: the vocabulary was cut to Latin letters, all layers were trained further, and the weights
+were rounded to 8 bits. pieces.txt is a part of the vocabulary of BERT (Google, Apache-2.0).
 """
 """What goes along with the weights."""
 
