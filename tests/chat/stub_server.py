@@ -48,6 +48,7 @@ class Stub:
     scenes: list[Scene]
     requests: list[Request] = field(default_factory=list)
     conversations: int = 0
+    keeps_conversations: bool = True
     models: list[str] = field(default_factory=lambda: [MODEL])
 
     @property
@@ -219,6 +220,9 @@ def serving(*scenes: Scene) -> Iterator[Stub]:
             content = self.rfile.read(int(self.headers.get("Content-Length", 0)))
             body = json.loads(content) if content else {}
             if self.path.endswith("/conversations"):
+                if not stub.keeps_conversations:
+                    send(self, 404, {"error": {"message": "no such address"}})
+                    return
                 stub.conversations += 1
                 send(self, 200, {"id": f"conv_{stub.conversations}", "object": "conversation"})
                 return

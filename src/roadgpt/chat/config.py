@@ -29,6 +29,7 @@ DEFAULT = "default"
 DOTENV = ".env"
 PROJECT = "roadgpt.toml"
 LINE = re.compile(r"\s*(?:export\s+)?([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
+OF_OTHERS = "ROADGPT_NO_NUMBA"  # the room drive heeds it
 MOST_BYTES = 1_000_000  # of a file of settings
 
 
@@ -185,5 +186,5 @@ def _toml(path: Path) -> dict[str, Any]:
 
 def strangers() -> list[str]:
     """Variables of the environment that look like settings of ours and are none."""
-    known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)}
+    known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS}
     return sorted(name for name in os.environ if name.startswith("ROADGPT_") and name not in known)

@@ -15,7 +15,7 @@ Role = Literal["system", "user", "assistant"]
 class Frozen(BaseModel):
     """A value: never changed, compared by content, read from and written to JSON."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)  # it may hold a key
 
 
 class Message(Frozen):

@@ -45,12 +45,12 @@ def read_as(schema: type[Schema], text: str) -> Schema:
     """
     data = read_object(text)
     try:
-        return schema.model_validate(data)
+        return _finite(schema.model_validate(data))
     except ValidationError as error:
         first = error
     if _with_numbers(data, first):
         try:
-            return schema.model_validate(data)
+            return _finite(schema.model_validate(data))
         except ValidationError as error:
             first = error
     problem = first.errors(include_url=False, include_input=False, include_context=False)[0]
@@ -166,6 +166,21 @@ def _whole_number(text: str) -> int:
     if len(text) > MOST_DIGITS:
         raise NotReadableError(f"it holds a number of {len(text):,} digits")
     return int(text)
+
+
+def _finite(found: Schema) -> Schema:
+    """What was found; as text, "NaN" and numbers too large for any road pass for numbers elsewhere."""
+    if not all(math.isfinite(number) for number in _numbers(found.model_dump())):
+        raise NotReadableError("it holds a number that is not finite")
+    return found
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    if isinstance(value, float):
+        yield value
+    elif isinstance(value, (dict, list, tuple)):
+        for inner in value.values() if isinstance(value, dict) else value:
+            yield from _numbers(inner)
 
 
 def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:

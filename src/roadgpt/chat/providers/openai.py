@@ -64,7 +64,7 @@ class OpenAI:
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
         """The answer, in whatever way the server can be brought to give it; raises as ``Chat.ask``."""
         before = self.spent
-        way = Way(list(messages), self._habits.rung if schema is not None else Rung.TEXT)
+        way = Way(list(messages), self._habits.rung if schema is not None else Rung.TEXT, schema is None)
         answer = Answer()
         for _ in range(MOST_REQUESTS):
             try:
@@ -167,10 +167,11 @@ class Way:
 
     messages: list[Message]
     rung: Rung
+    is_last: bool
+    """Is this the last try? A plain text is not asked for twice."""
     refused: set[Rung] = field(default_factory=set)
     why: str = ""
     """Why the last answer could not be used."""
-    _is_last: bool = False
 
     def goes_down(self, fault: FaultError) -> bool:
         """Is this way of asking at fault, and is there another?"""
@@ -183,9 +184,9 @@ class Way:
     def tries_again(self, messages: Sequence[Message], why: str) -> bool:
         """Asks on the next rung, on the last one twice; False where that is done."""
         self.why = why
-        if self.rung == Rung.TEXT and self._is_last:
+        if self.rung == Rung.TEXT and self.is_last:
             return False
-        self._is_last = self.rung == Rung.TEXT
+        self.is_last = self.rung == Rung.TEXT
         self.rung = Rung(min(self.rung + 1, Rung.TEXT))
         self.messages = [*messages, _complaint(why)]
         return True

@@ -1,0 +1,40 @@
+"""Every test begins without settings, without habits, and in a folder of its own."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from chat.stub_server import Stub, says, serving
+from roadgpt.chat import habits, wire
+
+KEY = "sk-canary-0123456789abcdefghijklmnop"
+OURS = ("OPENAI_", "ROADGPT_", "AZURE_OPENAI_")
+
+
+@pytest.fixture(autouse=True)
+def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    for name in [name for name in os.environ if name.startswith(OURS)]:
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "home"))
+    place = tmp_path / "here"
+    place.mkdir()
+    monkeypatch.chdir(place)
+    habits.forget()
+    yield
+    habits.forget()
+
+
+@pytest.fixture
+def stub() -> Iterator[Stub]:
+    with serving(says("{}")) as server:
+        yield server
+
+
+@pytest.fixture
+def waits(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """The pauses between tries, which nobody has to sit through."""
+    taken: list[float] = []
+    monkeypatch.setattr(wire, "sleep", taken.append)
+    return taken

@@ -1,0 +1,212 @@
+"""Flags before the environment before .env before TOML; each setting tells where it was found."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from chat.conftest import KEY
+from chat.stub_server import Stub, says
+from roadgpt.chat import ChatError, ChatSettings, configured, open_chat
+from roadgpt.chat.config import gathered, key_for, user_file
+from roadgpt.chat.wire import place_of
+from roadgpt.cli import app
+from roadgpt.errors import UsageError
+
+
+def invoke(*words: str) -> Result:
+    return CliRunner().invoke(app, list(words), prog_name="roadgpt")
+
+
+def write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def test_every_place_yields_to_those_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    def found() -> tuple[Any, str]:
+        return tuple(gathered(flags)["model"])  # type: ignore[return-value]
+
+    flags: dict[str, Any] = {}
+    assert found() == (None, "default")
+    write(user_file(), '[chat]\nmodel = "of-user"')
+    assert found() == ("of-user", str(user_file()))
+    write(Path("roadgpt.toml"), '[chat]\nmodel = "of-folder"')
+    assert found() == ("of-folder", "roadgpt.toml")
+    write(Path(".env"), "ROADGPT_MODEL=of-dotenv\n")
+    assert found() == ("of-dotenv", ".env (ROADGPT_MODEL)")
+    monkeypatch.setenv("ROADGPT_MODEL", "of-environment")
+    assert found() == ("of-environment", "environment (ROADGPT_MODEL)")
+    flags["model"] = "of-flag"
+    assert found() == ("of-flag", "--model")
+    assert configured(flags).model == "of-flag"
+
+
+def test_every_setting_can_be_set_in_every_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    other = {
+        "provider": "mine", "model": "m", "base_url": "http://localhost:1/v1", "api": "responses",
+        "temperature": 0.5, "timeout": 9.0, "retries": 1, "max_completion": 99, "max_tokens": 1000,
+        "max_cost": 1.5, "price": "1/2", "record": "r", "replay": "p", "rounds": 2, "repair": "place",
+        "strategy": "stepwise",
+    }  # fmt: skip
+    assert {*other} == {*ChatSettings.model_fields}
+    write(Path("roadgpt.toml"), "[chat]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in other.items()))
+    assert configured() == ChatSettings(**other)
+    Path("roadgpt.toml").unlink()
+    for name, value in other.items():
+        monkeypatch.setenv(f"ROADGPT_{name.upper()}", str(value))
+    assert configured() == ChatSettings(**other)
+
+
+def test_openai_variables_are_heeded_and_ours_come_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENAI_BASE_URL", "http://one:1/v1")
+    assert configured().base_url == "http://one:1/v1"
+    monkeypatch.setenv("ROADGPT_BASE_URL", "http://two:2/v1/")
+    assert configured().base_url == "http://two:2/v1"
+
+
+@pytest.mark.parametrize(
+    ("line", "value"),
+    [
+        ("ROADGPT_MODEL=plain", "plain"),
+        ("export ROADGPT_MODEL=exported", "exported"),
+        ("ROADGPT_MODEL = 'single quotes # no comment'", "single quotes # no comment"),
+        ('ROADGPT_MODEL="double" # a comment', "double"),
+        ("ROADGPT_MODEL=value # a comment", "value"),
+        ("ROADGPT_MODEL=", None),
+        ("# ROADGPT_MODEL=no", None),
+        ("ROADGPT_MODEL=$(touch pwned)", "$(touch pwned)"),
+        ("\ufeffROADGPT_MODEL=marked", "marked"),
+    ],
+)
+def test_lines_of_dotenv(line: str, value: str | None) -> None:
+    write(Path(".env"), f"OTHER=1\nnot a line\n{line}\n" if line[0] != "\ufeff" else f"{line}\n")
+    assert configured().model == value
+    assert not Path("pwned").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ('[chat]\nmodle = "x"', "have no 'modle' under .chat.; did you mean 'model'"),
+        ("[chat", "are not TOML"),
+        ("chat = 5", "need a table"),
+        ('[chat]\nmax_cost = "much"', "the setting 'max_cost' from roadgpt.toml cannot be"),
+        ('[chat]\nbase_url = "localhost:11434"', "base URL"),
+        ("[chat]\nretries = 99", "'retries' from roadgpt.toml"),
+    ],
+)
+def test_a_file_that_cannot_be_is_told_with_its_name(text: str, told: str) -> None:
+    write(Path("roadgpt.toml"), text)
+    with pytest.raises(UsageError, match=told):
+        configured()
+    result = invoke("config", "show")
+    assert result.exit_code == 2
+    assert "roadgpt.toml" in result.output
+    assert "Traceback" not in result.output
+
+
+def test_a_file_that_is_no_text_is_told() -> None:
+    Path(".env").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(UsageError, match=r"the settings in \.env cannot be read"):
+        configured()
+
+
+@pytest.mark.parametrize(
+    "url",
+    [
+        "http://user:secret@host/v1",
+        "https://host/v1?api-key=secret",
+        "https://host/v1#secret",
+        "ftp://host",
+        "host",
+    ],
+)
+def test_a_base_url_is_a_place_and_holds_no_key(url: str) -> None:
+    with pytest.raises(UsageError, match="base URL") as caught:
+        configured({"base_url": url})
+    assert "secret" not in str(caught.value)
+
+
+def test_keys_come_from_the_same_places(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert key_for(None) is None
+    write(user_file(), '[chat]\napi_key = "of-user-0123456789"')
+    assert str(key_for(None).origin) == f"{user_file()} (api_key)"  # type: ignore[union-attr]
+    write(Path(".env"), "OPENAI_API_KEY=of-dotenv-0123456789")
+    assert key_for(None).value == "of-dotenv-0123456789"  # type: ignore[union-attr]
+    monkeypatch.setenv("OPENAI_API_KEY", "  of-environment-0123 \n")
+    assert key_for(None).value == "of-environment-0123"  # type: ignore[union-attr]
+    monkeypatch.setenv("ROADGPT_API_KEY", "ours-0123456789")
+    assert key_for(None).value == "ours-0123456789"  # type: ignore[union-attr]
+
+
+def test_azure_has_a_key_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENAI_API_KEY", "of-openai-0123456789")
+    monkeypatch.setenv("AZURE_OPENAI_API_KEY", "of-azure-0123456789")
+    assert key_for("https://me.openai.azure.com").value == "of-azure-0123456789"  # type: ignore[union-attr]
+    assert key_for("https://api.openai.com/v1").value == "of-openai-0123456789"  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    ("given", "place"),
+    [
+        (None, "https://api.openai.com/v1"),
+        ("https://me.openai.azure.com", "https://me.openai.azure.com/openai/v1"),
+        ("https://me.openai.azure.com/openai/v1", "https://me.openai.azure.com/openai/v1"),
+        ("http://localhost:11434", "http://localhost:11434/v1"),  # Ollama
+        ("http://localhost:8080/v1", "http://localhost:8080/v1"),  # llama.cpp
+        ("http://localhost:8000/v1", "http://localhost:8000/v1"),  # vLLM
+        ("http://localhost:1234", "http://localhost:1234/v1"),  # LM Studio
+        ("https://gateway/team/llm", "https://gateway/team/llm"),
+    ],
+)
+def test_where_the_servers_are(given: str | None, place: str) -> None:
+    assert place_of(given) == place
+
+
+def test_openai_without_a_key_is_told_before_anything_is_sent() -> None:
+    with pytest.raises(ChatError, match=r"no key for https://api.openai.com/v1; .* OPENAI_API_KEY"):
+        open_chat(ChatSettings(model="gpt-5-mini"))
+
+
+def test_the_command_shows_origins_and_masks_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENAI_API_KEY", KEY)
+    monkeypatch.setenv("ROADGPT_MODLE", "typo")
+    write(Path("roadgpt.toml"), '[chat]\nmodel = "mine"')
+    result = invoke("config", "show", "--origin", "--max-cost", "0.5")
+    assert result.exit_code == 0
+    lines = {line.split()[0]: line for line in result.stdout.splitlines()}
+    assert lines["model"].split()[1:] == ["mine", "roadgpt.toml"]
+    assert lines["max_cost"].split()[1:] == ["0.5", "--max-cost"]
+    assert lines["api_key"].endswith(f"sk-... ({len(KEY)} letters)  environment (OPENAI_API_KEY)")
+    assert "ROADGPT_MODLE in the environment is no setting" in result.stderr
+    assert KEY not in result.output
+    told = json.loads(invoke("config", "show", "--json").stdout)
+    assert told["model"] == "mine"
+    assert told["timeout"] == 60.0
+    assert KEY not in json.dumps(told)
+
+
+def test_options_for_models_are_refused_where_none_is_asked() -> None:
+    result = invoke("run", "a road", "--reader", "grammar", "--max-cost", "1")
+    assert result.exit_code == 2
+    assert "--max-cost is for language models; say --designer chat or --reader chat" in result.stderr
+
+
+def test_doctor_looks_for_the_model_that_is_named(stub: Stub, monkeypatch: pytest.MonkeyPatch) -> None:
+    from roadgpt.chat.looking import looked
+
+    assert "none is needed" in looked()
+    monkeypatch.setenv("OPENAI_API_KEY", KEY)
+    assert "none is needed" in looked()  # a key alone is for other programs
+    stub.play(says("{}"))
+    monkeypatch.setenv("ROADGPT_BASE_URL", stub.url)
+    assert f"any of 1 at {stub.url}, through openai 3" in looked()
+    monkeypatch.setenv("ROADGPT_MODEL", "other")
+    with pytest.raises(ChatError, match="has no model 'other'; it has stub-model"):
+        looked()
+    monkeypatch.setenv("ROADGPT_BASE_URL", "http://127.0.0.1:9/v1")
+    with pytest.raises(ChatError, match="cannot be reached"):
+        looked()
