@@ -2,16 +2,18 @@
 
 import json
 from hashlib import sha256
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from roadgpt.brief import reader_of
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import WEIGHTS, ModelReader
-from roadgpt.errors import BriefError
+from roadgpt.errors import BriefError, PartError
 
 READER = ModelReader()
 MOST_MEGABYTES = 40
@@ -91,3 +93,12 @@ def test_the_weights_are_small_and_come_with_their_notice() -> None:
     assert {*sums} == {"encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json"}
     for name, digest in sums.items():
         assert sha256((WEIGHTS / name).read_bytes()).hexdigest() == digest
+
+
+def test_weights_of_ones_own_are_named_with_their_folder(tmp_path: Path) -> None:
+    words = "two left turns and a straight of 40 m"
+    assert reader_of(f"model:{WEIGHTS}").read(words) == READER.read(words)
+    with pytest.raises(PartError, match=r"no encoder\.onnx in .*roadgpt learn export"):
+        reader_of(f"model:{tmp_path}")
+    with pytest.raises(PartError, match="takes no folder"):
+        reader_of(f"grammar:{tmp_path}")

@@ -34,7 +34,7 @@ from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, Range
 from roadgpt.chat import ChatSettings, made, meant_for
-from roadgpt.errors import BriefError
+from roadgpt.errors import BriefError, PartError
 
 __all__ = [
     "Amount",
@@ -59,6 +59,7 @@ __all__ = [
     "normal",
     "outline",
     "read",
+    "reader_of",
     "sentence",
 ]
 
@@ -104,7 +105,7 @@ def read(
         ChatError: a language model could not be asked.
     """
     words = words.encode("utf-8", "replace").decode()  # half letters from a broken terminal fit into no file
-    brief = _reader(reader, chat).read(words)
+    brief = reader_of(reader, chat).read(words)
     check(brief, map_size, min_radius, max_grade)
     return brief
 
@@ -126,7 +127,7 @@ def alternatives(
         PartError: no such reader.
     """
     first = read(words, reader, map_size)
-    part = _reader(reader)
+    part = reader_of(reader)
     if not isinstance(part, Doubtful):
         return (first,)
     others = part.alternatives(first.words, number, temperature, seed)[1:]
@@ -141,12 +142,22 @@ def _is_possible(brief: Brief, map_size: float | None) -> bool:
     return True
 
 
-def _reader(name: str, chat: ChatSettings | None = None) -> Reader:
-    """The reader of that name."""
-    return _made(name, meant_for(plugins.find("readers", name), chat))
+def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:
+    """The reader of that name, made now or before; 'model:FOLDER' reads with weights of one's own.
+
+    Raises:
+        PartError: no such reader, or no weights in the folder.
+    """
+    part, _, folder = name.partition(":")
+    return _made(part, meant_for(plugins.find("readers", part), chat), folder)
 
 
 @cache
-def _made(name: str, chat: ChatSettings | None) -> Reader:
+def _made(name: str, chat: ChatSettings | None, folder: str) -> Reader:
     """The one reader of that name: a network is loaded once."""
-    return cast(Reader, made(plugins.find("readers", name), chat))
+    part = plugins.find("readers", name)
+    if not folder:
+        return cast(Reader, made(part, chat))
+    if not callable(getattr(part, "from_folder", None)):
+        raise PartError(f"the reader '{name}' takes no folder; say --reader {name}")
+    return cast(Reader, part.from_folder(folder))

@@ -77,7 +77,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     from roadgpt.chat import asks_a_model, configured
 
     shelves = (("readers", reader), ("designers", designer))
-    if any(asks_a_model(plugins.find(shelf, name)) for shelf, name in shelves if name):
+    if any(asks_a_model(plugins.find(shelf, name.partition(":")[0])) for shelf, name in shelves if name):
         return configured(told)
     if told:
         flag = next(flag for flag, value in given.items() if value is not None)

@@ -11,6 +11,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
+from roadgpt.brief.readers.model import FILES
 from roadgpt.brief.readers.model.coverage import Coverage
 from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.vocabulary import TOKENS
@@ -22,7 +23,6 @@ from roadgpt.learn.network import Reader, Shape
 from roadgpt.learn.origin import NOTICE
 from roadgpt.learn.pieces import read_vocabulary
 
-FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 OPSET = 17
 COUNTED = 20_000
 """Generated pairs among which the words are counted."""

@@ -175,15 +175,12 @@ def _write_chats(out: Path, number: int, seed: int) -> None:
 )
 def evaluate(hand: Path, split: str, names: Sequence[str], misses: int, card: Path | None) -> None:
     """Hold readers against hand-written labels."""
-    from roadgpt import plugins
+    from roadgpt.brief import reader_of
     from roadgpt.learn.evaluate import HEAD, readings, score, worst
 
     pairs = _pairs_of(hand / split)
-    parts = {name: plugins.find("readers", name) for name in names}
-    found = {
-        name: readings(pairs, (part() if isinstance(part, type) else part).read)
-        for name, part in parts.items()
-    }
+    readers = {name: reader_of(name) for name in names}
+    found = {name: readings(pairs, reader.read) for name, reader in readers.items()}
     click.echo(HEAD)
     for name, its in found.items():
         click.echo(score(its).row(name))

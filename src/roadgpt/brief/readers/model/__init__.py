@@ -8,7 +8,7 @@ import json
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -23,9 +23,10 @@ from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.recheck import rechecked
 from roadgpt.brief.readers.model.slots import Slotted, slotted
 from roadgpt.brief.readers.model.vocabulary import plan_of
-from roadgpt.errors import BriefError
+from roadgpt.errors import BriefError, PartError
 
 WEIGHTS = Path(__file__).parent / "weights"
+FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 MOST_LETTERS = 2000
 ALMOST = 2.0  # difference of worth
 NO_ROAD = "does not describe a road"
@@ -43,6 +44,18 @@ class ModelReader:
 
     def __init__(self, folder: Path = WEIGHTS) -> None:
         self.folder = folder
+
+    @classmethod
+    def from_folder(cls, folder: str) -> Self:
+        """A reader with other weights, as ``roadgpt learn export`` writes them.
+
+        Raises:
+            PartError: there are none in the folder.
+        """
+        missing = next((name for name in FILES if not (Path(folder) / name).is_file()), None)
+        if missing:
+            raise PartError(f"there is no {missing} in '{folder}'; make it with: roadgpt learn export")
+        return cls(Path(folder))
 
     def read(self, words: str) -> Brief:
         """The Brief of a description.
@@ -92,7 +105,7 @@ class ModelReader:
         """How often a reading like this one was right on descriptions held back from training."""
         weights = self._settings["confidence"]
         features = {**draft.features, "unused": unused}
-        score = weights["bias"] + sum(weights[name] * value for name, value in features.items())
+        score = weights["bias"] + sum(weights.get(name, 0.0) * value for name, value in features.items())
         return round(float(1 / (1 + np.exp(-score))), 3)
 
     @cached_property
