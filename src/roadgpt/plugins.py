@@ -1,4 +1,4 @@
-"""Finds parts by name: providers, readers, designers, rules, simulators, drivers.
+"""Finds parts by name: providers, readers, designers, rules, exporters, simulators, drivers.
 
 A part registers under the entry point ``roadgpt.<shelf>``; ours use the same door as a user's.
 """
@@ -9,7 +9,7 @@ from typing import Any
 
 from roadgpt.errors import PartError
 
-SHELVES = ("providers", "readers", "designers", "rules", "simulators", "drivers")
+SHELVES = ("providers", "readers", "designers", "rules", "exporters", "simulators", "drivers")
 
 
 @cache

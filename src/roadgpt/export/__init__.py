@@ -1,12 +1,12 @@
-"""Exports: makes files that other tools read. Verb: ``save``; one format is one part on the shelf ``exporters/``.
+"""Exports: makes files that other tools read. Verb: ``save``; a format is a part on the shelf ``exporters/``.
 
     class Exporter:
         name = "opendrive"                                     # of the format
         suffix = ".xodr"                                       # of its file
         def save(self, road, path, world, poses=None) -> None
 
-A part writes ``path``, and may write further files of the same stem beside it. The same arguments give the same
-bytes: no clock, no random number, no path of this machine.
+A part writes ``path``, and may write further files of the same stem beside it. The same arguments give the
+same bytes: no clock, no random number, no path of this machine.
 """
 
 import shutil

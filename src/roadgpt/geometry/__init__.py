@@ -6,11 +6,12 @@ A plan curve answers ``at(s)``, ``heading(s)`` and ``curvature(s)`` by exact arc
 
 from roadgpt.geometry.curve import PlanCurve, Profile, wrap_angle
 from roadgpt.geometry.pieces import Piece, PieceCurve
-from roadgpt.geometry.profile import GradeProfile
+from roadgpt.geometry.profile import CubicProfile, GradeProfile
 from roadgpt.geometry.projection import project
 from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate, walked
 
 __all__ = [
+    "CubicProfile",
     "GradeProfile",
     "Piece",
     "PieceCurve",

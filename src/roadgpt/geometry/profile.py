@@ -1,4 +1,4 @@
-"""Height profile of steady grades joined by parabolas: the grade is piecewise linear."""
+"""Height profiles: steady grades joined by parabolas, and cubics as files of other tools have them."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -62,3 +62,59 @@ class GradeProfile:
         """Change of slope in 1/m, negative on a crest."""
         _, i = self._place(s)
         return np.asarray(self._table[3][i])
+
+
+@dataclass(frozen=True, eq=False)
+class CubicProfile:
+    """Heights as cubics of the distance from each station: OpenDRIVE's elevation.
+
+    Args:
+        stations: rising, metres; each cubic reaches to the next, the last one on and on.
+        coefficients: of each cubic, constant first: a + b u + c u^2 + d u^3.
+
+    Raises:
+        ValueError: there is no station, they do not rise, or are not as many as the cubics.
+    """
+
+    stations: tuple[float, ...]
+    coefficients: tuple[tuple[float, float, float, float], ...]
+
+    def __post_init__(self) -> None:
+        if not self.stations or len(self.stations) != len(self.coefficients):
+            raise ValueError("a profile needs stations and as many cubics")
+        if any(b <= a for a, b in zip(self.stations, self.stations[1:], strict=False)):
+            raise ValueError("the stations of a profile must rise")
+        if any(len(cubic) != 4 for cubic in self.coefficients):
+            raise ValueError("a cubic has four coefficients")
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array]:
+        return np.array(self.stations), np.array(self.coefficients)
+
+    def _place(self, s: ArrayLike) -> tuple[Array, Array]:
+        """Distance from its station, and the cubic's coefficients ``(4, ...)``, for each of ``s``."""
+        s = np.asarray(s, float)
+        start, table = self._table
+        index = np.clip(np.searchsorted(start, s, side="right") - 1, 0, len(start) - 1)
+        return s - start[index], np.moveaxis(table[index], -1, 0)
+
+    def cubics(self, s: ArrayLike) -> Array:
+        """The cubics ``(n, 4)`` of the distance from stations ``s``, ``(n,)``."""
+        u, (a, b, c, d) = self._place(s)
+        rows = [a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d]
+        return np.stack(rows, axis=-1)
+
+    def height(self, s: ArrayLike) -> Array:
+        """Heights in metres."""
+        u, (a, b, c, d) = self._place(s)
+        return np.asarray(a + u * (b + u * (c + u * d)))
+
+    def grade(self, s: ArrayLike) -> Array:
+        """Slopes, as ratios."""
+        u, (_, b, c, d) = self._place(s)
+        return np.asarray(b + u * (2 * c + 3 * u * d))
+
+    def vertical_curvature(self, s: ArrayLike) -> Array:
+        """Change of slope in 1/m, negative on a crest."""
+        u, (_, _, c, d) = self._place(s)
+        return np.asarray(2 * c + 6 * u * d)

@@ -98,6 +98,11 @@ class SplineCurve:
         """Arc length in plan, metres."""
         return float(self._arc[1][-1])
 
+    @cached_property
+    def stations(self) -> Array:
+        """Arc length at each control point, ``(n,)``, metres."""
+        return self._reached(self.knots)
+
     def parameter(self, s: ArrayLike) -> Array:
         """Spline parameters at stations ``s``, by one Newton step from a table that is already close."""
         s = np.asarray(s, float)

@@ -46,7 +46,7 @@ def _first_sentence(part: Any) -> str:
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="As one JSON list.")
 def command(as_json: bool) -> None:
-    """List what is installed on each shelf: readers, designers, rules, simulators, drivers."""
+    """List what is installed on each shelf: readers, designers, rules, exporters, simulators, drivers."""
     parts = installed()
     if as_json:
         click.echo(json.dumps([asdict(part) for part in parts], indent=2))

@@ -1,0 +1,42 @@
+"""Comma-separated values: the road every metre, and the drive every step, for tables and scripts."""
+
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.errors import ExportError
+from roadgpt.export.poses import Poses
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+
+STEP = 1.0  # m
+DECIMALS = 6
+ROAD = "s_m,x_m,y_m,z_m,heading_rad,curvature_per_m,grade,lane_width_m,verge_m"
+DRIVE = "time_s,x_m,y_m,z_m,heading_rad,pitch_rad,roll_rad,speed_mps"
+
+
+class Csv:
+    """Tables: the centre line every metre with heading, curvature, grade and widths; the drive beside it."""
+
+    name = "csv"
+    suffix = ".csv"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write the road; a drive goes into NAME.drive.csv."""
+        of = road.sample(STEP)
+        wide = np.full(len(of.s), world.lane_width)
+        verge = np.full(len(of.s), world.verge)
+        columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, verge]
+        _write(path, ROAD, columns)
+        if poses is not None:
+            p = poses
+            columns = [p.time, p.x, p.y, p.z, p.heading, p.pitch, p.roll, p.speed]
+            _write(path.with_name(path.name.removesuffix(self.suffix) + ".drive.csv"), DRIVE, columns)
+
+
+def _write(path: Path, header: str, columns: list[Array]) -> None:
+    table = np.round(np.column_stack(columns), DECIMALS) + 0.0
+    if not np.isfinite(table).all():
+        raise ExportError("the road has a number that is not finite; check it before it is exported")
+    rows = [",".join(map(repr, row)) for row in table.tolist()]
+    path.write_bytes("\n".join([header, *rows, ""]).encode())

@@ -1,0 +1,67 @@
+"""GeoJSON (RFC 7946): the road on the globe, for maps and geographic tools."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from roadgpt.errors import ExportError
+from roadgpt.export.place import degrees
+from roadgpt.export.poses import Poses
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+
+STEP = 1.0  # m
+DECIMALS = 9  # of a degree: 0.1 mm
+HEIGHT_DECIMALS = 4  # of a metre
+
+
+class GeoJson:
+    """GeoJSON: centre line, both lanes and the drive in longitude, latitude and height."""
+
+    name = "geojson"
+    suffix = ".geojson"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write one collection of features; the map's corner lies where ``roadgpt.export.place`` says."""
+        s, wide = road.sample(STEP).s, world.lane_width
+        right, middle, left = road.at(s, -wide), road.at(s), road.at(s, wide)
+        features = [
+            _line(
+                "centre line", middle, {"length_m": road.length, "speed_limit_kmh": world.speed_limit * 3.6}
+            ),
+            _area("right lane", right, middle, {"width_m": wide, "friction": world.friction}),
+            _area("left lane", middle, left, {"width_m": wide, "friction": world.friction}),
+        ]
+        if poses is not None:
+            way = np.stack([poses.x, poses.y, poses.z], axis=-1)
+            seconds = (np.round(poses.time, 3) + 0.0).tolist()
+            features.append(_line("drive", way, {"time_s": seconds}))
+        data = {"type": "FeatureCollection", "features": features}
+        path.write_bytes((json.dumps(data, allow_nan=False) + "\n").encode())
+
+
+def _line(name: str, points: Array, told: dict[str, Any]) -> dict[str, Any]:
+    return _feature(name, {"type": "LineString", "coordinates": _on_globe(points)}, told)
+
+
+def _area(name: str, right: Array, left: Array, told: dict[str, Any]) -> dict[str, Any]:
+    """A polygon between two edges, counter-clockwise as the standard asks."""
+    ring = _on_globe(np.concatenate([right, left[::-1], right[:1]]))
+    return _feature(name, {"type": "Polygon", "coordinates": [ring]}, told)
+
+
+def _feature(name: str, geometry: dict[str, Any], told: dict[str, Any]) -> dict[str, Any]:
+    rounded = {key: round(value, 3) if isinstance(value, float) else value for key, value in told.items()}
+    return {"type": "Feature", "properties": {"name": name, **rounded}, "geometry": geometry}
+
+
+def _on_globe(points: Array) -> list[list[float]]:
+    if not np.isfinite(points).all():
+        raise ExportError("the road has a number that is not finite; check it before it is exported")
+    longitude, latitude = degrees(points[:, 0], points[:, 1])
+    columns = [np.round(longitude, DECIMALS), np.round(latitude, DECIMALS)]
+    heights = np.round(points[:, 2], HEIGHT_DECIMALS) + 0.0
+    rows: list[list[float]] = np.column_stack([*columns, heights]).tolist()
+    return rows

@@ -1,0 +1,67 @@
+"""ASAM OpenDRIVE 1.8, without anything that 1.7 does not know: roads for simulators.
+
+Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
+"""
+
+from pathlib import Path
+
+from roadgpt.export.exporters.opendrive.heights import elevations
+from roadgpt.export.exporters.opendrive.lanes import lanes, speed_kmh
+from roadgpt.export.exporters.opendrive.plan import geometries
+from roadgpt.export.markup import Element
+from roadgpt.export.place import PROJECTION
+from roadgpt.export.poses import Poses
+from roadgpt.road import Road, World
+
+ROAD = 1  # id of the one road in the file
+
+
+class OpenDrive:
+    """ASAM OpenDRIVE 1.8, exact: lines, arcs, spirals and parabolas; cubics where the road is a spline."""
+
+    name = "opendrive"
+    suffix = ".xodr"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write the file; OpenDRIVE has no place for a drive."""
+        path.write_bytes(document(road, world).to_text().encode())
+
+
+def document(road: Road, world: World) -> Element:
+    """The whole file.
+
+    Raises:
+        ExportError: the road has a number that is not finite.
+    """
+    root = Element("OpenDRIVE")
+    root.extended(_header(road, world))
+    body = root.add(
+        "road", {"name": "road", "length": road.length, "id": str(ROAD), "junction": "-1", "rule": "RHT"}
+    )
+    body.add("type", {"s": 0, "type": "rural"}).add("speed", {"max": speed_kmh(world), "unit": "km/h"})
+    body.add("planView").extended(*geometries(road.plan))
+    body.add("elevationProfile").extended(*elevations(road))
+    body.extended(lanes(world))
+    return root
+
+
+def _header(road: Road, world: World) -> Element:
+    """Revision, bounds of the ground that lanes and verges cover, and where on Earth it lies. No date."""
+    x, y = road.centreline()[:, :2].T
+    reach = world.lane_width + world.verge
+    header = Element(
+        "header",
+        {
+            "revMajor": 1,
+            "revMinor": 8,
+            "name": "road",
+            "version": "1",
+            "north": round(float(y.max()) + reach, 3),
+            "south": round(float(y.min()) - reach, 3),
+            "east": round(float(x.max()) + reach, 3),
+            "west": round(float(x.min()) - reach, 3),
+            "vendor": "RoadGPT",
+        },
+    )
+    header.add("geoReference", raw=f"<![CDATA[{PROJECTION}]]>")
+    return header

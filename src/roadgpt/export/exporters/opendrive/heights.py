@@ -1,0 +1,48 @@
+"""The elevation: parabolas and cubics as they are; cubics that follow the heights of a spline."""
+
+import numpy as np
+
+from roadgpt.export.exporters.opendrive.plan import breaks_of
+from roadgpt.export.hermite import cubics
+from roadgpt.export.markup import Element
+from roadgpt.geometry import CubicProfile, GradeProfile
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road
+
+TOLERANCE = 1e-4  # m
+
+
+def elevations(road: Road) -> list[Element]:
+    """The elements ``elevation`` of a road, in their order; the first at 0."""
+    stations, table = _table(road)
+    return [
+        Element("elevation", dict(zip("sabcd", row, strict=True)))
+        for row in np.column_stack([stations, table]).tolist()
+    ]
+
+
+def _table(road: Road) -> tuple[Array, Array]:
+    """Stations ``(n,)``, and the height over each as a cubic ``(n, 4)`` of the distance from it."""
+    profile, length = road.profile, road.length
+    if isinstance(profile, GradeProfile):
+        stations = _within(profile.stations[:-1], length)
+        half = profile.vertical_curvature(stations) / 2
+        rows = [profile.height(stations), profile.grade(stations), half, np.zeros_like(half)]
+        return stations, np.column_stack(rows)
+    if isinstance(profile, CubicProfile):
+        stations = _within(profile.stations, length)
+        return stations, profile.cubics(stations)
+
+    def height(s: Array) -> Array:
+        return np.asarray(profile.height(s))[:, None]
+
+    def grade(s: Array) -> Array:
+        return np.asarray(profile.grade(s))[:, None]
+
+    stations, found = cubics(height, grade, breaks_of(road.plan), TOLERANCE)
+    return stations[:-1], found[:, :, 0]
+
+
+def _within(stations: tuple[float, ...], length: float) -> Array:
+    """Those inside the road, and its start."""
+    return np.array([0.0, *(s for s in stations if 1e-9 < s < length - 1e-9)])

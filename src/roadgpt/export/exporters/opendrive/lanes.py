@@ -1,0 +1,75 @@
+r"""Two lanes and their verges, as wide all along as the World says.
+
+id       2  |    1    |    -1    |  -2
+     verge  | against |  driven  | verge     the marks: solid, broken in the middle, solid
+                            0
+"""
+
+from roadgpt.export.markup import Element
+from roadgpt.road import World
+
+LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, RMS-1)
+DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
+NO_VERGE = 1e-3  # m; narrower ones are left out
+
+
+def lanes(world: World) -> Element:
+    """The element ``lanes``."""
+    section = Element("laneSection", {"s": 0})
+    section.add("left").extended(*_verge(2, world), _driving(1, world))
+    section.add("center").extended(_middle())
+    section.add("right").extended(_driving(-1, world), *_verge(-2, world))
+    return Element("lanes").extended(section)
+
+
+def _lane(number: int, kind: str) -> Element:
+    return Element("lane", {"id": number, "type": kind, "level": "false"})
+
+
+def _width(metres: float) -> Element:
+    return Element("width", {"sOffset": 0, "a": metres, "b": 0, "c": 0, "d": 0})
+
+
+def _mark(kind: str, change: str) -> Element:
+    mark = Element(
+        "roadMark",
+        {
+            "sOffset": 0,
+            "type": kind,
+            "weight": "standard",
+            "color": "white",
+            "material": "standard",
+            "width": LINE,
+            "laneChange": change,
+        },
+    )
+    length, space = (DASH, GAP) if kind == "broken" else (DASH + GAP, 0.0)
+    line = {"length": length, "space": space, "tOffset": 0, "sOffset": 0, "width": LINE}
+    mark.add("type", {"name": kind, "width": LINE}).add("line", line)
+    return mark
+
+
+def _middle() -> Element:
+    return _lane(0, "none").extended(_mark("broken", "both"))
+
+
+def _driving(number: int, world: World) -> Element:
+    asphalt = {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0}
+    return _lane(number, "driving").extended(
+        _width(world.lane_width),
+        _mark("solid", "none"),
+        Element("material", asphalt),
+        Element("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"}),
+    )
+
+
+def _verge(number: int, world: World) -> list[Element]:
+    """Firm ground at the height of the road: a shoulder."""
+    if world.verge < NO_VERGE:
+        return []
+    return [_lane(number, "shoulder").extended(_width(world.verge))]
+
+
+def speed_kmh(world: World) -> float:
+    """The speed limit as a sign shows it."""
+    return round(world.speed_limit * 3.6, 6)

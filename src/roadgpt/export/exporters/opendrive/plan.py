@@ -1,0 +1,93 @@
+"""The reference line: lines, arcs and spirals as they are, cubics for splines."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from roadgpt.export.hermite import cubics
+from roadgpt.export.markup import Element
+from roadgpt.geometry import Piece, PieceCurve, PlanCurve, SplineCurve
+from roadgpt.geometry.curve import Array
+
+TOLERANCE = 1e-4  # m, between a spline and the cubics that stand for it
+STRAIGHT = 1e-7  # m that an element may bend aside and still be called straighter than it is
+APART = 0.1  # m; nodes of a spline nearer than this share a cubic
+STEP = 2.0  # m between the stations at which a curve that is none of ours is cut
+SHORTEST = 1e-6  # m; a piece so short is left out, and the next one starts where it does
+
+
+def geometries(plan: PlanCurve) -> Iterator[Element]:
+    """The elements ``geometry`` of a plan, in their order."""
+    if isinstance(plan, PieceCurve):
+        return _pieces(plan)
+    return _cubics(plan)
+
+
+def _pieces(plan: PieceCurve) -> Iterator[Element]:
+    starts = np.r_[0.0, np.cumsum([piece.length for piece in plan.pieces])][:-1]
+    points, headings = plan.at(starts).tolist(), plan.heading(starts).tolist()
+    rows = list(zip(starts.tolist(), points, headings, plan.pieces, strict=True))
+    kept = [row for row in rows if row[3].length > SHORTEST] or rows[:1]
+    kept[0] = (0.0, *kept[0][1:])
+    ends = [row[0] for row in kept[1:]] + [plan.length]
+    for (s, (x, y), heading, piece), end in zip(kept, ends, strict=True):
+        # up to the next one, so that lengths add up even where a piece was left out
+        length = piece.length if abs(end - s - piece.length) < SHORTEST / 100 else end - s
+        yield _geometry(s, x, y, heading, length).extended(_shape(piece))
+
+
+def _geometry(s: float, x: float, y: float, heading: float, length: float) -> Element:
+    return Element("geometry", {"s": s, "x": x, "y": y, "hdg": heading, "length": length})
+
+
+def _shape(piece: Piece) -> Element:
+    """Line, arc or spiral; readers divide by curvatures and by their change, so neither is almost nothing."""
+    bend = piece.length**2 / 6
+    if abs(piece.k1 - piece.k0) * bend > STRAIGHT:
+        return Element("spiral", {"curvStart": piece.k0, "curvEnd": piece.k1})
+    middle = (piece.k0 + piece.k1) / 2
+    return Element("arc", {"curvature": middle}) if abs(middle) * bend > STRAIGHT else Element("line")
+
+
+def _cubics(plan: PlanCurve) -> Iterator[Element]:
+    """Cubics by arc length, each in the frame of its start: ahead is u, to the left is v.
+
+    They start and end with speed 1, and are so short that the parameter is the arc length to a micrometre.
+    """
+
+    def ways(s: Array) -> Array:
+        heading = plan.heading(s)
+        return np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+
+    stations, found = cubics(plan.at, ways, breaks_of(plan), TOLERANCE)
+    headings = plan.heading(stations).tolist()
+    for s, end, heading, cubic in zip(
+        stations.tolist(), stations[1:].tolist(), headings, found, strict=False
+    ):
+        (x, y), ahead, c, d = cubic
+        length = end - s
+        cu, cv = float(ahead @ c), float(ahead[0] * c[1] - ahead[1] * c[0])
+        du, dv = float(ahead @ d), float(ahead[0] * d[1] - ahead[1] * d[0])
+        is_line = max(abs(cu), abs(cv)) * length**2 + max(abs(du), abs(dv)) * length**3 < STRAIGHT
+        yield _geometry(s, float(x), float(y), heading, length).extended(
+            Element("line") if is_line else _cubic(cu, cv, du, dv)
+        )
+
+
+def _cubic(cu: float, cv: float, du: float, dv: float) -> Element:
+    along = {"aU": 0, "bU": 1, "cU": cu, "dU": du}
+    across = {"aV": 0, "bV": 0, "cV": cv, "dV": dv}
+    return Element("paramPoly3", {**along, **across, "pRange": "arcLength"})
+
+
+def breaks_of(plan: PlanCurve) -> Array:
+    """Stations between which a curve is smooth: the nodes of a spline, both ends included."""
+    if isinstance(plan, SplineCurve):
+        inner = plan.stations[1:-1]
+        kept, last = [], 0.0
+        for s in inner.tolist():
+            if s - last > APART and plan.length - s > APART:
+                kept.append(s)
+                last = s
+        return np.r_[0.0, kept, plan.length]
+    return np.linspace(0.0, plan.length, max(2, round(plan.length / STEP) + 1))

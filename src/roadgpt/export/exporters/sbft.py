@@ -1,0 +1,28 @@
+"""The test of the SBFT tool competition: ``road_points`` for its own spline, and our points with heights."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.errors import ExportError
+from roadgpt.export.poses import Poses
+from roadgpt.road import Road, World
+
+DECIMALS = 5
+STEP = 1.0  # m
+
+
+class Sbft:
+    """The SBFT competition's test as JSON: control points for its spline, and points with heights."""
+
+    name = "sbft"
+    suffix = ".sbft.json"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write the test; what came of driving it stands in the ``test.NNNN.json`` of a campaign."""
+        points = {"road_points": road.control_points(), "interpolated_points": road.centreline(STEP)}
+        if not all(np.isfinite(each).all() for each in points.values()):
+            raise ExportError("the road has a number that is not finite; check it before it is exported")
+        data = {name: (np.round(each, DECIMALS) + 0.0).tolist() for name, each in points.items()}
+        path.write_bytes((json.dumps(data) + "\n").encode())

@@ -1,0 +1,53 @@
+"""Cubics that follow a smooth function of ``s``: as few as keep it within a tolerance."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from roadgpt.geometry.curve import Array
+
+SHORTEST = 0.02  # m; a cusp of a spline is not followed any further
+BETWEEN = (0.25, 0.5, 0.75)  # where a cubic is held against the function
+
+Function = Callable[[Array], Array]
+"""Values ``(n, d)`` at stations ``(n,)``."""
+
+
+def cubics(value: Function, slope: Function, breaks: Array, tolerance: float) -> tuple[Array, Array]:
+    """Stations ``(n + 1,)`` and the coefficients ``(n, 4, d)`` of the cubics between them.
+
+    Args:
+        value: what is followed.
+        slope: its derivative by s.
+        breaks: rising stations, the ends included, at which a cubic must end: the function is smooth between.
+        tolerance: most distance between cubic and function, in the unit of the values.
+    """
+    stations = np.asarray(breaks, float)
+    while True:
+        found = _between(stations, value(stations), slope(stations))
+        lengths = np.diff(stations)
+        far = np.zeros(len(lengths), bool)
+        for share in BETWEEN:
+            away = value(stations[:-1] + share * lengths) - at(found, share * lengths)
+            far |= np.sqrt((away**2).sum(axis=-1)) > tolerance
+        far &= lengths > SHORTEST
+        if not far.any():
+            return stations, found
+        middles = (stations[:-1] + lengths / 2)[far]
+        stations = np.sort(np.r_[stations, middles])
+
+
+def at(coefficients: Array, u: Array) -> Array:
+    """Values ``(n, d)`` of cubics ``(n, 4, d)``, each at its own distance ``u`` from its start."""
+    a, b, c, d = (coefficients[:, i] for i in range(4))
+    u = u[:, None]
+    return np.asarray(a + u * (b + u * (c + u * d)))
+
+
+def _between(stations: Array, values: Array, slopes: Array) -> Array:
+    """The cubics that have these values and slopes at the stations (Hermite's)."""
+    length = np.diff(stations)[:, None]
+    rise = np.diff(values, axis=0) / length
+    c = (3 * rise - 2 * slopes[:-1] - slopes[1:]) / length
+    d = (slopes[:-1] + slopes[1:] - 2 * rise) / length**2
+    return np.stack([values[:-1], slopes[:-1], c, d], axis=1)

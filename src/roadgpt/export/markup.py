@@ -1,0 +1,75 @@
+"""XML as text: elements with their attributes in the order given, and numbers that read back as they were."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Self
+
+from roadgpt.errors import ExportError
+
+DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
+_ESCAPES = str.maketrans(
+    {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
+)
+
+Value = str | float | int
+
+
+def number(value: float) -> str:
+    """The shortest decimal that reads back as this very number; whole ones without a point.
+
+    Raises:
+        ExportError: it is not finite.
+    """
+    value = float(value) + 0.0  # -0.0 becomes 0.0
+    if not math.isfinite(value):
+        raise ExportError("the road has a number that is not finite; check it before it is exported")
+    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+
+
+def escaped(text: str) -> str:
+    """Text that may stand between tags or in an attribute; what XML cannot hold at all is left out."""
+    return "".join(c for c in text if c >= " " or c in "\n\t\r").translate(_ESCAPES)
+
+
+@dataclass(slots=True)
+class Element:
+    """One element; ``add`` gives back the child, so that trees are written from the outside in."""
+
+    name: str
+    attributes: Mapping[str, Value] = field(default_factory=dict)
+    children: list["Element"] = field(default_factory=list)
+    raw: str = ""
+    """Content between the tags instead of children, already escaped."""
+
+    def add(self, name: str, attributes: Mapping[str, Value] | None = None, raw: str = "") -> "Element":
+        """A new child with these attributes."""
+        child = Element(name, attributes or {}, raw=raw)
+        self.children.append(child)
+        return child
+
+    def extended(self, *children: Self) -> Self:
+        """This element, with more children."""
+        self.children.extend(children)
+        return self
+
+    def to_text(self) -> str:
+        """The whole document, two spaces deep for each level."""
+        lines = [DECLARATION]
+        _write(self, "", lines)
+        return "\n".join(lines) + "\n"
+
+
+def _write(element: Element, indent: str, lines: list[str]) -> None:
+    said = "".join(
+        f' {name}="{escaped(value) if isinstance(value, str) else number(value)}"'
+        for name, value in element.attributes.items()
+    )
+    opening = f"{indent}<{element.name}{said}"
+    if element.children:
+        lines.append(f"{opening}>")
+        for child in element.children:
+            _write(child, indent + "  ", lines)
+        lines.append(f"{indent}</{element.name}>")
+    else:
+        lines.append(f"{opening}>{element.raw}</{element.name}>" if element.raw else f"{opening}/>")

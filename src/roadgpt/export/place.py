@@ -1,0 +1,65 @@
+"""Where on Earth a map lies, for formats that must know: its corner (0, 0) at 48 N, 9 E, x to the east.
+
+The map itself is nowhere. 9 E is the middle of a UTM zone, so north on the map is north on its grid as well.
+Projection: transverse Mercator on WGS 84, inverse series after Snyder, Map Projections: A Working Manual (US
+Geological Survey Professional Paper 1395), pp. 60-64; within 10 km of the corner good to 0.1 mm.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roadgpt.geometry.curve import Array
+
+LATITUDE, LONGITUDE = 48.0, 9.0  # degrees, of the corner (0, 0)
+PROJECTION = f"+proj=tmerc +lat_0={LATITUDE:g} +lon_0={LONGITUDE:g} +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m"
+"""As PROJ says it; without +no_defs, which some readers do not know."""
+
+SEMI_MAJOR = 6_378_137.0  # m, WGS 84
+FLATTENING = 1 / 298.257223563  # WGS 84
+_E2 = FLATTENING * (2 - FLATTENING)
+_EP2 = _E2 / (1 - _E2)
+
+
+def degrees(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
+    """Longitudes and latitudes, in degrees, of points of the map in metres."""
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    foot = _footpoint(_meridian(math.radians(LATITUDE)) + y)
+    sin, cos, tan = np.sin(foot), np.cos(foot), np.tan(foot)
+    c, t = _EP2 * cos**2, tan**2
+    across = SEMI_MAJOR / np.sqrt(1 - _E2 * sin**2)
+    along = SEMI_MAJOR * (1 - _E2) / (1 - _E2 * sin**2) ** 1.5
+    d = x / across
+    latitude = foot - (across * tan / along) * (
+        d**2 / 2 - (5 + 3 * t + 10 * c - 4 * c**2 - 9 * _EP2) * d**4 / 24
+    )
+    longitude = (
+        d - (1 + 2 * t + c) * d**3 / 6 + (5 - 2 * c + 28 * t - 3 * c**2 + 8 * _EP2 + 24 * t**2) * d**5 / 120
+    ) / cos
+    return LONGITUDE + np.degrees(longitude), np.asarray(np.degrees(latitude), float)
+
+
+def _meridian(latitude: float) -> float:
+    """Metres along the meridian from the equator."""
+    e4, e6 = _E2**2, _E2**3
+    return SEMI_MAJOR * (
+        (1 - _E2 / 4 - 3 * e4 / 64 - 5 * e6 / 256) * latitude
+        - (3 * _E2 / 8 + 3 * e4 / 32 + 45 * e6 / 1024) * math.sin(2 * latitude)
+        + (15 * e4 / 256 + 45 * e6 / 1024) * math.sin(4 * latitude)
+        - (35 * e6 / 3072) * math.sin(6 * latitude)
+    )
+
+
+def _footpoint(metres: Array) -> Array:
+    """Latitude in radians that lies so many metres along the meridian."""
+    e4, e6 = _E2**2, _E2**3
+    mu = metres / (SEMI_MAJOR * (1 - _E2 / 4 - 3 * e4 / 64 - 5 * e6 / 256))
+    e1 = (1 - math.sqrt(1 - _E2)) / (1 + math.sqrt(1 - _E2))
+    return np.asarray(
+        mu
+        + (3 * e1 / 2 - 27 * e1**3 / 32) * np.sin(2 * mu)
+        + (21 * e1**2 / 16 - 55 * e1**4 / 32) * np.sin(4 * mu)
+        + (151 * e1**3 / 96) * np.sin(6 * mu)
+        + (1097 * e1**4 / 512) * np.sin(8 * mu)
+    )
