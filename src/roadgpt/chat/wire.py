@@ -7,6 +7,7 @@ first.
 
 import contextvars
 import json
+import logging
 import random
 import threading
 import time
@@ -27,6 +28,11 @@ SPENT_UP = ("insufficient_quota", "billing", "credit")  # what a 429 says that n
 FIRST_WAIT, LONGEST_WAIT = 0.5, 8.0  # s, between retries where the server does not say how long
 PATIENCE = 120.0  # s, the longest wait that a server may ask for
 CONNECT = 10.0  # s, to reach it
+TALKATIVE = (
+    "openai",
+    "httpx2",
+    "httpcore2",
+)  # their debug logs show headers, and with those what a server echoes
 GRACE = 0.2  # s behind the time limit, in which the request itself may say what is wrong
 BYTES_PER_TOKEN = 24  # generous: JSON that escapes every letter
 ROOM = 200_000  # bytes, for all around a reply
@@ -70,6 +76,8 @@ class Wire:
             raise ChatError(
                 "language models need the package 'openai'; say python -m pip install 'roadgpt[chat]'"
             ) from None
+        for name in TALKATIVE:
+            logging.getLogger(name).setLevel(logging.WARNING)
         limit = self.settings.timeout
         try:
             return openai.OpenAI(

@@ -55,9 +55,7 @@ class Plan(BaseModel):
     """What the model is asked for."""
 
     plan: str = Field(description="The plan, on one line; empty if no road is described.")
-    unused: list[str] = Field(
-        description="Words about the road that fit into no plan, as written."
-    )
+    unused: list[str] = Field(description="Words about the road that fit into no plan, as written.")
 
 
 class ChatReader:
