@@ -28,9 +28,7 @@ class GeoJson:
         s, wide = road.sample(STEP).s, world.lane_width
         right, middle, left = road.at(s, -wide), road.at(s), road.at(s, wide)
         features = [
-            _line(
-                "centre line", middle, {"length_m": road.length, "speed_limit_kmh": world.speed_limit * 3.6}
-            ),
+            _line("centre line", middle, {"length_m": road.length, "speed_kmh": world.speed_limit * 3.6}),
             _area("right lane", right, middle, {"width_m": wide, "friction": world.friction}),
             _area("left lane", middle, left, {"width_m": wide, "friction": world.friction}),
         ]

@@ -3,13 +3,14 @@
 import numpy as np
 
 from roadgpt.export.exporters.opendrive.plan import breaks_of
-from roadgpt.export.hermite import cubics
+from roadgpt.export.hermite import at, cubics
 from roadgpt.export.markup import Element
 from roadgpt.geometry import CubicProfile, GradeProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
-TOLERANCE = 1e-4  # m
+TOLERANCE = 1e-4  # m, between heights and the cubics that stand for them
+SAME = 1e-5  # m
 
 
 def elevations(road: Road) -> list[Element]:
@@ -40,7 +41,19 @@ def _table(road: Road) -> tuple[Array, Array]:
         return np.asarray(profile.grade(s))[:, None]
 
     stations, found = cubics(height, grade, breaks_of(road.plan), TOLERANCE)
-    return stations[:-1], found[:, :, 0]
+    return _without_repetition(stations, found)
+
+
+def _without_repetition(stations: Array, found: Array) -> tuple[Array, Array]:
+    """The cubics but for those that only carry on the one before."""
+    kept = [0]
+    for i in range(1, len(found)):
+        last, length = found[kept[-1]][None], stations[i + 1] - stations[i]
+        u = np.array([0.0, length / 2, length])
+        carried = at(np.repeat(last, 3, axis=0), stations[i] - stations[kept[-1]] + u)
+        if np.abs(carried - at(np.repeat(found[i][None], 3, axis=0), u)).max() > SAME:
+            kept.append(i)
+    return stations[kept], found[kept][:, :, 0]
 
 
 def _within(stations: tuple[float, ...], length: float) -> Array:

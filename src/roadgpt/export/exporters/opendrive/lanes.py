@@ -54,13 +54,10 @@ def _middle() -> Element:
 
 
 def _driving(number: int, world: World) -> Element:
-    asphalt = {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0}
-    return _lane(number, "driving").extended(
-        _width(world.lane_width),
-        _mark("solid", "none"),
-        Element("material", asphalt),
-        Element("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"}),
-    )
+    lane = _lane(number, "driving").extended(_width(world.lane_width), _mark("solid", "none"))
+    lane.add("material", {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0})
+    lane.add("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"})
+    return lane
 
 
 def _verge(number: int, world: World) -> list[Element]:

@@ -11,6 +11,7 @@ from roadgpt.geometry.curve import Array
 
 TOLERANCE = 1e-4  # m, between a spline and the cubics that stand for it
 STRAIGHT = 1e-7  # m that an element may bend aside and still be called straighter than it is
+ROUND = 1e-5  # m between a spiral whose curvatures readers call equal, and the arcs that stand for it
 APART = 0.1  # m; nodes of a spline nearer than this share a cubic
 STEP = 2.0  # m between the stations at which a curve that is none of ours is cut
 SHORTEST = 1e-6  # m; a piece so short is left out, and the next one starts where it does
@@ -24,9 +25,10 @@ def geometries(plan: PlanCurve) -> Iterator[Element]:
 
 
 def _pieces(plan: PieceCurve) -> Iterator[Element]:
-    starts = np.r_[0.0, np.cumsum([piece.length for piece in plan.pieces])][:-1]
+    pieces = [part for piece in plan.pieces for part in _tellable(piece)]
+    starts = np.r_[0.0, np.cumsum([piece.length for piece in pieces])][:-1]
     points, headings = plan.at(starts).tolist(), plan.heading(starts).tolist()
-    rows = list(zip(starts.tolist(), points, headings, plan.pieces, strict=True))
+    rows = list(zip(starts.tolist(), points, headings, pieces, strict=True))
     kept = [row for row in rows if row[3].length > SHORTEST] or rows[:1]
     kept[0] = (0.0, *kept[0][1:])
     ends = [row[0] for row in kept[1:]] + [plan.length]
@@ -36,12 +38,25 @@ def _pieces(plan: PieceCurve) -> Iterator[Element]:
         yield _geometry(s, x, y, heading, length).extended(_shape(piece))
 
 
+def _tellable(piece: Piece) -> list[Piece]:
+    """The piece; or arcs, where readers would call its curvatures equal and refuse it as a spiral.
+
+    CommonRoad asks numpy's ``isclose``.
+    """
+    if piece.k0 == piece.k1 or not np.isclose(piece.k0, piece.k1):
+        return [piece]
+    change = piece.k1 - piece.k0
+    parts = max(1, int(np.ceil(np.sqrt(abs(change) * piece.length**2 / 12 / ROUND))))
+    curvatures = piece.k0 + change * (np.arange(parts) + 0.5) / parts
+    return [Piece(piece.length / parts, k, k) for k in curvatures.tolist()]
+
+
 def _geometry(s: float, x: float, y: float, heading: float, length: float) -> Element:
     return Element("geometry", {"s": s, "x": x, "y": y, "hdg": heading, "length": length})
 
 
 def _shape(piece: Piece) -> Element:
-    """Line, arc or spiral; readers divide by curvatures and by their change, so neither is almost nothing."""
+    """Line, arc or spiral; readers divide by a curvature, so none is almost nothing."""
     bend = piece.length**2 / 6
     if abs(piece.k1 - piece.k0) * bend > STRAIGHT:
         return Element("spiral", {"curvStart": piece.k0, "curvEnd": piece.k1})
@@ -61,17 +76,27 @@ def _cubics(plan: PlanCurve) -> Iterator[Element]:
 
     stations, found = cubics(plan.at, ways, breaks_of(plan), TOLERANCE)
     headings = plan.heading(stations).tolist()
-    for s, end, heading, cubic in zip(
-        stations.tolist(), stations[1:].tolist(), headings, found, strict=False
-    ):
+    ends = stations[1:].tolist()
+    last: Element | None = None  # while it is a line, and may grow
+    for s, end, heading, cubic in zip(stations.tolist(), ends, headings, found, strict=False):
         (x, y), ahead, c, d = cubic
         length = end - s
         cu, cv = float(ahead @ c), float(ahead[0] * c[1] - ahead[1] * c[0])
         du, dv = float(ahead @ d), float(ahead[0] * d[1] - ahead[1] * d[0])
         is_line = max(abs(cu), abs(cv)) * length**2 + max(abs(du), abs(dv)) * length**3 < STRAIGHT
-        yield _geometry(s, float(x), float(y), heading, length).extended(
-            Element("line") if is_line else _cubic(cu, cv, du, dv)
-        )
+        if last is not None:
+            if is_line and abs(float(last.attributes["hdg"]) - heading) * length < STRAIGHT:
+                last.attributes = {**last.attributes, "length": end - float(last.attributes["s"])}
+                continue
+            yield last
+            last = None
+        made = _geometry(s, float(x), float(y), heading, length)
+        if is_line:
+            last = made.extended(Element("line"))
+        else:
+            yield made.extended(_cubic(cu, cv, du, dv))
+    if last is not None:
+        yield last
 
 
 def _cubic(cu: float, cv: float, du: float, dv: float) -> Element:
@@ -89,5 +114,5 @@ def breaks_of(plan: PlanCurve) -> Array:
             if s - last > APART and plan.length - s > APART:
                 kept.append(s)
                 last = s
-        return np.r_[0.0, kept, plan.length]
+        return np.array([0.0, *kept, plan.length])
     return np.linspace(0.0, plan.length, max(2, round(plan.length / STEP) + 1))
