@@ -179,12 +179,12 @@ def drips_headers(seconds: float) -> Scene:
     return scene
 
 
-def drops(sent: bytes = b"") -> Scene:
+def drops(sent: bytes = b"", head: bytes = b"HTTP/1.1 200 OK\r\nContent-Length: 5000\r\n\r\n") -> Scene:
     """The connection ends, in the middle of an answer or before it."""
 
     def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
-        if sent:
-            handler.wfile.write(b"HTTP/1.1 200 OK\r\nContent-Length: 5000\r\n\r\n" + sent)
+        if sent or not head.startswith(b"HTTP"):
+            handler.wfile.write(head + sent)
         handler.close_connection = True
         handler.connection.close()
 
