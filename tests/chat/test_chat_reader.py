@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from chat.stub_server import Stub, in_order, says
-from roadgpt.brief import read
+from roadgpt.brief import exactly, read
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.chat import RULES, ChatReader, Plan
 from roadgpt.chat import ChatSettings, Message, Reply, Spent
@@ -60,9 +60,7 @@ def test_a_plan_becomes_the_brief_that_the_rules_read(line: str, told: str) -> N
 def test_what_is_no_plan_goes_back_with_its_reason() -> None:
     part, parrot = reader("dragon x3", "turn x3 x4", "turn x3")
     brief = part.read("three turns")
-    assert (
-        sentence(brief) == sentence(read("three turns in a row", "grammar")) or brief.clauses[0].count.lo == 3
-    )
+    assert brief.clauses[0].count == exactly(3)
     assert len(parrot.asked) == 3
     assert "a plan has no clause 'dragon'" in parrot.asked[1][-1].text
     assert "twice" in parrot.asked[2][-1].text
@@ -129,11 +127,7 @@ def test_any_line_is_a_brief_or_a_sentence(line: str) -> None:
 
 
 def test_it_reads_through_a_server(stub: Stub) -> None:
-    stub.play(
-        *in_order(
-            ['{"plan": "turn x2 links", "unused": []}', json.dumps({"plan": "turn x2 left", "unused": []})]
-        )
-    )
+    stub.play(*in_order([f'{{"plan": "turn x2 {side}", "unused": []}}' for side in ("links", "left")]))
     brief = read("zwei Linkskurven", "chat", chat=ChatSettings(base_url=stub.url, model="m"))
     assert plan(brief) == "turn x2 left"
     assert "no word 'links'" in stub.requests[1].last

@@ -80,7 +80,7 @@ def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
     rows = re.findall(r"^\| `(-[\w-]+)`[^|]*\| (above )?([\d,]+) \| ([\d,]+) \|", text, flags=re.MULTILINE)
     run = app.get_command(click.Context(app), "run")
     assert run is not None
-    assert len(rows) == 7
+    assert len(rows) == 8
 
     def takes(option: str, value: int) -> bool:
         try:
@@ -98,7 +98,10 @@ def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
 
 def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.brief.readers.grammar import MOST_CHARACTERS
+    from roadgpt.chat import strict, talk, wire
+    from roadgpt.chat.providers.openai import MOST_REQUESTS
     from roadgpt.drive import seat
+    from roadgpt.errors import ChatError
     from roadgpt.report.overview import MOST_PAGES, PER_PAGE
     from roadgpt.road.design import MAX_SEGMENTS
     from roadgpt.road.source import LARGEST
@@ -111,11 +114,13 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     seconds = [seat.BEFORE_START, seat.BEFORE_START, seat.ONE_ANSWER, seat.WHOLE_DRIVE]
     said = "; ".join(f"{limit:g}" for limit in seconds)
     counts = [MOST_CHARACTERS, LARGEST, MAX_SEGMENTS, MOST_ROUNDS, GIVE_UP, MOST_PAGES * PER_PAGE]
-    assert found == [*map(str, counts), said]
+    asked = [wire.PATIENCE, wire.LONGEST_WAIT, strict.MOST_CHARACTERS, strict.MOST_DEPTH, MOST_REQUESTS]
+    assert found == [*map(str, counts), said, *(f"{limit:.0f}" for limit in [*asked, talk.MOST_TURNS])]
     guide = (ROOT / "docs" / "how-to" / "own-driver.md").read_text(encoding="utf-8")
     assert re.findall(r"\| (\d+) \|$", guide, re.MULTILINE) == said.split("; ")
     statuses = {int(status) for status in re.findall(r"^\| (\d+) \| [^\d]", text, re.MULTILINE)}
-    assert statuses == {0, 2, 3, cli_app.REFUSED, cli_app.INTERNAL, cli_app.INTERRUPTED, cli_app.NO_READER}
+    stopped = {ChatError.exit_status, cli_app.INTERRUPTED, cli_app.NO_READER}
+    assert statuses == {0, 2, 3, *stopped, cli_app.REFUSED, cli_app.INTERNAL}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
