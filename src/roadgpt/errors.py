@@ -17,6 +17,10 @@ class BriefError(UsageError):
     """A description that is nonsense, contradicts itself or asks for the impossible."""
 
 
+class EditError(UsageError):
+    """A change request that cannot be read, names what is not on the road, or cannot be met."""
+
+
 class DesignError(RoadGPTError):
     """No road could be designed that keeps every promise of the Brief on this map."""
 

@@ -49,6 +49,10 @@ class Target:
     """'A turn': something new, not something that is there."""
     count: int | None = None
     """'Two turns', of new ones."""
+    degrees: float | None = None
+    """'The 90 degree bend'."""
+    is_bare: bool = False
+    """A side without a noun: 'the third left'."""
     words: str = ""
 
     @property

@@ -34,8 +34,8 @@ ORDINALS = {
     10: "tenth zehnte zehnten dixieme decima decimo",
     11: "eleventh", 12: "twelfth", 13: "thirteenth", 14: "fourteenth", 15: "fifteenth",
     -1: "last final letzte letzten letzter letztes dernier derniere ultima ultimo",
-    -2: "penultimate vorletzte vorletzten avant-derniere penultima penultimo | second to last | second last"
-    " | last but one | next to last | one before last",
+    -2: "penultimate vorletzte vorletzten penultima penultimo | avant derniere | avant dernier"
+    " | second to last | second last | last but one | next to last | one before last",
 }  # fmt: skip
 
 # Meaning: phrases, between bars; words between blanks stand alone.
@@ -47,8 +47,8 @@ WORDS: dict[str, str] = {
     " spitzkehren horquilla horquillas tornante tornanti | hairpin bend | hairpin turn | hairpin bends"
     " | hairpin turns | hair pin | epingle | epingles | epingle a cheveux | en epingle | curva de horquilla"
     " | curva a gomito",
-    "u_turn": "uturn | u turn | u - turn | u turns",
-    "s_bend": "s bend | s - bend | s curve | s - curve | s kurve | s - kurve",
+    "u_turn": "uturn | u turn |  u turns",
+    "s_bend": "s bend | s curve | s kurve",
     "chicane": "chicane chicanes schikane chicana",
     "straight": "straight straights straightaway gerade geraden geradeaus recta rectas rettilineo rettilinei"
     " rettifilo | straight bit | straight line | straight section | straight stretch | straight part"
@@ -61,35 +61,36 @@ WORDS: dict[str, str] = {
     " | end of the road | end of road | end of the track",
     "start": "start beginning anfang beginn debut depart inicio comienzo principio inizio | first part"
     " | first section | first bit | first stretch | start of the road | beginning of the road | opening",
-    "it": "it them they this that es sie ihn lo la le les",
+    "it": "it them they this that es sie ihn",
     "radius": "radius rayon radio raggio radii",
     "angle_noun": "angle winkel angulo angolo",
     "length_noun": "length lange longueur longitud lunghezza",
-    "slope_noun": "slope grade gradient incline inclination steigung gefalle neigung pente pendiente pendenza",
+    "slope_noun": "slope grade gradient incline inclination steigung gefalle neigung pente pendiente"
+    " pendenza",
     "side_noun": "side sides direction directions hand seite seiten richtung cote lado lato direzione sens",
     # which of them
     "a": "a an another un une einem ein eine einen eines una uno | one more | an extra | an additional"
     " | a new | eine weitere | eine neue | noch eine | another one | un autre | une autre | otra | otro"
-    " | un'altra | un' | un altro | un'",
-    "the": "the der die das den dem des el los las il gli i l' its their",
+    " | un altra | un altro",
+    "the": "the der die das den dem des el los las il gli i l la le les lo its their",
     "every": "every each all both jede jeden jedes alle allen beide beiden chaque tous toutes todas todos"
     " cada tutte tutti ogni | all the | all of the | each of the | every one of the | both of the"
     " | toutes les | tous les | todas las | todos los | tutte le | tutti i",
     "left": "left links linke linken linker linkes gauche izquierda izquierdo sinistra lefthand leftward"
-    " leftwards lefthander | to the left | left hand | left - hand | on the left | nach links | a gauche"
+    " leftwards lefthander | to the left | left hand | on the left | nach links | a gauche"
     " | a la izquierda | a sinistra",
     "right": "right rechts rechte rechten rechter rechtes droite derecha derecho destra righthand rightward"
-    " rightwards righthander | to the right | right hand | right - hand | on the right | nach rechts"
+    " rightwards righthander | to the right | right hand | on the right | nach rechts"
     " | a droite | a la derecha | a destra",
-    "lefts": "lefts lefthanders | left handers | left - handers",
-    "rights": "rights righthanders | right handers | right - handers",
+    "lefts": "lefts lefthanders | left handers",
+    "rights": "rights righthanders | right handers",
     "left turn": "linkskurve linkskurven",
     "right turn": "rechtskurve rechtskurven",
     "mid": "middle central centre center mittlere mittleren mitte milieu medio mezzo centrale",
     "sharpest": "sharpest tightest hardest scharfste scharfsten engste engsten | most severe"
-    " | plus serre | le plus serre",
+    " | le plus serre | la plus serree",
     "gentlest": "gentlest softest widest easiest sanfteste weiteste weitesten",
-    "longest": "longest langste langsten | plus longue | la plus longue",
+    "longest": "longest langste langsten | la plus longue | le plus long | mas larga de todas",
     "shortest": "shortest kurzeste kurzesten",
     "steepest": "steepest steilste steilsten",
     "flattest": "flattest flachste flachsten",
@@ -101,7 +102,9 @@ WORDS: dict[str, str] = {
     " become becomes",
     "add": "add insert append include attach place hinzu fuge hange einfugen hinzufugen ajoute ajouter"
     " ajoutez insere inserer anade anadir agrega agregar aggiungi aggiungere inserisci | put in"
-    " | bau ein | fuge hinzu | end with | ends with | ending with",
+    " | bau ein | fuge hinzu",
+    "add at_end": "| end with | ends with | ending with | finish with | finishes with",
+    "add at_start": "| start with | starts with | begin with | begins with",
     "remove": "remove delete drop cut erase eliminate scrap omit skip entferne entfernen losche loschen"
     " streiche supprime supprimer enleve enlever retire quita quitar elimina eliminar borra rimuovi togli"
     " cancella eliminare weg | take out | take away | leave out | get rid of | cut out | lass weg",
@@ -117,7 +120,7 @@ WORDS: dict[str, str] = {
     # how
     "sharper": "sharper sharpen harder scharfer | more sharp | more acute | plus prononce | plus prononcee"
     " | mas pronunciada | more pronounced | sharper angle | plus fort | piu accentuata | more severe",
-    "gentler": "gentler softer smoother easier soften ease smooth gentle-er sanfter weicher | more gentle"
+    "gentler": "gentler softer smoother easier soften ease smooth sanfter weicher | more gentle"
     " | less sharp | less tight | less severe | plus doux | plus douce | mas suave | piu dolce"
     " | less pronounced | weniger scharf | moins serre | moins serree | menos cerrada | meno stretta",
     "tighter": "tighter tighten narrower enger | more tight | plus serre | plus serree | plus serres"
@@ -130,7 +133,7 @@ WORDS: dict[str, str] = {
     "longer": "longer lengthen extend stretch prolong elongate verlangere verlangern langer allonge allonger"
     " rallonge alarga alargar prolonga allunga allungare | more long | plus long | plus longue"
     " | plus longues | mas larga | mas largo | mas larga | piu lungo | piu lunga | plus longs",
-    "shorter": "shorter shorten reduce trim kurzer verkurze verkurzen kurze raccourcis raccourcir acorta"
+    "shorter": "shorter shorten trim kurzer verkurze verkurzen kurze raccourcis raccourcir acorta"
     " acortar accorcia accorciare | less long | plus court | plus courte | mas corta | mas corto"
     " | piu corto | piu corta | piu breve",
     "long": "long lang lange langen longue larga largo lunga lungo",
@@ -147,29 +150,29 @@ WORDS: dict[str, str] = {
     " aufwarts ansteigend steigend montee montant montante salita subida ascendente | go up | goes up"
     " | going up | en montee | qui monte | cuesta arriba | in salita | hacia arriba | uphill slope"
     " | bergauf gehen",
-    "down": "down downhill descend descends descending drop-off falling fall falls downward downwards descent"
+    "down": "down downhill descend descends descending falling fall falls downward downwards descent"
     " bergab abwarts abfallend descente descendant descendante bajada discesa descendente | go down"
     " | goes down | going down | en descente | qui descend | cuesta abajo | in discesa | hacia abajo"
     " | bergab gehen",
     "steep": "steep steeply steil raide empinada ripida",
-    "more": "more mehr mas piu plus",
-    "less": "less weniger moins menos meno",
+    "more": "more mehr mas piu plus increase raise enlarge erhohe augmente aumenta",
+    "less": "less weniger moins menos meno reduce decrease lower verringere reduis reduce riduci",
     "much": "much far considerably significantly really lot strongly viel deutlich beaucoup mucho molto"
     " | a lot | a great deal | a good deal | by far | sehr viel",
     "slightly": "slightly somewhat bit little touch tad etwas leicht peu poco leggermente | a bit | a little"
-    " | a touch | a tad | a little bit | ein wenig | ein bisschen | un peu | un poco | un po' | un po",
+    " | a touch | a tad | a little bit | ein wenig | ein bisschen | un peu | un poco | un po",
     # numbers
     "by": "by um",
     "to": "to auf into towards zu",
     "at": "at bei",
-    "of": "of von de del della di du d' vom",
+    "of": "of von de del della di du d vom",
     "with": "with mit avec con having",
     "as": "as so wie que come tan aussi",
     "deg": "degrees degree deg ° grad grados grado gradi degre degres",
     "m": "m metres meters metre meter metros metro metri mt mtr",
     "km": "km kilometres kilometers kilometre kilometer",
     "ft": "ft feet foot",
-    "%": "% percent per-cent prozent pourcent porcento | per cent | pour cent | por ciento | per cento",
+    "%": "% percent prozent pourcent porcento | per cent | pour cent | por ciento | per cento",
     "times": "times mal fois veces volte x",
     "twice": "twice double doubled doppelt doppelte doppelten verdopple doublez doble duplica doppio doppia"
     " raddoppia | two times | deux fois | doble de | il doppio",
@@ -178,30 +181,30 @@ WORDS: dict[str, str] = {
     # where
     "after": "after following behind past nach hinter apres despues dopo | right after | just after"
     " | directly after | despues de | after that",
-    "before": "before preceding vor avant antes prima-di | ahead of | right before | just before | in front of"
+    "before": "before preceding vor avant antes | ahead of | right before | just before | in front of"
     " | antes de | prima della | prima del | prima di",
     "between": "between zwischen entre tra fra | in between",
     "at_end": "| at the end | at the very end | to the end | at end | am ende | am schluss | ans ende"
     " | zum schluss | a la fin | al final | alla fine | on the end | at the finish | onto the end"
     " | in the end | end of the road",
     "at_start": "| at the start | at the beginning | to the start | to the beginning | at the very start"
-    " | am anfang | au debut | al principio | al inicio | all'inizio | at the very beginning"
+    " | am anfang | au debut | al principio | al inicio | all inizio | at the very beginning"
     " | in the beginning | onto the start",
     "at_mid": "| in the middle | in der mitte | au milieu | en el medio | nel mezzo | halfway",
     "on": "in on within im ins inside dans en nella nel sur sulla",
     # between clauses
-    "and": "and und et y e plus & + as-well",
+    "and": "and und et y e & +",
     "then": "then also but dann danach puis ensuite luego poi while whereas aber pero mais ma besides"
     " | and then | and also | as well as | afterwards",
     # that say nothing here
-    "-": "please could can you would like want i we need to-be be is are should must go goes going run runs"
+    "-": "please could can you would like want i we need be is are should must go goes going run runs"
     " just only now so very quite too there here do does me us bitte ich mochte will sein werden wird ist"
     " sind s'il vous plait je veux que soit sea quiero por favor vorrei sia per for from where which who"
-    " one ones number no. nr numero nummer some any more-or-less about around approximately roughly exactly"
+    " one ones number no. nr numero nummer some any about around approximately roughly exactly"
     " ungefahr circa etwa environ current existing new present same thing way road's turn's instead really"
-    " actually maybe perhaps together completely entirely fully totally hey hi ok okay thanks thank again even"
-    " still roadgpt shape section part stretch bit piece segment segments angle's long-er out off other over"
-    " au aux se al alla zur zum im am an auch nur bitte-schon have been get gets got makes making made whole"
+    " actually maybe perhaps together completely entirely fully totally hey hi ok okay thanks thank again"
+    " still roadgpt shape section part piece segment segments angle's out off other over"
+    " au aux se al alla zur zum im am an auch nur have been get gets got makes making made whole"
     " entire ganze ganzen total rather fairly pretty such sort kind my our your was were what that's i'd"
-    " let's it's amount value radius-of additional extra bergwarts sich mir uns dalla dal nello su",
+    " let's it's amount value additional extra bergwarts sich mir uns dalla dal nello su",
 }

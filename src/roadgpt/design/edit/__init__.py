@@ -1,0 +1,124 @@
+"""Edits: changes a Design by words, and leaves alone the rest. Verbs: ``read_request``, ``edit``.
+
+    words --read_request--> Request --pointed--> blocks --ways--> trials --measured, inspected--> Edited
+
+Places are those that a person sees on the finished road (``check.measures``), numbered as they are before the
+edit. Segments that nobody spoke of keep every number; the road as a whole may be moved or turned, so that it
+stays inside the map.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from roadgpt.check.measures import Measures
+from roadgpt.design.edit.anatomy import Blocks, blocks_of
+from roadgpt.design.edit.inserting import ways_to_add, ways_to_remove
+from roadgpt.design.edit.pointing import pointed
+from roadgpt.design.edit.reading import read_request
+from roadgpt.design.edit.request import Change, Request
+from roadgpt.design.edit.steps import FlipAll
+from roadgpt.design.edit.telling import sentences
+from roadgpt.design.edit.trying import tried
+from roadgpt.design.edit.ways import Way, ways_to_change
+from roadgpt.errors import EditError
+from roadgpt.road import Design, Geometry, World
+
+MOST_CHANGES = 12
+
+
+class Edited(NamedTuple):
+    """The changed Design, and what is different about it, in sentences."""
+
+    design: Design
+    changes: tuple[str, ...]
+    unused: tuple[str, ...] = ()
+    """Words that were not understood."""
+
+
+def edit(design: Design, words: str | Request, world: World, geometry: Geometry = "arcs") -> Edited:
+    """The Design as the words want it.
+
+    Args:
+        design: as it is; it is not changed itself.
+        words: a change request, or what was read from it.
+        world: map and limits.
+        geometry: what the Design becomes.
+
+    Raises:
+        EditError: the words cannot be read, name what is not on the road, or ask for what no valid road can
+            be; one sentence says which.
+    """
+    request = words if isinstance(words, Request) else read_request(words)
+    if len(request.changes) > MOST_CHANGES:
+        raise EditError(
+            f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
+        )
+    blocks, found = blocks_of(design, geometry)
+    rows: list[tuple[Change, tuple[Way, ...]]] = []
+    idle: list[Change] = []
+    for number, change in enumerate(_folded(request.changes), 1):
+        ways = _ways(change, blocks, found, world, number)
+        if ways:
+            rows.append((change, ways))
+        else:
+            idle.append(change)
+    if not rows:
+        raise EditError(f"nothing is to be changed: '{idle[0].words}' is so already")
+    result = tried(design, blocks, [ways for _, ways in rows], world, geometry)
+    if result.made is None:
+        said = " and ".join(dict.fromkeys(f"'{change.words}'" for change, _ in rows))
+        raise EditError(f"{said} cannot be done on this road: {result.objection}; ask for less, or elsewhere")
+    told = sentences(design, blocks, found, result.made)
+    told += tuple(f"'{change.words}' was so already" for change in idle)
+    return Edited(result.made.design, told, request.unused)
+
+
+def _ways(change: Change, blocks: Blocks, found: Measures, world: World, number: int) -> tuple[Way, ...]:
+    if change.what == "mirror":
+        if not any(block.kind == "turn" for block in blocks):
+            raise EditError("the road has no turn, so its mirror image is the same")
+        return ((FlipAll(),),)
+    if change.what == "add":
+        return ways_to_add(change, blocks, world, number)
+    assert change.target is not None
+    meant = pointed(change.target, blocks, change.what)
+    if change.what == "remove":
+        return ways_to_remove(change, meant, blocks)
+    return ways_to_change(change, meant, found, world)
+
+
+def _folded(changes: tuple[Change, ...]) -> tuple[Change, ...]:
+    """What is said of a new turn is a part of its addition: 'add a left turn, downhill at 5 %'."""
+    out: list[Change] = []
+    for change in changes:
+        is_of_new = change.target is not None and change.target.indefinite and change.what != "add"
+        last = next((i for i in reversed(range(len(out))) if out[i].what == "add"), None)
+        if not is_of_new:
+            out.append(change)
+        elif last is None:
+            raise EditError(f"which one is meant in '{change.words}' is not said; say: the second turn")
+        else:
+            out[last] = _with(out[last], change)
+    return tuple(out)
+
+
+def _with(added: Change, more: Change) -> Change:
+    match more.what:
+        case "slope":
+            grade = None if more.to is None else -abs(more.to) if more.way == "down" else more.to
+            return replace(added, way=more.way or added.way, grade=grade)
+        case "angle":
+            return replace(added, degrees=more.to or added.degrees)
+        case "radius":
+            return replace(added, radius=more.to or added.radius)
+        case "length":
+            return replace(added, length=more.to or added.length)
+        case "side":
+            return replace(added, side=more.side or added.side)
+        case "shape":
+            return replace(added, kind=more.kind or added.kind, sharpness=more.sharpness or added.sharpness)
+        case _:
+            return added
+
+
+__all__ = ["Edited", "Request", "edit", "read_request"]

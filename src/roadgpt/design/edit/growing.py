@@ -1,0 +1,118 @@
+"""Another length of the whole road: its straights first, at its ends alone, or everything alike."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from roadgpt.check.measures import Measures
+from roadgpt.design.edit.anatomy import Block, Blocks
+from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.steps import Aims, Bend, Goal, Step, Stretch
+from roadgpt.errors import EditError
+from roadgpt.road import World
+
+LONGER, SHORTER = (1.3, 1.2, 1.45, 1.12), (0.75, 0.82, 0.65, 0.9)
+KEPT = 17.5  # m of a straight that others are shortened to
+OVER_LEAST_RADIUS = 1.055
+SLACK = 0.02  # of the length of a road
+
+
+@dataclass(frozen=True, slots=True)
+class WholeLength:
+    """No change, but the whole road must have a length, metres."""
+
+    length: float
+    slack: float
+
+    @property
+    def goals(self) -> tuple[Goal, ...]:
+        """Of the whole road, whose name is empty."""
+        return (Goal("", "length", self.length, self.length - self.slack, self.length + self.slack),)
+
+    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+        """The blocks as they are."""
+        return blocks
+
+
+def ways_to_stretch_the_road(
+    change: Change, blocks: Sequence[Block], found: Measures, world: World
+) -> tuple[tuple[Step, ...], ...]:
+    """All ways, the preferred one first.
+
+    Raises:
+        EditError: so short a road is none.
+    """
+    own = sum(b.length for b in blocks)
+    if change.to is not None:
+        lengths = [change.to]
+    elif change.by is not None:
+        lengths = [own + change.more * change.by]
+    elif change.times is not None:
+        lengths = [own * change.times]
+    else:
+        shares = LONGER if change.more > 0 else SHORTER
+        lengths = [own * (1 + (share - 1) * change.dose) for share in shares]
+    if lengths[0] < world.min_length:
+        raise EditError(f"a road of {lengths[0]:.0f} m is too short; ask for {world.min_length:g} m or more")
+    out: list[tuple[Step, ...]] = []
+    for length in lengths:
+        slack = max(2.0, SLACK * length)
+        out += [(*way, WholeLength(length, slack)) for way in _ways(blocks, length - own, world) if way]
+    return tuple(out)
+
+
+def _ways(blocks: Sequence[Block], more: float, world: World) -> list[tuple[Step, ...]]:
+    gaps = [block for block in blocks if block.kind == "gap" and block.seen is not None]
+    out = []
+    if gaps:
+        out.append(_straights(gaps, more))
+        if more > 0:
+            out += [_straights(gaps[-1:], more), _straights(gaps[:1], more)]
+            out += [_straights([gap], more) for gap in gaps[1:-1]]
+    out.append(_everything(blocks, more, world))
+    return out
+
+
+def _straights(gaps: Sequence[Block], more: float) -> tuple[Step, ...]:
+    """All of them in proportion; none where they would get too short."""
+    lengths = [gap.seen.length if gap.seen else gap.length for gap in gaps]
+    if more >= 0:
+        return tuple(
+            Stretch(gap, length + more * length / sum(lengths), 3.0)
+            for gap, length in zip(gaps, lengths, strict=True)
+        )
+    spare = [max(length - KEPT, 0.0) for length in lengths]
+    if sum(spare) < -more:
+        return ()
+    return tuple(
+        Stretch(gap, length + more * own / sum(spare), 3.0)
+        for gap, length, own in zip(gaps, lengths, spare, strict=True)
+        if own
+    )
+
+
+def _everything(blocks: Sequence[Block], more: float, world: World) -> tuple[Step, ...]:
+    """Turns with other radii, as far as they may, and the rest on straights."""
+    turns = [block for block in blocks if block.kind == "turn" and block.seen is not None]
+    gaps = [block for block in blocks if block.kind == "gap" and block.seen is not None]
+    share = 1 + more / max(sum(block.length for block in blocks), 1.0)
+    least = world.min_radius * OVER_LEAST_RADIUS
+    out: list[Step] = []
+    for turn in turns:
+        assert turn.seen is not None
+        wider = max(share, least / turn.seen.radius) if share < 1 else share
+        if abs(wider - 1) < 0.02 or (share < 1) != (wider < 1):
+            continue
+        out.append(Bend(turn, None, turn.seen.radius * wider, slack=(2.0, 0.15, 0.1)))
+        more -= turn.length * (wider - 1)
+    if gaps and abs(more) > 1:
+        rest = _straights(gaps, more)
+        if not rest:
+            spare = sum(gap.seen.length - 12.0 for gap in gaps if gap.seen and gap.seen.length > 12)
+            share = max(1 + more / max(spare, 1.0), 0.0)
+            rest = tuple(
+                Stretch(gap, 12.0 + (gap.seen.length - 12.0) * share, 3.0)
+                for gap in gaps
+                if gap.seen and gap.seen.length > 12
+            )
+        out += rest
+    return tuple(out)

@@ -1,0 +1,335 @@
+"""Ways to add turns and straights, and to take them away; what stands around them keeps every number."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import radians, sqrt
+
+from roadgpt.brief.model import Side
+from roadgpt.design.edit.anatomy import Block, Blocks
+from roadgpt.design.edit.pointing import pointed
+from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.steps import OTHER, Become, Goal, Insert, Step, Stretch, turn_segments
+from roadgpt.design.edit.ways import Way, straight
+from roadgpt.errors import EditError
+from roadgpt.road import Segment, World
+
+SEPARATE = 18.0  # m between turns of one hand, so that they are seen as two
+JOINT = 8.0  # m between turns of either hand
+LEAD = 17.0  # m before the first turn and behind the last
+NEW_STRAIGHT = 40.0  # m of one whose length was not said
+HIDDEN = 9.0  # m, measured: turns of one hand with so much between them are two, but no straight is seen
+OVER_LEAST_RADIUS = 1.055
+SPARE = ((0.0, 0.0), (20.0, 0.0), (0.0, 20.0), (25.0, 25.0), (45.0, 0.0), (0.0, 45.0))
+"""Metres of straight road before and behind a new turn, besides what it needs: where it would meet others."""
+RAMP_SHARE = 0.22  # of the arc
+
+# Degrees and radii, metres, that are tried.
+ANY = ((60, 25), (50, 22), (45, 32), (75, 22), (90, 20), (40, 20), (35, 28), (110, 18), (30, 40))
+KINDS = {
+    "hairpin": ((168, 18), (160, 16.5), (176, 21), (152, 17), (146, 19)),
+    "u_turn": ((178, 18), (170, 16.5), (184, 21), (160, 17)),
+    "s_bend": ((50, 25), (40, 22), (60, 20), (35, 30)),
+    "chicane": ((45, 20), (40, 18), (55, 18), (35, 22)),
+}
+SHARPNESS = {
+    "sharp": ((80, 20), (60, 18), (95, 17.5), (50, 20), (42, 21)),
+    "gentle": ((40, 55), (30, 52), (25, 50), (50, 48), (60, 46)),
+    "sweeping": ((40, 75), (30, 72), (25, 70), (55, 68)),
+}
+
+
+def ways_to_add(change: Change, blocks: Blocks, world: World, number: int) -> tuple[Way, ...]:
+    """All ways to add what a change asks for.
+
+    Args:
+        change: what, and where.
+        blocks: of the road before the edit.
+        world: limits.
+        number: of the change, for the names of new blocks.
+
+    Raises:
+        EditError: the place does not exist, or no turn can be like that.
+    """
+    before, splits = _place(change, blocks)
+    if change.target is not None and change.target.noun == "straight":
+        return _straight_ways(change, blocks, before, splits, number)
+    out: list[Way] = []
+    # first all places with the first measures, then all with the second, ...
+    for spare in SPARE:
+        for measures in _measures(change, world):
+            for sides in _sides(change, blocks, before):
+                for split in splits:
+                    out.append((_turns(change, blocks, before, split, sides, measures, spare, number),))
+    return tuple(out)
+
+
+def _place(change: Change, blocks: Blocks) -> tuple[str, list[tuple[str, int]]]:
+    """The block to stand before (empty: none), and gaps that may be split instead, with their segment."""
+    place = change.place
+    how = place.how if place else "end"
+    if how == "end":
+        return "", [("", 0)]
+    if how == "start":
+        return blocks[0].name, [("", 0)]
+    if how == "middle" or place is None or place.target is None:
+        gap, index = _middle(blocks)
+        return gap.name, [(gap.name, index)]
+    noun = place.target.noun or "turn"
+    mark = pointed(replace(place.target, noun=noun), blocks, "length")
+    if how == "on":
+        if mark[0].kind == "turn":
+            raise EditError("a turn cannot be added within a turn; say: after the second turn")
+        return mark[0].name, [(mark[0].name, 0)]
+    if how == "before" and mark[0].name != "":
+        return mark[0].name, [("", 0)]
+    at = blocks.index(mark[-1])
+    after = blocks[at + 1].name if at + 1 < len(blocks) else ""
+    if how == "between":
+        splits: list[tuple[str, int]] = []
+        if place.other is not None:
+            stop = blocks.index(
+                pointed(replace(place.other, noun=place.other.noun or "turn"), blocks, "length")[0]
+            )
+            if stop < at:
+                raise EditError(
+                    "the two places stand the other way round on the road; name the first one first"
+                )
+            if stop == at:
+                raise EditError("between a turn and itself is no place; name two turns")
+        gap = blocks[at + 1] if at + 1 < len(blocks) else blocks[at]
+        for index in range(1, len(gap.segments)):
+            left = sum(s.distance for s in gap.segments[:index])
+            if min(left, gap.length - left) >= SEPARATE:
+                splits.append((gap.name, index))
+        return after, [*splits[:1], ("", 0)]
+    return after, [("", 0)]
+
+
+def _middle(blocks: Blocks) -> tuple[Block, int]:
+    """The gap nearest to the road's middle, and its nearest joint; 0: halve its longest segment."""
+    whole, at = sum(block.length for block in blocks), 0.0
+    best, found = float("inf"), (blocks[0], 0)
+    for block in blocks:
+        if block.kind == "gap" and block.segments:
+            joint = at
+            for index, segment in enumerate(block.segments):
+                if index and abs(joint - whole / 2) < best:
+                    best, found = abs(joint - whole / 2), (block, index)
+                joint += segment.distance
+            centre = at + block.length / 2
+            if abs(centre - whole / 2) < best:
+                best, found = abs(centre - whole / 2), (block, 0)
+        at += block.length
+    return found
+
+
+def _measures(change: Change, world: World) -> list[tuple[float, float]]:
+    pairs: Sequence[tuple[float, float]] = ANY
+    if change.kind in KINDS:
+        pairs = KINDS[change.kind]
+    elif change.sharpness in SHARPNESS:
+        pairs = SHARPNESS[change.sharpness]
+    least = world.min_radius * OVER_LEAST_RADIUS
+    if change.radius is not None and change.radius < world.min_radius:
+        raise EditError(
+            f"a radius of {change.radius:g} m is tighter than the {world.min_radius:.1f} m that the rules "
+            f"allow; ask for {least:.0f} m or more"
+        )
+    if change.degrees is not None and not 11 <= change.degrees <= 240:
+        raise EditError(f"a turn of {change.degrees:g} degrees cannot be added; ask for 15 to 210 degrees")
+    out: list[tuple[float, float]] = []
+    for degrees, radius in pairs:
+        pair = (change.degrees or degrees, max(change.radius or radius, least))
+        if pair not in out:
+            out.append(pair)
+    return out
+
+
+def _sides(change: Change, blocks: Blocks, before: str) -> list[list[Side]]:
+    """Sides of the new turns: as said, else away from the turn before."""
+    count = change.count * (2 if change.kind in ("s_bend", "chicane") else 1)
+    alternates = change.kind in ("s_bend", "chicane") or (count > 1 and change.side is None)
+    firsts: list[Side] = [change.side] if change.side else _away(blocks, before)
+    out = []
+    for side in firsts:
+        row: list[Side] = [side]
+        while len(row) < count:
+            row.append(OTHER[row[-1]] if alternates else side)
+        out.append(row)
+    return out
+
+
+def _away(blocks: Blocks, before: str) -> list[Side]:
+    names = [block.name for block in blocks]
+    at = names.index(before) if before else len(blocks)
+    last = next((b.side for b in reversed(blocks[:at]) if b.kind == "turn"), None) or "right"
+    return [OTHER[last], "left" if last == "left" else "right"]
+
+
+def _turns(
+    change: Change,
+    blocks: Blocks,
+    before: str,
+    split: tuple[str, int],
+    sides: Sequence[Side],
+    measures: tuple[float, float],
+    spare: tuple[float, float],
+    number: int,
+) -> Step:
+    names = [block.name for block in blocks]
+    at = names.index(before) if before else len(blocks)
+    gap_before, turn_before = _behind(blocks[:at])
+    gap_after, turn_after = _behind(tuple(reversed(blocks[at:])))
+    if split[0]:
+        own = blocks[at].segments
+        index = split[1]
+        first = sum(s.distance for s in own[:index]) if index else blocks[at].length / 2
+        gap_before, gap_after = gap_before + first, gap_after - first
+    incline = _incline(blocks, at)
+    new: list[Block] = []
+    goals: list[Goal] = []
+    lead = _lead(turn_before, sides[0], gap_before) + spare[0]
+    if lead:
+        new.append(_gap(f"new {number} lead", lead, incline))
+    degrees, radius = measures
+    ramp = min(max(RAMP_SHARE * radius * radians(degrees), 3.0), 12.0)
+    for i, side in enumerate(sides):
+        if i:
+            new.append(_gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
+        name = f"new {number} turn {i + 1}"
+        segments = turn_segments(degrees, 1 if side == "left" else -1, radius, ramp, incline)
+        new.append(Block(name, "turn", segments, side))
+        goals += _goals(change, name, degrees, radius)
+    tail = _lead(turn_after, sides[-1], gap_after) + spare[1]
+    if tail:
+        new.append(_gap(f"new {number} tail", tail, incline))
+    return Insert(before, tuple(new), tuple(goals), *split)
+
+
+def _goals(change: Change, name: str, degrees: float, radius: float) -> list[Goal]:
+    slack = 1.5 if change.degrees is not None else 4.0
+    out = [Goal(name, "degrees", degrees, degrees - slack, degrees + slack)]
+    if change.radius is not None or change.sharpness or change.kind:
+        high = radius * (1.05 if change.radius is not None else 1.3)
+        low = radius * (0.95 if change.radius is not None else 0.88)
+        if change.sharpness == "sharp":
+            high = min(high, 29.0)
+        out.append(Goal(name, "radius", radius, low, high))
+    if change.grade is not None:
+        out.append(Goal(name, "grade", change.grade, change.grade - 0.6, change.grade + 0.6))
+    elif change.way:
+        low, aim, high = {"up": (3.0, 5.0, 12.0), "down": (-12.0, -5.0, -3.0), "flat": (-0.8, 0.0, 0.8)}[
+            change.way
+        ]
+        out.append(Goal(name, "grade", aim, low, high))
+    return out
+
+
+def _behind(blocks: Blocks) -> tuple[float, Block | None]:
+    """Metres since the last turn, and that turn."""
+    metres = 0.0
+    for block in reversed(blocks):
+        if block.kind == "turn":
+            return metres, block
+        metres += block.length
+    return metres, None
+
+
+def _lead(turn: Block | None, side: Side, gap: float) -> float:
+    """Metres that are missing between a turn (None: an end of the road) and the next of that side."""
+    needed = LEAD if turn is None else SEPARATE if turn.side == side else JOINT
+    return round(needed - gap, 1) if gap < needed - 0.5 else 0.0
+
+
+def _gap(name: str, length: float, incline: float) -> Block:
+    return Block(name, "gap", (straight(length, incline),))
+
+
+def _incline(blocks: Blocks, at: int) -> float:
+    """Percent, of what stands next to a place."""
+    before = [s for block in blocks[:at] for s in block.segments]
+    after = [s for block in blocks[at:] for s in block.segments]
+    return before[-1].incline if before else after[0].incline
+
+
+def _straight_ways(
+    change: Change, blocks: Blocks, before: str, splits: Sequence[tuple[str, int]], number: int
+) -> tuple[Way, ...]:
+    names = [block.name for block in blocks]
+    at = names.index(before) if before else len(blocks)
+    lengths = [change.length] if change.length is not None else [NEW_STRAIGHT, 30.0, 60.0, 22.0]
+    if lengths[0] < 10:
+        raise EditError(f"a straight of {lengths[0]:g} m is not seen as one; ask for 10 m or more")
+    incline = _incline(blocks, at)
+    if change.grade is not None:
+        incline = change.grade
+    elif change.way:
+        incline = {"up": 5.0, "down": -5.0, "flat": 0.0}[change.way]
+    out = []
+    for split in splits:
+        for length in lengths:
+            name = f"new {number} straight"
+            out.append((Insert(before, (_gap(name, length + 2.0, incline),), (), *split),))
+    return tuple(out)
+
+
+def ways_to_remove(change: Change, gone: Sequence[Block], blocks: Blocks) -> tuple[Way, ...]:
+    """All ways to take turns or straights away: nothing, or a straight, in their place."""
+    if len(gone) == len([b for b in blocks if b.segments]):
+        raise EditError("then no road would be left; remove fewer")
+    fillers = (0.0, SEPARATE, 1.0, 45.0)
+    out: list[Way] = []
+    for filler in fillers:
+        steps: list[Step] = []
+        for block in gone:
+            steps.append(_without(block, blocks, filler))
+        out.append(tuple(steps))
+    return tuple(out)
+
+
+def _without(block: Block, blocks: Blocks, filler: float) -> Step:
+    at = blocks.index(block)
+    if block.kind == "gap":
+        bends = tuple(s for s in block.segments if s.turn_degrees)
+        sides = [b.side for b in (*blocks[max(at - 1, 0) : at], *blocks[at + 1 : at + 2]) if b.kind == "turn"]
+        if len(sides) == 2 and sides[0] == sides[1]:
+            return Stretch(block, HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), 0.6)
+        return Become(block, bends)
+    length = {0.0: 0.0, 1.0: _chord(block)}.get(filler, filler)
+    kept: tuple[Segment, ...] = (straight(length, block.incline),) if length else ()
+    return Become(block, kept)
+
+
+def _chord(block: Block) -> float:
+    seen = block.seen
+    assert seen is not None
+    return max(0.7 * block.length, sqrt(2) * min(seen.radius, 60.0))
+
+
+def with_room(blocks: Blocks, before: Blocks) -> Blocks:
+    """Straights between new neighbours of one hand, so that they are not seen as one turn.
+
+    Turns that were neighbours before, on the same sides, are two already.
+    """
+    known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
+    out: list[Block] = []
+    last: Block | None = None
+    metres = 0.0
+    for block in blocks:
+        if block.kind == "turn":
+            is_new = last is not None and last.side == block.side and _pair(last, block) not in known
+            if is_new and metres < SEPARATE - 2:
+                out.append(_gap(f"room before {block.name}", round(SEPARATE - metres, 1), block.incline))
+            last, metres = block, 0.0
+        else:
+            metres += block.length
+        out.append(block)
+    return tuple(out)
+
+
+def _pair(one: Block, other: Block) -> tuple[str, Side | None, str, Side | None]:
+    return one.name, one.side, other.name, other.side
+
+
+__all__ = ["ways_to_add", "ways_to_remove", "with_room"]

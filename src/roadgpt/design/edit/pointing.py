@@ -1,0 +1,208 @@
+"""Finds the blocks of a road that a name means: 'the second left turn', 'the straight after it'."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from roadgpt.brief.words import KINDS
+from roadgpt.check.measures import way
+from roadgpt.design.edit.anatomy import Block, Blocks
+from roadgpt.design.edit.request import Place, Target, What
+from roadgpt.errors import EditError
+
+LONG, SHORT = 60.0, 30.0  # m: brief.words
+OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "straighten"})
+KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
+
+
+def pointed(target: Target, blocks: Blocks, what: What) -> list[Block]:
+    """The blocks that are meant, in driving order.
+
+    Args:
+        target: as it was read.
+        blocks: of the road as it is before the edit.
+        what: is to be changed; a name without a noun, and the ends of a road, depend on it.
+
+    Raises:
+        EditError: there is none such, or there are several and one was meant.
+    """
+    match target.noun:
+        case "end" | "start":
+            return [_end(blocks, what, last=target.noun == "end")]
+        case "road":
+            return _road(target, blocks, what)
+        case "straight":
+            return _chosen(target, _among(target, straights(blocks), blocks), "straight")
+        case _:
+            found = turns(blocks)
+            if target.noun is None and what == "length" and not target.side:
+                return _chosen(target, _among(target, found or straights(blocks), blocks), "turn")
+            return _chosen(target, _among(target, found, blocks), "turn")
+
+
+def turns(blocks: Blocks) -> list[Block]:
+    """All turns."""
+    return [block for block in blocks if block.kind == "turn"]
+
+
+def straights(blocks: Blocks) -> list[Block]:
+    """All straights that are seen."""
+    return [block for block in blocks if block.kind == "gap" and block.seen is not None]
+
+
+def _road(target: Target, blocks: Blocks, what: What) -> list[Block]:
+    found = list(blocks)
+    place = target.place
+    if place and place.target and place.how in ("after", "before", "between"):
+        marks = [blocks.index(b) for b in pointed(_single(place.target), blocks, what)]
+        if place.how == "after":
+            found = found[marks[-1] + 1 :]
+        elif place.how == "before":
+            found = found[: marks[0]]
+        elif place.other:
+            stop = blocks.index(pointed(_single(place.other), blocks, what)[0])
+            found = found[marks[-1] + 1 : stop]
+    if what in OF_TURNS:
+        found = [block for block in found if block.kind == "turn"]
+    return [block for block in found if block.segments]
+
+
+def _end(blocks: Blocks, what: What, last: bool) -> Block:
+    if what in OF_TURNS:
+        found = turns(blocks)
+        if not found:
+            raise EditError("there is no turn on this road; add one: add a left turn at the end")
+        return found[-1 if last else 0]
+    seen = [block for block in blocks if block.seen is not None]
+    if not seen:
+        return max(blocks, key=lambda block: block.length)
+    return seen[-1 if last else 0]
+
+
+def _single(target: Target) -> Target:
+    return replace(target, place=None) if target.noun == "road" else target
+
+
+def _among(target: Target, found: Sequence[Block], blocks: Blocks) -> list[Block]:
+    """Those that are as they were said to be, and where."""
+    out = [block for block in found if _fits(target, block)]
+    place = target.place
+    if place and place.target:
+        out = _placed(place, out, blocks, many=target.every or bool(target.numbers))
+    if target.but:
+        but = replace(target.but, noun=target.but.noun or target.noun)
+        gone = {block.name for block in pointed(but, blocks, "length")}
+        out = [block for block in out if block.name not in gone]
+    return out
+
+
+def _fits(target: Target, block: Block) -> bool:
+    seen = block.seen
+    if seen is None:
+        return False
+    if target.side and block.side != target.side:
+        return False
+    if target.way and way(seen.grade) != target.way:
+        return False
+    if target.size and not (seen.length >= LONG if target.size == "long" else seen.length <= SHORT):
+        return False
+    if target.degrees is not None and abs(seen.degrees - target.degrees) > 10:
+        return False
+    if target.sharpness == "sharp" and seen.radius > 30:
+        return False
+    if target.sharpness in ("gentle", "sweeping") and seen.radius < 40:
+        return False
+    if target.kind in ("hairpin", "u_turn"):
+        meaning = KINDS[target.kind]
+        return meaning.degrees is not None and seen.degrees in meaning.degrees
+    return True
+
+
+def _placed(place: Place, found: Sequence[Block], blocks: Blocks, many: bool) -> list[Block]:
+    assert place.target is not None
+    at = {block.name: index for index, block in enumerate(blocks)}
+    marks = [at[block.name] for block in pointed(_named(place.target), blocks, "length")]
+    if place.how == "after":
+        out = [block for block in found if at[block.name] > marks[-1]]
+        return out if many else out[:1]
+    if place.how == "before":
+        out = [block for block in found if at[block.name] < marks[0]]
+        return out if many else out[-1:]
+    if place.how == "between" and place.other:
+        stop = at[pointed(_named(place.other), blocks, "length")[0].name]
+        low, high = min(marks[-1], stop), max(marks[-1], stop)
+        return [block for block in found if low < at[block.name] < high]
+    return [block for block in found if at[block.name] in marks]
+
+
+def _named(target: Target) -> Target:
+    return replace(target, noun="turn") if target.noun is None else target
+
+
+def _chosen(target: Target, found: Sequence[Block], noun: str) -> list[Block]:
+    """By number, by superlative, or all; one alone where one was meant."""
+    told = _told(target, noun)
+    if not found:
+        raise EditError(f"there is no {told} on this road")
+    if target.most:
+        measure, sign = target.most
+        return [max(found, key=lambda block: sign * _measure(block, measure))]
+    if target.middle:
+        if len(found) % 2 == 0:
+            n = len(found)
+            raise EditError(
+                f"of {n} {noun}s none is in the middle; say its number: the {_ordinal(n // 2)} {noun}"
+            )
+        return [found[len(found) // 2]]
+    if target.numbers:
+        out = []
+        for number in target.numbers:
+            index = number - 1 if number > 0 else len(found) + number
+            if not 0 <= index < len(found):
+                raise EditError(_missing(number, len(found), told))
+            out.append(found[index])
+        return [block for block in found if block in out]
+    if len(found) > 1 and not target.every:
+        names = " and ".join(("the " + _ordinal(n)) for n in range(1, min(len(found), 2) + 1))
+        raise EditError(
+            f"'{target.words}' could be any of {len(found)}; say which ({names}, ...), or: every {told}"
+        )
+    return list(found)
+
+
+def _missing(number: int, count: int, told: str) -> str:
+    what = f"{_ordinal(number)} {told}" if number > 0 else f"{_ordinal(-number)} {told} from the end"
+    return (
+        f"there is no {what}; the road has {count} such"
+        if count != 1
+        else f"there is no {what}; the road has one"
+    )
+
+
+def _measure(block: Block, measure: str) -> float:
+    seen = block.seen
+    assert seen is not None
+    if measure == "sharp":
+        return -seen.radius + seen.degrees / 1000 if block.kind == "turn" else 0.0
+    return seen.length if measure == "long" else abs(seen.grade)
+
+
+def _told(target: Target, noun: str) -> str:
+    words = [
+        target.side or "",
+        {"up": "uphill", "down": "downhill", "flat": "level"}.get(target.way or "", ""),
+    ]
+    words.append(target.sharpness or target.size or "")
+    if target.degrees is not None:
+        words.append(f"{target.degrees:g} degree")
+    words.append(KIND_NAMES.get(target.kind or "", noun))
+    where = ""
+    if target.place and target.place.target:
+        where = f" {target.place.how} {target.place.target.words}"
+    return " ".join(word for word in words if word) + where
+
+
+NAMES = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"]
+
+
+def _ordinal(number: int) -> str:
+    return NAMES[number - 1] if 1 <= number <= len(NAMES) else f"{number}th"

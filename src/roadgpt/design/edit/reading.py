@@ -1,0 +1,185 @@
+"""Reads change requests by rules: words -> Request. Verb: ``read_request``.
+
+The words are cut into clauses at commas and at 'and'. Each clause names a place and what is to be different
+there; what it leaves out is taken from the clause before, or from the one behind: 'make the first and the
+last turn sharper', 'make it longer, too'.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from roadgpt.design.edit.lexing import UNKNOWN, Lexeme, lexemes
+from roadgpt.design.edit.naming import NOUNS, PLACES, named, place_at
+from roadgpt.design.edit.request import Change, Place, Request, Target
+from roadgpt.design.edit.wording import wanted
+from roadgpt.errors import EditError
+
+MOST_CHARACTERS = 2000
+SEPARATORS = {"comma", "and", "then", "stop"}
+AT = {"at_start": "start", "at_end": "end", "at_mid": "middle"}
+ADVICE = "say what is to be different where, for example: make the second turn sharper, and the end downhill"
+
+
+@dataclass
+class Clause:
+    """What was found in one clause."""
+
+    targets: list[Target] = field(default_factory=list)
+    new: list[Target] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)
+    row: list[Lexeme] = field(default_factory=list)
+    """What is left: verbs, comparatives and amounts."""
+    unknown: list[str] = field(default_factory=list)
+    words: str = ""
+
+    @property
+    def names(self) -> set[str]:
+        """Of all meanings that are left."""
+        return {lexeme.name for lexeme in self.row}
+
+    @property
+    def is_action(self) -> bool:
+        """Does it say what is to be done?"""
+        return bool(self.new) or any(x.name not in ("make", "with", "of", "at", "as", "to", "by", "a",
+                                                    "the", "on") for x in self.row)  # fmt: skip
+
+
+def read_request(words: str) -> Request:
+    """What a change request asks for.
+
+    Raises:
+        EditError: it is empty, too long, or asks for no change that is known.
+    """
+    if not words.strip():
+        raise EditError(f"no change was asked for; {ADVICE}")
+    if len(words) > MOST_CHARACTERS:
+        raise EditError(
+            f"a change request of {len(words)} characters is too long; use {MOST_CHARACTERS} or less"
+        )
+    row = lexemes(words)
+    refused = next((x.text for x in row if x.name == "not"), None)
+    if refused:
+        raise EditError(f"'{refused}' is not understood in a change request; {ADVICE}")
+    clauses = [_clause(part) for part in _parts(row)]
+    clauses = [clause for clause in clauses if clause.words]
+    changes = _changes(clauses)
+    unused = tuple(word for clause in clauses for word in clause.unknown)
+    if not changes:
+        told = f"'{_short(words)}' is no change of a road that I know"
+        raise EditError(f"{told}; {ADVICE}")
+    return Request(words, tuple(changes), unused)
+
+
+def _short(words: str) -> str:
+    plain = " ".join(words.split())
+    return plain if len(plain) <= 60 else f"{plain[:59]}…"
+
+
+def _parts(row: Sequence[Lexeme]) -> list[list[Lexeme]]:
+    """The clauses; an 'and' within a name of places cuts nothing."""
+    out: list[list[Lexeme]] = [[]]
+    at = 0
+    while at < len(row):
+        lexeme = row[at]
+        if lexeme.name in SEPARATORS:
+            out.append([])
+            at += 1
+            continue
+        stop = at + 1
+        found = None
+        if lexeme.name in PLACES:
+            stop_, place = place_at(row, at)
+            stop = stop_ if place else stop
+        else:
+            found = named(row, at)
+            stop = found.stop if found else stop
+        out[-1] += row[at:stop]
+        at = stop
+    return [part for part in out if part]
+
+
+def _clause(row: Sequence[Lexeme]) -> Clause:
+    out = Clause(words=" ".join(x.text for x in row))
+    at = 0
+    while at < len(row):
+        lexeme = row[at]
+        if lexeme.name == UNKNOWN:
+            out.unknown.append(lexeme.text)
+            at += 1
+            continue
+        if lexeme.name in AT:
+            how: Any = AT[lexeme.name]
+            out.places.append(Place(how))
+            at += 1
+            continue
+        if lexeme.name == "turn" and at == 0 and len(row) > 1 and _is_verb(row):
+            at += 1
+            continue
+        if lexeme.name in PLACES:
+            stop, place = place_at(row, at)
+            if place:
+                out.places.append(place)
+                at = stop
+                continue
+        found = named(row, at)
+        if found:
+            (out.new if found.target.is_new else out.targets).append(found.target)
+            at = found.stop
+            continue
+        out.row.append(lexeme)
+        at += 1
+    return out
+
+
+def _is_verb(row: Sequence[Lexeme]) -> bool:
+    """'Turn the second bend left': the first word is what to do."""
+    return row[1].name in ("the", "every", "ord", "it") and any(x.name in NOUNS for x in row[1:])
+
+
+def _changes(clauses: Sequence[Clause]) -> list[Change]:
+    out: list[Change] = []
+    before: tuple[Target, ...] = ()
+    waiting: list[Clause] = []
+    last: Clause | None = None
+    for number, clause in enumerate(clauses):
+        if not clause.is_action:
+            if not clause.targets and not clause.places:
+                if clause.unknown:
+                    _not_understood(clause)
+                continue
+            is_last = not any(_acts(other) for other in clauses[number + 1 :])
+            if clause.unknown and is_last and not out:
+                _not_understood(clause)
+            if is_last and last is not None:  # 'make the first turn sharper, and the last'
+                found = wanted(replace(last, targets=clause.targets, words=clause.words), ())
+                out += found
+                before = tuple(clause.targets)
+            else:
+                waiting.append(clause)
+            continue
+        targets = [target for other in waiting for target in other.targets] + clause.targets
+        waiting_places = [place for other in waiting for place in other.places]
+        waiting = []
+        whole = replace(clause, targets=targets, places=waiting_places + clause.places)
+        found = wanted(whole, before)
+        if not found and clause.unknown:
+            _not_understood(clause)
+        out += found
+        last = clause
+        before = tuple(dict.fromkeys(c.target for c in found if c.target is not None)) or before
+    if waiting:
+        said = " and ".join(clause.words for clause in waiting)
+        if out and last is None:
+            return out
+        raise EditError(f"what is to be different about '{_short(said)}' is not said; {ADVICE}")
+    return out
+
+
+def _acts(clause: Clause) -> bool:
+    return clause.is_action
+
+
+def _not_understood(clause: Clause) -> None:
+    told = ", ".join(f"'{word}'" for word in clause.unknown)
+    raise EditError(f"{told} in '{_short(clause.words)}' is not understood; {ADVICE}")

@@ -1,0 +1,109 @@
+"""What an edit changed, in sentences: measured before and after, as a person sees it."""
+
+from collections.abc import Iterator, Sequence
+
+from roadgpt.check.measures import Measures, Stretch
+from roadgpt.design.edit.anatomy import Block, Blocks
+from roadgpt.design.edit.trying import Made, seen_as
+from roadgpt.road import Design
+
+MOVED = 0.005  # m
+
+
+def sentences(before: Design, blocks: Blocks, found: Measures, made: Made) -> tuple[str, ...]:
+    """One for every turn and straight that is not as it was, and for the road as a whole."""
+    return (*_things(blocks, made), *_whole(found, made.found), *_placing(before, made.design), *made.besides)
+
+
+def _things(before: Blocks, made: Made) -> Iterator[str]:
+    after = {block.name: block for block in made.blocks}
+    names = _names(before)
+    for block in before:
+        now = after.get(block.name)
+        if now is None or (now.kind != block.kind):
+            yield _gone(block, names[block.name], now)
+        elif now.segments != block.segments:
+            yield from _other(block, now, names[block.name], made)
+    numbers = _names(made.blocks)
+    for block in made.blocks:
+        if block.name in names or block.name.endswith(" rest"):
+            continue
+        seen = seen_as(block.name, made.blocks, made.found)
+        if block.kind == "turn" and seen:
+            yield f"{numbers[block.name]} is new: {_turn(seen)}"
+        elif block.kind == "gap":
+            yield f"a straight of {block.length:g} m is new"
+
+
+def _names(blocks: Sequence[Block]) -> dict[str, str]:
+    """What a person calls every block."""
+    out, turns, straights = dict[str, str](), 0, 0
+    for block in blocks:
+        if block.kind == "turn":
+            turns += 1
+            out[block.name] = f"turn {turns}"
+        else:
+            straights += block.seen is not None
+            at = f"straight {straights}" if block.seen is not None else "the road"
+            out[block.name] = (
+                at if block.seen is not None else f"the road behind turn {turns}" if turns else at
+            )
+    return out
+
+
+def _turn(seen: Stretch) -> str:
+    return f"{seen.degrees:.0f} degrees to the {seen.side}, radius {seen.radius:.0f} m, {seen.grade:+.1f} %"
+
+
+def _gone(block: Block, name: str, now: Block | None) -> str:
+    seen = block.seen
+    if block.kind == "turn" and seen:
+        instead = f", in its place {now.length:g} m straight" if now and now.segments else ""
+        return f"{name} is gone ({seen.degrees:.0f} degrees to the {seen.side}){instead}"
+    return f"{name} is gone"
+
+
+def _other(block: Block, now: Block, name: str, made: Made) -> Iterator[str]:
+    """What is different about a block that stayed."""
+    was, seen = block.seen, seen_as(block.name, made.blocks, made.found)
+    if not now.segments or (was is not None and seen is None and now.length < was.length):
+        yield (
+            f"{name} is gone"
+            if not now.segments
+            else f"{name}: {now.length:g} m as written, too short to be seen"
+        )
+        return
+    said = []
+    if was and seen:
+        if was.side != seen.side:
+            said.append(f"to the {seen.side} and not to the {was.side}")
+        if was.kind == "turn" and abs(was.degrees - seen.degrees) >= 0.5:
+            said.append(f"{was.degrees:.0f} -> {seen.degrees:.0f} degrees")
+        if was.kind == "turn" and abs(was.radius / seen.radius - 1) >= 0.02:
+            said.append(f"radius {was.radius:.0f} -> {seen.radius:.0f} m")
+        if abs(was.length - seen.length) >= 1 and (was.kind == "straight" or not said):
+            said.append(f"length {was.length:.0f} -> {seen.length:.0f} m")
+    if abs(block.incline - now.incline) >= 0.05:
+        one, other = (was.grade, seen.grade) if was and seen else (block.incline, now.incline)
+        said.append(f"grade {one:+.1f} -> {other:+.1f} %")
+    if not (was and seen) and abs(block.length - now.length) >= 0.05:
+        said.append(f"length {block.length:.0f} -> {now.length:.0f} m")
+    yield f"{name}: {', '.join(said)}" if said else f"{name}: its segments were cut anew"
+
+
+def _whole(before: Measures, after: Measures) -> Iterator[str]:
+    yield (
+        f"the road: {before.length:.0f} -> {after.length:.0f} m long, "
+        f"climbs {before.climb:+.1f} -> {after.climb:+.1f} m"
+    )
+
+
+def _placing(before: Design, after: Design) -> Iterator[str]:
+    (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
+    turned = (after.theta - before.theta + 180) % 360 - 180
+    if abs(x - x1) > MOVED or abs(y - y1) > MOVED:
+        yield f"the start was moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
+    if abs(z - z1) > MOVED:
+        yield f"the start was {'raised' if z1 > z else 'lowered'} from {z:g} to {z1:g} m"
+    if abs(turned) > 1e-6:
+        yield f"the road was turned by {turned:+.4g} degrees"

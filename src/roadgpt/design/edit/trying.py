@@ -1,0 +1,239 @@
+"""Tries ways to make all changes of a request at once, until a road comes of it that the rules pass.
+
+Every way is built and measured; what measures otherwise than it was to is corrected and measured again. The
+road starts where it started, and is moved or turned only where it would leave the map.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import islice, product
+from math import atan2, cos, degrees, hypot, radians, sin
+from typing import NamedTuple
+
+from roadgpt import check
+from roadgpt.check.measures import Measures, Stretch, measure
+from roadgpt.design.edit.anatomy import Block, Blocks, joined
+from roadgpt.design.edit.inserting import with_room
+from roadgpt.design.edit.steps import FlipAll, Goal, Quantity, Step
+from roadgpt.design.edit.ways import Way
+from roadgpt.design.repair import repair
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, Geometry, Segment, World, build
+from roadgpt.road.design import MAX_SEGMENTS
+
+MOST_TRIALS = 240
+CORRECTIONS = 6
+REPAIRED = 2  # ways that are repaired in full where none is valid as it is
+LARGEST = 12  # doses of one change that are combined with others
+HUNDREDTH = 100.0
+COUNTED = 25.0  # m: what is written for a block that is not seen may be measured as so much less
+
+Aims = dict[tuple[str, Quantity], float]
+
+
+class Made(NamedTuple):
+    """A road with the changes, how it measures, and what had to be changed besides."""
+
+    design: Design
+    blocks: Blocks
+    found: Measures
+    besides: tuple[str, ...] = ()
+
+
+class Tried(NamedTuple):
+    """What came of one way: a road, or why there is none."""
+
+    made: Made | None
+    objection: str
+    closeness: int = 0
+    """0: it does not show what was asked for; 1: it does, but the rules object."""
+    draft: Made | None = None
+
+
+def tried(
+    design: Design, blocks: Blocks, changes: Sequence[Sequence[Way]], world: World, geometry: Geometry
+) -> Tried:
+    """The first way that makes a valid road; else the objection to the preferred one.
+
+    Args:
+        design: before the edit.
+        blocks: of that design.
+        changes: for every change, its ways, the preferred one first.
+        world: map and limits.
+        geometry: what a design becomes.
+    """
+    first: Tried | None = None
+    drafts: list[Made] = []
+    for steps in islice(_combined(changes), MOST_TRIALS):
+        one = _one(design, blocks, steps, world, geometry)
+        if one.made:
+            return one
+        if first is None or one.closeness > first.closeness:
+            first = one
+        if one.draft and len(drafts) < REPAIRED:
+            drafts.append(one.draft)
+    for draft in drafts if geometry == "arcs" else ():
+        steps = next(iter(_combined(changes)))
+        mended = _mended(draft, steps, world)
+        if mended:
+            return Tried(mended, "")
+    assert first is not None
+    return first
+
+
+def _combined(changes: Sequence[Sequence[Way]]) -> Iterator[tuple[Step, ...]]:
+    """Ways of all changes together, those nearest to the preferred ones first."""
+    some = [list(ways)[: LARGEST if len(changes) > 1 else None] for ways in changes]
+    rows = product(*(range(len(ways)) for ways in some))
+    for row in sorted(rows, key=lambda r: (sum(r), max(r, default=0), r)):
+        yield tuple(step for ways, index in zip(some, row, strict=True) for step in ways[index])
+
+
+def _one(design: Design, blocks: Blocks, steps: Sequence[Step], world: World, geometry: Geometry) -> Tried:
+    goals = [goal for step in steps for goal in step.goals]
+    aims: Aims = {(goal.block, goal.quantity): goal.aim for goal in goals}
+    objection, draft = "", None
+    for _ in range(CORRECTIONS):
+        after: Blocks = blocks
+        for step in steps:
+            after = step.apply(after, aims, world)
+        after = with_room(after, blocks)
+        segments = joined(after)
+        if not 1 <= len(segments) <= MAX_SEGMENTS:
+            return Tried(None, f"the road would have {len(segments)} segments")
+        try:
+            new = _started(design, after, blocks, world, any(isinstance(s, FlipAll) for s in steps))
+            found = measure(build(new, geometry).centreline())
+        except UsageError as error:
+            return Tried(None, str(error))
+        objection = _unlike(after, found)
+        if objection:
+            return Tried(None, objection)
+        missed = [
+            (goal, value)
+            for goal in goals
+            if not goal.low <= (value := _value(goal, after, found)) <= goal.high
+        ]
+        if not missed:
+            break
+        objection = _told(*missed[0])
+        for goal, value in missed:
+            _correct(aims, goal, value)
+    else:
+        return Tried(None, objection)
+    placed = repair(new, None, world, "place").design if geometry == "arcs" else _placed(new, world)
+    road = build(placed, geometry)
+    findings = check.inspect(road, None, world)
+    draft = Made(placed, after, found)
+    if findings:
+        return Tried(None, findings[0].sentence, 1, draft)
+    return Tried(draft, "")
+
+
+def _placed(design: Design, world: World) -> Design:
+    """A spline's design is placed as if it were built of arcs, which lie close by."""
+    return repair(design, None, world, "place").design
+
+
+def _started(design: Design, after: Blocks, before: Blocks, world: World, is_mirrored: bool) -> Design:
+    """The design with other segments; where something new stands in front, the rest stays where it was."""
+    segments = joined(after)
+    x, y, z = design.starting_point
+    if is_mirrored:
+        theta = (180 - design.theta) % 360
+        return Design(starting_point=(world.map_size - x, y, z), theta=round(theta, 6), segments=segments)
+    old = {block.name for block in before}
+    front: list[Segment] = []
+    for block in after:
+        if block.name in old:
+            break
+        front += block.segments
+    if not front:
+        return design.model_copy(update={"segments": segments})
+    lead = build(Design(starting_point=(0.0, 0.0, 0.0), theta=0.0, segments=tuple(front)))
+    end, turned = lead.at(lead.length), float(lead.heading(lead.length))
+    theta = radians(design.theta) - turned
+    far, way = hypot(end[0], end[1]), atan2(end[1], end[0]) + theta
+    start = (x - far * cos(way), y - far * sin(way), z - float(end[2]))
+    return Design(
+        starting_point=(round(start[0], 2), round(start[1], 2), round(start[2], 2)),
+        theta=round(degrees(theta) * HUNDREDTH) / HUNDREDTH % 360,
+        segments=segments,
+    )
+
+
+def _unlike(blocks: Blocks, found: Measures) -> str:
+    """Where the finished road does not show the turns that it should: what is wrong."""
+    wanted = [block.side for block in blocks if block.kind == "turn"]
+    shown = [turn.side for turn in found.turns]
+    if wanted == shown:
+        return ""
+    if len(wanted) != len(shown):
+        return f"{len(shown)} turns would be seen and not {len(wanted)}, as some run into each other"
+    return "a turn would be seen to the wrong side"
+
+
+def seen_as(name: str, blocks: Blocks, found: Measures) -> Stretch | None:
+    """How a block measures on the finished road; None where it is not seen by itself."""
+    turns = [block.name for block in blocks if block.kind == "turn"]
+    if name in turns:
+        return found.turns[turns.index(name)]
+    behind, alone = 0, dict[int, list[Block]]()
+    for block in blocks:
+        if block.kind == "turn":
+            behind += 1
+        elif block.segments:
+            alone.setdefault(behind, []).append(block)
+    for number, own in alone.items():
+        if name in [block.name for block in own]:
+            longest = max(own, key=lambda block: block.length)
+            straights = [f for f in found.gaps[number] if f.kind == "straight"]
+            return straights[0] if straights and longest.name == name else None
+    return None
+
+
+def _value(goal: Goal, blocks: Blocks, found: Measures) -> float:
+    if not goal.block:
+        return found.length
+    seen = seen_as(goal.block, blocks, found)
+    if seen is None:  # hidden between others: it is as it is written
+        block = next(block for block in blocks if block.name == goal.block)
+        return block.incline if goal.quantity == "grade" else goal.aim
+    return float(getattr(seen, goal.quantity))
+
+
+def _correct(aims: Aims, goal: Goal, value: float) -> None:
+    key = (goal.block, goal.quantity)
+    if not goal.block:
+        return
+    if goal.quantity in ("radius",) or (goal.quantity == "length" and goal.block.startswith("turn")):
+        aims[key] *= min(max(goal.aim / max(value, 1e-6), 0.6), 1.6)
+    else:
+        aims[key] += goal.aim - value
+
+
+def _told(goal: Goal, value: float) -> str:
+    units = {"degrees": "degrees", "radius": "m of radius", "length": "m", "grade": "%"}
+    what = goal.block or "the road"
+    return f"{what} would have {value:.1f} {units[goal.quantity]} and not {goal.aim:.1f}"
+
+
+def _mended(draft: Made, steps: Sequence[Step], world: World) -> Made | None:
+    """The draft repaired in full, where it still shows what was asked for."""
+    mended = repair(draft.design, None, world, "full")
+    road = build(mended.design)
+    if check.inspect(road, None, world):
+        return None
+    found = measure(road.centreline())
+    sizes = [len(block.segments) for block in draft.blocks]
+    segments, at, blocks = mended.design.segments, 0, list[Block]()
+    for block, size in zip(draft.blocks, sizes, strict=True):
+        blocks.append(block.with_segments(segments[at : at + size]))
+        at += size
+    after = tuple(blocks)
+    if _unlike(after, found):
+        return None
+    for goal in (goal for step in steps for goal in step.goals):
+        wide = 0.5 * (goal.high - goal.low)
+        if not goal.low - wide <= _value(goal, after, found) <= goal.high + wide:
+            return None
+    return Made(mended.design, after, found, tuple(f"to keep it valid: {said}" for said in mended.changes))

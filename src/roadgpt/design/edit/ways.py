@@ -1,0 +1,361 @@
+"""The ways in which a change can be made, the preferred one first: later ones give way where the map is full.
+
+Words without numbers leave room ('sharper'), numbers do not: then only what was not said gives way, such as
+the radius of a turn whose angle was.
+"""
+
+from collections.abc import Callable, Sequence
+from math import radians
+
+from roadgpt.brief.words import KINDS
+from roadgpt.check.measures import Measures, way
+from roadgpt.design.edit.anatomy import Block, Blocks, is_turn
+from roadgpt.design.edit.growing import ways_to_stretch_the_road
+from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.steps import Become, Bend, Flip, Slope, SlopeOfAll, Step, Stretch
+from roadgpt.errors import EditError
+from roadgpt.road import Segment, World
+
+Way = tuple[Step, ...]
+
+SHARPER = (
+    (1.25, 0.75),
+    (1.15, 0.8),
+    (1.35, 0.7),
+    (1.1, 0.75),
+    (1.2, 1.0),
+    (1.0, 0.75),
+    (1.1, 0.9),
+    (1.1, 1.0),
+)
+GENTLER = (
+    (0.75, 1.33),
+    (0.7, 1.2),
+    (0.8, 1.2),
+    (0.75, 1.0),
+    (0.85, 1.15),
+    (0.6, 1.5),
+    (0.9, 1.1),
+    (1.0, 1.2),
+)
+TIGHTER = ((1.0, 0.7), (1.0, 0.8), (1.0, 0.6), (1.0, 0.88))
+WIDER = ((1.0, 1.4), (1.0, 1.25), (1.0, 1.6), (1.0, 1.15))
+RADII = (1.0, 0.85, 1.2, 0.7, 1.4, 0.55, 1.7)  # where the angle was said, and the radius was not
+LONGER, SHORTER = (1.4, 1.25, 1.6, 1.2, 1.9), (0.65, 0.75, 0.55, 0.8, 0.88)
+STEEPER = ((1.5, 2.0), (1.3, 1.2), (1.7, 2.5), (1.15, 0.7))
+FLATTER = (0.5, 0.6, 0.4, 0.75)
+UPHILL = ((5.0, 3.0, 12.0), (4.0, 3.0, 12.0), (6.5, 3.0, 12.0), (5.0, 1.3, 13.0))
+LEAST_STEP = 10.0  # degrees that 'sharper' adds at least
+OVER_LEAST_RADIUS = 1.055  # of the world's least: see design.draw
+WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
+LEAST_ANGLE = 13.0  # degrees: a turn that is gentler yet would not be seen
+MOST_ANGLE = 210.0
+LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
+SEEN = 10.6  # m: the shortest straight that is seen
+STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
+
+
+def ways_to_change(change: Change, blocks: Sequence[Block], found: Measures, world: World) -> tuple[Way, ...]:
+    """All ways, the preferred one first; empty where everything is as it was asked for already.
+
+    Args:
+        change: anything but adding, removing and mirroring.
+        blocks: those that are meant.
+        found: measures of the whole road.
+        world: limits.
+
+    Raises:
+        EditError: no road can be like that.
+    """
+    match change.what:
+        case "angle" | "radius" | "shape":
+            return _each(blocks, lambda block: _bends(change, block, world))
+        case "length":
+            if change.target is not None and change.target.noun == "road":
+                return ways_to_stretch_the_road(change, blocks, found, world)
+            return _each(blocks, lambda block: _lengths(change, block, world))
+        case "slope":
+            if change.target is not None and change.target.noun == "road":
+                return _slopes_of_all(change, blocks, found, world)
+            return _each(blocks, lambda block: _slopes(change, block, found, world))
+        case "side":
+            wrong = [b for b in blocks if change.side is None or b.side != change.side]
+            return (tuple(Flip(block) for block in wrong),) if wrong else ()
+        case _:
+            return _each(blocks, _straightened)
+
+
+def _each(blocks: Sequence[Block], ways: Callable[[Block], Sequence[Step]]) -> tuple[Way, ...]:
+    """All blocks alike: the first way of each, the second way of each, ..."""
+    rows = [row for row in (list(ways(block)) for block in blocks) if row]
+    if not rows:
+        return ()
+    return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
+
+
+def _bends(change: Change, block: Block, world: World) -> list[Step]:
+    seen = block.seen
+    if block.kind != "turn" or seen is None:
+        return []
+    least = world.min_radius * OVER_LEAST_RADIUS
+    if change.what == "shape":
+        pairs = _shapes(change, block, least)
+    elif change.what == "angle":
+        pairs = _angles(change, block)
+    else:
+        pairs = _radii(change, block, world)
+    is_said = change.by is not None or change.to is not None or change.times is not None
+    free = change.what == "angle" and is_said
+    out: list[Step] = []
+    for degrees, radius in pairs:
+        radius = max(radius, min(least, seen.radius)) if not is_said or free else max(radius, least)
+        radius = min(radius, max(WIDEST, seen.radius))
+        if not is_turn(degrees) or degrees > MOST_ANGLE:
+            continue
+        is_other = abs(degrees - seen.degrees) > 2.5 or abs(radius / seen.radius - 1) > 0.045
+        if not is_other and not is_said:
+            continue
+        slack = (1.0, 0.25 if free else 0.05, 0.1) if is_said else (3.0, 0.12, 0.1)
+        if change.what == "radius" and is_said:
+            slack = (4.0, 0.05, 0.1)
+        out.append(Bend(block, degrees, radius, slack=slack))
+    if not out and pairs:
+        where = f"the turn of {seen.degrees:.0f} degrees with a radius of {seen.radius:.0f} m"
+        raise EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
+    return out
+
+
+def _angles(change: Change, block: Block) -> list[tuple[float, float]]:
+    seen = block.seen
+    assert seen is not None
+    aim = None
+    if change.to is not None:
+        aim = change.to
+    elif change.by is not None:
+        aim = seen.degrees + change.more * change.by
+    elif change.times is not None:
+        aim = seen.degrees * change.times
+    if aim is not None:
+        if not LEAST_ANGLE - 1.5 <= aim <= MOST_ANGLE:
+            raise EditError(
+                f"a turn of {aim:.0f} degrees cannot be made; "
+                f"ask for {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees"
+            )
+        return [(aim, seen.radius * share) for share in RADII]
+    out = []
+    for more, wider in SHARPER if change.more > 0 else GENTLER:
+        more, wider = 1 + (more - 1) * change.dose, max(1 + (wider - 1) * change.dose, 0.4)
+        degrees = seen.degrees * more
+        if more > 1:
+            degrees = max(degrees, seen.degrees + LEAST_STEP * change.dose)
+            degrees = min(degrees, max(180.0, seen.degrees + 5))
+        elif more < 1:
+            degrees = max(degrees, min(LEAST_ANGLE, seen.degrees))
+        out.append((degrees, seen.radius * wider))
+    return out
+
+
+def _radii(change: Change, block: Block, world: World) -> list[tuple[float, float]]:
+    seen = block.seen
+    assert seen is not None
+    aim = None
+    if change.to is not None:
+        aim = change.to
+    elif change.by is not None:
+        aim = seen.radius + change.more * change.by
+    elif change.times is not None:
+        aim = seen.radius * change.times
+    if aim is not None:
+        if aim < world.min_radius:
+            raise EditError(
+                f"a radius of {aim:.1f} m is tighter than the {world.min_radius:.1f} m that the rules allow; "
+                f"ask for {world.min_radius * OVER_LEAST_RADIUS:.0f} m or more"
+            )
+        if aim > WIDEST:
+            raise EditError(
+                f"a turn with a radius of {aim:.0f} m is hardly seen as one; ask for {WIDEST:g} or less"
+            )
+        return [(seen.degrees * share, aim) for share in (1.0, 0.96, 1.04)]
+    pairs = TIGHTER if change.more < 0 else WIDER
+    least = world.min_radius * OVER_LEAST_RADIUS
+    if change.more < 0 and seen.radius * 0.93 < least:  # as tight as may be: then it turns further
+        return [(seen.degrees * more, seen.radius) for more in (1.25, 1.15, 1.1)]
+    return [(seen.degrees * a, seen.radius * (1 + (r - 1) * min(change.dose, 1.4))) for a, r in pairs]
+
+
+def _shapes(change: Change, block: Block, least: float) -> list[tuple[float, float]]:
+    """Angles and radii that a hairpin, or a gentle turn, may have; empty where it is one."""
+    seen = block.seen
+    assert seen is not None
+    d, r = seen.degrees, seen.radius
+    if change.kind in ("hairpin", "u_turn", "switchback"):
+        meaning = KINDS[change.kind]
+        assert meaning.degrees is not None
+        tight = min(max(min(r, 22.0), least), 30.0)
+        if d in meaning.degrees and r <= 34 and not (change.sharpness == "sharp" and r > 20):
+            return []
+        angles = (d,) if d in meaning.degrees else (170.0, 165.0, 180.0, 158.0, 152.0)
+        return [(angle, radius) for angle in angles for radius in (tight, max(17.0, least), 26.0)]
+    if change.kind is not None:
+        raise EditError(
+            "one turn cannot be made several; say: remove the turn, and add the others in its place"
+        )
+    if change.sharpness == "sharp":
+        if r <= 29 and d >= 32:
+            return []
+        angle = max(d, 45.0)
+        return [
+            (angle, max(min(0.75 * r, 22.0), least)),
+            (angle, least),
+            (max(d, 60.0), 20.0),
+            (max(d, 35.0), 24.0),
+        ]
+    bound = 60.0 if change.sharpness == "sweeping" else 40.0
+    if r >= bound * 1.02 and 15 <= d <= 120:
+        return []
+    angle = min(max(d, 18.0), 115.0)
+    wide = max(bound * 1.12, r)
+    return [(min(angle, most), wide) for most in (115.0, 70.0, 50.0, 35.0, 25.0, 20.0)]
+
+
+def _lengths(change: Change, block: Block, world: World) -> list[Step]:
+    seen = block.seen
+    before = seen.length if seen else block.length
+    if change.to is not None:
+        lengths, slack = [change.to], 1.0
+    elif change.by is not None:
+        lengths, slack = [before + change.more * change.by], 1.0
+    elif change.times is not None:
+        lengths, slack = [before * change.times], 1.0
+    else:
+        shares = LONGER if change.more > 0 else SHORTER
+        lengths = [before * (1 + (share - 1) * change.dose) for share in shares]
+        if change.more > 0:
+            lengths[0] = max(lengths[0], before + 15)
+        slack = 2.5
+    if block.kind == "turn":
+        assert seen is not None
+        tight = world.min_radius * OVER_LEAST_RADIUS
+        out: list[Step] = []
+        for length in lengths:
+            radius = seen.radius * length / before
+            if radius < tight:  # then it also turns less far
+                degrees = seen.degrees * max(length / before / (tight / seen.radius), 0.3)
+                out.append(Bend(block, degrees, max(tight, min(seen.radius, radius)), slack=(4.0, 0.12, 0.1)))
+            else:
+                out.append(Bend(block, seen.degrees, None, length, slack=(2.0, 0.1, 0.06)))
+        return out
+    if change.to is None and change.by is None and change.times is None:
+        lengths = [max(length, min(SEEN + 1, before)) for length in lengths]
+    if lengths[0] < SEEN - 0.6:
+        raise EditError(
+            f"a straight of {max(lengths[0], 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
+        )
+    return [Stretch(block, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
+
+
+def _slopes(change: Change, block: Block, found: Measures, world: World) -> list[Step]:
+    """Grades of one turn or straight."""
+    now = block.seen.grade if block.seen else block.incline
+    limit = 100 * world.max_grade
+    sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
+        1 if now >= LEVEL else -1 if now <= -LEVEL else 0
+    )
+    sign = sign or (-1 if found.grade <= -LEVEL else 1)
+    if change.to is not None and abs(change.to) > limit:
+        raise EditError(f"{change.to:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
+    if change.to is not None and change.way != "flat":
+        aim = sign * change.to
+        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+    if change.by is not None:
+        aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
+        if abs(aim) > limit:
+            raise EditError(
+                f"{abs(aim):.1f} % is steeper than the {limit:g} % that the rules allow; ask for less"
+            )
+        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+    if change.times is not None:
+        aim = now * change.times
+        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+    if change.way == "flat":
+        if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in block.segments):
+            return []
+        return [Slope(block, 0.0, -slack, slack) for slack in (0.5, CLEARLY_LEVEL)]
+    if change.way and not change.more:
+        if way(now) == change.way:
+            return []
+        aims = [tuple(sorted((sign * low, sign * high))) + (sign * aim,) for aim, low, high in UPHILL]
+        return [Slope(block, aim, low, high) for low, high, aim in aims]
+    if change.more > 0 and change.way and way(now) != change.way:
+        return [Slope(block, sign * 6.0, *sorted((sign * 3.0, sign * 12.0)))]
+    return _steeper(change, block, now, sign, limit)
+
+
+def _steeper(change: Change, block: Block, now: float, sign: int, limit: float) -> list[Step]:
+    if change.more < 0:
+        if abs(now) < LEVEL:
+            return []
+        return [
+            Slope(block, now * share, *sorted((now * (share - 0.3), now * min(share + 0.15, 0.9))))
+            for share in FLATTER
+        ]
+    out: list[Step] = []
+    for times, more in STEEPER:
+        aim = max(abs(now) * (1 + (times - 1) * change.dose), abs(now) + more * change.dose)
+        aim = min(aim if abs(now) >= LEVEL else STEEP_FROM * times / 1.5, limit - 0.3)
+        if aim > abs(now) + 0.4:
+            low, high = min(abs(now) + 0.4, aim - 0.2), min(aim + 1.5, limit)
+            out.append(Slope(block, sign * aim, *sorted((sign * low, sign * high))))
+    if not out:
+        raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
+    return out
+
+
+def _slopes_of_all(change: Change, blocks: Sequence[Block], found: Measures, world: World) -> tuple[Way, ...]:
+    """Grades of the whole road, or of all that lies behind a place."""
+    names = frozenset(block.name for block in blocks)
+    limit = 100 * world.max_grade - 0.3
+    sign = {"up": 1, "down": -1}.get(change.way or "", 0)
+    if change.to is not None and change.to > limit + 0.3:
+        raise EditError(
+            f"{change.to:g} % is steeper than the {limit + 0.3:g} % that the rules allow; ask for less"
+        )
+    if change.way == "flat" or change.to == 0:
+        return ((SlopeOfAll(names, times=0.0),),)
+    if change.to is not None:
+        sign = sign or (-1 if found.grade < 0 else 1)
+        return ((SlopeOfAll(names, way=sign, low=change.to, high=change.to),),)
+    if change.by is not None:
+        return ((SlopeOfAll(names, more=(change.more or 1) * change.by),),)
+    if change.times is not None:
+        return ((SlopeOfAll(names, times=change.times),),)
+    if sign and not change.more:
+        inclines = [s.incline * sign for block in blocks for s in block.segments]
+        if inclines and min(inclines) >= 1.5:
+            return ()
+        return tuple((SlopeOfAll(names, way=sign, low=low, high=12.0),) for low in (4.0, 3.0))
+    if change.more < 0:
+        return tuple((SlopeOfAll(names, times=share),) for share in FLATTER)
+    if all(abs(s.incline) < LEVEL for block in blocks for s in block.segments):
+        return ((SlopeOfAll(names, way=sign or 1, low=STEEP_FROM),),)
+    return tuple(
+        (SlopeOfAll(names, times=1 + (times - 1) * change.dose, low=-limit, high=limit),)
+        for times, _ in STEEPER
+    )
+
+
+def _straightened(block: Block) -> list[Step]:
+    """A straight in the place of a turn: as long as the turn was, or as long as its chord."""
+    if block.kind != "turn" or block.seen is None:
+        return []
+    chord = 2 * block.seen.radius * abs(radians(min(block.seen.degrees, 180)) / 2) * 0.8
+    lengths = [block.length, chord, 25.0, 60.0]
+    return [Become(block, (straight(length, block.incline),)) for length in lengths]
+
+
+def straight(length: float, incline: float) -> Segment:
+    """A straight segment with numbers as they are written."""
+    return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
+
+
+__all__ = ["Blocks", "Way", "straight", "ways_to_change"]
