@@ -160,6 +160,7 @@ def test_azure_has_a_key_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
         ("http://localhost:8000/v1", "http://localhost:8000/v1"),  # vLLM
         ("http://localhost:1234", "http://localhost:1234/v1"),  # LM Studio
         ("https://gateway/team/llm", "https://gateway/team/llm"),
+        ("http://localhost:8000/v1/chat/completions", "http://localhost:8000/v1"),
     ],
 )
 def test_where_the_servers_are(given: str | None, place: str) -> None:

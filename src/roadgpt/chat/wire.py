@@ -26,6 +26,7 @@ from roadgpt.errors import ChatError
 BUSY = {408, 409, 425, 429, 500, 502, 503, 504, 529}  # statuses after which the same question may be answered
 SPENT_UP = ("insufficient_quota", "billing", "credit")  # what a 429 says that no waiting helps
 FIRST_WAIT, LONGEST_WAIT = 0.5, 8.0  # s, between retries where the server does not say how long
+DOORS = ("/chat/completions", "/responses", "/models")  # of a base URL that was copied with its door
 PATIENCE = 120.0  # s, the longest wait that a server may ask for
 CONNECT = 10.0  # s, to reach it
 TALKATIVE = (
@@ -177,6 +178,11 @@ class Wire:
                 "does the base URL end in /v1?"
             )
         answer: dict[str, Any] = cleaned(found, self._key)
+        error = answer.get("error")
+        if error and not answer.get("choices") and not answer.get("output"):  # an error under status 200
+            told = error if isinstance(error, dict) else {"message": error}
+            code = told.get("code")
+            raise self._fault(code if isinstance(code, int) and 400 <= code < 600 else 500, told, None)
         return answer
 
     def cleaned(self, value: Any) -> Any:
@@ -213,15 +219,19 @@ class Wire:
         if not message and isinstance(body, dict):
             message = json.dumps(body)
         message = message or plain(cleaned(str(error.message), self._key))
-        code = f"{told.get('code') or ''} {told.get('type') or ''}"
-        said = f"{message} {code}".lower()
+        return self._fault(status, {**told, "message": message}, _asked_wait(error.response.headers))
+
+    def _fault(self, status: int, told: dict[str, Any], wait: float | None) -> FaultError:
+        """What a server says about an error, in a sentence."""
+        message = str(told.get("message") or "")
+        said = f"{message} {told.get('code') or ''} {told.get('type') or ''}".lower()
         used_up = status == 429 and any(word in said for word in SPENT_UP)
         return FaultError(
             self._sentence(status, plain(message, 200), used_up),
             status,
             said,
             str(told.get("param") or ""),
-            _asked_wait(error.response.headers),
+            wait,
             may_pass=status in BUSY and not used_up,
         )
 
@@ -247,6 +257,8 @@ class Wire:
 def place_of(base_url: str | None) -> str:
     """The address of a server, with the path that its kind has where none was given."""
     place = (base_url or OPENAI).rstrip("/")
+    for door in DOORS:
+        place = place.removesuffix(door)
     parts = urlsplit(place)
     if parts.path:
         return place

@@ -21,7 +21,7 @@ from roadgpt.chat.habits import Rung, habits_of
 from roadgpt.chat.meter import Account, Meter, tokens_in
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
 from roadgpt.chat.strict import NotReadableError, plain, read_as
-from roadgpt.chat.talk import Talk
+from roadgpt.chat.talk import FULL, Talk
 from roadgpt.chat.wire import FaultError, Wire
 from roadgpt.errors import ChatError, RefusedError, UnparsableError
 
@@ -194,7 +194,7 @@ class Way:
 
 def _is_about_format(fault: FaultError) -> bool:
     """Can the way of asking be at fault? A plain 400 says too little to rule it out."""
-    if fault.status not in OTHER_WAY:
+    if fault.status not in OTHER_WAY or any(word in fault.said for word in FULL):
         return False
     names_it = any(word in f"{fault.parameter} {fault.said}" for word in ABOUT_FORMAT)
     return names_it or fault.status in (400, 422)
@@ -213,7 +213,7 @@ def _data(answer: Answer, schema: type[BaseModel] | None) -> BaseModel | None:
         return read_as(schema, answer.text)
     except NotReadableError as error:
         if answer.finish == "length":
-            raise NotReadableError(f"it was cut off at the limit of tokens, and {error}") from None
+            raise NotReadableError(f"it was cut off (see --max-completion), and {error}") from None
         raise
 
 
