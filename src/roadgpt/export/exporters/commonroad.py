@@ -1,0 +1,134 @@
+"""CommonRoad scenarios (XML 2020a): lanelets with heights, a speed limit, and the task to drive to the end.
+
+Source: CommonRoad, Documentation of the XML Format, version 2020a.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.export.ego import calm_speed, start_of
+from roadgpt.export.markup import Element, number
+from roadgpt.export.place import LATITUDE, LONGITUDE
+from roadgpt.export.poses import Poses
+from roadgpt.export.sections import Section, sections
+from roadgpt.geometry import wrap_angle
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+
+STEP = 0.1  # s
+PATIENCE = 2.0  # times what a calm drive to the end takes
+NOWHERE = -999  # GeoNames' number of a place that is none
+SPEED_LIMIT = "274"  # the sign's number in Zamunda, CommonRoad's own country, as in Germany
+
+
+class CommonRoad:
+    """CommonRoad scenario 2020a, lanelets with heights, a speed limit, and the task to drive to the end."""
+
+    name = "commonroad"
+    suffix = ".cr.xml"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write the scenario; a drive would be a solution of it, which is another format."""
+        path.write_bytes(document(road, world).to_text().encode())
+
+
+def document(road: Road, world: World) -> Element:
+    """The whole file: lanelets 1.. of the right lane, then those of the left one, the sign, the problem.
+
+    Raises:
+        ExportError: the road has a number that is not finite.
+    """
+    parts = sections(road, world)
+    right, left = range(1, len(parts) + 1), range(len(parts) + 1, 2 * len(parts) + 1)
+    sign = 2 * len(parts) + 1
+    root = Element(
+        "commonRoad",
+        {
+            "timeStepSize": STEP,
+            "commonRoadVersion": "2020a",
+            "author": "RoadGPT",
+            "affiliation": "RoadGPT",
+            "source": "generated",
+            "benchmarkID": "ZAM_RoadGPT-1_1_T-1",
+            "date": "2026-01-01",  # the same road gives the same bytes
+        },
+    )
+    location = root.add("location")
+    location.add("geoNameId", raw=str(NOWHERE))
+    location.add("gpsLatitude", raw=number(LATITUDE))
+    location.add("gpsLongitude", raw=number(LONGITUDE))
+    root.add("scenarioTags").add("rural")
+    for i, part in enumerate(parts):
+        root.extended(_lanelet(right, i, _forward(part), left[i], sign))
+    for i, part in enumerate(reversed(parts)):
+        # against the road's direction, so in the order in which they are driven
+        root.extended(_lanelet(left[::-1], i, _backward(part), right[len(parts) - 1 - i], sign))
+    root.extended(_limit(sign, road.at(0.0, -world.lane_width), world))
+    root.extended(_problem(sign + 1, road, world, goal=right[-1]))
+    return root
+
+
+def _forward(part: Section) -> tuple[Array, Array]:
+    return part.middle, part.right
+
+
+def _backward(part: Section) -> tuple[Array, Array]:
+    return part.middle[::-1], part.left[::-1]
+
+
+def _lanelet(chain: Sequence[int], i: int, bounds: tuple[Array, Array], beside: int, sign: int) -> Element:
+    """The i-th of a chain; traffic beside its left bound comes the other way."""
+    out = Element("lanelet", {"id": chain[i]})
+    for name, points, mark in zip(("leftBound", "rightBound"), bounds, ("dashed", "solid"), strict=True):
+        bound = out.add(name)
+        for point in points.tolist():
+            bound.extended(_point(point))
+        bound.add("lineMarking", raw=mark)
+    if i > 0:
+        out.add("predecessor", {"ref": chain[i - 1]})
+    if i < len(chain) - 1:
+        out.add("successor", {"ref": chain[i + 1]})
+    out.add("adjacentLeft", {"ref": beside, "drivingDir": "opposite"})
+    out.add("laneletType", raw="country")
+    out.add("userOneWay", raw="vehicle")
+    out.add("trafficSignRef", {"ref": sign})
+    return out
+
+
+def _limit(id_: int, place: Array, world: World) -> Element:
+    out = Element("trafficSign", {"id": id_})
+    told = out.add("trafficSignElement")
+    told.add("trafficSignID", raw=SPEED_LIMIT)
+    told.add("additionalValue", raw=number(round(world.speed_limit, 6)))
+    out.add("position").extended(_point(place[:2].tolist()))
+    out.add("virtual", raw="true")
+    return out
+
+
+def _problem(id_: int, road: Road, world: World, goal: int) -> Element:
+    """From rest in the right lane to its last lanelet, within twice the time of a calm drive."""
+    start = start_of(road)
+    place = np.round(road.at(start, -world.lane_width / 2), 6)
+    out = Element("planningProblem", {"id": id_})
+    state = out.add("initialState")
+    state.add("position").extended(_point(place[:2].tolist()))
+    heading = float(np.round(wrap_angle(road.heading(start)), 9))
+    values = {"orientation": heading, "time": 0, "velocity": 0, "yawRate": 0, "slipAngle": 0}
+    for name, value in values.items():
+        state.add(name).add("exact", raw=number(value))
+    state = out.add("goalState")
+    time = state.add("time")
+    time.add("intervalStart", raw="0")
+    steps = int(np.ceil((PATIENCE * road.length / calm_speed(road, world) + 10.0) / STEP))
+    time.add("intervalEnd", raw=str(steps))
+    state.add("position").add("lanelet", {"ref": goal})
+    return out
+
+
+def _point(values: Sequence[float]) -> Element:
+    out = Element("point")
+    for name, value in zip("xyz", values, strict=False):
+        out.add(name, raw=number(value))
+    return out

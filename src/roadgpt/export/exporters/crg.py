@@ -1,0 +1,115 @@
+"""ASAM OpenCRG 1.2, ASCII: the surface of the road along its centre line, for tyre and chassis models.
+
+Source: ASAM OpenCRG 1.2.0, user guide and file format. The surface is smooth, its heights those of the road.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.errors import ExportError
+from roadgpt.export.poses import Poses
+from roadgpt.geometry import wrap_angle
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+
+STEP = 0.1  # m between cross sections
+MOST = 200_000  # cross sections; longer roads have a wider step
+RULER = "$" * 72  # ends the header
+NOTHING = "*" * 20  # a field without a value
+ROOM = 0.99  # share of the radius: the surface may not reach the centre of a bend
+
+
+class Crg:
+    """ASAM OpenCRG as text, a smooth surface along the centre line, for tyre and vehicle dynamics models."""
+
+    name = "crg"
+    suffix = ".crg"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write the surface of lanes and verges; OpenCRG has no place for a drive."""
+        path.write_bytes(document(road, world).encode("ascii"))
+
+
+def document(road: Road, world: World) -> str:
+    """The whole file: header, then one line for each cross section: heading, height right, height left.
+
+    Raises:
+        ExportError: a bend is so tight that the lanes overlap in it, or a number is not finite.
+    """
+    count = min(MOST, max(1, math.ceil(road.length / STEP)))
+    step = road.length / count
+    points = road.at(np.linspace(0.0, road.length, count + 1))
+    if not np.isfinite(points).all():
+        raise ExportError("the road has a number that is not finite; check it before it is exported")
+    headings = np.array(_headings(points[:, :2].tolist(), step))
+    reach = _reach(headings, step, world)
+    end = points[0, :2] + step * np.array([np.cos(headings).sum(), np.sin(headings).sum()])
+    numbers = {
+        "start_u": 0.0,
+        "end_u": road.length,
+        "increment": step,
+        "start_x": points[0, 0],
+        "start_y": points[0, 1],
+        "start_phi": headings[0],
+        "end_x": end[0],
+        "end_y": end[1],
+        "end_phi": headings[-1],
+    }
+    across = {"v_right": -reach, "v_left": reach, "v_increment": 2 * reach}
+    header = [
+        "$CT",
+        "RoadGPT: smooth road, heights along the centre line",
+        "$",
+        "$ROAD_CRG_MODS",  # empty: the road stays where it is
+        "$",
+        "$ROAD_CRG",
+        *(f"{'reference_line_' + name:<26}= {value:.16e}" for name, value in numbers.items()),
+        *(f"{'long_section_' + name:<26}= {value:.16e}" for name, value in across.items()),
+        "$",
+        "$KD_DEFINITION",
+        "#:LDFI",
+        f"U:reference line u,m,0.0,{step!r}",
+        "D:reference line phi,rad",
+        "D:long section 1,m",
+        "D:long section 2,m",
+        "$",
+        RULER,
+    ]
+    phi = [NOTHING, *map(_field, headings.tolist())]
+    heights = list(map(_field, points[:, 2].tolist()))
+    rows = [f"{turned}{height}{height}" for turned, height in zip(phi, heights, strict=True)]
+    return "\n".join([*header, *rows, ""])
+
+
+def _headings(points: list[list[float]], step: float) -> list[float]:
+    """From each cross section to the next, ``(n - 1,)``, in radians.
+
+    A reader walks steps of one length in these directions. Each aims from where the walk has come to, at the
+    road's next point, so that no error adds up across the road.
+    """
+    x, y = points[0]
+    out = []
+    for target_x, target_y in points[1:]:
+        heading = math.atan2(target_y - y, target_x - x)
+        out.append(heading)
+        x, y = x + step * math.cos(heading), y + step * math.sin(heading)
+    return out
+
+
+def _reach(headings: Array, step: float, world: World) -> float:
+    """Metres to both sides that the surface covers: lanes and verges, or what the tightest bend allows."""
+    turns = np.abs(wrap_angle(np.diff(headings)))
+    room = ROOM * step / math.sin(min(float(turns.max(initial=1e-12)), math.pi / 2))
+    if room < world.lane_width:
+        raise ExportError(
+            f"OpenCRG cannot hold a bend whose radius is {room:.1f} m, less than a lane is wide; "
+            "give the road wider bends or World a smaller lane_width"
+        )
+    return min(world.lane_width + world.verge, room)
+
+
+def _field(value: float) -> str:
+    """Twenty characters."""
+    return f"{value:20.12e}"

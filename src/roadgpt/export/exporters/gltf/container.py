@@ -1,0 +1,108 @@
+"""The file: shapes become accessors of one buffer, beside a JSON that says what they are."""
+
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from roadgpt.geometry.curve import Array
+
+FLOAT, UINT = 5126, 5125  # component types
+VERTICES, INDICES = 34962, 34963  # targets of buffer views
+Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # x stays, up is y, left is -z
+
+MATERIALS = {
+    "asphalt": ((0.06, 0.06, 0.065, 1.0), 0.9),
+    "gravel": ((0.23, 0.20, 0.15, 1.0), 1.0),
+    "paint": ((0.85, 0.85, 0.85, 1.0), 0.6),
+    "path": ((0.0, 0.30, 0.75, 1.0), 0.7),
+}
+"""Base colour (linear red, green, blue, opacity) and roughness, 0..1."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Triangles of one material; z is up."""
+
+    name: str
+    material: str
+    points: Array
+    """Shape (n, 3), metres."""
+    normals: Array
+    """Shape (n, 3), of length 1."""
+    texture: Array
+    """Shape (n, 2): across and along, in metres."""
+    triangles: np.ndarray
+    """Shape (m, 3), indices of points, counter-clockwise seen from outside."""
+
+
+def to_bytes(shapes: Sequence[Shape], near: Array) -> bytes:
+    """The whole file.
+
+    Args:
+        shapes: what is in the scene, each a node of its own.
+        near: a point of the scene; single precision is kept about it, and not about the map's corner.
+    """
+    origin = np.round(near)
+    used = list(dict.fromkeys(shape.material for shape in shapes))
+    data: dict[str, Any] = {
+        "asset": {"version": "2.0", "generator": "RoadGPT"},
+        "scene": 0,
+        "scenes": [{"name": "road", "nodes": [0]}],
+        "nodes": [
+            {
+                "name": "map",
+                "translation": (Y_UP @ origin + 0.0).tolist(),
+                "children": list(range(1, len(shapes) + 1)),
+            },
+            *({"name": shape.name, "mesh": i} for i, shape in enumerate(shapes)),
+        ],
+        "materials": [_material(name) for name in used],
+        "meshes": [],
+        "accessors": [],
+        "bufferViews": [],
+        "buffers": [],
+    }
+    content = bytearray()
+    for shape in shapes:
+        where = {
+            "POSITION": _put(data, content, (shape.points - origin) @ Y_UP.T, bounded=True),
+            "NORMAL": _put(data, content, shape.normals @ Y_UP.T),
+            "TEXCOORD_0": _put(data, content, shape.texture),
+        }
+        indices = _put(data, content, shape.triangles.reshape(-1))
+        primitive = {"attributes": where, "indices": indices, "material": used.index(shape.material)}
+        data["meshes"].append({"name": shape.name, "primitives": [primitive]})
+    data["buffers"].append({"byteLength": len(content)})
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(content), b"BIN\0")
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks) + len(content)) + chunks + bytes(content)
+
+
+def _put(data: dict[str, Any], content: bytearray, values: np.ndarray, bounded: bool = False) -> int:
+    """Append an array to the buffer; gives back the index of its accessor. All are multiples of 4 bytes."""
+    is_index = values.ndim == 1
+    packed = np.ascontiguousarray(values, dtype="<u4" if is_index else "<f4")
+    view = {"buffer": 0, "byteOffset": len(content), "byteLength": packed.nbytes}
+    data["bufferViews"].append({**view, "target": INDICES if is_index else VERTICES})
+    content += packed.tobytes()
+    accessor: dict[str, Any] = {
+        "bufferView": len(data["bufferViews"]) - 1,
+        "componentType": UINT if is_index else FLOAT,
+        "count": len(packed),
+        "type": "SCALAR" if is_index else f"VEC{packed.shape[1]}",
+    }
+    if bounded:
+        accessor |= {"min": packed.min(axis=0).tolist(), "max": packed.max(axis=0).tolist()}
+    data["accessors"].append(accessor)
+    return len(data["accessors"]) - 1
+
+
+def _material(name: str) -> dict[str, Any]:
+    colour, roughness = MATERIALS[name]
+    looks = {"baseColorFactor": list(colour), "metallicFactor": 0, "roughnessFactor": roughness}
+    return {"name": name, "pbrMetallicRoughness": looks}

@@ -1,0 +1,138 @@
+r"""The shapes of a road: slabs that are closed all round, and thin strips that lie on them.
+
+verge   ______|____________:____________|______   verge        the slabs of road and verges touch;
+       |______|_________________________|______|               lines and path lie a little above them
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from roadgpt.export.edges import line, stations
+from roadgpt.export.ego import goal_of, on_the_ground, start_of
+from roadgpt.export.exporters.gltf.container import Shape
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP, LINE, NO_VERGE
+from roadgpt.export.poses import Poses
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+
+THICKNESS = 0.5  # m, of the slabs
+PAINT = 0.005  # m that markings lie above the road; less flickers where depth is coarse
+PATH = 0.02  # m that the path lies above the road
+PATH_WIDTH = 0.3  # m
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def shapes(road: Road, world: World, poses: Poses | None = None) -> list[Shape]:
+    """Everything in the scene.
+
+    Raises:
+        ExportError: the road has a number that is not finite.
+    """
+    wide, verge = world.lane_width, world.verge
+    s = stations(road, wide + verge)
+    out = [_slab("road", "asphalt", road, s, wide, -wide)]
+    if verge >= NO_VERGE:
+        out.append(_slab("left verge", "gravel", road, s, wide + verge, wide))
+        out.append(_slab("right verge", "gravel", road, s, -wide, -wide - verge))
+    mark = min(LINE, wide / 4)
+    out.append(_strip("left edge line", "paint", road, s, wide, wide - mark))
+    out.append(_strip("right edge line", "paint", road, s, mark - wide, -wide))
+    dashes = [_strip("", "paint", road, part, mark / 2, -mark / 2) for part in _dashes(s, road.length)]
+    return [*out, _joined("middle line", dashes), _path(road, s, world, poses)]
+
+
+def _dashes(s: Array, length: float) -> Iterator[Array]:
+    """Stations of each dash of the middle line; the last one may be shorter."""
+    for start in np.arange(0.0, length, DASH + GAP):
+        end = min(start + DASH, length)
+        if end > start:
+            yield np.r_[start, s[(s > start) & (s < end)], end]
+
+
+def _path(road: Road, s: Array, world: World, poses: Poses | None) -> Shape:
+    if poses is None:
+        start, end = start_of(road), goal_of(road)
+        part = np.r_[start, s[(s > start) & (s < end)], end]
+        middle = -world.lane_width / 2
+        half = min(PATH_WIDTH, world.lane_width / 2) / 2
+        return _strip("path", "path", road, part, middle + half, middle - half, PATH)
+    moved = np.r_[True, np.hypot(np.diff(poses.x), np.diff(poses.y)) > 1e-6]  # one point where the car stands
+    ground = on_the_ground(poses, 0.0)[moved] + PATH * UP
+    heading = poses.heading[moved]
+    if len(ground) < 2:
+        ground, heading = np.repeat(ground, 2, axis=0), np.repeat(heading, 2)
+        ground[1, :2] += PATH_WIDTH * np.array([np.cos(heading[0]), np.sin(heading[0])])
+    left = PATH_WIDTH / 2 * _left(heading)
+    along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(ground[:, :2], axis=0).T))]
+    normals = np.repeat(UP[None], len(ground), axis=0)
+    across = np.array([PATH_WIDTH, -PATH_WIDTH]) / 2
+    return Shape("path", "path", *_band(ground + left, ground - left, normals, along, across))
+
+
+def _strip(
+    name: str, material: str, road: Road, s: Array, left: float, right: float, lift: float = PAINT
+) -> Shape:
+    """The surface between two offsets, seen from above."""
+    a, b = line(road, s, left) + lift * UP, line(road, s, right) + lift * UP
+    return Shape(name, material, *_band(a, b, _normals(road, s), s, np.array([left, right])))
+
+
+def _slab(name: str, material: str, road: Road, s: Array, left: float, right: float) -> Shape:
+    """The ground between two offsets with its underside, its flanks and its ends: closed all round."""
+    a, b = line(road, s, left), line(road, s, right)
+    low_a, low_b = a - THICKNESS * UP, b - THICKNESS * UP
+    up, aside = _normals(road, s), _left(road.heading(s))
+    across, deep = np.array([left, right]), np.array([0.0, -THICKNESS])
+    sides = [
+        _band(a, b, up, s, across),
+        _band(low_b, low_a, -up, s, across[::-1]),
+        _band(low_a, a, aside, s, deep[::-1]),
+        _band(b, low_b, -aside, s, deep),
+        _end(low_a[0], low_b[0], b[0], a[0], across),
+        _end(low_b[-1], low_a[-1], a[-1], b[-1], across[::-1]),
+    ]
+    return _joined(name, [Shape(name, material, *side) for side in sides])
+
+
+_Band = tuple[Array, Array, Array, np.ndarray]
+
+
+def _band(left: Array, right: Array, normals: Array, along: Array, across: Array) -> _Band:
+    """Points, normals, texture and triangles of a band whose left and right edge run side by side."""
+    n = len(left)
+    i = np.arange(n - 1)
+    first = np.stack([n + i, n + i + 1, i + 1], axis=-1)
+    second = np.stack([n + i, i + 1, i], axis=-1)
+    texture = np.column_stack([np.repeat(across, n), np.tile(along, 2)])
+    triangles = np.stack([first, second], axis=1).reshape(-1, 3)
+    return np.concatenate([left, right]), np.tile(normals, (2, 1)), texture, triangles
+
+
+def _end(a: Array, b: Array, c: Array, d: Array, across: Array) -> _Band:
+    """A plane figure of four corners, counter-clockwise seen from outside; a, b below, c, d above."""
+    points = np.array([a, b, c, d])
+    facing = np.cross(b - a, d - a)
+    texture = np.column_stack([across[[0, 1, 1, 0]], [-THICKNESS, -THICKNESS, 0.0, 0.0]])
+    normals = np.repeat((facing / np.linalg.norm(facing))[None], 4, axis=0)
+    return points, normals, texture, np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def _joined(name: str, parts: list[Shape]) -> Shape:
+    """Several shapes of one material as one."""
+    shifts = np.cumsum([0, *(len(part.points) for part in parts)])
+    triangles = [part.triangles + shift for part, shift in zip(parts, shifts, strict=False)]
+    columns = [(part.points, part.normals, part.texture) for part in parts]
+    points, normals, texture = (np.concatenate(column) for column in zip(*columns, strict=True))
+    return Shape(name, parts[0].material, points, normals, texture, np.concatenate(triangles))
+
+
+def _normals(road: Road, s: Array) -> Array:
+    """Upwards, square to the surface; there is no banking."""
+    heading, grade = road.heading(s), road.grade(s)
+    up = np.stack([-grade * np.cos(heading), -grade * np.sin(heading), np.ones_like(grade)], axis=-1)
+    return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
+
+
+def _left(heading: Array) -> Array:
+    return np.stack([-np.sin(heading), np.cos(heading), np.zeros_like(heading)], axis=-1)

@@ -1,0 +1,98 @@
+"""Lanelet2 maps (.osm, with heights): two chains of lanelets that share the middle line.
+
+Source: Lanelet2, documentation of its primitives and tags; F. Poggenhans et al., Lanelet2: A High-Definition
+Map Framework for the Future of Automated Driving, ITSC 2018. Its usual projector, UTM, gives our metres back.
+"""
+
+from itertools import count
+from pathlib import Path
+
+from roadgpt.export.markup import Element
+from roadgpt.export.place import degrees
+from roadgpt.export.poses import Poses
+from roadgpt.export.sections import sections
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+
+UTM_SCALE = 0.9996  # of lengths in the middle of a UTM zone
+DEGREE_DECIMALS = 12  # a tenth of a micrometre
+KEEP = {"visible": "true", "version": "1"}  # without these, editors of OpenStreetMap refuse to open a file
+
+
+class Lanelet2:
+    """Lanelet2 map with heights, right and left lane as chains of lanelets, for planners and Autoware."""
+
+    name = "lanelet2"
+    suffix = ".osm"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write the map; Lanelet2 has no place for a drive."""
+        path.write_bytes(document(road, world).to_text().encode())
+
+
+def document(road: Road, world: World) -> Element:
+    """The whole file; which bound of a lanelet runs against the traffic, readers find out.
+
+    Raises:
+        ExportError: the road has a number that is not finite.
+    """
+    book = _Book()
+    limit = f"{world.speed_limit * 3.6:.6g} km/h"
+    for section in sections(road, world):
+        right = book.way("right", section.right, "solid")
+        middle = book.way("middle", section.middle, "dashed")
+        left = book.way("left", section.left, "solid")
+        book.lanelet(middle, right, limit)
+        book.lanelet(middle, left, limit)
+    root = Element("osm", {"version": "0.6", "generator": "RoadGPT", "upload": "false"})
+    return root.extended(*book.nodes, *book.ways, *book.lanelets)
+
+
+class _Book:
+    """What has been written down so far, each with a number of its own."""
+
+    def __init__(self) -> None:
+        self.nodes: list[Element] = []
+        self.ways: list[Element] = []
+        self.lanelets: list[Element] = []
+        self._numbers = count(1)
+        self._ends: dict[str, int] = {}
+
+    def way(self, name: str, points: Array, kind: str) -> int:
+        """A painted line, which begins with the node in which the one of this name before it ended."""
+        known = [self._ends[name]] if name in self._ends else []
+        nodes = [*known, *self._add_nodes(points[len(known) :])]
+        self._ends[name] = nodes[-1]
+        number = next(self._numbers)
+        way = Element("way", {"id": number, **KEEP})
+        for node in nodes:
+            way.add("nd", {"ref": node})
+        self.ways.append(_tagged(way, {"type": "line_thin", "subtype": kind}))
+        return number
+
+    def _add_nodes(self, points: Array) -> list[int]:
+        """On the globe for every reader, and in metres for those that ask for local_x and local_y."""
+        longitude, latitude = degrees(points[:, 0] / UTM_SCALE, points[:, 1] / UTM_SCALE)
+        numbers = [next(self._numbers) for _ in points]
+        for number, lon, lat, (x, y, z) in zip(
+            numbers, longitude.tolist(), latitude.tolist(), points.tolist(), strict=True
+        ):
+            place = {"lat": f"{lat:.{DEGREE_DECIMALS}f}", "lon": f"{lon:.{DEGREE_DECIMALS}f}"}
+            node = Element("node", {"id": number, **KEEP, **place})
+            self.nodes.append(_tagged(node, {"local_x": repr(x), "local_y": repr(y), "ele": repr(z)}))
+        return numbers
+
+    def lanelet(self, left: int, right: int, limit: str) -> None:
+        """The lane between two ways."""
+        lanelet = Element("relation", {"id": next(self._numbers), **KEEP})
+        for role, way in (("left", left), ("right", right)):
+            lanelet.add("member", {"type": "way", "ref": way, "role": role})
+        kind = {"type": "lanelet", "subtype": "road", "location": "nonurban", "region": "de"}
+        rules = {"one_way": "yes", "participant:vehicle": "yes", "speed_limit": limit}
+        self.lanelets.append(_tagged(lanelet, kind | rules))
+
+
+def _tagged(element: Element, tags: dict[str, str]) -> Element:
+    for key, value in tags.items():
+        element.add("tag", {"k": key, "v": value})
+    return element

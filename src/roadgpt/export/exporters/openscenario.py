@@ -1,0 +1,195 @@
+"""ASAM OpenSCENARIO XML 1.2: the road as a scenario that players run, and the drive as a trajectory.
+
+Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin is the middle of its rear axle
+on the ground; angles are right-handed, so a pitch is positive nose down (ISO 8855).
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.export.ego import CAR, calm_speed, goal_of, on_the_ground, start_of
+from roadgpt.export.exporters.opendrive import ROAD, OpenDrive
+from roadgpt.export.markup import Element, Value
+from roadgpt.export.poses import Poses
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+
+EGO = "Ego"
+DATE = "2026-01-01T00:00:00"  # of every file: the same road gives the same bytes
+LANE = "-1"  # the right one
+PULL = 2.0  # m/s^2, of driving off
+PATIENCE = 60.0  # s beyond the time that the drive should take, after which a player gives up
+DECIMALS = 6
+
+
+class OpenScenario:
+    """ASAM OpenSCENARIO 1.2 with its OpenDRIVE, the car drives the right lane to its end; drives replay."""
+
+    name = "openscenario"
+    suffix = ".xosc"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write the scenario and the road beside it; a drive goes into NAME.drive.xosc."""
+        stem = path.name.removesuffix(self.suffix)
+        map_ = path.with_name(stem + OpenDrive.suffix)
+        OpenDrive().save(road, map_, world)
+        path.write_bytes(scenario(road, world, map_.name).to_text().encode())
+        if poses is not None:
+            text = replay(road, world, poses, map_.name).to_text()
+            path.with_name(f"{stem}.drive{self.suffix}").write_bytes(text.encode())
+
+
+def scenario(road: Road, world: World, map_: str) -> Element:
+    """The car starts at rest in the right lane, drives off, and follows its route to the end."""
+    speed = calm_speed(road, world)
+    # stations are those of the rear axle
+    start, end = max(start_of(road) + CAR.rear_axle, 0.0), goal_of(road) + CAR.rear_axle
+    root, actions, story = _frame(
+        world, map_, "A car drives the right lane from the start of the road to its end."
+    )
+    actions.add("PrivateAction").add("TeleportAction").extended(_in_lane(start))
+    actions.add("PrivateAction").extended(_speed(0.0))
+    route = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
+    points = route.add("Route", {"name": "to the end", "closed": "false"})
+    for s in (start, road.length):
+        points.add("Waypoint", {"routeStrategy": "shortest"}).extended(_in_lane(s))
+    _act(story, "drive off").extended(_speed(speed, PULL))
+    reached = Element("EntityCondition")
+    reached.add(
+        "DistanceCondition",
+        {
+            "value": road.length - end,
+            "freespace": "false",
+            "rule": "lessThan",
+            "coordinateSystem": "road",
+            "relativeDistanceType": "longitudinal",
+        },
+    ).extended(_in_lane(road.length))
+    ego = Element("ByEntityCondition")
+    ego.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
+    ego.extended(reached)
+    _stop(root, {"the end is near": ego, "too long": _after(road.length / speed + speed / PULL + PATIENCE)})
+    return root
+
+
+def replay(road: Road, world: World, poses: Poses, map_: str) -> Element:
+    """The car is where it was, at every moment of its drive."""
+    time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
+    ground = on_the_ground(poses, CAR.rear_axle)
+    exact = np.column_stack([ground, poses.heading, -poses.pitch, poses.roll])
+    rows = np.asarray(np.round(exact, DECIMALS) + 0.0, float)
+    root, actions, story = _frame(world, map_, "A car repeats its recorded drive.")
+    actions.add("PrivateAction").add("TeleportAction").extended(_in_world(rows[0]))
+    actions.add("PrivateAction").extended(_speed(round(float(poses.speed[0]), DECIMALS)))
+    follow = _act(story, "repeat").add("RoutingAction").add("FollowTrajectoryAction")
+    follow.extended(_trajectory(time, rows))
+    timing: dict[str, Value] = {"domainAbsoluteRelative": "absolute", "scale": 1, "offset": 0}
+    follow.add("TimeReference").add("Timing", timing)
+    follow.add("TrajectoryFollowingMode", {"followingMode": "position"})
+    _stop(root, {"the drive is over": _after(float(time[-1]))})
+    return root
+
+
+def _trajectory(time: Array, rows: Array) -> Element:
+    out = Element("TrajectoryRef")
+    line = out.add("Trajectory", {"name": "drive", "closed": "false"}).add("Shape").add("Polyline")
+    for moment, row in zip(time.tolist(), rows, strict=True):
+        line.add("Vertex", {"time": moment}).extended(_in_world(row))
+    return out
+
+
+def _frame(world: World, map_: str, description: str) -> tuple[Element, Element, Element]:
+    """The document, what the car is told at first, and its story."""
+    root = Element("OpenSCENARIO")
+    header: dict[str, Value] = {
+        "revMajor": 1,
+        "revMinor": 2,
+        "date": DATE,
+        "description": description,
+        "author": "RoadGPT",
+    }
+    root.add("FileHeader", header)
+    root.add("CatalogLocations")
+    root.add("RoadNetwork").add("LogicFile", {"filepath": map_})
+    root.add("Entities").add("ScenarioObject", {"name": EGO}).extended(_vehicle())
+    board = root.add("Storyboard")
+    actions = board.add("Init").add("Actions")
+    environment = actions.add("GlobalAction").add("EnvironmentAction").add("Environment", {"name": "road"})
+    environment.add("RoadCondition", {"frictionScaleFactor": world.friction})
+    return root, actions.add("Private", {"entityRef": EGO}), board.add("Story", {"name": "drive"})
+
+
+def _vehicle() -> Element:
+    """Our saloon, told from its rear axle."""
+    out = Element("Vehicle", {"name": "saloon", "vehicleCategory": "car", "mass": CAR.mass})
+    box = out.add("BoundingBox")
+    box.add("Center", {"x": round(CAR.middle - CAR.rear_axle, 3), "y": 0, "z": CAR.height / 2})
+    box.add("Dimensions", {"width": CAR.width, "length": CAR.length, "height": CAR.height})
+    out.add("Performance", {"maxSpeed": 70, "maxAcceleration": 7, "maxDeceleration": 10})
+    axles = out.add("Axles")
+    each = {"wheelDiameter": CAR.wheel, "trackWidth": CAR.track, "positionZ": CAR.wheel / 2}
+    ahead = round(CAR.front_axle - CAR.rear_axle, 3)
+    axles.add("FrontAxle", {"maxSteering": CAR.lock, **each, "positionX": ahead})
+    axles.add("RearAxle", {"maxSteering": 0, **each, "positionX": 0})
+    out.add("Properties")
+    return out
+
+
+def _act(story: Element, name: str) -> Element:
+    """A private action of the car that begins with the simulation; to be filled."""
+    act = story.add("Act", {"name": f"{name} act"})
+    group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
+    group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": EGO})
+    event = group.add("Maneuver", {"name": f"{name} maneuver"}).add(
+        "Event", {"name": f"{name} event", "priority": "override", "maximumExecutionCount": 1}
+    )
+    action = event.add("Action", {"name": name}).add("PrivateAction")
+    event.extended(_trigger("StartTrigger", {f"{name} now": _after(0.0)}))
+    act.extended(_trigger("StartTrigger", {f"{name} begin": _after(0.0)}))
+    return action
+
+
+def _stop(root: Element, conditions: dict[str, Element]) -> None:
+    (board,) = (child for child in root.children if child.name == "Storyboard")
+    board.extended(_trigger("StopTrigger", conditions))
+
+
+def _trigger(name: str, conditions: dict[str, Element]) -> Element:
+    """Any of the conditions is enough."""
+    out = Element(name)
+    for said, condition in conditions.items():
+        told: dict[str, Value] = {"name": said, "delay": 0, "conditionEdge": "none"}
+        out.add("ConditionGroup").add("Condition", told).extended(condition)
+    return out
+
+
+def _after(seconds: float) -> Element:
+    out = Element("ByValueCondition")
+    out.add("SimulationTimeCondition", {"value": seconds, "rule": "greaterOrEqual"})
+    return out
+
+
+def _speed(target: float, rate: float | None = None) -> Element:
+    """At once, or with an acceleration in m/s^2."""
+    out = Element("LongitudinalAction")
+    action = out.add("SpeedAction")
+    shape: dict[str, Value] = {"dynamicsShape": "step", "value": 0, "dynamicsDimension": "time"}
+    if rate is not None:
+        shape = {"dynamicsShape": "linear", "value": rate, "dynamicsDimension": "rate"}
+    action.add("SpeedActionDynamics", shape)
+    action.add("SpeedActionTarget").add("AbsoluteTargetSpeed", {"value": target})
+    return out
+
+
+def _in_lane(s: float) -> Element:
+    out = Element("Position")
+    out.add("LanePosition", {"roadId": str(ROAD), "laneId": LANE, "s": s, "offset": 0})
+    return out
+
+
+def _in_world(row: Array) -> Element:
+    """A row of x, y, z, heading, pitch, roll."""
+    out = Element("Position")
+    out.add("WorldPosition", dict(zip("xyzhpr", row.tolist(), strict=True)))
+    return out
