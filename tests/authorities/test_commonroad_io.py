@@ -1,0 +1,57 @@
+"""commonroad-io reads our CommonRoad files: lanelets with heights, a network in order, a task with a goal.
+
+Its pins do not go with ours, so it is asked where it is installed, here or in an environment of its own.
+"""
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from exported import ROADS, WORLD, python_with
+from roadgpt.export import save
+
+ASK = """
+import json, sys, warnings
+warnings.simplefilter("ignore")
+import numpy as np
+from commonroad.common.file_reader import CommonRoadFileReader
+scenario, problems = CommonRoadFileReader(sys.argv[1]).open()
+(problem,) = problems.planning_problem_dict.values()
+network = scenario.lanelet_network
+where = network.find_lanelet_by_position([problem.initial_state.position[:2]])[0]
+way = [where[0]]
+while network.find_lanelet_by_id(way[-1]).successor:
+    way += network.find_lanelet_by_id(way[-1]).successor
+goals = [id for ids in problem.goal.lanelets_of_goal_position.values() for id in ids]
+print(json.dumps({
+    "lanelets": [[each.left_vertices.tolist(), each.right_vertices.tolist(),
+                  bool(each.polygon.shapely_object.is_valid)] for each in network.lanelets],
+    "way": way, "goals": goals, "velocity": problem.initial_state.velocity,
+    "limits": [e.additional_values[0] for s in network.traffic_signs for e in s.traffic_sign_elements],
+    "distance": sum(float(network.find_lanelet_by_id(i).distance[-1]) for i in way),
+}))
+"""
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_commonroad_io_finds_the_lanes_and_the_way_to_the_goal(tmp_path: Path, name: str) -> None:
+    python = python_with("commonroad", "venv-cr")
+    road = ROADS[name]
+    (file,) = save(road, tmp_path, ["commonroad"], WORLD)
+    done = subprocess.run([python, "-c", ASK, str(file)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["goals"] == found["way"][-1:]
+    assert len(found["way"]) == len(found["lanelets"]) / 2
+    turn = float(road.heading(road.length) - road.heading(0.0))
+    assert found["distance"] == pytest.approx(road.length + 2 * turn, rel=0.01)
+    assert [float(limit) for limit in found["limits"]] == [pytest.approx(50 / 3.6, abs=1e-5)]
+    assert found["velocity"] == 0
+    for left, right, is_valid in found["lanelets"]:
+        assert is_valid
+        points = np.array([*left, *right])
+        s, t = road.locate(points[:, 0], points[:, 1])
+        assert np.abs(road.at(s, t) - points).max() < 2e-3

@@ -1,0 +1,137 @@
+"""glTF, as trimesh reads it: closed slabs where the road is, lines and a path on top of them."""
+
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+
+from exported import ROADS, WORLD, drive
+from roadgpt.export import Poses, save
+from roadgpt.export.exporters.gltf.surfaces import shapes
+from roadgpt.road import Design, Road, World, build
+from strategies import designs
+
+TO_MAP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # glTF's y is our z
+
+
+def read(file: Path) -> dict[str, trimesh.Trimesh]:
+    """Meshes by the name of their node, in coordinates of the map."""
+    scene = trimesh.load_scene(file)
+    out = {}
+    for node in scene.graph.nodes_geometry:
+        place, name = scene.graph[node]
+        mesh = scene.geometry[name].copy()
+        mesh.apply_transform(place)
+        normals = mesh.vertex_normals @ TO_MAP.T  # of the file; trimesh forgets them when vertices move
+        mesh.vertices = mesh.vertices @ TO_MAP.T
+        mesh.metadata["normals"] = normals
+        out[node] = mesh
+    return out
+
+
+def saved(
+    road: Road, folder: Path, world: World = WORLD, poses: Poses | None = None
+) -> dict[str, trimesh.Trimesh]:
+    (file,) = save(road, folder, ["gltf"], world, poses=poses)
+    return read(file)
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_slabs_are_closed_half_a_metre_thick_and_where_the_road_is(tmp_path: Path, name: str) -> None:
+    road = ROADS[name]
+    found = saved(road, tmp_path)
+    bounds = {"road": (-4, 4), "left verge": (4, 7), "right verge": (-7, -4)}
+    for node, (right, left) in bounds.items():
+        slab = found[node]
+        slab.merge_vertices(merge_norm=True, merge_tex=True)
+        assert slab.is_watertight
+        assert slab.is_winding_consistent
+        turn = float(road.heading(road.length) - road.heading(0.0))
+        area = (left - right) * (road.length - turn * (left + right) / 2)
+        assert slab.volume == pytest.approx(0.5 * area, rel=0.002)
+        s, t = road.locate(slab.vertices[:, 0], slab.vertices[:, 1])
+        assert right - 0.01 < t.min() < right + 0.01
+        assert left - 0.01 < t.max() < left + 0.01
+        below = road.at(s)[:, 2] - slab.vertices[:, 2]
+        assert np.minimum(np.abs(below), np.abs(below - 0.5)).max() < 0.01
+
+
+@pytest.mark.parametrize("name", ["arcs", "spline"])
+def test_faces_look_where_their_normals_say(tmp_path: Path, name: str) -> None:
+    for mesh in saved(ROADS[name], tmp_path).values():
+        facing = np.einsum("ij,ikj->ik", mesh.face_normals, mesh.metadata["normals"][mesh.faces])
+        assert facing.min() > 0.9
+
+
+def test_lines_and_path_lie_on_the_road(tmp_path: Path) -> None:
+    road = ROADS["arcs"]
+    found = saved(road, tmp_path)
+    centres = {"left edge line": 3.94, "right edge line": -3.94, "middle line": 0.0, "path": -2.0}
+    for node, centre in centres.items():
+        points = found[node].vertices
+        s, t = road.locate(points[:, 0], points[:, 1])
+        assert t.mean() == pytest.approx(centre, abs=0.01)
+        assert np.ptp(t) < 0.32
+        over = points[:, 2] - road.at(s)[:, 2]
+        assert 0.002 < over.min() < over.max() < 0.03
+        assert (found[node].face_normals[:, 2] > 0.9).all()
+    painted = found["middle line"].area / 0.12
+    assert painted == pytest.approx(road.length / 3, abs=4)
+    assert found["right edge line"].visual.material.name == "paint"
+    assert found["road"].visual.material.name == "asphalt"
+    assert max(found["road"].visual.material.baseColorFactor[:3]) < 0.2 * 255
+
+
+def test_the_path_is_the_driven_one_where_there_is_a_drive(tmp_path: Path) -> None:
+    road = ROADS["arcs"]
+    poses = drive(road)
+    path = saved(road, tmp_path, poses=poses)["path"].vertices
+    half = len(path) // 2
+    middle = (path[:half] + path[half:]) / 2
+    # under the car, which leans: 0.56 m of height times 0.11 rad
+    assert np.hypot(middle[:, 0] - poses.x, middle[:, 1] - poses.y).max() < 0.07
+    s, _ = road.locate(middle[:, 0], middle[:, 1])
+    assert np.abs(middle[:, 2] - road.at(s)[:, 2]).max() < 0.05
+
+
+def test_a_car_that_stands_leaves_a_mark(tmp_path: Path) -> None:
+    road = ROADS["arcs"]
+    x, y, z = road.at(2.5, -2.0)
+    zero = np.zeros(3)
+    still = Poses(np.arange(3.0), zero + x, zero + y, zero + z + 0.56, zero, zero, zero, zero)
+    assert saved(road, tmp_path, poses=still)["path"].area == pytest.approx(0.09, rel=0.01)
+
+
+def test_without_a_verge_there_is_none(tmp_path: Path) -> None:
+    found = saved(ROADS["arcs"], tmp_path, World(verge=0))
+    assert set(found) == {"road", "left edge line", "right edge line", "middle line", "path"}
+
+
+def test_the_file_is_laid_out_as_the_standard_says(tmp_path: Path) -> None:
+    (file,) = save(ROADS["far away"], tmp_path, ["gltf"], WORLD)
+    data = file.read_bytes()
+    magic, version, length, json_length, kind = struct.unpack("<4sIII4s", data[:20])
+    assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON")
+    described = json.loads(data[20 : 20 + json_length])
+    binary_length, kind = struct.unpack("<I4s", data[20 + json_length : 28 + json_length])
+    assert (binary_length, kind) == (described["buffers"][0]["byteLength"], b"BIN\0")
+    assert 28 + json_length + binary_length == length
+    assert json_length % 4 == binary_length % 4 == 0
+    # far from the map's corner single precision would step by 8 mm
+    assert max(abs(v) for each in described["accessors"] for v in each.get("max", [])) < 300
+
+
+@settings(max_examples=25)
+@given(design=designs())
+def test_no_road_folds_or_breaks_its_shapes(design: Design) -> None:
+    road = build(design)
+    for shape in shapes(road, WORLD):
+        assert np.isfinite(shape.points).all()
+        assert np.linalg.norm(shape.normals, axis=1) == pytest.approx(1.0)
+        assert len(shape.points) == len(shape.normals) == len(shape.texture)
+        assert shape.triangles.min() >= 0
+        assert shape.triangles.max() < len(shape.points)

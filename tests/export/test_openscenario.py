@@ -1,0 +1,130 @@
+"""OpenSCENARIO: ASAM's checker finds nothing, and the car is told where the road says."""
+
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from exported import ROADS, WORLD, drive
+from roadgpt.export import save
+from roadgpt.road import Road, World
+
+REAR_AXLE, GRAVITY_HEIGHT = -1.47, 0.56  # m, of the simulator's car
+
+
+def asam_says(file: Path) -> tuple[list[str], dict[str, int]]:
+    """Issues that ASAM's checker finds, and how many of its checks ended how."""
+    result, settings = file.with_suffix(".xqar"), file.with_suffix(".settings")
+    settings.write_text(
+        f'<Config><Param name="InputFile" value={quoteattr(str(file))}/>'
+        '<CheckerBundle application="xoscBundle">'
+        f'<Param name="resultFile" value={quoteattr(str(result))}/></CheckerBundle></Config>'
+    )
+    checker = [sys.executable, "-W", "ignore", "-m", "qc_openscenario.main", "-c", str(settings)]
+    subprocess.run(checker, capture_output=True, check=True)
+    root = ET.parse(result).getroot()
+    ends = [checker.get("status", "") for checker in root.iter("Checker")]
+    issues = [f"{issue.get('ruleUID')}: {issue.get('description')}" for issue in root.iter("Issue")]
+    return issues, {end: ends.count(end) for end in set(ends)}
+
+
+def saved(road: Road, folder: Path, world: World = WORLD) -> tuple[ET.Element, ET.Element]:
+    save(road, folder, ["openscenario"], world, "a road", drive(road, world))
+    return tuple(ET.parse(folder / f"a road{end}.xosc").getroot() for end in ("", ".drive"))
+
+
+@pytest.mark.parametrize(
+    ("road", "end"), [("arcs", ""), ("arcs", ".drive"), ("spline", ".drive"), ("short", "")]
+)
+def test_asams_checker_asks_everything_and_objects_to_nothing(tmp_path: Path, road: str, end: str) -> None:
+    saved(ROADS[road], tmp_path)
+    issues, ends = asam_says(tmp_path / f"a road{end}.xosc")
+    assert issues == []
+    assert ends == {"completed": 17}
+
+
+def test_asams_checker_does_object(tmp_path: Path) -> None:
+    saved(ROADS["arcs"], tmp_path)
+    file = tmp_path / "a road.xosc"
+    text = file.read_text()
+    file.write_text(text.replace('<EntityRef entityRef="Ego"/>', '<EntityRef entityRef="nobody"/>', 1))
+    assert asam_says(file)[0]
+    file.write_text(text.replace("closed=", "shut="))
+    assert asam_says(file)[0]
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_the_car_starts_in_the_right_lane_and_stops_near_the_end(tmp_path: Path, name: str) -> None:
+    road = ROADS[name]
+    scenario, _ = saved(road, tmp_path)
+    map_ = ET.parse(tmp_path / scenario.find("RoadNetwork/LogicFile").attrib["filepath"]).getroot()
+    length = float(map_.find("road").attrib["length"])
+    lanes = {lane.get("id"): lane.get("type") for lane in map_.iter("lane")}
+    places = list(scenario.iter("LanePosition"))
+    assert len(places) == 4
+    for place in places:
+        assert place.get("roadId") == map_.find("road").get("id")
+        assert lanes[place.attrib["laneId"]] == "driving"
+        assert int(place.attrib["laneId"]) < 0
+        assert 0 <= float(place.attrib["s"]) <= length
+    start, first, last, end = (float(place.attrib["s"]) for place in places)
+    assert start == first
+    assert last == end == length
+    (near,) = (each.attrib for each in scenario.iter("DistanceCondition"))
+    goal = length - float(near["value"])
+    assert start < goal < length
+    if length > 20:
+        assert start - REAR_AXLE == pytest.approx(2.5)
+        assert goal - REAR_AXLE == pytest.approx(length - 8)
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.6, 1.0])
+def test_speed_and_friction_are_those_of_the_world(tmp_path: Path, friction: float) -> None:
+    road = ROADS["arcs"]
+    world = WORLD.model_copy(update={"friction": friction})
+    scenario, _ = saved(road, tmp_path, world)
+    assert scenario.find(".//RoadCondition").attrib == {
+        "frictionScaleFactor": str(friction).removesuffix(".0")
+    }
+    rest, speed = (float(each.attrib["value"]) for each in scenario.iter("AbsoluteTargetSpeed"))
+    assert rest == 0
+    assert 3 < speed <= world.speed_limit
+    sideways = speed**2 * np.abs(road.curvature(np.linspace(0, road.length, 999))).max()
+    assert sideways <= min(3.0, 0.5 * friction * 9.81) * 1.001
+
+
+def test_a_straight_road_is_driven_at_the_limit(tmp_path: Path) -> None:
+    scenario, _ = saved(Road.through([[0, 0], [50, 0], [100, 0]]), tmp_path)
+    speeds = [float(each.attrib["value"]) for each in scenario.iter("AbsoluteTargetSpeed")]
+    assert speeds == [0, pytest.approx(WORLD.speed_limit)]
+
+
+@pytest.mark.parametrize("name", ["arcs", "flat points", "short"])
+def test_the_trajectory_is_that_of_the_rear_axle(tmp_path: Path, name: str) -> None:
+    """OpenSCENARIO turns right-handed about z, y, x; scipy does so, too."""
+    poses = drive(ROADS[name])
+    _, replay = saved(ROADS[name], tmp_path)
+    vertices = list(replay.iter("Vertex"))
+    time = [float(vertex.attrib["time"]) for vertex in vertices]
+    rows = np.array(
+        [[float(vertex.find("Position/WorldPosition").attrib[k]) for k in "xyzhpr"] for vertex in vertices]
+    )
+    assert time == pytest.approx(poses.time - poses.time[0])
+    attitude = Rotation.from_euler("ZYX", rows[:, 3:])
+    gravity = rows[:, :3] + attitude.apply([-REAR_AXLE, 0, GRAVITY_HEIGHT])
+    assert np.abs(gravity - np.column_stack([poses.x, poses.y, poses.z])).max() < 1e-5
+    nose, left = attitude.apply([1, 0, 0]), attitude.apply([0, 1, 0])
+    assert np.arcsin(nose[:, 2]) == pytest.approx(poses.pitch, abs=1e-5)  # up where the pitch is positive
+    assert (np.sign(left[:, 2]) == np.sign(poses.roll)).all()
+    stop = replay.find("Storyboard/StopTrigger").iter("SimulationTimeCondition")
+    assert [float(each.attrib["value"]) for each in stop] == [pytest.approx(time[-1])]
+
+
+def test_without_a_drive_there_is_no_second_scenario(tmp_path: Path) -> None:
+    written = save(ROADS["arcs"], tmp_path, ["openscenario"], WORLD, "x")
+    assert {path.name for path in written} == {"x.xosc", "x.xodr"}

@@ -1,0 +1,65 @@
+"""Roads and a drive to export, and programs of others that may be at hand to read what came out."""
+
+import os
+import shutil
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roadgpt.export import Poses
+from roadgpt.road import Design, Road, Segment, World, build
+
+WORLD = World(friction=0.6, speed_limit=50 / 3.6)
+HILLY = Design(
+    starting_point=(50, 40, -3),
+    theta=30,
+    segments=(
+        Segment(distance=60, direction="straight", incline=4),
+        Segment(distance=50, direction="left", incline=8, turn_degrees=70),
+        Segment(distance=40, direction="right", incline=-10, turn_degrees=60, radius=25),
+        Segment(distance=45, direction="straight", incline=0),
+    ),
+)
+ROADS = {
+    "arcs": build(HILLY),
+    "spline": build(HILLY, geometry="spline"),
+    "flat points": Road.through([[20, 30], [70, 60], [120, 60], [180, 130]]),
+    "short": Road.through([[10, 10, 0], [13, 10, 0.1]]),
+    "far away": Road.through([[-60_000, 90_000, 500], [-59_900, 90_050, 505], [-59_800, 90_000, 500]]),
+}
+"""By name: one of each kind that an exporter meets."""
+
+
+def drive(road: Road, world: World = WORLD) -> Poses:
+    """A car that sways about the middle of the right lane at 8 m/s, pitching and rolling."""
+    time = np.arange(0.0, (road.length - 2.5) / 8.0, 0.02) if road.length > 3 else np.array([0.0, 0.02])
+    s = np.minimum(2.5 + 8.0 * time, road.length)
+    x, y, z = road.at(s, -world.lane_width / 2 + 0.4 * np.sin(s / 7)).T
+    pitch, roll = np.arctan(road.grade(s)) + 0.01 * np.sin(s), 0.03 * np.cos(s / 5)
+    return Poses(time, x, y, z + 0.56, road.heading(s) + 0.02 * np.sin(s), pitch, roll, np.full(len(s), 8.0))
+
+
+def python_with(module: str, venv: str) -> str:
+    """A Python that has this module: ours, or that of an environment in the folder JUDGE_HOME; or skip."""
+    if find_spec(module.split(".")[0]) is not None:
+        return sys.executable
+    for folder in filter(None, [os.environ.get("JUDGE_HOME"), Path(__file__).parents[2] / "judges"]):
+        python = Path(folder, venv, "bin", "python")
+        if python.exists():
+            return str(python)
+    pytest.skip(f"{module} is not at hand")
+
+
+def program(name: str, venv: str = "tools") -> str:
+    """A program: on the path, or in a folder of JUDGE_HOME; or skip."""
+    places = [
+        Path(os.environ.get("JUDGE_HOME") or Path(__file__).parents[2] / "judges") / venv / part
+        for part in ("bin", "")
+    ]
+    found = shutil.which(name) or next(
+        filter(None, (shutil.which(name, path=place) for place in places)), None
+    )
+    return found or pytest.skip(f"{name} is not at hand")
