@@ -4,6 +4,7 @@ import sys
 from collections.abc import Sequence
 from difflib import get_close_matches
 from importlib import import_module
+from keyword import iskeyword
 from typing import Any
 
 import click
@@ -22,6 +23,8 @@ COMMANDS = {
     "drive": "Drive roads that exist.",
     "check": "Check roads that exist against the rules.",
     "plot": "Draw roads that exist.",
+    "export": "Write roads in the formats of other people's tools: OpenDRIVE and others.",
+    "import": "Take a road out of an OpenDRIVE file.",
     "show": "Tell what is in the folder of a run or a campaign.",
     "learn": "Descriptions by hand and by the thousand; train, judge and export a reader of your own.",
     "parts": "List what is installed on each shelf.",
@@ -34,6 +37,8 @@ MISSING = {
     "DESCRIPTION": 'Say what road you want: roadgpt run "an uphill road with 3 turns"',
     "ROAD.json...": "Name one or more road files, or folders of runs.",
     "RUN...": "Name the folder of a run or of a campaign.",
+    "RUN|ROAD...": "Name one or more folders of runs, or road files.",
+    "FILE.xodr": "Name an OpenDRIVE file.",
     "OUT": "Name the folder to write into.",
 }
 
@@ -54,7 +59,7 @@ class Commands(click.Group):
         """The command of that name, imported now."""
         if name not in COMMANDS:
             return None
-        command: click.Command = import_module(f"roadgpt.cli.commands.{name}").command
+        command: click.Command = import_module(f"roadgpt.cli.commands.{_module(name)}").command
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -124,6 +129,11 @@ class Commands(click.Group):
             click.echo(f"roadgpt: {report_crash(error)}", err=True)
             status = INTERNAL
         sys.exit(status if isinstance(status, int) else 0)
+
+
+def _module(name: str) -> str:
+    """Of a command; a word that Python keeps for itself has an underscore."""
+    return f"{name}_" if iskeyword(name) else name
 
 
 def _with_advice(error: click.ClickException) -> click.ClickException:

@@ -95,6 +95,14 @@ WORLD = (
         1.0,
     ),
     Flag(
+        "--lane-width",
+        "lane_width",
+        4,
+        "Of each of the two lanes, metres.",
+        measure(2, 10, "metres"),
+        1.0,
+    ),
+    Flag(
         "--verge",
         "verge",
         3,

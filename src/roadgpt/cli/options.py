@@ -85,6 +85,30 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     return None
 
 
+def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
+    """The type of an option that takes formats, several after commas."""
+    if isinstance(value, tuple):
+        return value
+    names = tuple(name.strip() for name in value.split(",") if name.strip())
+    if not names:
+        raise click.BadParameter("no format is named; roadgpt parts lists the exporters")
+    return names
+
+
+def formats_option(flag: str, required: bool = False) -> Decorator:
+    """Formats of road files as ``formats``: after commas, or by giving the option again."""
+    return click.option(
+        flag,
+        "formats",
+        type=formats,
+        metavar="FORMAT,...",
+        multiple=True,
+        required=required,
+        callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
+        help="Formats of road files, such as opendrive or csv; 'roadgpt parts' lists them.",
+    )
+
+
 axes_option = click.option(
     "--axes",
     type=click.Choice(["equal", "thesis"]),

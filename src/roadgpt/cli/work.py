@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.rows import row_of, spending
 from roadgpt.cli.screen import Screen
@@ -35,6 +37,8 @@ class Wish:
     out: Path | None = None
     axes: "Scale" = "equal"
     has_pictures: bool = True
+    formats: tuple[str, ...] = ()
+    """Of the road files beside each run."""
 
 
 def work_off(wish: Wish, screen: Screen) -> None:
@@ -47,11 +51,12 @@ def work_off(wish: Wish, screen: Screen) -> None:
     from roadgpt.chat import Meter
     from roadgpt.run import brief_of, campaign
 
+    beside = _beside(wish)
     meter = Meter.of(wish.setup.chat)
     brief = brief_of(wish.words, wish.world, wish.setup, meter)
     seed = _seed(wish)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
-        work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, _pictures(wish), meter)
+        work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, beside, meter)
     screen.say(understood(brief))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
@@ -104,6 +109,23 @@ def _watch(work: "Campaign", screen: Screen) -> None:
             screen.say(f"tests and tables: {work.folder}")
             if work.draw is not None:
                 screen.say(f"pictures: {work.folder / 'overview.png'} and {work.folder / 'runs'}/*/*.png")
+
+
+def _beside(wish: Wish) -> "Draw | None":
+    """What puts pictures and road files into the folder of each run."""
+    draw = _pictures(wish)
+    if not wish.formats:
+        return draw
+    from roadgpt.export import exporter_of
+    from roadgpt.run.exporting import Exporting
+
+    for name in wish.formats:
+        exporter_of(name)
+    return Exporting(wish.formats, _complain, draw)
+
+
+def _complain(sentence: str) -> None:
+    click.echo(f"roadgpt: {sentence}", err=True)
 
 
 def _pictures(wish: Wish) -> "Draw | None":

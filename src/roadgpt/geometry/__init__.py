@@ -6,7 +6,7 @@ A plan curve answers ``at(s)``, ``heading(s)`` and ``curvature(s)`` by exact arc
 
 from roadgpt.geometry.curve import PlanCurve, Profile, wrap_angle
 from roadgpt.geometry.pieces import Piece, PieceCurve
-from roadgpt.geometry.profile import CubicProfile, GradeProfile
+from roadgpt.geometry.profile import CubicProfile, GradeProfile, shifted
 from roadgpt.geometry.projection import project
 from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate, walked
 
@@ -21,6 +21,7 @@ __all__ = [
     "SplineProfile",
     "interpolate",
     "project",
+    "shifted",
     "walked",
     "wrap_angle",
 ]

@@ -100,9 +100,8 @@ class CubicProfile:
 
     def cubics(self, s: ArrayLike) -> Array:
         """The cubics ``(n, 4)`` of the distance from stations ``s``, ``(n,)``."""
-        u, (a, b, c, d) = self._place(s)
-        rows = [a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d]
-        return np.stack(rows, axis=-1)
+        u, table = self._place(s)
+        return shifted(np.moveaxis(table, 0, -1), u)
 
     def height(self, s: ArrayLike) -> Array:
         """Heights in metres."""
@@ -118,3 +117,11 @@ class CubicProfile:
         """Change of slope in 1/m, negative on a crest."""
         u, (_, _, c, d) = self._place(s)
         return np.asarray(2 * c + 6 * u * d)
+
+
+def shifted(cubics: Array, u: ArrayLike) -> Array:
+    """The same cubics ``(..., 4)``, constant first, told from places ``u`` ``(...)`` farther on."""
+    u = np.asarray(u, float)
+    a, b, c, d = np.moveaxis(cubics, -1, 0)
+    rows = [a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d]
+    return np.stack(rows, axis=-1)

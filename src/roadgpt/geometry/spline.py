@@ -18,6 +18,8 @@ from roadgpt.geometry.curve import Array
 MIN_NODES = 20  # of the interpolation, however short the road
 DECIMALS = 3  # that the competition rounds interpolated points to
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_NEWTON = 8  # steps at most; two do where nodes lie near to each other
+_CLOSE = 1e-4  # m, before a last Newton step
 _SPANS = 4  # quadrature spans per spline interval: arc length good to a micrometre
 
 Tck = tuple[Array, list[Array], int]
@@ -104,12 +106,15 @@ class SplineCurve:
         return self._reached(self.knots)
 
     def parameter(self, s: ArrayLike) -> Array:
-        """Spline parameters at stations ``s``, by one Newton step from a table that is already close."""
+        """Spline parameters at stations ``s``, by Newton steps from a table that is already close."""
         s = np.asarray(s, float)
         table_u, table_s = self._arc
         u = np.interp(s, table_s, table_u)
-        for _ in range(2):
-            u = np.asarray(np.clip(u + (s - self._reached(u)) / self._speed(u), 0.0, 1.0))
+        for number in range(_NEWTON):
+            missed = s - self._reached(u)
+            u = np.asarray(np.clip(u + missed / self._speed(u), 0.0, 1.0))
+            if number and np.abs(missed).max(initial=0.0) < _CLOSE:  # each step squares the error
+                break
         return np.asarray(u, float)
 
     def _speed(self, u: Array) -> Array:

@@ -7,6 +7,8 @@ A Design is the blueprint that a designer writes and a person reads; a Road is 3
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, Segment, read_design
 from roadgpt.road.hops import in_hops
+from roadgpt.road.moving import moved
+from roadgpt.road.opendrive import Imported, read_opendrive
 from roadgpt.road.road import Road, Samples
 from roadgpt.road.source import read_blueprint, read_road
 from roadgpt.road.world import World
@@ -14,13 +16,16 @@ from roadgpt.road.world import World
 __all__ = [
     "Design",
     "Geometry",
+    "Imported",
     "Road",
     "Samples",
     "Segment",
     "World",
     "build",
     "in_hops",
+    "moved",
     "read_blueprint",
     "read_design",
+    "read_opendrive",
     "read_road",
 ]

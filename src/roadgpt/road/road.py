@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import (
+    CubicProfile,
     GradeProfile,
     Piece,
     PieceCurve,
@@ -144,10 +145,16 @@ class Road:
             out = {"nodes": self.nodes.tolist()}
             return out if self.road_points is None else {**out, "road_points": self.road_points.tolist()}
         assert isinstance(self.plan, PieceCurve)
-        assert isinstance(self.profile, GradeProfile)
-        return {
+        out = {
             "start": [self.plan.x, self.plan.y, self.plan.heading0],
             "pieces": [[p.length, p.k0, p.k1] for p in self.plan.pieces],
+        }
+        if isinstance(self.profile, CubicProfile):
+            rows = zip(self.profile.stations, self.profile.coefficients, strict=True)
+            return {**out, "cubics": [[s, *cubic] for s, cubic in rows]}
+        assert isinstance(self.profile, GradeProfile)
+        return {
+            **out,
             "height": self.profile.z0,
             "stations": list(self.profile.stations),
             "grades": list(self.profile.grades),
@@ -165,19 +172,27 @@ class Road:
         try:
             x, y, heading = (float(v) for v in data["start"])
             pieces = tuple(Piece(*(float(v) for v in row)) for row in data["pieces"])
-            stations, grades = tuple(map(float, data["stations"])), tuple(map(float, data["grades"]))
-            numbers = [x, y, heading, float(data["height"]), *stations, *grades]
-            numbers += [v for p in pieces for v in (p.length, p.k0, p.k1)]
-            if not np.isfinite(numbers).all():
+            numbers = [x, y, heading, *(v for p in pieces for v in (p.length, p.k0, p.k1))]
+            profile, more = _profile(data)
+            if not np.isfinite([*numbers, *more]).all():
                 raise ValueError("a number is not finite")
             check_length(sum(p.length for p in pieces))
-            return cls(
-                PieceCurve(x, y, heading, pieces), GradeProfile(float(data["height"]), stations, grades)
-            )
+            return cls(PieceCurve(x, y, heading, pieces), profile)
         except (KeyError, TypeError, ValueError) as error:
             raise UsageError(
                 f"the road cannot be read: {error}; it needs start, pieces, height, stations, grades"
             ) from error
+
+
+def _profile(data: Mapping[str, Any]) -> tuple[Profile, list[float]]:
+    """The heights that ``to_json`` wrote, and all numbers in them."""
+    if "cubics" in data:
+        rows = [(float(s), (float(a), float(b), float(c), float(d))) for s, a, b, c, d in data["cubics"]]
+        cubics = CubicProfile(tuple(s for s, _ in rows), tuple(cubic for _, cubic in rows))
+        return cubics, [v for s, cubic in rows for v in (s, *cubic)]
+    height = float(data["height"])
+    stations, grades = tuple(map(float, data["stations"])), tuple(map(float, data["grades"]))
+    return GradeProfile(height, stations, grades), [height, *stations, *grades]
 
 
 def check_length(length: float) -> None:

@@ -1,4 +1,4 @@
-"""Roads from files: ours, SBFT test JSON, RoadGPT designs, or a plain list of points."""
+"""Roads from files: ours, SBFT test JSON, RoadGPT designs, a plain list of points, or OpenDRIVE."""
 
 import json
 from pathlib import Path
@@ -11,13 +11,15 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, read_design
+from roadgpt.road.opendrive import read_opendrive
 from roadgpt.road.road import Road
 
 ASTRAY = 1.5  # m between a control point and the nearest of the road's points, a metre apart
+OPENDRIVE = ".xodr"
 LARGEST = 50_000_000  # bytes of a road file
 SHAPES = (
     "a road, a design or a test written by roadgpt, an SBFT test with road_points, "
-    "or a list of [x, y] or [x, y, z]"
+    "a list of [x, y] or [x, y, z], or an OpenDRIVE file (.xodr)"
 )
 
 
@@ -44,6 +46,9 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
     path = Path(path)
     if path.is_dir():
         path = path / "road.json"
+    if path.suffix.lower() == OPENDRIVE:
+        found = read_opendrive(path)
+        return found.road, found.remarks
     try:
         if path.stat().st_size > LARGEST:
             raise UsageError(f"{path} is larger than {LARGEST // 1_000_000} MB; that is no road file")

@@ -13,6 +13,7 @@ from roadgpt.cli.options import (
     chat_of,
     chat_options,
     folder,
+    formats_option,
     screen_options,
     setup_options,
     world_of,
@@ -33,6 +34,7 @@ from roadgpt.cli.work import Wish, work_off
 @click.option("--no-drive", is_flag=True, help="Design and check only.")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @axes_option
+@formats_option("--export")
 @chat_options
 @screen_options
 def command(
@@ -43,6 +45,7 @@ def command(
     no_drive: bool,
     no_plot: bool,
     axes: Any,
+    formats: tuple[str, ...],
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -64,5 +67,5 @@ def command(
     world = world_of(rest)
     chat = chat_of(rest, rest["reader"], rest["designer"])
     setup = Setup(drives=not no_drive, chat=chat, **rest)
-    wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, has_pictures=not no_plot)
+    wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, not no_plot, formats)
     work_off(wish, Screen(roads, as_json, quiet, verbose))

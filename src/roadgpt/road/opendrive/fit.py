@@ -1,0 +1,46 @@
+"""Clothoids from pose to pose: the curve that leaves one place and direction and comes to another.
+
+One unknown is left, the change of curvature, and Newton's method finds it. Source: Bertolazzi and Frego, G1
+fitting with clothoids, Mathematical Methods in the Applied Sciences 38 (2015).
+"""
+
+import numpy as np
+
+from roadgpt.geometry import Piece, wrap_angle
+from roadgpt.geometry.curve import Array
+
+ROUNDS = 12  # Newton steps; three are enough for gentle bends
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+_TAU, _W = (_NODES + 1) / 2, _WEIGHTS / 2
+
+
+def clothoids(poses: Array) -> list[Piece] | None:
+    """Pieces between poses, rows x, y, heading ``(n + 1, 3)``; None where there is no such piece.
+
+    Every piece ends at its pose to rounding, so that nothing adds up along the road.
+    """
+    chord = np.diff(poses[:, :2], axis=0)
+    reach = np.hypot(chord[:, 0], chord[:, 1])
+    along = np.arctan2(chord[:, 1], chord[:, 0])
+    first, last = wrap_angle(poses[:-1, 2] - along), wrap_angle(poses[1:, 2] - along)
+    turn = last - first
+    a = 3 * (first + last)
+    for _ in range(ROUNDS):
+        angle = _angle(a, turn, first)
+        across = np.sin(angle) @ _W
+        slope = (np.cos(angle) * (_TAU * (_TAU - 1))) @ _W
+        a = a - across / np.where(np.abs(slope) < 1e-3, -1 / 6, slope)
+    angle = _angle(a, turn, first)
+    shrunk = np.cos(angle) @ _W
+    missed = np.abs(np.sin(angle) @ _W)
+    if not (np.isfinite(a).all() and (shrunk > 0.1).all() and (missed < 1e-9).all()):
+        return None
+    length = reach / shrunk
+    k0 = (turn - a) / length
+    k1 = (turn + a) / length
+    return [Piece(*row) for row in np.column_stack([length, k0, k1]).tolist()]
+
+
+def _angle(a: Array, turn: Array, first: Array) -> Array:
+    """Direction against the chord, ``(n, 24)``, at the places where it is integrated."""
+    return np.asarray(first[:, None] + _TAU * ((turn - a)[:, None] + _TAU * a[:, None]))

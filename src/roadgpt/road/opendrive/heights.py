@@ -1,0 +1,62 @@
+"""Elevation: the file's cubics over the stations of the Road."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from roadgpt.geometry import CubicProfile, GradeProfile, Profile, shifted
+from roadgpt.geometry.curve import Array
+from roadgpt.road.opendrive.numbers import cubics
+from roadgpt.road.opendrive.tree import Node
+
+SAME = 1e-9  # m, and as a ratio: heights and grades that nothing tells apart
+STEP = 0.05  # m; a larger one is remarked on
+
+
+def elevation(road: Node) -> CubicProfile:
+    """Heights over the stations of the file; level at 0 where it says nothing."""
+    found = cubics(road.all("elevationProfile", "elevation"), "s")
+    return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
+
+
+def plain(profile: CubicProfile, length: float) -> Profile:
+    """The same heights as steady grades and parabolas, where they are such and do not jump."""
+    stations = [s for s in profile.stations if s < length - SAME]
+    stations = [0.0, *(s for s in stations if s > SAME)]
+    table = profile.cubics(np.array(stations))
+    if np.abs(table[:, 3]).max() > 0:
+        return profile
+    rows = list(zip(stations, table.tolist(), strict=True))
+    for (s, (a, b, c, _)), (end, (z, grade, _, _)) in pairwise(rows):
+        u = end - s
+        if abs(a + u * (b + u * c) - z) > SAME * max(1.0, abs(z)) or abs(b + 2 * u * c - grade) > SAME:
+            return profile
+    (s, (_, b, c, _)) = rows[-1]
+    grades = (*table[:, 1].tolist(), b + 2 * (length - s) * c)
+    return GradeProfile(float(table[0, 0]), (*stations, length), grades)
+
+
+def jumps(profile: CubicProfile, length: float) -> str | None:
+    """A sentence about the highest step; None where there is none to speak of."""
+    worst, where = 0.0, 0.0
+    for s, end in pairwise(profile.stations):
+        if end < length:
+            step = abs(float(profile.height(end) - profile.height(np.nextafter(end, s))))
+            worst, where = max((worst, where), (step, end))
+    return f"its height jumps by {worst:.2f} m at s = {where:.1f}" if worst > STEP else None
+
+
+def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
+    """The heights over other stations: cubics between them, the file's where they lie inside one of its own.
+
+    Args:
+        profile: over the stations of the file.
+        s: rising stations of the file, ``(n,)``.
+        stations: of the Road at the same places, ``(n,)``.
+    """
+    # asked in the middle: rounding may have put a start just before the cubic that begins there
+    half = np.diff(s) / 2
+    table = shifted(profile.cubics(s[:-1] + half), -half)
+    scale = (np.diff(s) / np.diff(stations))[:, None] ** np.arange(4)
+    rows = [(a, b, c, d) for a, b, c, d in (table * scale).tolist()]
+    return CubicProfile(tuple(stations[:-1].tolist()), tuple(rows))

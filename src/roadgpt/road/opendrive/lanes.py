@@ -1,0 +1,169 @@
+"""Lanes: which one is driven, where its inner edge runs, how wide it is, how fast and how slippery.
+
+Our roads have their centre line at the inner edge of the lane that is driven: the innermost driving lane on
+the right, or on the left where the right has none.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile
+from roadgpt.geometry.curve import Array
+from roadgpt.road.opendrive.numbers import cubics, number
+from roadgpt.road.opendrive.tree import Node
+
+DRIVING = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane")
+BESIDE = ("shoulder", "border")
+UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # in one m/s
+JUMP = 0.02  # m; a larger one of a lane's edge is no edge to drive along
+PLACES = 64  # along a section, at which widths are looked at
+MOST_SECTIONS = 5_000
+
+Which = Callable[["Section"], tuple[int, int]]
+"""First and last lane of a section, by index."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """One lane section, the lanes of the driven side from the inside out."""
+
+    s: float
+    lanes: tuple[Node, ...]
+    driven: int
+    """Index of the driven lane; the number of lanes where there is none."""
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """What the lanes of a road come to."""
+
+    side: int
+    """-1: the driven lane is to the right of the reference line, 1: to the left."""
+    sections: tuple[Section, ...]
+    offset: CubicProfile | None
+    length: float
+
+    def edge(self, s: Array) -> tuple[Array, Array]:
+        """Where the driven lane has its inner edge, metres left of the reference line, and its slope."""
+        t, slope = _both(self.offset, s)
+        starts = np.array([section.s for section in self.sections])
+        index = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
+        for i in np.unique(index):
+            section, some = self.sections[i], index == i
+            if section.driven < len(section.lanes):
+                across, lean = self._outer(section, section.driven - 1, s[some])
+                t[some] += self.side * across
+                slope[some] += self.side * lean
+        return t, slope
+
+    def _outer(self, section: Section, last: int, s: Array) -> tuple[Array, Array]:
+        """How far the outer edge of a lane is from lane 0, and the slope of that; 0 before the first."""
+        across, lean = np.zeros(len(s)), np.zeros(len(s))
+        for lane in section.lanes[: last + 1]:
+            border = cubics(lane.all("border"), "sOffset", section.s)
+            width = cubics(lane.all("width"), "sOffset", section.s)
+            if width is None and border is not None:
+                across, lean = (np.abs(each) for each in _both(border, s))
+            else:
+                more, leaning = _both(width, s)
+                across, lean = across + more, lean + leaning
+        return across, lean
+
+    def joints(self) -> list[float]:
+        """Stations at which an edge may bend."""
+        found = [section.s for section in self.sections]
+        found += self.offset.stations if self.offset else ()
+        for section in self.sections:
+            for lane in section.lanes[: section.driven]:
+                for node in (*lane.all("width"), *lane.all("border")):
+                    found.append(section.s + number(node, "sOffset", 0.0))
+        return found
+
+    def widths(self) -> Array:
+        """Of the driven lane, along all of the road, metres."""
+        return self._spread(lambda section: (section.driven, section.driven))
+
+    def verges(self) -> Array:
+        """Of the shoulder beside the driven lanes, along all of the road, metres."""
+
+        def beside(section: Section) -> tuple[int, int]:
+            kinds = [lane.attributes.get("type") for lane in section.lanes]
+            first = section.driven
+            while first < len(kinds) and kinds[first] in DRIVING:
+                first += 1
+            last = first
+            while last < len(kinds) and kinds[last] in BESIDE:
+                last += 1
+            return first, last - 1
+
+        return self._spread(beside)
+
+    def _spread(self, which: Which) -> Array:
+        """Width from the first to the last lane of each section."""
+        ends = [section.s for section in self.sections[1:]] + [self.length]
+        found = []
+        for section, end in zip(self.sections, ends, strict=True):
+            if section.driven == len(section.lanes):
+                continue
+            first, last = which(section)
+            s = np.linspace(section.s, max(end, section.s) - 1e-6, PLACES)
+            found.append(self._outer(section, last, s)[0] - self._outer(section, first - 1, s)[0])
+        return np.concatenate(found)
+
+    def driven(self) -> Iterator[Node]:
+        """The driven lane of each section that has one."""
+        return (each.lanes[each.driven] for each in self.sections if each.driven < len(each.lanes))
+
+
+def read_lanes(road: Node, length: float) -> Lanes:
+    """The lanes of a road.
+
+    Raises:
+        UsageError: there are none, or nothing drives on them.
+    """
+    nodes = road.all("lanes", "laneSection")
+    if not nodes:
+        raise UsageError("it has no lane section; add <lanes>")
+    if len(nodes) > MOST_SECTIONS:
+        raise UsageError(f"it has more than {MOST_SECTIONS:,} lane sections; cut out the part that you need")
+    nodes.sort(key=lambda node: number(node, "s"))
+    offset = cubics(road.all("lanes", "laneOffset"), "s")
+    for side, name in ((-1, "right"), (1, "left")):
+        sections = tuple(_section(node, name) for node in nodes)
+        if any(section.driven < len(section.lanes) for section in sections):
+            return Lanes(side, sections, offset, length)
+    kinds = {lane.attributes.get("type", "?") for node in nodes for lane in node.all("left", "lane")}
+    kinds |= {lane.attributes.get("type", "?") for node in nodes for lane in node.all("right", "lane")}
+    told = ", ".join(sorted(kinds)[:6]) or "none"
+    raise UsageError(f"it has no lane of type driving (its lanes are: {told}); take another road")
+
+
+def _section(node: Node, side: str) -> Section:
+    lanes = sorted(node.all(side, "lane"), key=lambda lane: abs(number(lane, "id")))
+    kinds = [lane.attributes.get("type") for lane in lanes]
+    driven = next((i for i, kind in enumerate(kinds) if kind in DRIVING), len(lanes))
+    return Section(number(node, "s"), tuple(lanes), driven)
+
+
+def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
+    if profile is None:
+        return np.zeros(len(s)), np.zeros(len(s))
+    return profile.height(s), profile.grade(s)
+
+
+def speed_limit(road: Node, lanes: Lanes) -> float | None:
+    """In m/s, as the driven lane says it, or else the road; None where neither does."""
+    said = [node for lane in lanes.driven() for node in lane.all("speed")]
+    for node in [*said, *road.all("type", "speed")]:
+        if node.attributes.get("max") not in (None, "no limit", "undefined"):
+            return number(node, "max") / UNITS.get(node.attributes.get("unit", "m/s"), 1.0)
+    return None
+
+
+def friction(lanes: Lanes) -> float | None:
+    """As the driven lane says it; None where it does not."""
+    said = [node for lane in lanes.driven() for node in lane.all("material") if "friction" in node.attributes]
+    return number(said[0], "friction") if said else None

@@ -1,0 +1,66 @@
+"""Numbers of an OpenDRIVE file, and cubics of the distance from a station."""
+
+import math
+import re
+from collections.abc import Iterable
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile
+from roadgpt.road.opendrive.tree import Node
+
+NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*")
+LARGEST = 1e12  # of any number; beyond it sums lose their metres
+
+Cubic = tuple[float, float, float, float]
+
+
+def number(node: Node, name: str, missing: float | None = None) -> float:
+    """An attribute as a finite number.
+
+    Args:
+        node: whose attribute.
+        name: of the attribute.
+        missing: what it is where the file does not say; None where it must.
+
+    Raises:
+        UsageError: it is missing, no number, or not finite.
+    """
+    text = node.attributes.get(name)
+    if text is None:
+        if missing is None:
+            raise UsageError(f"a <{node.tag}> has no {name}; add it")
+        return missing
+    if not NUMBER.fullmatch(text) or len(text) > 400:
+        raise UsageError(f"in a <{node.tag}>, {name} is '{text[:40]}', which is no number; correct it")
+    value = float(text)
+    if not math.isfinite(value) or abs(value) > LARGEST:
+        raise UsageError(f"in a <{node.tag}>, {name} is {text[:40]}, which is too large; correct it")
+    return value
+
+
+def cubic(node: Node) -> Cubic:
+    """The attributes a, b, c and d; b, c and d may be missing."""
+    return (number(node, "a"), number(node, "b", 0.0), number(node, "c", 0.0), number(node, "d", 0.0))
+
+
+def cubics(nodes: Iterable[Node], station: str, start: float = 0.0) -> CubicProfile | None:
+    """Cubics, each from its station on; before the first one, its first value. None where there are none.
+
+    Args:
+        nodes: elements with a, b, c, d.
+        station: the attribute that says where a cubic begins.
+        start: added to it.
+    """
+    rows = sorted(
+        ((start + number(node, station, 0.0), cubic(node)) for node in nodes), key=lambda row: row[0]
+    )
+    kept: dict[float, Cubic] = {}
+    for s, coefficients in rows:
+        kept[s] = coefficients  # the last one counts where several begin at one place
+    if not kept:
+        return None
+    stations = list(kept)
+    if stations[0] > start:
+        first = kept[stations[0]][0]
+        kept = {start: (first, 0.0, 0.0, 0.0), **kept}
+    return CubicProfile(tuple(kept), tuple(kept.values()))

@@ -1,0 +1,181 @@
+"""The elements of a reference line: each answers where it is, and which way it looks, at a distance."""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry import Piece, PieceCurve
+from roadgpt.geometry.curve import Array
+from roadgpt.road.opendrive.numbers import number
+from roadgpt.road.opendrive.tree import Node
+from roadgpt.road.road import check_length
+
+KNOWN = ("line", "arc", "spiral", "poly3", "paramPoly3")
+SHORTEST = 1e-6  # m; shorter elements are left out
+FINE = 0.1  # m between the places at which a polynomial's length is added up
+MOST_PLACES = 20_000
+MOST = 20_000  # elements of one line
+OFF = 0.1  # m, between the end of an element and the station of the next
+SMALLEST_RADIUS = 0.1  # m
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+
+Cubic = tuple[float, float, float, float]
+
+
+class Shape(Protocol):
+    """What an element looks like from its own start, which is at the origin and looks along +x."""
+
+    def poses(self, share: Array) -> Array:
+        """Rows x, y and heading ``(n, 3)`` at these shares of the length, 0 to 1."""
+        ...
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """One element of the reference line."""
+
+    s: float
+    x: float
+    y: float
+    heading: float
+    length: float
+    """As the file says it."""
+    shape: Shape
+
+    def poses(self, share: Array) -> Array:
+        """Rows x, y and heading ``(n, 3)`` at these shares of the length, 0 to 1."""
+        u, v, turned = self.shape.poses(share).T
+        cos, sin = math.cos(self.heading), math.sin(self.heading)
+        return np.stack([self.x + u * cos - v * sin, self.y + u * sin + v * cos, self.heading + turned], -1)
+
+
+@dataclass(frozen=True)
+class Bend:
+    """A line, an arc or a spiral."""
+
+    piece: Piece
+
+    def poses(self, share: Array) -> Array:
+        """As Shape has it."""
+        curve = PieceCurve(0.0, 0.0, 0.0, (self.piece,))
+        s = share * self.piece.length
+        return np.column_stack([curve.at(s), curve.heading(s)])
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """A curve (u(p), v(p)) for p from 0 to ``end``, each a cubic; shares are those of its true length."""
+
+    u: Cubic
+    v: Cubic
+    end: float
+
+    @cached_property
+    def _walked(self) -> tuple[Array, Array]:
+        """Parameters, and the length that is reached at each."""
+        rough = np.linspace(0.0, self.end, 65)
+        length = float(np.hypot(*np.diff(self._at(rough), axis=1)).sum())
+        count = int(min(MOST_PLACES, max(64, length / FINE)))
+        p = np.linspace(0.0, self.end, count + 1)
+        half = self.end / count / 2
+        inner = p[:-1, None] + half * (_NODES + 1)
+        speed = np.hypot(*self._slope(inner.ravel())).reshape(inner.shape)
+        return p, np.r_[0.0, np.cumsum(half * (speed @ _WEIGHTS))]
+
+    @property
+    def length(self) -> float:
+        """Metres."""
+        return float(self._walked[1][-1])
+
+    def up_to(self, length: float) -> "Polynomial":
+        """The same curve, cut off after so many metres."""
+        p, walked = self._walked
+        return Polynomial(self.u, self.v, float(np.interp(length, walked, p)))
+
+    def _at(self, p: Array) -> Array:
+        return np.stack([a + p * (b + p * (c + p * d)) for a, b, c, d in (self.u, self.v)])
+
+    def _slope(self, p: Array) -> Array:
+        return np.stack([b + p * (2 * c + 3 * p * d) for _, b, c, d in (self.u, self.v)])
+
+    def poses(self, share: Array) -> Array:
+        """As Shape has it."""
+        p_table, walked = self._walked
+        p = np.interp(share * walked[-1], walked, p_table)
+        x, y = self._at(p)
+        du, dv = self._slope(p)
+        heading = np.arctan2(dv, du)
+        return np.stack([x, y, np.unwrap(heading) if len(heading) else heading], -1)
+
+
+def stretches(road: Node) -> list[Stretch]:
+    """The reference line of a road, in its order.
+
+    Raises:
+        UsageError: there is none, or an element is unknown or makes no sense.
+    """
+    nodes = road.all("planView", "geometry")
+    if len(nodes) > MOST:
+        raise UsageError(f"its line has more than {MOST:,} elements; cut out the part that you need")
+    check_length(sum(abs(number(node, "length")) for node in nodes) or 1.0)
+    kept = sorted((each for each in map(_stretch, nodes) if each.length > SHORTEST), key=lambda each: each.s)
+    if not kept:
+        raise UsageError("its <planView> has no geometry; add the reference line")
+    out = []
+    for each, following in pairwise(kept):
+        reach = following.s - each.s
+        if abs(reach - each.length) > OFF or reach <= 0:
+            raise UsageError(
+                f"the geometry at s = {each.s:g} is {each.length:g} m long, but the next one begins at "
+                f"s = {following.s:g}; correct it"
+            )
+        out.append(replace(each, length=reach))
+    return [*out, kept[-1]]
+
+
+def _stretch(node: Node) -> Stretch:
+    s, x, y = (number(node, name) for name in ("s", "x", "y"))
+    heading, length = number(node, "hdg"), number(node, "length")
+    if length < 0:
+        raise UsageError(f"the geometry at s = {s:g} is {length:g} m long; correct it")
+    shapes = [child for child in node.children if child.tag in KNOWN]
+    if not shapes:
+        what = f"is a <{node.children[0].tag[:40]}>" if node.children else "has no shape"
+        raise UsageError(f"the geometry at s = {s:g} {what}; known are {', '.join(KNOWN)}")
+    return Stretch(s, x, y, heading, length, _shape(shapes[0], s, max(length, SHORTEST)))
+
+
+def _shape(node: Node, s: float, length: float) -> Shape:
+    if node.tag == "line":
+        return Bend(Piece(length))
+    if node.tag in ("arc", "spiral"):
+        names = ("curvStart", "curvEnd") if node.tag == "spiral" else ("curvature", "curvature")
+        k0, k1 = (number(node, name) for name in names)
+        if max(abs(k0), abs(k1)) * SMALLEST_RADIUS > 1:
+            raise UsageError(f"the {node.tag} at s = {s:g} turns more tightly than {SMALLEST_RADIUS:g} m")
+        return Bend(Piece(length, k0, k1))
+    if node.tag == "poly3":
+        v = (number(node, "a"), number(node, "b"), number(node, "c"), number(node, "d"))
+        return Polynomial((0.0, 1.0, 0.0, 0.0), v, length).up_to(length)
+    kind = node.attributes.get("pRange", "normalized")
+    if kind not in ("normalized", "arcLength"):
+        raise UsageError(
+            f"the paramPoly3 at s = {s:g} has a pRange '{kind[:20]}'; it is arcLength or normalized"
+        )
+    along, across = (_cubic(node, axis) for axis in "UV")
+    shape = Polynomial(along, across, 1.0 if kind == "normalized" else length)
+    if not 0.2 * length < shape.length < 5 * length:
+        raise UsageError(
+            f"the paramPoly3 at s = {s:g} is {shape.length:.3g} m long, not {length:g} m; correct it"
+        )
+    return shape
+
+
+def _cubic(node: Node, axis: str) -> Cubic:
+    a, b, c, d = (number(node, f"{letter}{axis}") for letter in "abcd")
+    return a, b, c, d

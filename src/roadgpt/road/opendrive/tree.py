@@ -1,0 +1,140 @@
+"""Reads the XML of an OpenDRIVE file without trusting it: one road is kept, all else goes by.
+
+No DOCTYPE is allowed, so no entity can be declared, fetched or expanded. Size, number of elements, depth and
+the length of one tag are bounded, and with them time and memory.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.parsers import expat
+
+from roadgpt.errors import UsageError
+
+LARGEST = 50_000_000  # bytes; the largest public maps have 20 MB
+MOST_ELEMENTS = 500_000
+DEEPEST = 60
+LONGEST_TAG = 1_000_000  # bytes
+CHUNK = 65_536  # bytes
+# What a road may hold that says nothing about its course.
+LEFT_OUT = frozenset(
+    {"objects", "signals", "railroad", "userData", "surface", "include", "dataQuality", "link"}
+)
+
+
+@dataclass(slots=True)
+class Node:
+    """One element."""
+
+    tag: str
+    attributes: dict[str, str]
+    children: list["Node"] = field(default_factory=list)
+
+    def all(self, *path: str) -> list["Node"]:
+        """Elements below it, by the tags that lead to them."""
+        found = [self]
+        for tag in path:
+            found = [child for node in found for child in node.children if child.tag == tag]
+        return found
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The road that was taken, and the ids of all that there are."""
+
+    road: Node
+    others: tuple[str, ...]
+
+
+def read_tree(path: Path, wanted: str | None) -> Choice:
+    """The road of an id; where none is given, the longest that is not part of a junction.
+
+    Raises:
+        UsageError: the file cannot be read, is no OpenDRIVE, is too large, or has no such road.
+    """
+    reader = _Reader(wanted)
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
+    parser.StartDoctypeDeclHandler = _refuse_doctype
+    try:
+        if path.stat().st_size > LARGEST:
+            raise UsageError(f"it is larger than {LARGEST // 1_000_000} MB; cut out the roads that you need")
+        with path.open("rb") as file:
+            fed = 0
+            while chunk := file.read(CHUNK):
+                fed += len(chunk)
+                parser.Parse(chunk, False)
+                if fed - max(parser.CurrentByteIndex, 0) > LONGEST_TAG:
+                    raise UsageError("one tag is longer than a megabyte; that is no OpenDRIVE file")
+            parser.Parse(b"", True)
+    except OSError as error:
+        raise UsageError(
+            f"it cannot be read: {error.strerror}; give the path of an OpenDRIVE file"
+        ) from error
+    except (expat.ExpatError, UnicodeError, LookupError, ValueError) as error:
+        raise UsageError(f"it is no well-formed XML ({error}); save it again as OpenDRIVE") from error
+    return reader.choice()
+
+
+def _refuse_doctype(name: str, system: str | None, public: str | None, internal: int) -> None:
+    raise UsageError("it has a DOCTYPE, which OpenDRIVE has no use for; remove it")
+
+
+class _Reader:
+    """Counts what goes by, and keeps the road that is wanted."""
+
+    def __init__(self, wanted: str | None) -> None:
+        self.wanted = wanted
+        self.ids: list[str] = []
+        self.best: tuple[bool, float, Node] | None = None
+        self.elements = self.depth = self.hidden = 0
+        self.stack: list[Node] = []
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """An element begins."""
+        self.elements += 1
+        self.depth += 1
+        if self.elements > MOST_ELEMENTS or self.depth > DEEPEST:
+            what = f"more than {MOST_ELEMENTS:,} elements" if self.depth <= DEEPEST else "elements too deep"
+            raise UsageError(f"it has {what}; cut out the roads that you need")
+        tag = tag.rpartition(":")[2]
+        if self.depth == 1 and tag != "OpenDRIVE":
+            raise UsageError(f"it is XML, but no OpenDRIVE: it begins with <{tag[:40]}>")
+        if self.hidden or (self.stack and tag in LEFT_OUT):
+            self.hidden += 1
+        elif self.stack:
+            node = Node(tag, attributes)
+            self.stack[-1].children.append(node)
+            self.stack.append(node)
+        elif self.depth == 2 and tag == "road":
+            self.ids.append(attributes.get("id", ""))
+            if self.wanted is None or attributes.get("id") == self.wanted:
+                self.stack.append(Node(tag, attributes))
+
+    def end(self, tag: str) -> None:
+        """An element ends; a road that is complete is held against the best one so far."""
+        self.depth -= 1
+        if self.hidden:
+            self.hidden -= 1
+        elif self.stack:
+            node = self.stack.pop()
+            if not self.stack:
+                self._compare(node)
+
+    def _compare(self, road: Node) -> None:
+        is_free = road.attributes.get("junction", "-1") == "-1"
+        try:
+            length = float(road.attributes.get("length", "0"))
+        except ValueError:
+            length = 0.0
+        if self.best is None or (is_free, length) > self.best[:2]:
+            self.best = (is_free, length, road)
+
+    def choice(self) -> Choice:
+        """What was found, once the file is at its end."""
+        if self.best is None:
+            if not self.ids:
+                raise UsageError("there is no road in it")
+            told = ", ".join(self.ids[:12]) + (", ..." if len(self.ids) > 12 else "")
+            raise UsageError(f"there is no road {self.wanted} in it; there are: {told}")
+        return Choice(self.best[2], tuple(self.ids))

@@ -1,0 +1,33 @@
+"""The same road in the other direction."""
+
+import math
+
+import numpy as np
+
+from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve, Profile, shifted
+from roadgpt.road.road import Road
+
+
+def turned_round(road: Road) -> Road:
+    """A road of pieces, or through nodes, from its end to its start."""
+    if road.nodes is not None:
+        return Road.through(road.nodes[::-1])
+    assert isinstance(road.plan, PieceCurve)
+    x, y = road.plan.at(road.length).tolist()
+    heading = float(road.plan.heading(road.length)) + math.pi
+    pieces = tuple(Piece(piece.length, -piece.k1, -piece.k0) for piece in reversed(road.plan.pieces))
+    return Road(PieceCurve(x, y, heading, pieces), _turned(road.profile, road.length))
+
+
+def _turned(profile: Profile, length: float) -> Profile:
+    if isinstance(profile, GradeProfile):
+        stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
+        grades = -profile.grade(stations)[::-1]
+        return GradeProfile(
+            float(profile.height(length)), tuple((length - stations[::-1]).tolist()), tuple(grades.tolist())
+        )
+    assert isinstance(profile, CubicProfile)
+    stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
+    at_ends = shifted(profile.cubics(stations[:-1]), np.diff(stations)) * np.array([1.0, -1.0, 1.0, -1.0])
+    rows = [(a, b, c, d) for a, b, c, d in at_ends[::-1].tolist()]
+    return CubicProfile(tuple((length - stations[:0:-1]).tolist()), tuple(rows))

@@ -1,0 +1,54 @@
+"""Road files of a Run: for a campaign as it goes, and of Runs that are there."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadgpt.errors import ExportError
+from roadgpt.export import Poses, save
+from roadgpt.run.folder import Draw
+from roadgpt.run.model import Run
+
+NAME = "road"  # of the files in a Run's own folder
+
+
+def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAME) -> tuple[Path, ...]:
+    """Write the road of a Run in each format, with its drive where a format can hold one.
+
+    Raises:
+        PartError: a format is unknown.
+        ExportError: there is no road, a format cannot hold it, or a file cannot be written.
+    """
+    if run.road is None:
+        raise ExportError(f"run {run.index} has no road to export: {run.description}")
+    return save(run.road, folder, formats, run.world, name, poses_of(run))
+
+
+def poses_of(run: Run) -> Poses | None:
+    """How the car moved; None where it did not."""
+    return Poses.of(run.drive.columns) if run.drive is not None and len(run.drive) > 1 else None
+
+
+@dataclass(frozen=True)
+class Exporting:
+    """Puts road files into the folder of each Run of a campaign, before whoever draws its pictures."""
+
+    formats: tuple[str, ...]
+    tell: Callable[[str], None]
+    """Is told of a road that a format cannot hold; that costs this one file."""
+    draw: Draw | None = None
+
+    def of_run(self, run: Run, folder: Path) -> None:
+        """All formats, then the pictures."""
+        for format_ in self.formats if run.road is not None else ():
+            try:
+                export(run, folder, [format_])
+            except ExportError as error:
+                self.tell(f"road {run.index} is not exported to {format_}: {error}")
+        if self.draw is not None:
+            self.draw.of_run(run, folder)
+
+    def of_campaign(self, folder: Path) -> None:
+        """The pictures."""
+        if self.draw is not None:
+            self.draw.of_campaign(folder)
