@@ -166,7 +166,7 @@ def _trigger(name: str, conditions: dict[str, Element]) -> Element:
 
 def _after(seconds: float) -> Element:
     out = Element("ByValueCondition")
-    out.add("SimulationTimeCondition", {"value": seconds, "rule": "greaterOrEqual"})
+    out.add("SimulationTimeCondition", {"value": seconds, "rule": "greaterThan"})
     return out
 
 
