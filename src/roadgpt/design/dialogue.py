@@ -15,12 +15,13 @@ from roadgpt.chat import Chat, ChatSettings, Message, ReplyError, UnparsableErro
 from roadgpt.design.answer import AnswerRoad, AnswerStart, AnswerStep, design_of
 from roadgpt.design.asking import USUAL_HEIGHT, drawn_start
 from roadgpt.design.objections import objections
-from roadgpt.design.repair import repair
+from roadgpt.design.repair import How, repair
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.road import Design, World, build
 
 MOST_SHOWN = 6000  # characters of its own answer that a model is shown again
-MOST_SEGMENTS = 60  # of a road that is asked for segment by segment
+MOST_SEGMENTS = 40  # of a road that is asked for segment by segment
+MOST_MENDED = 4  # segments that are fitted in by changing others; then there is no room for more
 MOST_LEFT_OUT = 2  # segments in a row that could not be placed; then the road ends
 
 
@@ -129,6 +130,10 @@ class _Steps:
         self.model = ""
         self.remarks: list[str] = []
         self.steps: list[AnswerStep] = []
+        self.how: How = "none" if task.settings.repair == "none" else "place"
+        self.mended = 0
+        self.road: Design | None = None
+        """The steps so far, repaired."""
         self.problem: Exception | None = None
         x, y, theta = drawn_start(task.world, task.seed)
         self.start = AnswerStart(starting_point=[x, y, USUAL_HEIGHT], theta=theta)
@@ -141,7 +146,9 @@ class _Steps:
         while len(self.steps) < MOST_SEGMENTS and left_out < MOST_LEFT_OUT:
             step = self._asked(wrong)
             if isinstance(step, AnswerStep):
-                wrong = self._added(step)
+                wrong = self._added(step, self.how)
+                if wrong and tries + 1 == self.task.settings.rounds:  # rather than to leave it out
+                    wrong = self._added(step, self.task.settings.repair)
                 if not wrong:
                     tries = left_out = 0
                     if not step.last:
@@ -202,12 +209,12 @@ class _Steps:
 
     def _state(self) -> str:
         """What there is of the road, and where it ends."""
-        if not self.steps:
+        if self.road is None:
             x, y = self.start.starting_point[:2]
             return (
                 f"The road starts at ({x:g}, {y:g}) with theta {self.start.theta:g}; it has no segment yet."
             )
-        design = self._design(self.steps)[1]
+        design = self.road
         road = build(design)
         x, y, z = (float(v) for v in road.at(road.length))
         heading = (design.theta + sum(s.turn_degrees for s in design.segments)) % 360
@@ -223,17 +230,22 @@ class _Steps:
         proposed, _ = design_of(self.start, list(steps))
         return proposed, repair(proposed, brief, self.task.world, self.task.settings.repair).design
 
-    def _added(self, step: AnswerStep) -> tuple[str, ...]:
+    def _added(self, step: AnswerStep, how: How) -> tuple[str, ...]:
         """Adds a segment to the road, or says why not."""
+        self.mended += how == "full"
+        if self.mended > MOST_MENDED:
+            return ("there is no room for it",)
         try:
-            proposed, design = self._design([*self.steps, step])
-            build(proposed)
+            proposed, _ = design_of(self.start, [*self.steps, step])
+            build(proposed)  # of lengths beyond all measure there is no road
+            design = repair(proposed, None, self.task.world, how).design
         except UsageError as error:
             self.problem = error
             return (str(error),)
         wrong = objections(design, None, self.task.world, partly=True)
         if not wrong:
             self.steps.append(step)
+            self.road, self.how = design, how
         return wrong
 
     def _ended(self) -> tuple[str, ...]:
@@ -245,6 +257,7 @@ class _Steps:
             if len(objections(shorter, self.task.brief, self.task.world)) < len(wrong):
                 self.remarks.append(f"segment {len(self.steps)} was taken back: {wrong[0]}")
                 self.steps.pop()
+                self.road = shorter
                 wrong = objections(shorter, self.task.brief, self.task.world)
         return wrong
 

@@ -33,7 +33,7 @@ from roadgpt.road import Design, Segment, World, build
 from roadgpt.road.grades import profile_of
 
 How = Literal["none", "place", "full"]
-MOST_SEGMENTS = 80  # of a list that is repaired in full; on more, a road of a map's size is no longer a list
+MOST_SEGMENTS = 60  # of a list that is repaired in full; on more, a road of a map's size is no longer a list
 ROUNDS = 2  # of solving: the second with the transitions that came of the first
 TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
 ABOVE_GROUND = 1.0  # m that a road which lay under the ground is raised above it
@@ -96,8 +96,8 @@ def _mended(design: Design, brief: Brief | None, world: World) -> Design | None:
     for held_to in (brief, None) if brief else (None,):
         for margins in MARGINS:
             mended = _with_margins(design, held_to, world, margins)
-            if mended is None:
-                continue
+            if mended is None:  # there is no such road; with wider margins even less
+                break
             if _is_fine(mended, design, brief, world):
                 return _restored(mended, design, brief, world)
             if best is None and not check.inspect(build(mended), None, world):

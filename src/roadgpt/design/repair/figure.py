@@ -19,6 +19,7 @@ from roadgpt.road import Segment
 from roadgpt.road.alignment import pieces_of
 
 STEP = 2.0  # m between points, about
+MOST_STEPS = 500  # of a road beyond all measure, about
 Complex = NDArray[np.complex128]
 
 
@@ -61,10 +62,11 @@ def figure_of(segments: Sequence[Segment]) -> Figure:
     """The figure of the plan that is built from these segments."""
     pieces = pieces_of(segments)
     curve = PieceCurve(0.0, 0.0, 0.0, joined(pieces))
+    step = max(STEP, curve.length / MOST_STEPS)
     owner, share, peak = list[int](), list[Array](), np.zeros(len(segments))
     at, first = 0.0, 0
     for index, segment in enumerate(segments):
-        steps = max(2, round(segment.distance / STEP))
+        steps = max(2, round(segment.distance / step))
         owner += [index] * steps
         middles = at + segment.distance * (np.arange(steps) + 0.5) / steps
         turn = np.radians(segment.turn_degrees)

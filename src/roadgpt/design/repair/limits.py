@@ -37,7 +37,7 @@ class Margins(NamedTuple):
     """Degrees of the least turn."""
     apart: float = 15.5
     """Metres between two turns of one hand."""
-    clear: float = 0.9
+    clear: float = 1.1
     """Metres between two stretches of the road, more than it is wide."""
     edge: float = 0.6
     """Metres between the road and the border of the map."""

@@ -1,8 +1,8 @@
 """Moves a road inside the map, and turns it only where moving is not enough: the least turn, computed.
 
-The ribbon fits at a heading when the box around its hull is no larger than the map. The box changes from
-too large to small enough only where the projection of some pair of corners, c * cos(turn + angle), is just as
-wide as the map; so these turns are all that need be looked at: the least one that fits is the least there is.
+The ribbon fits at a heading when the box around its hull is no larger than the map. While the same corners
+are outermost, the width of the box is c * cos(turn + angle), so the turns at which it is just as wide as the
+map are computed; the least of them that fits is the least there is.
 """
 
 import math
@@ -17,6 +17,9 @@ from roadgpt.road import Design, Road, World, build
 EDGE = 0.1  # m kept free between ribbon and border: for rounding, and what edges bulge between samples
 BEYOND = 1.05  # m that SBFT's spline may run on behind either end
 ROUNDED = 0.02  # m by which a turn that was rounded may be too wide
+QUARTER = math.pi / 2
+ROUNDING = 1e-9  # radians
+PORTION = 64  # turns that are tried at once
 CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: how the start is written
 
 
@@ -73,15 +76,30 @@ def _least_turn(corners: Array, room: float) -> float | None:
     """The turn of least size, radians, at which the box is no wider and no higher than ``room``."""
     if np.ptp(corners, axis=0).max() <= room:
         return 0.0
-    apart = corners[:, None] - corners
-    size, angle = np.hypot(apart[..., 0], apart[..., 1]), np.arctan2(apart[..., 1], apart[..., 0])
-    long = size > room
-    swing = np.arccos(room / size[long])
-    wide = np.concatenate([swing - angle[long], -swing - angle[long]])  # c * cos(turn + angle) == room
-    turns = np.concatenate([wide, wide + np.pi / 2])  # the same along y
-    turns = (turns + np.pi) % (2 * np.pi) - np.pi
-    turns = turns[np.argsort(np.abs(turns))]
-    for some in np.array_split(turns, max(1, len(turns) // 256)):
+    if np.ptp(corners, axis=0).max() > math.sqrt(2) * room:  # longer than the map is from corner to corner
+        return None
+    # by a quarter turn the box is the same again; between two turns at which a side lies along an axis,
+    # the same corners are outermost
+    sides_of_hull = np.roll(corners, -1, axis=0) - corners
+    along = -np.arctan2(sides_of_hull[:, 1], sides_of_hull[:, 0])
+    ends = np.unique(np.append((along + QUARTER / 2) % QUARTER, [0.0, QUARTER])) - QUARTER / 2
+    middles = (ends[:-1] + ends[1:]) / 2
+    turns = [0.0]
+    for quarter in (0.0, QUARTER):  # along x, along y
+        c, s = np.cos(middles - quarter), np.sin(middles - quarter)
+        projected = corners[:, :1] * c - corners[:, 1:] * s
+        apart = corners[projected.argmax(axis=0)] - corners[projected.argmin(axis=0)]
+        size, angle = np.hypot(apart[:, 0], apart[:, 1]), np.arctan2(apart[:, 1], apart[:, 0])
+        swing = np.arccos(np.minimum(room / size, 1.0))
+        for turn in (swing - angle + quarter, -swing - angle + quarter):
+            turn = (turn + np.pi) % (2 * np.pi) - np.pi
+            turns += turn[(turn >= ends[:-1] - ROUNDING) & (turn <= ends[1:] + ROUNDING)].tolist()
+    return _least_fitting(corners, room, np.array(sorted(turns, key=abs)))
+
+
+def _least_fitting(corners: Array, room: float, turns: Array) -> float | None:
+    """The first of some turns at which the box fits."""
+    for some in np.array_split(turns, max(1, len(turns) // PORTION)):
         c, s = np.cos(some), np.sin(some)
         width = np.ptp(corners[:, :1] * c - corners[:, 1:] * s, axis=0)
         height = np.ptp(corners[:, :1] * s + corners[:, 1:] * c, axis=0)

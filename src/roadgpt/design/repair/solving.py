@@ -20,11 +20,13 @@ Indices = NDArray[np.intp]
 
 LENGTH_WEIGHT, TURN_WEIGHT = 1.0, 1.4  # of a relative change
 LEAST_TURN_COUNTED = radians(15)  # changes of slighter turns are taken as relative to this
+SPARSE = 2  # steps between the points that are held apart
 NEIGHBOURS = 27.0  # m along the road: places nearer than this cannot meet
 PENALTIES = (0.05, 1.0, 20.0)  # of a square metre that breaks a limit
 STEPS = 25  # at every penalty, at most
 SETTLED = 1e-5  # relative gain
 FEW = 0.04  # a relative change below which it is no longer dearer to change one thing more
+MOST_WORK = 2e7  # points squared, times steps: after so many no further start is tried (some 2 s)
 BROKEN = 0.15  # m: by so much, margins included, a limit may be missed
 CHEAP = 0.05  # of a change, for each segment: then no other start is tried
 STARTS = (
@@ -57,13 +59,20 @@ class Solution(NamedTuple):
     turns: Array
     cost: float
     broken: float
+    steps: int
+    """That it took."""
 
 
 def solved(aim: Aim) -> Solution | None:
     """The cheapest change that was found; None where none keeps the limits."""
     found: list[Solution] = []
+    work = 0
     for share in STARTS:
         one = _descended(aim, share)
+        work += one.steps * len(aim.figure.owner) ** 2
+        if work > MOST_WORK:
+            found += [one] if one.broken <= BROKEN else []
+            break
         if one.broken <= BROKEN:
             found.append(one)
             if (share == 1.0 and one.cost < CHEAP * len(aim.lengths)) or len(found) == 2:
@@ -78,15 +87,18 @@ def _descended(aim: Aim, share: float) -> Solution:
     start[2 * n + 1 :] = _centred(aim, start, hands)
     units = _units(aim)
     weights = np.ones(2 * n)
-    v = start
+    v, steps = start, 0
     for round_ in range(2):
         for penalty in PENALTIES[round_:]:
-            v = _settled(aim, hands, units, weights, v, penalty)
+            v, taken = _settled(aim, hands, units, weights, v, penalty)
+            steps += taken
         change = np.abs(units * (v[: 2 * n] - _proposed(aim)))
         weights = np.sqrt(FEW / (change + FEW))
     change = units * (v[: 2 * n] - _proposed(aim))
     broken = _misses(aim, hands, v, with_slopes=False)[0]
-    return Solution(v[:n], hands * v[n : 2 * n], float(change @ change), float(broken.max(initial=0.0)))
+    return Solution(
+        v[:n], hands * v[n : 2 * n], float(change @ change), float(broken.max(initial=0.0)), steps
+    )
 
 
 def _proposed(aim: Aim) -> Array:
@@ -107,8 +119,10 @@ def _centred(aim: Aim, v: Array, hands: Array) -> Array:
     return np.asarray(aim.world.map_size / 2 - middle)
 
 
-def _settled(aim: Aim, hands: Array, units: Array, weights: Array, v: Array, penalty: float) -> Array:
-    """The bottom of the valley that ``v`` lies in, at one penalty."""
+def _settled(
+    aim: Aim, hands: Array, units: Array, weights: Array, v: Array, penalty: float
+) -> tuple[Array, int]:
+    """The bottom of the valley that ``v`` lies in, at one penalty, and the steps that it took."""
     n, damping = len(aim.lengths), 1e-3
     scale = np.concatenate([1 / units, [0.3, 20.0, 20.0]])
     own = np.diag(np.concatenate([weights**2, np.full(3, 1e-8)]))
@@ -119,7 +133,7 @@ def _settled(aim: Aim, hands: Array, units: Array, weights: Array, v: Array, pen
         return float(change @ change + penalty * (missed @ missed))
 
     now = total(v)
-    for _ in range(STEPS):
+    for taken in range(STEPS):
         missed, slopes = _misses(aim, hands, v, with_slopes=True)
         slopes = slopes * scale
         change = np.concatenate([weights**2 * units * (v[: 2 * n] - _proposed(aim)), np.zeros(3)])
@@ -136,11 +150,11 @@ def _settled(aim: Aim, hands: Array, units: Array, weights: Array, v: Array, pen
                 break
             damping *= 6
         else:
-            return v
+            return v, taken
         v, gained, now, damping = after, now - then, then, max(damping / 8, 1e-9)
         if gained < SETTLED * (now + 1e-9):
             break
-    return v
+    return v, taken
 
 
 def _misses(aim: Aim, hands: Array, v: Array, with_slopes: bool) -> tuple[Array, Array]:
@@ -176,10 +190,12 @@ def _misses(aim: Aim, hands: Array, v: Array, with_slopes: bool) -> tuple[Array,
 
 
 def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
-    """Pairs of points that lie nearer to each other than the road may come to itself."""
+    """Pairs of points, every other one, that lie nearer to each other than the road may come to itself."""
     count = np.bincount(aim.figure.owner, minlength=len(lengths))
-    s = np.concatenate([[0.0], np.cumsum((lengths / count)[aim.figure.owner])])
-    near = np.abs(z[:, None] - z) < aim.world.road_width + aim.margins.clear
+    s = np.concatenate([[0.0], np.cumsum((lengths / count)[aim.figure.owner])])[::SPARSE]
+    x, y = z.real[::SPARSE], z.imag[::SPARSE]
+    dx, dy = x[:, None] - x, y[:, None] - y
+    near = dx * dx + dy * dy < (aim.world.road_width + aim.margins.clear) ** 2
     near &= s - s[:, None] > NEIGHBOURS
     one, other = np.nonzero(near)
-    return one, other
+    return SPARSE * one, SPARSE * other
