@@ -83,7 +83,7 @@ def save(
         ExportError: a format cannot hold this road, or a file cannot be written.
     """
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
-    if not name or Path(name).name != name:
+    if not name or name == ".." or Path(name).name != name:
         raise UsageError(f"'{name}' cannot name a file; give a name without a folder")
     folder = Path(folder)
     written: list[Path] = []

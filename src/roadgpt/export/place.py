@@ -5,8 +5,6 @@ Projection: transverse Mercator on WGS 84, inverse series after Snyder, Map Proj
 Geological Survey Professional Paper 1395), pp. 60-64; within 10 km of the corner good to 0.1 mm.
 """
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -18,6 +16,7 @@ PROJECTION = f"+proj=tmerc +lat_0={LATITUDE:g} +lon_0={LONGITUDE:g} +k=1 +x_0=0 
 
 SEMI_MAJOR = 6_378_137.0  # m, WGS 84
 FLATTENING = 1 / 298.257223563  # WGS 84
+ROUNDS = 4  # Newton steps; each squares the error
 _E2 = FLATTENING * (2 - FLATTENING)
 _EP2 = _E2 / (1 - _E2)
 
@@ -25,7 +24,7 @@ _EP2 = _E2 / (1 - _E2)
 def degrees(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
     """Longitudes and latitudes, in degrees, of points of the map in metres."""
     x, y = np.asarray(x, float), np.asarray(y, float)
-    foot = _footpoint(_meridian(math.radians(LATITUDE)) + y)
+    foot = _footpoint(y)
     sin, cos, tan = np.sin(foot), np.cos(foot), np.tan(foot)
     c, t = _EP2 * cos**2, tan**2
     across = SEMI_MAJOR / np.sqrt(1 - _E2 * sin**2)
@@ -40,26 +39,25 @@ def degrees(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
     return LONGITUDE + np.degrees(longitude), np.asarray(np.degrees(latitude), float)
 
 
-def _meridian(latitude: float) -> float:
+def _meridian(latitude: Array) -> Array:
     """Metres along the meridian from the equator."""
     e4, e6 = _E2**2, _E2**3
-    return SEMI_MAJOR * (
-        (1 - _E2 / 4 - 3 * e4 / 64 - 5 * e6 / 256) * latitude
-        - (3 * _E2 / 8 + 3 * e4 / 32 + 45 * e6 / 1024) * math.sin(2 * latitude)
-        + (15 * e4 / 256 + 45 * e6 / 1024) * math.sin(4 * latitude)
-        - (35 * e6 / 3072) * math.sin(6 * latitude)
-    )
-
-
-def _footpoint(metres: Array) -> Array:
-    """Latitude in radians that lies so many metres along the meridian."""
-    e4, e6 = _E2**2, _E2**3
-    mu = metres / (SEMI_MAJOR * (1 - _E2 / 4 - 3 * e4 / 64 - 5 * e6 / 256))
-    e1 = (1 - math.sqrt(1 - _E2)) / (1 + math.sqrt(1 - _E2))
     return np.asarray(
-        mu
-        + (3 * e1 / 2 - 27 * e1**3 / 32) * np.sin(2 * mu)
-        + (21 * e1**2 / 16 - 55 * e1**4 / 32) * np.sin(4 * mu)
-        + (151 * e1**3 / 96) * np.sin(6 * mu)
-        + (1097 * e1**4 / 512) * np.sin(8 * mu)
+        SEMI_MAJOR
+        * (
+            (1 - _E2 / 4 - 3 * e4 / 64 - 5 * e6 / 256) * latitude
+            - (3 * _E2 / 8 + 3 * e4 / 32 + 45 * e6 / 1024) * np.sin(2 * latitude)
+            + (15 * e4 / 256 + 45 * e6 / 1024) * np.sin(4 * latitude)
+            - (35 * e6 / 3072) * np.sin(6 * latitude)
+        )
     )
+
+
+def _footpoint(y: Array) -> Array:
+    """Latitude in radians of the point of the meridian that lies ``y`` metres north of the corner."""
+    start = np.radians(LATITUDE)
+    foot = start + y / SEMI_MAJOR
+    for _ in range(ROUNDS):
+        along = SEMI_MAJOR * (1 - _E2) / (1 - _E2 * np.sin(foot) ** 2) ** 1.5
+        foot = foot + (y - (_meridian(foot) - _meridian(start))) / along
+    return np.asarray(foot)
