@@ -10,8 +10,11 @@ stays inside the map.
 from dataclasses import replace
 from typing import NamedTuple
 
+from roadgpt import plugins
+from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.anatomy import Blocks, blocks_of
+from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.inserting import ways_to_add, ways_to_remove
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.reading import read_request
@@ -35,20 +38,38 @@ class Edited(NamedTuple):
     """Words that were not understood."""
 
 
-def edit(design: Design, words: str | Request, world: World, geometry: Geometry = "arcs") -> Edited:
+def edit(
+    design: Design,
+    words: str,
+    world: World,
+    geometry: Geometry = "arcs",
+    designer: str = "planner",
+    chat: ChatSettings | None = None,
+) -> Edited:
     """The Design as the words want it.
 
     Args:
         design: as it is; it is not changed itself.
-        words: a change request, or what was read from it.
+        words: a change request.
         world: map and limits.
         geometry: what the Design becomes.
+        designer: where it is one that asks a language model, the model changes the road; else rules do.
+        chat: the language model; None: what the user's settings say.
 
     Raises:
         EditError: the words cannot be read, name what is not on the road, or ask for what no valid road can
             be; one sentence says which.
+        PartError: there is no designer of that name.
+        ChatError: a language model could not be asked.
     """
-    request = words if isinstance(words, Request) else read_request(words)
+    part = plugins.find("designers", designer)
+    if asks_a_model(part):
+        settings = chat or configured()
+        return Edited(*edited_by_chat(open_chat(settings), settings, design, words, world, geometry))
+    return _by_rules(design, read_request(words), world, geometry)
+
+
+def _by_rules(design: Design, request: Request, world: World, geometry: Geometry) -> Edited:
     if len(request.changes) > MOST_CHANGES:
         raise EditError(
             f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
@@ -68,9 +89,15 @@ def edit(design: Design, words: str | Request, world: World, geometry: Geometry 
     if result.made is None:
         said = " and ".join(dict.fromkeys(f"'{change.words}'" for change, _ in rows))
         raise EditError(f"{said} cannot be done on this road: {result.objection}; ask for less, or elsewhere")
+    if result.made.design.segments == design.segments and not _is_mirror(request):
+        raise EditError(f"nothing is to be changed: '{rows[0][0].words}' is so already")
     told = sentences(design, blocks, found, result.made)
     told += tuple(f"'{change.words}' was so already" for change in idle)
     return Edited(result.made.design, told, request.unused)
+
+
+def _is_mirror(request: Request) -> bool:
+    return any(change.what == "mirror" for change in request.changes)
 
 
 def _ways(change: Change, blocks: Blocks, found: Measures, world: World, number: int) -> tuple[Way, ...]:

@@ -27,6 +27,8 @@ MOST: dict[str, tuple[Measure, int]] = {
 }
 SHARPNESS = {"sharp", "gentle", "sweeping"}
 WAYS = {"up", "down", "flat"}
+HALVES = {"half1": 1, "half2": 2}
+SLOPES = {"climb", "ascent", "rise", "descent", "montee", "descente", "subida", "bajada", "salita", "discesa"}
 PLACES = {"after", "before", "between", "on"}
 
 
@@ -101,21 +103,31 @@ class _Reader:
         """Adjectives belong to a noun where one follows; a side also stands for a turn by itself."""
         name = self.name(at)
         if name in ("left", "right", "long", "short", "steep", *SHARPNESS, *WAYS):
-            follows = self._noun_follows(at)
+            follows, is_noun = self._noun_follows(at), self._noun_stands(at)
             said = found.get("indefinite") or is_definite or found.get("numbers") or "count" in found
             if name in ("left", "right"):
-                return follows or bool(said)
-            return follows
+                return self.name(at + 1) in NOUNS or (follows and is_noun) or bool(said)
+            return follows and (is_noun or bool(said))
         return False
 
     def _noun_follows(self, at: int) -> bool:
         steps = ("left", "right", "long", "short", "steep", *SHARPNESS, *WAYS)
+        is_sided = self.name(at) in ("left", "right")
         at += 1
         while self.name(at) in steps:
+            is_sided |= self.name(at) in ("left", "right")
             at += 1
         if self.name(at) == "#" and not self.row[at].unit and self.name(at + 1) in NOUNS:
             at += 1
         if self.name(at) == "#" and self.row[at].unit == "deg" and self.name(at + 1) in NOUNS:
+            at += 1
+        # 'a sharp left' is one, with or without the turn
+        return is_sided or self.name(at) in NOUNS or self.name(at) in SIDED
+
+    def _noun_stands(self, at: int) -> bool:
+        """Does a noun really stand behind the adjectives and numbers?"""
+        adjectives = ("left", "right", "long", "short", "steep", *SHARPNESS, *WAYS)
+        while self.name(at) in adjectives or self.name(at) == "#":
             at += 1
         return self.name(at) in NOUNS or self.name(at) in SIDED
 
@@ -171,6 +183,13 @@ class _Reader:
                 "geraden",
                 "rectas",
             )
+            at += 1
+        elif name in HALVES and not found.get("numbers"):
+            target = Target("road", half=HALVES[name], every=True, words=f"the {self.row[at].text}")
+            return Named(target, at + 1)
+        elif name in ("up", "down") and is_definite and self.row[at].text.lower() in SLOPES:
+            noun, is_said = "straight", True  # 'the climb'
+            found["way"] = name
             at += 1
         elif name == "it" and at == begun:
             return Named(Target("it", words=self.row[at].text), at + 1)
@@ -239,6 +258,7 @@ class _Reader:
             count=found.get("count"),
             degrees=found.get("degrees"),
             is_bare=noun == "turn" and not is_said,
+            is_definite=is_definite or bool(found.get("numbers")) or noun not in ("turn", "straight"),
             words=words,
         )
         if indefinite:

@@ -51,6 +51,8 @@ def straights(blocks: Blocks) -> list[Block]:
 
 def _road(target: Target, blocks: Blocks, what: What) -> list[Block]:
     found = list(blocks)
+    if target.half:
+        found = _half(blocks, target.half)
     place = target.place
     if place and place.target and place.how in ("after", "before", "between"):
         marks = [blocks.index(b) for b in pointed(_single(place.target), blocks, what)]
@@ -64,6 +66,16 @@ def _road(target: Target, blocks: Blocks, what: What) -> list[Block]:
     if what in OF_TURNS:
         found = [block for block in found if block.kind == "turn"]
     return [block for block in found if block.segments]
+
+
+def _half(blocks: Blocks, half: int) -> list[Block]:
+    """The blocks whose middle lies in the first or in the second half of the road."""
+    whole, at, out = sum(block.length for block in blocks), 0.0, list[Block]()
+    for block in blocks:
+        if (at + block.length / 2 < whole / 2) == (half == 1):
+            out.append(block)
+        at += block.length
+    return out
 
 
 def _end(blocks: Blocks, what: What, last: bool) -> Block:
@@ -171,11 +183,8 @@ def _chosen(target: Target, found: Sequence[Block], noun: str) -> list[Block]:
 
 def _missing(number: int, count: int, told: str) -> str:
     what = f"{_ordinal(number)} {told}" if number > 0 else f"{_ordinal(-number)} {told} from the end"
-    return (
-        f"there is no {what}; the road has {count} such"
-        if count != 1
-        else f"there is no {what}; the road has one"
-    )
+    many = f"{count} {told}s" if told in ("turn", "straight") else f"{count} such"
+    return f"there is no {what}; the road has {many if count != 1 else 'one'}"
 
 
 def _measure(block: Block, measure: str) -> float:

@@ -17,6 +17,8 @@ from roadgpt.errors import EditError
 
 MOST_CHARACTERS = 2000
 SEPARATORS = {"comma", "and", "then", "stop"}
+IDLE = {"make", "with", "of", "at", "as", "to", "by", "a", "the", "on"}
+"""Words that ask for nothing by themselves."""
 AT = {"at_start": "start", "at_end": "end", "at_mid": "middle"}
 ADVICE = "say what is to be different where, for example: make the second turn sharper, and the end downhill"
 
@@ -41,8 +43,8 @@ class Clause:
     @property
     def is_action(self) -> bool:
         """Does it say what is to be done?"""
-        return bool(self.new) or any(x.name not in ("make", "with", "of", "at", "as", "to", "by", "a",
-                                                    "the", "on") for x in self.row)  # fmt: skip
+        is_side = "make" in self.names and any(target.is_bare for target in self.targets)
+        return bool(self.new) or is_side or bool(self.names - IDLE)
 
 
 def read_request(words: str) -> Request:
@@ -124,7 +126,10 @@ def _clause(row: Sequence[Lexeme]) -> Clause:
                 continue
         found = named(row, at)
         if found:
-            (out.new if found.target.is_new else out.targets).append(found.target)
+            target = found.target
+            if out.targets and not target.is_definite:  # 'make the second and the last turn left turns'
+                target = replace(target, indefinite=True)
+            (out.new if target.is_new else out.targets).append(target)
             at = found.stop
             continue
         out.row.append(lexeme)
@@ -148,12 +153,19 @@ def _changes(clauses: Sequence[Clause]) -> list[Change]:
                 if clause.unknown:
                     _not_understood(clause)
                 continue
-            is_last = not any(_acts(other) for other in clauses[number + 1 :])
+            if _is_side_of_new(clause, out):
+                out[-1] = replace(out[-1], side=clause.targets[0].side)
+                continue
+            added = [index for index, change in enumerate(out) if change.what == "add"]
+            if not clause.targets and added:  # 'add a left turn, radius 40 m, after the second turn'
+                out[added[-1]] = replace(out[added[-1]], place=clause.places[0])
+                continue
+            is_last = not any(other.is_action for other in clauses[number + 1 :])
             if clause.unknown and is_last and not out:
                 _not_understood(clause)
             if is_last and last is not None:  # 'make the first turn sharper, and the last'
-                found = wanted(replace(last, targets=clause.targets, words=clause.words), ())
-                out += found
+                targets = [_like(target, before) for target in clause.targets]
+                out += wanted(replace(last, targets=targets, new=[], words=clause.words), before)
                 before = tuple(clause.targets)
             else:
                 waiting.append(clause)
@@ -161,6 +173,7 @@ def _changes(clauses: Sequence[Clause]) -> list[Change]:
         targets = [target for other in waiting for target in other.targets] + clause.targets
         waiting_places = [place for other in waiting for place in other.places]
         waiting = []
+        targets = [_like(target, before) for target in targets]
         whole = replace(clause, targets=targets, places=waiting_places + clause.places)
         found = wanted(whole, before)
         if not found and clause.unknown:
@@ -176,8 +189,15 @@ def _changes(clauses: Sequence[Clause]) -> list[Change]:
     return out
 
 
-def _acts(clause: Clause) -> bool:
-    return clause.is_action
+def _is_side_of_new(clause: Clause, out: Sequence[Change]) -> bool:
+    """'Add an S-bend, first to the right'."""
+    return bool(out) and out[-1].what == "add" and bool(clause.targets) and clause.targets[0].is_bare
+
+
+def _like(target: Target, before: Sequence[Target]) -> Target:
+    """'The first one' is a straight where straights were spoken of before."""
+    nouns = [other.noun for other in before if other.noun in ("turn", "straight")]
+    return replace(target, noun=nouns[-1]) if target.noun is None and nouns else target
 
 
 def _not_understood(clause: Clause) -> None:

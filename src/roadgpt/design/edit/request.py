@@ -53,6 +53,10 @@ class Target:
     """'The 90 degree bend'."""
     is_bare: bool = False
     """A side without a noun: 'the third left'."""
+    half: int | None = None
+    """1 or 2: that half of the road."""
+    is_definite: bool = True
+    """Something says which: 'the', 'every', a number; 'left turns' alone may be what others are to become."""
     words: str = ""
 
     @property

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 
 from roadgpt.check.measures import Measures, Stretch
-from roadgpt.design.edit.anatomy import Block, Blocks
+from roadgpt.design.edit.anatomy import Block, Blocks, blocks_of
 from roadgpt.design.edit.trying import Made, seen_as
-from roadgpt.road import Design
+from roadgpt.road import Design, Geometry
 
 MOVED = 0.005  # m
 
@@ -13,6 +13,21 @@ MOVED = 0.005  # m
 def sentences(before: Design, blocks: Blocks, found: Measures, made: Made) -> tuple[str, ...]:
     """One for every turn and straight that is not as it was, and for the road as a whole."""
     return (*_things(blocks, made), *_whole(found, made.found), *_placing(before, made.design), *made.besides)
+
+
+def between(before: Design, after: Design, geometry: Geometry) -> tuple[str, ...]:
+    """What is different about another design, turn by turn where there are as many as before."""
+    (blocks, found), (new, measured) = blocks_of(before, geometry), blocks_of(after, geometry)
+    made = Made(after, new, measured)
+    same = [block.name for block in blocks] == [block.name for block in new]
+    things = tuple(_things(blocks, made)) if same else _counted(found, measured)
+    return (*things, *_whole(found, measured), *_placing(before, after))
+
+
+def _counted(before: Measures, after: Measures) -> tuple[str, ...]:
+    said = [f"{len(before.turns)} -> {len(after.turns)} turns"]
+    said += [f"turn {number} is now {_turn(turn)}" for number, turn in enumerate(after.turns, 1)]
+    return tuple(said)
 
 
 def _things(before: Blocks, made: Made) -> Iterator[str]:
@@ -88,6 +103,8 @@ def _other(block: Block, now: Block, name: str, made: Made) -> Iterator[str]:
         said.append(f"grade {one:+.1f} -> {other:+.1f} %")
     if not (was and seen) and abs(block.length - now.length) >= 0.05:
         said.append(f"length {block.length:.0f} -> {now.length:.0f} m")
+    if not said and was and seen:
+        said.append(f"length {was.length:.1f} -> {seen.length:.1f} m")
     yield f"{name}: {', '.join(said)}" if said else f"{name}: its segments were cut anew"
 
 

@@ -50,10 +50,12 @@ WORDS: dict[str, str] = {
     "u_turn": "uturn | u turn |  u turns",
     "s_bend": "s bend | s curve | s kurve",
     "chicane": "chicane chicanes schikane chicana",
-    "straight": "straight straights straightaway gerade geraden geradeaus recta rectas rettilineo rettilinei"
+    "straight": "straight straights straightaway gerade geraden geradeaus recta rectas rettilineo"
+    " rettilinei"
     " rettifilo | straight bit | straight line | straight section | straight stretch | straight part"
     " | straight piece | ligne droite | tout droit | lignes droites | tramo recto | tratto dritto",
     "road": "road track route strasse strecke carretera strada camino percorso ruta circuit everything"
+    " overall"
     " | whole road | entire road | whole thing | ganze strasse | ganze strecke | toute la route"
     " | toda la carretera | tutta la strada | the lot",
     "end": "end ending finish ende schluss fin final finale fine | last part | last section | last bit"
@@ -62,6 +64,9 @@ WORDS: dict[str, str] = {
     "start": "start beginning anfang beginn debut depart inicio comienzo principio inizio | first part"
     " | first section | first bit | first stretch | start of the road | beginning of the road | opening",
     "it": "it them they this that es sie ihn",
+    "half1": "| first half | erste halfte | ersten halfte | premiere moitie | primera mitad | prima meta",
+    "half2": "| second half | last half | zweite halfte | zweiten halfte | deuxieme moitie | seconde moitie"
+    " | segunda mitad | seconda meta",
     "radius": "radius rayon radio raggio radii",
     "angle_noun": "angle winkel angulo angolo",
     "length_noun": "length lange longueur longitud lunghezza",
@@ -84,8 +89,8 @@ WORDS: dict[str, str] = {
     " | a droite | a la derecha | a destra",
     "lefts": "lefts lefthanders | left handers",
     "rights": "rights righthanders | right handers",
-    "left turn": "linkskurve linkskurven",
-    "right turn": "rechtskurve rechtskurven",
+    "left turn": "linkskurve linkskurven | left hander",
+    "right turn": "rechtskurve rechtskurven | right hander",
     "mid": "middle central centre center mittlere mittleren mitte milieu medio mezzo centrale",
     "sharpest": "sharpest tightest hardest scharfste scharfsten engste engsten | most severe"
     " | le plus serre | la plus serree",
@@ -97,14 +102,17 @@ WORDS: dict[str, str] = {
     "but": "except excluding | except for | apart from | other than | all but | ausser | sauf | excepto"
     " | menos | tranne",
     # what to do
-    "make": "make makes let set change turn put have give convert shift adjust modify edit mach mache machen"
+    "make": "replace replaced make makes let set change turn put have give convert shift adjust modify"
+    " edit mach mache machen"
     " lass andere mets rends fais rendre rend faire haz pon haga hacer cambia fai rendi metti soll sollen"
     " become becomes",
     "add": "add insert append include attach place hinzu fuge hange einfugen hinzufugen ajoute ajouter"
     " ajoutez insere inserer anade anadir agrega agregar aggiungi aggiungere inserisci | put in"
     " | bau ein | fuge hinzu",
-    "add at_end": "| end with | ends with | ending with | finish with | finishes with",
-    "add at_start": "| start with | starts with | begin with | begins with",
+    "add at_end": "| end the road with | finish the road with | end with | ends with | ending with |"
+    " finish with | finishes with",
+    "add at_start": "| start the road with | begin the road with | start with | starts with | begin with"
+    " | begins with",
     "remove": "remove delete drop cut erase eliminate scrap omit skip entferne entfernen losche loschen"
     " streiche supprime supprimer enleve enlever retire quita quitar elimina eliminar borra rimuovi togli"
     " cancella eliminare weg | take out | take away | leave out | get rid of | cut out | lass weg",
@@ -116,12 +124,12 @@ WORDS: dict[str, str] = {
     " espeja specchia specchiare",
     "straighten": "straighten | straighten out | begradige | begradigen | redresse | endereza | raddrizza",
     "not": "not don't dont never no nicht kein keine keinen ne pas jamais nunca non if unless wenn falls si"
-    " cannot doesn't shouldn't without ohne sans sin senza",
+    " cannot doesn't shouldn't or oder ou either without ohne sans sin senza",
     # how
     "sharper": "sharper sharpen harder scharfer | more sharp | more acute | plus prononce | plus prononcee"
     " | mas pronunciada | more pronounced | sharper angle | plus fort | piu accentuata | more severe",
-    "gentler": "gentler softer smoother easier soften ease smooth sanfter weicher | more gentle"
-    " | less sharp | less tight | less severe | plus doux | plus douce | mas suave | piu dolce"
+    "gentler": "gentler softer smoother easier soften ease smooth open sanfter weicher | more gentle"
+    " | open up | less sharp | less tight | less severe | plus doux | plus douce | mas suave | piu dolce"
     " | less pronounced | weniger scharf | moins serre | moins serree | menos cerrada | meno stretta",
     "tighter": "tighter tighten narrower enger | more tight | plus serre | plus serree | plus serres"
     " | plus serrees | mas cerrada | mas cerradas | mas cerrado | piu stretta | piu stretto | piu strette",
@@ -130,7 +138,8 @@ WORDS: dict[str, str] = {
     "sharp": "sharp tight hard acute scharf scharfe scharfen enge serre serree cerrada stretta",
     "gentle": "gentle soft easy slight mild sanft sanfte sanften leichte doux douce suave dolce",
     "sweeping": "sweeping wide broad weite ample large ampia",
-    "longer": "longer lengthen extend stretch prolong elongate verlangere verlangern langer allonge allonger"
+    "longer": "longer lengthen extend stretch prolong elongate verlangere verlangern langer allonge"
+    " allonger"
     " rallonge alarga alargar prolonga allunga allungare | more long | plus long | plus longue"
     " | plus longues | mas larga | mas largo | mas larga | piu lungo | piu lunga | plus longs",
     "shorter": "shorter shorten trim kurzer verkurze verkurzen kurze raccourcis raccourcir acorta"
@@ -154,12 +163,14 @@ WORDS: dict[str, str] = {
     " bergab abwarts abfallend descente descendant descendante bajada discesa descendente | go down"
     " | goes down | going down | en descente | qui descend | cuesta abajo | in discesa | hacia abajo"
     " | bergab gehen",
+    "gently": "gently softly mildly",
     "steep": "steep steeply steil raide empinada ripida",
     "more": "more mehr mas piu plus increase raise enlarge erhohe augmente aumenta",
     "less": "less weniger moins menos meno reduce decrease lower verringere reduis reduce riduci",
     "much": "much far considerably significantly really lot strongly viel deutlich beaucoup mucho molto"
     " | a lot | a great deal | a good deal | by far | sehr viel",
-    "slightly": "slightly somewhat bit little touch tad etwas leicht peu poco leggermente | a bit | a little"
+    "slightly": "slightly somewhat bit little touch tad etwas leicht peu poco leggermente | a bit | a"
+    " little"
     " | a touch | a tad | a little bit | ein wenig | ein bisschen | un peu | un poco | un po",
     # numbers
     "by": "by um",
@@ -180,9 +191,11 @@ WORDS: dict[str, str] = {
     "half": "half halve halved halb halbe halbiere halbieren moitie mitad meta dimezza | half the",
     # where
     "after": "after following behind past nach hinter apres despues dopo | right after | just after"
-    " | directly after | despues de | after that",
-    "before": "before preceding vor avant antes | ahead of | right before | just before | in front of"
-    " | antes de | prima della | prima del | prima di",
+    " | directly after | coming after | that follows | that comes after | out of | despues de | after that",
+    "before": "before preceding leading vor avant antes | ahead of | right before | just before | in"
+    " front of"
+    " | leading to | leading into | leading up to | that leads to | leads to | that comes before | antes"
+    " de | prima della | prima del | prima di",
     "between": "between zwischen entre tra fra | in between",
     "at_end": "| at the end | at the very end | to the end | at end | am ende | am schluss | ans ende"
     " | zum schluss | a la fin | al final | alla fine | on the end | at the finish | onto the end"
@@ -205,6 +218,7 @@ WORDS: dict[str, str] = {
     " actually maybe perhaps together completely entirely fully totally hey hi ok okay thanks thank again"
     " still roadgpt shape section part piece segment segments angle's out off other over"
     " au aux se al alla zur zum im am an auch nur have been get gets got makes making made whole"
-    " entire ganze ganzen total rather fairly pretty such sort kind my our your was were what that's i'd"
+    " entire ganze ganzen total rather fairly pretty such image sort kind my our your was were what"
+    " that's i'd"
     " let's it's amount value additional extra bergwarts sich mir uns dalla dal nello su",
 }

@@ -12,12 +12,17 @@ from roadgpt.errors import EditError
 PREPOSITIONS = {"by", "to", "at", "of", "with"}
 ABROAD = {"gauche", "droite", "izquierda", "derecha", "sinistra", "destra"}  # sides stand behind their noun
 LONG, SHORT = 70.0, 22.0  # m: what a straight is made that is to be long, or short
+FROM_ABROAD = {"de", "di"}
+VERBS = {"remove", "swap", "mirror", "straighten", "sharper", "gentler", "tighter", "wider", "longer",
+         "shorter", "steeper", "flatter", "more", "less"}  # fmt: skip
+"""Of what is there already."""
 A_FACTOR = 15.0  # percent: 'so much steeper' from here on is a share, as no road is that steep
 WAYS: tuple[Way, ...] = ("up", "down", "flat")
 SIDES: tuple[Side, ...] = ("left", "right")
 ADJECTIVES: tuple[Sharpness, ...] = ("sharp", "gentle", "sweeping")
 OF_LENGTHS = ("longer", "shorter", "long", "short", "length_noun")
 OF_ANGLES = ("radius", "tighter", "wider", "sharper", "gentler", "angle_noun")
+STEEPLY, GENTLY = 10.0, 3.5  # percent: inside what brief.words promises
 SLIGHTLY, MUCH = 0.5, 1.8
 NEAR = 3  # words between a number and the noun that it belongs to
 
@@ -61,14 +66,22 @@ def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
     names = clause.names
     if "mirror" in names and not any(t.noun in ("turn", "straight") for t in clause.targets):
         return [Change("mirror", words=clause.words)]
-    if "add" in names or (clause.new and not clause.targets and not _speaks_of_it(clause, before)):
-        return [_added(clause)]
+    is_new = bool(clause.new) and not clause.targets and not _speaks_of_it(clause, before)
+    if "add" in names or (is_new and not names & VERBS):
+        return [_added(clause, before)]
+    if is_new and "remove" not in names:
+        raise EditError(f"which one is meant in '{clause.words}' is not said; say: the second turn")
     targets = _targets(clause, before)
+    if "remove" in names and any(x.name == "#" and x.unit for x in clause.row):
+        clause.row = [replace(x, name="shorter") if x.name == "remove" else x for x in clause.row]
+        names = clause.names  # 'cut the last straight in half'
     if "remove" in names:
         return _removed(clause, targets)
     if "straighten" in names or _into_a_straight(clause):
         return [Change("straighten", target, words=clause.words) for target in targets]
     found = _Dimensions(clause).changes()
+    if not found and "make" in names:  # 'make the third left'
+        found = [Change("side", side=t.side, words=clause.words) for t in targets if t.is_bare][:1]
     out = []
     some: list[Target | None] = [*targets]
     for target in some or [None]:
@@ -130,7 +143,7 @@ def _removed(clause: Clause, targets: Sequence[Target]) -> list[Change]:
     return [Change("remove", target, words=clause.words) for target in targets]
 
 
-def _added(clause: Clause) -> Change:
+def _added(clause: Clause, before: tuple[Target, ...]) -> Change:
     things = clause.new or [t for t in clause.targets if t.noun in ("turn", "straight")]
     if not things:
         raise EditError(
@@ -138,6 +151,8 @@ def _added(clause: Clause) -> Change:
         )
     thing, dims = things[0], _Dimensions(clause)
     place = clause.places[0] if clause.places else _at(clause)
+    if place.target and place.target.noun == "it" and before:
+        place = replace(place, target=before[0])
     amounts = dims.amounts
     grade = next((a.value for a in amounts if a.unit == "%"), None)
     metres = next((a.value for a in amounts if a.unit == "m" and a.noun != "radius"), None)
@@ -159,7 +174,7 @@ def _added(clause: Clause) -> Change:
         way=way,
         place=place,
         degrees=thing.degrees or next((a.value for a in amounts if a.unit == "deg"), None),
-        radius=next((a.value for a in amounts if a.unit == "m" and a.noun == "radius"), None),
+        radius=next((a.value for a in amounts if a.unit in ("m", "") and a.noun == "radius"), None),
         length=length,
         grade=grade,
         words=clause.words,
@@ -213,6 +228,11 @@ class _Dimensions:
     def _amount(self, at: int) -> Amount:
         lexeme = self.row[at]
         before = next((x.name for x in reversed(self.row[max(at - 2, 0) : at]) if x.name in PREPOSITIONS), "")
+        next_to = self.row[at - 1] if at else None
+        if next_to is not None and next_to.name == "a" and not before:
+            before = "to"  # 'à 50 m'
+        if next_to is not None and next_to.text.lower() in FROM_ABROAD:
+            before = "by"  # 'rallonge de 15 m'
         around = [*reversed(self.row[max(at - NEAR, 0) : at]), *self.row[at + 1 : at + 2]]
         nouns = {"radius": "radius", "angle_noun": "angle", "length_noun": "length", "slope_noun": "slope"}
         noun = next((nouns[x.name] for x in around if x.name in nouns), "")
@@ -273,13 +293,15 @@ class _Dimensions:
         if amount.unit == "%" and change.what != "slope":
             sign = -1 if change.more < 0 else 1
             return replace(change, times=max(1 + sign * amount.value / 100, 0.05), more=0)
-        is_step = amount.preposition == "by" or amount.is_before_comparative
+        is_step = amount.preposition in ("by", "") or amount.is_before_comparative
         if is_step and change.more:
             return replace(change, by=amount.value)
         return replace(change, to=amount.value)
 
     def _angle(self) -> Change | None:
         more = self._more(("sharper",), ("gentler",), "angle_noun")
+        if not more and any(a.unit == "deg" for a in self.amounts):
+            more = self.has("more") - self.has("less")  # '30 degrees more'
         tight = self.has("tighter") - self.has("wider")
         amount = self._take(("deg",), "angle")
         is_angular = self.has("sharper", "gentler", "angle_noun")
@@ -346,8 +368,9 @@ class _Dimensions:
             way, amount = "down", replace(amount, value=-amount.value)
         change = Change("slope", more=more, way=way)
         if amount is None:
-            steep = self.has("steep") and way in ("up", "down") and not more
-            return replace(change, to=10.0) if steep else change
+            if way in ("up", "down") and not more and self.has("steep", "gently"):
+                return replace(change, to=STEEPLY if self.has("steep") else GENTLY)
+            return change
         if amount.unit == "%" and more and amount.value >= A_FACTOR and amount.preposition != "to":
             return replace(change, times=max(1 + more * amount.value / 100, 0.0), more=0)
         return self._valued(change, amount)

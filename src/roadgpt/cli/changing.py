@@ -1,0 +1,87 @@
+"""Working off one change request: ``roadgpt edit`` does it once, the conversation as often as it is asked."""
+
+import json
+import sys
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadgpt.cli.rows import row_of, spending
+from roadgpt.cli.screen import Screen
+from roadgpt.errors import UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.chat import ChatSettings
+    from roadgpt.road import World
+    from roadgpt.run.folder import Draw
+
+
+@dataclass(frozen=True)
+class Wish:
+    """One change request and how it is to be worked off."""
+
+    road: str
+    """Path of a run's folder, or of a road file."""
+    words: str
+    out: Path | None
+    designer: str
+    world: "World"
+    """Of a design that no run belongs to."""
+    chat: "ChatSettings | None" = None
+    drives: bool = True
+    has_pictures: bool = True
+
+
+def change(wish: Wish, screen: Screen) -> Path:
+    """Read, change, check, drive, write and tell; gives back the folder of the new run.
+
+    Raises:
+        RoadGPTError: the words or the road cannot be used; then nothing is written.
+    """
+    from roadgpt.chat import Meter, counting
+    from roadgpt.design.edit import edit
+    from roadgpt.run import Setup, prove
+    from roadgpt.run.editing import folder_for, original, write_edit
+    from roadgpt.run.sbft_json import test_name
+
+    if wish.out is not None and wish.out.is_dir() and any(wish.out.iterdir()):
+        raise UsageError(f"{wish.out} is not empty; a changed road goes into a new folder: name another one")
+    before = original(wish.road, wish.world, Setup())
+    for remark in before.remarks:
+        screen.say(f"{wish.road}: {remark}")
+    meter = Meter.of(wish.chat)
+    with counting(meter, "edit"):
+        made = edit(before.design, wish.words, before.world, before.setup.geometry, wish.designer, wish.chat)
+    drives = wish.drives and before.setup.drives
+    setup = before.setup.model_copy(update={"designer": wish.designer, "chat": wish.chat, "drives": drives})
+    old = prove(before.design, before.seed, before.world, setup.model_copy(update={"drives": False}))
+    with redirect_stdout(sys.stderr):  # a user's driver may print
+        run = prove(made.design, before.seed, before.world, setup)
+    folder = folder_for(wish.words, before.seed, wish.out)
+    place = write_edit(run, old, wish.words, made.changes, before.path, folder, _drawing(wish))
+    row = row_of(run, str(folder / test_name(1)), test_name(1))
+    if screen.as_json:
+        told = {"request": wish.words, "of": before.path, "changes": made.changes, "unused": made.unused}
+        print(json.dumps({**told, **json.loads(row.to_json())}, ensure_ascii=False))
+        return place
+    for sentence in made.changes:
+        screen.say(sentence)
+    if made.unused:
+        screen.say("not understood: " + ", ".join(f"'{word}'" for word in made.unused))
+    if meter.spent.calls:
+        screen.say(f"language model: {spending(meter.spent)}")
+    with screen:
+        screen.row(row)
+    screen.say(f"changed road: {place}")
+    if wish.has_pictures:
+        screen.say(f"pictures: {place}/*.png, and of the road as it was: {place}/before/*.png")
+    return place
+
+
+def _drawing(wish: Wish) -> "Draw | None":
+    if not wish.has_pictures:
+        return None
+    from roadgpt.report import drawing
+
+    return drawing()

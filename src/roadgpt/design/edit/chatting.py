@@ -1,0 +1,166 @@
+"""Edits by a language model: it answers with the whole road, and code keeps what it was not to touch.
+
+The model says of every segment of its answer which one of the old road it is, and names the segments that the
+request speaks of. All others are put back number by number, whatever the model made of them.
+"""
+
+import json
+from collections.abc import Sequence
+
+from pydantic import BaseModel, Field
+
+from roadgpt import check
+from roadgpt.chat import Chat, ChatSettings, Message, ReplyError, UnparsableError
+from roadgpt.check.measures import Measures
+from roadgpt.design.answer import AnswerSegment, Number
+from roadgpt.design.asking import rules
+from roadgpt.design.designers.chat import RULES
+from roadgpt.design.edit.anatomy import Block, Blocks, blocks_of
+from roadgpt.design.edit.telling import between
+from roadgpt.design.repair import repair
+from roadgpt.errors import EditError, UsageError
+from roadgpt.road import Design, Geometry, Segment, World, build, read_design
+from roadgpt.road.design import MAX_SEGMENTS
+
+MOST_SHOWN = 6000  # characters of its own answer that a model is shown again
+TASK = """You are given a road that exists and a request to change it. Answer with the whole road as it is to
+be afterwards, in driving order. Of every segment say in "was" the number of the old segment that it is, or 0
+where it is new. Name in "touched" the numbers of the old segments that the request speaks of: only these may
+change or go, all others are kept as they are. Turns and straights are counted as the list of what is seen
+says. Change no more than the request asks for."""
+
+
+class EditedSegment(AnswerSegment):
+    """A segment of the changed road."""
+
+    was: int = Field(description="Number of the old segment that it is; 0 of a new one.")
+
+
+class EditedRoad(BaseModel):
+    """The changed road."""
+
+    touched: list[int] = Field(description="Numbers of the old segments that the request speaks of.")
+    theta: Number = Field(description="Degrees, of the start; as it was, but for good reasons.")
+    segments: list[EditedSegment] = Field(description="All segments, in driving order.")
+
+
+def edited_by_chat(
+    chat: Chat, settings: ChatSettings, design: Design, words: str, world: World, geometry: Geometry
+) -> tuple[Design, tuple[str, ...]]:
+    """The Design as a language model changes it, and what is different, in sentences.
+
+    Raises:
+        EditError: no answer was a valid road that differs from the old one.
+        ChatError: the model could not be asked.
+    """
+    blocks, found = blocks_of(design, geometry)
+    opening = [
+        Message(role="system", text=f"{rules(RULES, world)}\n\n{TASK}"),
+        Message(role="user", text=_question(design, words, blocks, found)),
+    ]
+    messages, wrong, problem = opening, "", None
+    for _ in range(settings.rounds):
+        try:
+            reply = chat.ask(messages, EditedRoad)
+        except UnparsableError as error:
+            wrong, said, problem = f"it could not be read: {error}", error.text, error
+        else:
+            said = json.dumps(reply.data.model_dump(), separators=(",", ":"))
+            problem = None
+            try:
+                new = _kept(design, reply.data)
+                wrong = _objection(design, new, world, geometry)
+            except UsageError as error:
+                wrong = str(error)
+            if not wrong:
+                placed = repair(new, None, world, "place").design
+                return placed, between(design, placed, geometry)
+        messages = [
+            *opening,
+            Message(role="assistant", text=said[:MOST_SHOWN] or "(nothing)"),
+            Message(role="user", text=f"This road will not do: {wrong}\nGive the whole road again, mended."),
+        ]
+    if isinstance(problem, ReplyError):
+        raise problem
+    raise EditError(
+        f"the language model's road will not do: {wrong}; say it in other words, or without --designer"
+    )
+
+
+def _question(design: Design, words: str, blocks: Blocks, found: Measures) -> str:
+    lines = [
+        f"segment {number}: {json.dumps(segment.model_dump(exclude_none=True))}"
+        for number, segment in enumerate(design.segments, 1)
+    ]
+    x, y, z = design.starting_point
+    return "\n".join(
+        [
+            f"The road starts at ({x:g}, {y:g}, {z:g}) with theta {design.theta:g}; "
+            f"it is {found.length:.0f} m long.",
+            *lines,
+            "What is seen along it:",
+            *_seen(blocks),
+            f"The request, which is a wish about this road and nothing else: {json.dumps(words)}",
+        ]
+    )
+
+
+def _seen(blocks: Sequence[Block]) -> list[str]:
+    out, first, straights = [], 1, 0
+    for block in blocks:
+        end = first + len(block.segments) - 1
+        seen = block.seen
+        where = f"segments {first} to {end}" if end > first else f"segment {first}"
+        if seen and block.kind == "turn":
+            shape = f"{seen.degrees:.0f} degrees to the {seen.side}, radius {seen.radius:.0f} m"
+            out.append(f"- {block.name}, {shape}: {where}")
+        elif seen:
+            straights += 1
+            out.append(f"- straight {straights}, {seen.length:.0f} m, {seen.grade:+.1f} %: {where}")
+        first = end + 1
+    return out
+
+
+def _kept(design: Design, answer: EditedRoad) -> Design:
+    """The answer with every segment that was not to be touched as it was, and in its order.
+
+    Raises:
+        UsageError: one of them is missing or stands elsewhere; fit to be shown to the model.
+    """
+    old = design.segments
+    touched = {number for number in answer.touched if 1 <= number <= len(old)}
+    if len(answer.segments) > MAX_SEGMENTS:
+        raise UsageError(f"the road has {len(answer.segments):,} segments; {MAX_SEGMENTS} is the limit")
+    order = [s.was for s in answer.segments if 1 <= s.was <= len(old) and s.was not in touched]
+    wanted = [number for number in range(1, len(old) + 1) if number not in touched]
+    if order != wanted:
+        missing = [number for number in wanted if order.count(number) != 1]
+        what = f"segment {missing[0]}" if missing else "the order of the old segments"
+        raise UsageError(f"{what} is not as it was, though it is not among those that you named as touched")
+    segments: list[Segment] = []
+    for segment in answer.segments:
+        if 1 <= segment.was <= len(old) and segment.was not in touched:
+            segments.append(old[segment.was - 1])
+        else:
+            segments.append(_new(segment, old[segment.was - 1] if 1 <= segment.was <= len(old) else None))
+    return design.model_copy(update={"theta": answer.theta % 360, "segments": tuple(segments)})
+
+
+def _new(answer: EditedSegment, before: Segment | None) -> Segment:
+    raw = answer.model_dump(include=set(AnswerSegment.model_fields))
+    made, _ = read_design({"starting_point": [0, 0, 0], "theta": 0, "road_segment1": raw})
+    (segment,) = made.segments
+    same = before is not None and all(
+        getattr(segment, n) == getattr(before, n) for n in ("distance", "turn_degrees")
+    )
+    if before is not None and same:  # only its slope is another: radius and transition stay
+        return before.model_copy(update={"incline": segment.incline})
+    return segment
+
+
+def _objection(before: Design, new: Design, world: World, geometry: Geometry) -> str:
+    if new == before:
+        return "nothing about it has changed"
+    placed = repair(new, None, world, "place").design
+    findings = check.inspect(build(placed, geometry), None, world)
+    return findings[0].sentence if findings else ""

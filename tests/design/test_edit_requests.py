@@ -1,0 +1,98 @@
+"""Change requests with truths written by hand: how many are honoured, and is the rest left alone?"""
+
+import importlib.util
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from edit_truth import changed_besides, misses, ours, requests, roads, theirs
+from roadgpt import check
+from roadgpt.design.edit import edit
+from roadgpt.errors import EditError
+from roadgpt.road import Design, World, build
+
+REFEREE = Path(__file__).resolve().parents[3] / "shared" / "referee.py"
+HONOURED, LEFT_ALONE = 0.95, 0.99
+
+
+@cache
+def answers() -> tuple[tuple[dict[str, Any], Design, Design | str], ...]:
+    """Every request with its road, and the changed one or the refusal."""
+    known, out = roads(), []
+    for row in requests():
+        old = known[row["road"]]
+        try:
+            out.append((row, old, edit(old, row["request"], World()).design))
+        except EditError as error:
+            out.append((row, old, str(error)))
+    return tuple(out)
+
+
+def referee() -> ModuleType | None:
+    """The outside judge, where it lies beside the project."""
+    if not REFEREE.is_file():
+        return None
+    spec = importlib.util.spec_from_file_location("referee", REFEREE)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def wrong(row: dict[str, Any], old: Design, got: Design | str, judge: ModuleType | None) -> str:
+    """What is wrong with an answer; empty where the request was honoured."""
+    if "refused" in row:
+        is_told = isinstance(got, str) and all(word in got for word in row["refused"])
+        return "" if is_told else f"not refused as it should be: {got}"
+    if isinstance(got, str):
+        return got
+    findings = check.inspect(build(got), None, World())
+    said = [finding.sentence for finding in findings] + misses(row, old, got, ours)
+    if judge is not None:
+        with suppress(IndexError):  # this referee cannot measure a road that turns up to its very end
+            said += misses(row, old, got, lambda points: theirs(judge, points))
+    return "; ".join(said)
+
+
+def test_there_are_enough_requests_over_enough_roads() -> None:
+    rows = requests()
+    assert len(rows) >= 100
+    assert len({row["road"] for row in rows}) >= 40
+    assert len({(row["road"], row["request"]) for row in rows}) == len(rows)
+
+
+def test_requests_are_honoured() -> None:
+    judge = referee()
+    bad = [f"{row['road']} {row['request']}: {said}" for row, *rest in answers()
+           if (said := wrong(row, *rest, judge))]  # fmt: skip
+    assert len(bad) <= (1 - HONOURED) * len(answers()), "\n".join(bad)
+
+
+def test_what_nobody_spoke_of_stays_as_it_was() -> None:
+    changed = [
+        (row["road"], row["request"], besides)
+        for row, old, got in answers()
+        if isinstance(got, Design) and (besides := changed_besides(old, got, row["touched"]))
+    ]
+    assert len(changed) <= (1 - LEFT_ALONE) * len(answers()), changed
+
+
+def test_no_changed_road_is_against_the_rules() -> None:
+    for row, _, got in answers():
+        if isinstance(got, Design):
+            assert check.inspect(build(got), None, World()) == (), row["request"]
+
+
+@pytest.mark.parametrize("break_it", ["sides", "T2"])
+def test_the_truths_can_be_missed(break_it: str) -> None:
+    row = {"sides": "RLL", "truth": {"T2": {"sharper": [54, 24]}}}
+    old = roads()["r01"]
+    if break_it == "sides":
+        row = row | {"sides": "LLL"}
+    assert misses(row, old, old, ours)
+    assert changed_besides(old, old.model_copy(update={"segments": old.segments[1:]}), [2]) == [1]
