@@ -20,6 +20,7 @@ from roadgpt.errors import RoadGPTError
 COMMANDS = {
     "run": "Design, check, drive and judge roads from a description.",
     "read": "Say how a description is read, and how sure the reader is.",
+    "edit": "Change a road that exists, by words.",
     "drive": "Drive roads that exist.",
     "check": "Check roads that exist against the rules.",
     "plot": "Draw roads that exist.",
@@ -39,6 +40,8 @@ MISSING = {
     "RUN...": "Name the folder of a run or of a campaign.",
     "RUN|ROAD...": "Name one or more folders of runs, or road files.",
     "FILE.xodr": "Name an OpenDRIVE file.",
+    "RUN": "Name the folder of a run, or the file of a design.",
+    "CHANGE": 'Say what is to be different: roadgpt edit RUN "make the second turn sharper"',
     "OUT": "Name the folder to write into.",
 }
 
