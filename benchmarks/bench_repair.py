@@ -29,13 +29,11 @@ def main() -> None:
     designs = [read_design(each)[0] for each in lists]
     strict = [not check.inspect(build(design), None, WORLD) for design in designs]
     wrong = sum(yes and not ours for yes, ours in zip(accepted, strict, strict=True))
-    print(
-        f"{LISTS} lists, seed {SEED}: RoadGPT's own checks accept {sum(accepted)} ({sum(accepted) / LISTS:.0%});"
-    )
+    share = sum(accepted) / LISTS
+    print(f"{LISTS} lists, seed {SEED}: RoadGPT's own checks accept {sum(accepted)} ({share:.0%});")
     print(f"    of those, {wrong} are not strictly valid as arcs")
-    print(
-        "how      valid  as proposed  lengths: median, mean, 95th  angles: median, mean, 95th  ms: median, most"
-    )
+    print("       valid       as proposed  change of lengths    change of angles     ms")
+    print("                                median, mean, 95 %   median, mean, 95 %   median, most")
     for how in get_args(How):
         print(_row(how, designs))
 
@@ -57,10 +55,9 @@ def _row(how: How, designs: Sequence[Design]) -> str:
             lengths.append(100 * abs(other.distance / one.distance - 1))
             if one.turn_degrees:
                 angles.append(100 * abs(other.turn_degrees / one.turn_degrees - 1))
-    return (
-        f"{how:6}  {valid:4} {valid / len(designs):5.1%}  {kept:4} {kept / len(designs):5.1%}   {_spread(lengths)}"
-        f"   {_spread(angles)}   {np.median(took):6.1f} {max(took):6.0f}"
-    )
+    shares = f"{valid:4} {valid / len(designs):6.1%} {kept:4} {kept / len(designs):6.1%}"
+    times = f"{np.median(took):6.1f} {max(took):6.0f}"
+    return f"{how:6} {shares}  {_spread(lengths)} {_spread(angles)} {times}"
 
 
 def _spread(percent: Sequence[float]) -> str:
