@@ -157,7 +157,9 @@ def _rounded(found: Line, heights: Array) -> tuple[Road, str]:
     road = Road.through(points)
     _, away = road.locate(found.poses[:, 0], found.poses[:, 1])
     count = int((np.abs(found.kinks) > KINK).sum())
-    what = f"{count} kinks of up to {degrees:.1f} degrees are" if count else "bends that are too tight are"
+    what = {0: "bends that are too tight are", 1: f"1 kink of {degrees:.1f} degrees is"}.get(
+        count, f"{count} kinks of up to {degrees:.1f} degrees are"
+    )
     return road, f"{what} rounded off by a spline, at most {np.abs(away).max():.2f} m away"
 
 

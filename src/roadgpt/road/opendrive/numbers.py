@@ -8,7 +8,7 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.road.opendrive.tree import Node
 
-NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*")
+NUMBER = re.compile(r"\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*")
 LARGEST = 1e12  # of any number; beyond it sums lose their metres
 
 Cubic = tuple[float, float, float, float]

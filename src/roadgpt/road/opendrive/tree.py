@@ -12,6 +12,7 @@ from roadgpt.errors import UsageError
 
 LARGEST = 50_000_000  # bytes; the largest public maps have 20 MB
 MOST_ELEMENTS = 500_000
+MOST_KEPT = 150_000  # elements of one road
 DEEPEST = 60
 LONGEST_TAG = 1_000_000  # bytes
 CHUNK = 65_536  # bytes
@@ -87,7 +88,7 @@ class _Reader:
         self.wanted = wanted
         self.ids: list[str] = []
         self.best: tuple[bool, float, Node] | None = None
-        self.elements = self.depth = self.hidden = 0
+        self.elements = self.kept = self.depth = self.hidden = 0
         self.stack: list[Node] = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
@@ -104,12 +105,18 @@ class _Reader:
             self.hidden += 1
         elif self.stack:
             node = Node(tag, attributes)
+            self.kept += 1
+            if self.kept > MOST_KEPT:
+                raise UsageError(
+                    f"one of its roads has more than {MOST_KEPT:,} elements; cut out what you need"
+                )
             self.stack[-1].children.append(node)
             self.stack.append(node)
         elif self.depth == 2 and tag == "road":
             self.ids.append(attributes.get("id", ""))
             if self.wanted is None or attributes.get("id") == self.wanted:
                 self.stack.append(Node(tag, attributes))
+                self.kept = 0
 
     def end(self, tag: str) -> None:
         """An element ends; a road that is complete is held against the best one so far."""

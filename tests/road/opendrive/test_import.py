@@ -1,0 +1,268 @@
+"""OpenDRIVE files become Roads: those we wrote, those of other tools, and each element by hand."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from scipy.integrate import quad
+
+from exported import ROADS, WORLD
+from roadgpt.check.describing import describe
+from roadgpt.errors import UsageError
+from roadgpt.export import save
+from roadgpt.export.exporters.opendrive import document
+from roadgpt.geometry import GradeProfile
+from roadgpt.road import Imported, Road, World, build, moved, read_blueprint, read_opendrive
+from strategies import designs
+
+DATA = Path(__file__).parent / "data"
+LANES = """<lanes>{offset}<laneSection s="0">
+<left><lane id="1" type="driving"><width sOffset="0" a="3"/></lane></left>
+<center><lane id="0" type="none"/></center><right>{right}</right></laneSection></lanes>"""
+RIGHT = """<lane id="-1" type="driving"><width sOffset="0" a="3"/></lane>
+<lane id="-2" type="border"><width sOffset="0" a="0.5"/></lane>"""
+LINE = '<geometry s="0" x="1" y="2" hdg="0.5" length="40"><line/></geometry>'
+
+
+def file(
+    folder: Path, line: str = LINE, rest: str = "", right: str = RIGHT, offset: str = "", road: str = ""
+) -> Path:
+    lanes = LANES.format(right=right, offset=offset)
+    path = folder / "some.xodr"
+    path.write_text(
+        f'<?xml version="1.0"?><OpenDRIVE><header revMajor="1" revMinor="4"/><road id="1" length="1" {road}>'
+        f"<planView>{line}</planView>{rest}{lanes}</road></OpenDRIVE>"
+    )
+    return path
+
+
+def written(road: Road, folder: Path, world: World = WORLD) -> Imported:
+    (path,) = save(road, folder, ["opendrive"], world)
+    return read_opendrive(path)
+
+
+def apart(one: Road, other: Road) -> float:
+    assert one.length == pytest.approx(other.length, abs=1e-3)
+    s = np.linspace(0, min(one.length, other.length), 1000)
+    return float(np.abs(one.at(s) - other.at(s)).max())
+
+
+@given(designs())
+@settings(max_examples=40)
+def test_what_we_export_comes_back_as_it_was(
+    tmp_path_factory: pytest.TempPathFactory, design: object
+) -> None:
+    road = build(design)
+    path = tmp_path_factory.mktemp("trip") / "road.xodr"
+    path.write_text(document(road, WORLD).to_text())
+    found = read_opendrive(path)
+    assert found.remarks == ()
+    assert apart(found.road, road) < 1e-5
+    assert isinstance(found.road.profile, GradeProfile)
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_every_kind_of_road_comes_back_within_a_millimetre(tmp_path: Path, name: str) -> None:
+    found = written(ROADS[name], tmp_path)
+    assert apart(found.road, ROADS[name]) < 1e-3
+    assert apart(Road.from_json(found.road.to_json()), found.road) == 0
+    assert apart(written(found.road, tmp_path / "again").road, found.road) < 1e-3
+
+
+def test_lanes_limits_and_friction_come_back(tmp_path: Path) -> None:
+    world = World(lane_width=3.25, verge=1.25, friction=0.35, speed_limit=70 / 3.6)
+    assert written(ROADS["arcs"], tmp_path, world).world(World()) == world
+
+
+def test_a_road_file_may_be_opendrive(tmp_path: Path) -> None:
+    (path,) = save(ROADS["arcs"], tmp_path, ["opendrive"], WORLD)
+    road, remarks = read_blueprint(path)
+    assert isinstance(road, Road)
+    assert apart(road, ROADS["arcs"]) < 1e-6
+    assert remarks == ()
+
+
+def test_poly3_is_a_height_over_the_chord(tmp_path: Path) -> None:
+    line = LINE.replace("<line/>", '<poly3 a="0" b="0" c="0.01" d="-0.0001"/>')
+    road = read_opendrive(file(tmp_path, line)).road
+    assert road.length == pytest.approx(40, abs=1e-4)
+
+    def slope(u: float) -> float:
+        return 0.02 * u - 0.0003 * u * u
+
+    for u in (5.0, 20.0, 30.0):
+        s = quad(lambda w: math.hypot(1, slope(w)), 0, u)[0]
+        v = 0.01 * u**2 - 0.0001 * u**3
+        cos, sin = math.cos(0.5), math.sin(0.5)
+        expected = (1 + u * cos - v * sin, 2 + u * sin + v * cos)
+        assert road.at(s)[:2] == pytest.approx(expected, abs=1e-4)
+        assert float(road.heading(s)) == pytest.approx(0.5 + math.atan(slope(u)), abs=1e-4)
+
+
+@pytest.mark.parametrize(("range_", "end"), [("normalized", 1.0), ("arcLength", 50.0)])
+def test_parametric_cubics_of_either_range(tmp_path: Path, range_: str, end: float) -> None:
+    u, v = (0.0, 50.0, -8.0, 4.0), (0.0, 0.0, 20.0, -5.0)
+
+    def at(p: float) -> tuple[float, float]:
+        return sum(k * p**i for i, k in enumerate(u)), sum(k * p**i for i, k in enumerate(v))
+
+    def speed(p: float) -> float:
+        return math.hypot(*(sum(i * k * p ** (i - 1) for i, k in enumerate(c) if i) for c in (u, v)))
+
+    length = quad(speed, 0, 1)[0]
+    told = [
+        f'{letter}{axis}="{c[i] / end**i!r}"'
+        for axis, c in (("U", u), ("V", v))
+        for i, letter in enumerate("abcd")
+    ]
+    line = (
+        f'<geometry s="0" x="0" y="0" hdg="0" length="{length if end == 1 else end}">'
+        f'<paramPoly3 {" ".join(told)} pRange="{range_}"/></geometry>'
+    )
+    road = read_opendrive(file(tmp_path, line)).road
+    assert road.length == pytest.approx(length, abs=1e-3)
+    for p in (0.1, 0.5, 0.9, 1.0):
+        assert road.at(quad(speed, 0, p)[0])[:2] == pytest.approx(at(p), abs=1e-3)
+
+
+def test_cubic_heights_are_kept_and_steps_are_told_of(tmp_path: Path) -> None:
+    heights = (
+        '<elevationProfile><elevation s="0" a="3" b="0.02" c="0.001" d="-2e-5"/>'
+        '<elevation s="20" a="9" b="0" c="0" d="0"/></elevationProfile>'
+    )
+    found = read_opendrive(file(tmp_path, rest=heights))
+    assert float(found.road.at(10.0)[2]) == pytest.approx(3 + 0.2 + 0.1 - 0.02, abs=1e-9)
+    assert float(found.road.at(30.0)[2]) == 9
+    assert found.remarks == ("its height jumps by 5.36 m at s = 20.0",)
+    assert apart(Road.from_json(found.road.to_json()), found.road) == 0
+
+
+def test_the_edge_of_the_driven_lane_is_the_centre_line(tmp_path: Path) -> None:
+    """A median of 1.5 m widens to 2.5 m; lane 0 itself lies 0.5 m to the left."""
+    right = (
+        '<lane id="-1" type="median"><width sOffset="0" a="1.5" b="0.025"/></lane>'
+        '<lane id="-2" type="driving"><width sOffset="0" a="3.2"/></lane>'
+    )
+    arc = '<geometry s="0" x="0" y="0" hdg="0" length="40"><arc curvature="0.02"/></geometry>'
+    found = read_opendrive(file(tmp_path, arc, right=right, offset='<laneOffset s="0" a="0.5"/>'))
+    assert found.lane_width == 3.2
+    assert found.verge == 0
+    x, y, _ = found.road.centreline().T
+    around = np.arctan2(x, 50 - y)
+    assert np.hypot(x, y - 50) == pytest.approx(50 + 1.0 + 0.025 * 50 * around, abs=1e-3)
+
+
+def test_a_road_with_left_lanes_only_is_taken_the_other_way(tmp_path: Path) -> None:
+    heights = '<elevationProfile><elevation s="0" a="3" b="0.02" c="0.001" d="-2e-5"/></elevationProfile>'
+    spiral = LINE.replace("<line/>", '<spiral curvStart="0.01" curvEnd="0.03"/>')
+    there = read_opendrive(file(tmp_path, spiral, heights)).road
+    found = read_opendrive(file(tmp_path, spiral, heights, right=""))
+    assert "direction of its left lanes" in found.remarks[0]
+    s = np.linspace(0, 40, 99)
+    assert found.road.at(s, 1.0) == pytest.approx(there.at(40 - s, -1.0), abs=1e-9)
+    assert found.road.grade(s) == pytest.approx(-there.grade(40 - s), abs=1e-12)
+    assert found.road.curvature(s[1:-1]) == pytest.approx(-there.curvature(40 - s[1:-1]), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("speed", "limit"),
+    [
+        ('max="50" unit="km/h"', 50 / 3.6),
+        ('max="30" unit="mph"', 13.4112),
+        ('max="12"', 12.0),
+        ('max="no limit"', None),
+    ],
+)
+def test_speed_limits_in_all_units(tmp_path: Path, speed: str, limit: float | None) -> None:
+    rest = f'<type s="0" type="town"><speed {speed}/></type>'
+    assert read_opendrive(file(tmp_path, rest=rest)).speed_limit == (limit and pytest.approx(limit))
+
+
+def test_borders_instead_of_widths(tmp_path: Path) -> None:
+    right = (
+        '<lane id="-1" type="driving"><border sOffset="0" a="-3.1"/></lane>'
+        '<lane id="-2" type="shoulder"><border sOffset="0" a="-4.1"/></lane>'
+    )
+    found = read_opendrive(file(tmp_path, right=right))
+    assert (found.lane_width, found.verge) == (3.1, 1.0)
+
+
+def test_kinks_are_rounded_off_and_told_of(tmp_path: Path) -> None:
+    x, y = 1 + 40 * math.cos(0.5), 2 + 40 * math.sin(0.5)
+    more = f'<geometry s="40" x="{x!r}" y="{y!r}" hdg="0.7" length="30"><line/></geometry>'
+    found = read_opendrive(file(tmp_path, LINE + more))
+    assert found.remarks[0].startswith("1 kink of 11.5 degrees is rounded off by a spline, at most 0.")
+    assert found.road.at(found.road.length)[:2] == pytest.approx(
+        (1 + 40 * math.cos(0.5) + 30 * math.cos(0.7), 2 + 40 * math.sin(0.5) + 30 * math.sin(0.7)), abs=1e-6
+    )
+
+
+def test_what_a_road_cannot_show_is_remarked_on(tmp_path: Path) -> None:
+    banked = '<lateralProfile><superelevation s="0" a="0.05" b="0" c="0" d="0"/></lateralProfile>'
+    wide = '<lane id="-1" type="driving"><width sOffset="0" a="3" b="0.025"/></lane>'
+    found = read_opendrive(file(tmp_path, rest=banked, right=wide, road='rule="LHT"'))
+    assert found.remarks == (
+        "its banking is left out: roads here are level across",
+        "it is made for left-hand traffic, and is driven on the right here",
+        "its lane is 3.00 to 4.00 m wide, and is taken as 3.50 m all along",
+    )
+
+
+def test_the_longest_road_outside_of_junctions_is_taken(tmp_path: Path) -> None:
+    found = read_opendrive(DATA / "sg_junction.xodr")
+    assert found.road.length == pytest.approx(100)
+    assert found.remarks[0].startswith("road 0 is taken, the longest of 6")
+    with pytest.raises(UsageError, match="there is no road 99 in it; there are: 0, 1, 2"):
+        read_opendrive(DATA / "sg_junction.xodr", "99")
+
+
+@pytest.mark.parametrize("path", sorted(DATA.glob("*.xodr")), ids=lambda path: path.stem)
+def test_files_of_other_tools_are_read_whole(path: Path) -> None:
+    """SUMO's netconvert 1.28 and scenariogeneration 0.16.7 wrote them; every road is described."""
+    import re
+
+    ids = re.findall(r'<road [^>]*?\bid="(\d+)"', path.read_text())
+    assert ids
+    for id_ in ids:
+        road = read_opendrive(path, id_).road
+        assert describe(road).length
+        assert np.isfinite(road.centreline()).all()
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ("", "its <planView> has no geometry"),
+        (
+            '<geometry s="0" x="0" y="0" hdg="0" length="9"><bezier/></geometry>',
+            "is a <bezier>; known are line",
+        ),
+        ('<geometry s="0" x="0" y="0" hdg="0" length="9"/>', "the geometry at s = 0 has no shape"),
+        ('<geometry s="0" x="0" y="0" hdg="0" length="-9"><line/></geometry>', "is -9 m long; correct it"),
+        ('<geometry s="0" x="0" hdg="0" length="9"><line/></geometry>', "a <geometry> has no y; add it"),
+        (LINE.replace('"40"', '"4e9"'), "give one of up to 50 km"),
+        (LINE.replace("<line/>", '<arc curvature="99"/>'), "turns more tightly than 0.1 m"),
+        (LINE.replace("<line/>", '<paramPoly3 pRange="x"/>'), "has a pRange 'x'"),
+        (LINE + LINE.replace('s="0"', 's="30"'), "is 40 m long, but the next one begins at s = 30"),
+        (LINE + LINE.replace('s="0"', 's="40"'), r"its line jumps by 40\.00 m at s = 40"),
+    ],
+)
+def test_what_cannot_be_read_is_named(tmp_path: Path, line: str, sentence: str) -> None:
+    with pytest.raises(UsageError, match=rf"some\.xodr: road 1: .*{sentence}"):
+        read_opendrive(file(tmp_path, line))
+
+
+def test_a_road_that_nobody_drives_on_is_told_of(tmp_path: Path) -> None:
+    path = file(tmp_path)
+    path.write_text(path.read_text().replace('"driving"', '"sidewalk"'))
+    with pytest.raises(UsageError, match=r"no lane of type driving \(its lanes are: border, sidewalk\)"):
+        read_opendrive(path)
+
+
+@pytest.mark.parametrize("name", ["arcs", "spline"])
+def test_a_road_can_be_moved(name: str) -> None:
+    road = ROADS[name]
+    s = np.linspace(0, road.length, 50)
+    assert moved(road, 5, -7).at(s) == pytest.approx(road.at(s) + [5, -7, 0], abs=1e-9)
