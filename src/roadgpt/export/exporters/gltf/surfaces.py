@@ -4,8 +4,6 @@ verge   ______|____________:____________|______   verge        the slabs of road
        |______|_________________________|______|               lines and path lie a little above them
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from roadgpt.export.edges import line, stations
@@ -38,16 +36,27 @@ def shapes(road: Road, world: World, poses: Poses | None = None) -> list[Shape]:
     mark = min(LINE, wide / 4)
     out.append(_strip("left edge line", "paint", road, s, wide, wide - mark))
     out.append(_strip("right edge line", "paint", road, s, mark - wide, -wide))
-    dashes = [_strip("", "paint", road, part, mark / 2, -mark / 2) for part in _dashes(s, road.length)]
-    return [*out, _joined("middle line", dashes), _path(road, s, world, poses)]
+    return [*out, _dashed(road, s, mark), _path(road, s, world, poses)]
 
 
-def _dashes(s: Array, length: float) -> Iterator[Array]:
-    """Stations of each dash of the middle line; the last one may be shorter."""
-    for start in np.arange(0.0, length, DASH + GAP):
-        end = min(start + DASH, length)
-        if end > start:
-            yield np.r_[start, s[(s > start) & (s < end)], end]
+def _dashed(road: Road, s: Array, width: float) -> Shape:
+    """The broken line in the middle; its last dash may be shorter."""
+    starts = np.arange(0.0, road.length, DASH + GAP).tolist()
+    ends = [min(start + DASH, road.length) for start in starts]
+    parts = [
+        np.r_[start, s[(s > start) & (s < end)], end]
+        for start, end in zip(starts, ends, strict=True)
+        if end > start
+    ]
+    whole = _strip("", "paint", road, np.concatenate(parts), width / 2, -width / 2)  # asks the road only once
+    n = len(whole.points) // 2
+    cuts = np.cumsum([len(part) for part in parts])[:-1]
+    left, right, normals = (
+        np.split(each, cuts) for each in (whole.points[:n], whole.points[n:], whole.normals[:n])
+    )
+    across = np.array([width, -width]) / 2
+    dashes = [_band(*each, across) for each in zip(left, right, normals, parts, strict=True)]
+    return _joined("middle line", [Shape("", "paint", *dash) for dash in dashes])
 
 
 def _path(road: Road, s: Array, world: World, poses: Poses | None) -> Shape:
