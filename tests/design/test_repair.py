@@ -2,6 +2,7 @@
 
 import math
 from itertools import groupby
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -242,3 +243,10 @@ def test_a_list_beyond_all_reason_comes_back_quickly() -> None:
     after, changes = repair(proposed, None, WORLD, "full")
     assert after.segments == proposed.segments
     assert changes == ()
+
+
+def test_the_example_of_the_guide_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    guide = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "use-a-chat-model.md"
+    code = guide.read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
+    exec(compile(code, str(guide), "exec"), {})
+    assert capsys.readouterr().out.startswith("start moved from (230, 30) to (")
