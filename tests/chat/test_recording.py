@@ -194,7 +194,7 @@ def test_any_text_has_a_name(question: dict[str, str]) -> None:
 
 def test_a_reading_is_replayed_through_the_reader(stub: Stub) -> None:
     def scene(request: Request, handler: Any) -> None:
-        says('{"plan": "turn x3 left", "unused": []}')(request, handler)
+        says('{"along": ["turn x3 left"], "road": "", "unused": []}')(request, handler)
 
     stub.play(scene)
     live = read("three lefts", "chat", chat=settings(stub, record="tape"))

@@ -45,8 +45,10 @@ PATHS: dict[str, Scene] = {
     "in the answer": says(f'{{"degrees": 30, "note": "{KEY}"}}'),
     "as the answer": says(f"The key is {KEY}."),
     "in a name": says(f'{{"{KEY}": 30}}'),
-    "escaped": says(f'{{"plan": "{ESCAPED}", "unused": ["{ESCAPED}"], "degrees": "{ESCAPED}"}}'),
-    "in a plan": says(f'{{"plan": "turn {KEY}", "unused": ["{KEY}"], "degrees": "{KEY}"}}'),
+    "escaped": says(
+        f'{{"along": ["{ESCAPED}"], "road": "", "unused": ["{ESCAPED}"], "degrees": "{ESCAPED}"}}'
+    ),
+    "in a plan": says(f'{{"along": ["turn {KEY}"], "road": "", "unused": ["{KEY}"], "degrees": "{KEY}"}}'),
     "as the model": answers({**completion('{"degrees": 30}'), "model": KEY}),
     "in a refusal": says(None, refusal=f"not with {KEY}"),
     "no JSON": answers(f"<html>Bearer {KEY}</html>".encode()),
@@ -55,7 +57,7 @@ PATHS: dict[str, Scene] = {
     "dropped": drops(),
     "drips": drips(0.2, KEY),
     "floods": floods(1),
-    "good": says('{"degrees": 30, "plan": "turn x1 left", "unused": []}'),
+    "good": says('{"degrees": 30, "along": ["turn x1 left"], "road": "", "unused": []}'),
 }
 
 
