@@ -19,7 +19,7 @@ HILLY = Design(
     segments=(
         Segment(distance=60, direction="straight", incline=4),
         Segment(distance=50, direction="left", incline=8, turn_degrees=70),
-        Segment(distance=40, direction="right", incline=-10, turn_degrees=60, radius=25),
+        Segment(distance=40, direction="right", incline=-10, turn_degrees=-60, radius=25),
         Segment(distance=45, direction="straight", incline=0),
     ),
 )
