@@ -1,5 +1,6 @@
 """`roadgpt` without a command: a conversation that survives every answer."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -36,7 +37,7 @@ def test_it_can_be_left_at_any_question(answers: list[str]) -> None:
 
 
 def test_it_goes_on_from_one_description_to_the_next() -> None:
-    result = say("an uphill road with 3 turns", "2", "a flat road", "", "exit")
+    result = say("an uphill road with 3 turns", "2", "", "a flat road", "", "", "exit")
     assert result.exit_code == 0
     assert "2 of 2 roads" in result.stdout
     assert "3 of 3 roads" in result.stdout
@@ -45,7 +46,7 @@ def test_it_goes_on_from_one_description_to_the_next() -> None:
 
 @pytest.mark.parametrize("word", ["help", "?", "HELP"])
 def test_help_is_given_at_either_question_and_is_no_description(word: str) -> None:
-    result = say(word, "a road", word, "1", "exit")
+    result = say(word, "a road", word, "1", "", "exit")
     assert result.exit_code == 0
     assert result.stdout.count("Options belong to 'roadgpt run'") == 2
     assert "1 of 1 roads" in result.stdout
@@ -53,7 +54,7 @@ def test_help_is_given_at_either_question_and_is_no_description(word: str) -> No
 
 
 def test_a_wrong_answer_is_asked_again() -> None:
-    result = say("a road", "none", "0", "1", "three turns but no turns", "exit")
+    result = say("a road", "none", "0", "1", "", "three turns but no turns", "exit")
     assert result.exit_code == 0
     assert "'none' is no whole number" in result.stderr
     assert "0 is not possible" in result.stderr
@@ -70,3 +71,34 @@ def test_control_c_stops_the_roads_and_not_the_conversation(monkeypatch: pytest.
         result = say("a road", "3", "exit")
     assert result.exit_code == 0
     assert "roadgpt: stopped; 0 of 3 roads are finished" in result.stderr
+
+
+def test_roads_that_were_made_can_be_changed_one_after_another() -> None:
+    result = say(
+        "a road with 3 turns",
+        "2",
+        "2: make the last turn sharper",
+        "make the ninth turn sharper",
+        "2: make the last turn gentler",
+        "",
+        "a straight road",
+        "1",
+        "exit",
+    )
+    assert result.exit_code == 0
+    assert result.stdout.count("changed road: ") == 2
+    assert "there is no ninth turn; the road has 3 turns" in result.stderr
+    changed = sorted(path.name for path in Path("roadgpt-runs").iterdir() if path.name.startswith("make-"))
+    assert len(changed) == 2
+    (gentler,) = [name for name in changed if "gentler" in name]
+    (sharper,) = [name for name in changed if "sharper" in name]
+    card = json.loads(Path("roadgpt-runs", gentler, "runs", "0001", "edit.json").read_text())
+    assert sharper in card["of"]  # the second change is one of the changed road
+
+
+@pytest.mark.parametrize("word", ["help", "?"])
+def test_help_is_given_where_a_change_is_asked_for(word: str) -> None:
+    result = say("a road", "1", word, "quit")
+    assert result.exit_code == 0
+    assert "Say what is to be different" in result.stdout
+    assert "description> " not in result.stdout.split("Say what is to be different")[1]

@@ -1,9 +1,11 @@
 """``roadgpt`` without a command: asks for a description and a number of roads, again and again."""
 
+import re
 import sys
 
 import click
 
+from roadgpt.cli import changing
 from roadgpt.cli.options import ROADS
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.work import Wish, work_off
@@ -13,6 +15,16 @@ USUAL_ROADS = 3
 ENOUGH = {"exit", "quit", "bye", "q"}
 
 HELP = {"help", "?", "hilfe"}
+
+CHANGE = "change it? > "
+CHANGE_ONE = "change one? (2: make the last turn sharper) > "
+CHANGES = """\
+Say what is to be different, for example:
+  make the second turn sharper and the end downhill
+  add a left turn after the first straight, 60 degrees
+  remove the last turn
+Of several roads the first one is meant, unless a number stands in front. The road
+as it was is kept. An empty line goes on to the next description."""
 
 HELLO = """Describe a road, for example: an uphill road with 3 turns
 Leave with 'exit' or an empty line, ask with 'help'; Ctrl-C stops the roads that are being made."""
@@ -46,12 +58,46 @@ def talk() -> None:
             roads = _how_many()
             if roads is None:
                 break
-            work_off(Wish(words, roads, World(), Setup()), Screen(roads))
+            screen = Screen(roads)
+            work_off(Wish(words, roads, World(), Setup()), screen)
+            if not _changed(screen):
+                break
         except RoadGPTError as error:
             click.echo(f"roadgpt: {error}", err=True)
         except KeyboardInterrupt:
             pass  # what was finished has been said; ask for the next description
         click.echo()
+
+
+def _changed(screen: Screen) -> bool:
+    """Change the roads that were made for as long as the user wants; False where they have had enough."""
+    from roadgpt.road import World
+
+    roads = [row.file for row in screen.rows]
+    while roads:
+        answer = _asked(CHANGE if len(roads) == 1 else CHANGE_ONE)
+        if not answer:
+            return True
+        if answer.lower() in ENOUGH:
+            return False
+        if answer.lower() in HELP:
+            click.echo(f"{CHANGES}\n")
+            continue
+        number, words = _numbered(answer, len(roads))
+        try:
+            wish = changing.Wish(roads[number], words, None, "planner", World())
+            roads[number] = str(changing.change(wish, Screen(1)))
+        except RoadGPTError as error:
+            click.echo(f"roadgpt: {error}", err=True)
+    return True
+
+
+def _numbered(answer: str, roads: int) -> tuple[int, str]:
+    """Which of the roads, from 0, and what is to be changed: '2: make the last turn sharper'."""
+    match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)
+    if match and 1 <= int(match[1]) <= roads:
+        return int(match[1]) - 1, match[2]
+    return 0, answer
 
 
 def _asked(question: str) -> str:

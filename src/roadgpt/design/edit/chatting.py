@@ -16,6 +16,8 @@ from roadgpt.design.answer import AnswerSegment, Number
 from roadgpt.design.asking import rules
 from roadgpt.design.designers.chat import RULES
 from roadgpt.design.edit.anatomy import Block, Blocks, blocks_of
+from roadgpt.design.edit.pointing import pointed
+from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.telling import between
 from roadgpt.design.repair import repair
 from roadgpt.errors import EditError, UsageError
@@ -59,6 +61,7 @@ def edited_by_chat(
         Message(role="user", text=_question(design, words, blocks, found)),
     ]
     messages, wrong, problem = opening, "", None
+    allowed = _spoken_of(words, blocks)
     for _ in range(settings.rounds):
         try:
             reply = chat.ask(messages, EditedRoad)
@@ -68,7 +71,7 @@ def edited_by_chat(
             said = json.dumps(reply.data.model_dump(), separators=(",", ":"))
             problem = None
             try:
-                new = _kept(design, reply.data)
+                new = _kept(design, reply.data, allowed)
                 wrong = _objection(design, new, world, geometry)
             except UsageError as error:
                 wrong = str(error)
@@ -121,14 +124,43 @@ def _seen(blocks: Sequence[Block]) -> list[str]:
     return out
 
 
-def _kept(design: Design, answer: EditedRoad) -> Design:
+def _spoken_of(words: str, blocks: Blocks) -> set[int] | None:
+    """Numbers of the segments that the request speaks of; None where rules cannot tell."""
+    try:
+        request = read_request(words)
+        meant: list[Block] = []
+        for change in request.changes:
+            if change.what == "mirror":
+                meant += blocks
+            elif change.target is not None and not change.target.indefinite:
+                meant += pointed(change.target, blocks, change.what)
+    except EditError:
+        return None
+    if request.unused:
+        return None
+    names, out, first = {block.name for block in meant}, set[int](), 1
+    for block in blocks:
+        if block.name in names:
+            out |= set(range(first, first + len(block.segments)))
+        first += len(block.segments)
+    return out
+
+
+def _kept(design: Design, answer: EditedRoad, allowed: set[int] | None) -> Design:
     """The answer with every segment that was not to be touched as it was, and in its order.
+
+    Args:
+        design: as it was.
+        answer: of the model.
+        allowed: segments that it may touch at most; None: those that it names itself.
 
     Raises:
         UsageError: one of them is missing or stands elsewhere; fit to be shown to the model.
     """
     old = design.segments
     touched = {number for number in answer.touched if 1 <= number <= len(old)}
+    if allowed is not None:
+        touched &= allowed
     if len(answer.segments) > MAX_SEGMENTS:
         raise UsageError(f"the road has {len(answer.segments):,} segments; {MAX_SEGMENTS} is the limit")
     order = [s.was for s in answer.segments if 1 <= s.was <= len(old) and s.was not in touched]
@@ -136,7 +168,7 @@ def _kept(design: Design, answer: EditedRoad) -> Design:
     if order != wanted:
         missing = [number for number in wanted if order.count(number) != 1]
         what = f"segment {missing[0]}" if missing else "the order of the old segments"
-        raise UsageError(f"{what} is not as it was, though it is not among those that you named as touched")
+        raise UsageError(f"{what} is not as it was, though the request does not speak of it")
     segments: list[Segment] = []
     for segment in answer.segments:
         if 1 <= segment.was <= len(old) and segment.was not in touched:

@@ -73,7 +73,8 @@ def lexemes(words: str) -> list[Lexeme]:
         text = " ".join(t.raw for t in found[at : at + size])
         at += size
         if name != "-":
-            out += [Lexeme(part, text, value) for part in (name.split() or [name])]
+            first, *rest = name.split() or [name]
+            out += [Lexeme(first, text, value), *(Lexeme(part, "", value) for part in rest)]
     return _with_units(out)
 
 

@@ -78,6 +78,8 @@ class _Reader:
                     found["most"] = MOST[name]
                 if name == "of" and self.name(at + 1) not in ("the", "every", "ord", "#"):
                     return None
+            elif name == "more" and at > begun and ("count" in found or found.get("indefinite")):
+                pass  # 'two more turns'
             elif name == "#" and not self.row[at].unit and not self._is_amount(at):
                 found["count"] = int(self.row[at].value)
             elif name == "#" and self.row[at].unit == "deg" and self._leads_to_a_turn(at):

@@ -63,6 +63,9 @@ def _road(target: Target, blocks: Blocks, what: What) -> list[Block]:
         elif place.other:
             stop = blocks.index(pointed(_single(place.other), blocks, what)[0])
             found = found[marks[-1] + 1 : stop]
+    if target.but:
+        gone = {block.name for block in pointed(_named(target.but), blocks, what)}
+        found = [block for block in found if block.name not in gone]
     if what in OF_TURNS:
         found = [block for block in found if block.kind == "turn"]
     return [block for block in found if block.segments]

@@ -17,7 +17,7 @@ from roadgpt.errors import EditError
 
 MOST_CHARACTERS = 2000
 SEPARATORS = {"comma", "and", "then", "stop"}
-IDLE = {"make", "with", "of", "at", "as", "to", "by", "a", "the", "on"}
+IDLE = {"too", "make", "with", "of", "at", "as", "to", "by", "a", "the", "on"}
 """Words that ask for nothing by themselves."""
 AT = {"at_start": "start", "at_end": "end", "at_mid": "middle"}
 ADVICE = "say what is to be different where, for example: make the second turn sharper, and the end downhill"
@@ -102,7 +102,7 @@ def _parts(row: Sequence[Lexeme]) -> list[list[Lexeme]]:
 
 
 def _clause(row: Sequence[Lexeme]) -> Clause:
-    out = Clause(words=" ".join(x.text for x in row))
+    out = Clause(words=" ".join(x.text for x in row if x.text))
     at = 0
     while at < len(row):
         lexeme = row[at]
@@ -124,7 +124,12 @@ def _clause(row: Sequence[Lexeme]) -> Clause:
                 out.places.append(place)
                 at = stop
                 continue
-        found = named(row, at)
+        found = named(row, at + (lexeme.name == "but"))
+        if found and lexeme.name == "but":
+            if out.targets:
+                out.targets[-1] = replace(out.targets[-1], but=found.target, every=True)
+            at = found.stop
+            continue
         if found:
             target = found.target
             if out.targets and not target.is_definite:  # 'make the second and the last turn left turns'
@@ -148,6 +153,11 @@ def _changes(clauses: Sequence[Clause]) -> list[Change]:
     waiting: list[Clause] = []
     last: Clause | None = None
     for number, clause in enumerate(clauses):
+        if _complains(clause):  # 'the second turn is too gentle, make it sharper'
+            rest = clauses[number + 1 :]
+            if rest and rest[0].is_action and all(target.noun == "it" for target in rest[0].targets):
+                before = tuple(clause.targets) or before
+                continue
         if not clause.is_action:
             if not clause.targets and not clause.places:
                 if clause.unknown:
@@ -187,6 +197,19 @@ def _changes(clauses: Sequence[Clause]) -> list[Change]:
             return out
         raise EditError(f"what is to be different about '{_short(said)}' is not said; {ADVICE}")
     return out
+
+
+TOO = {"gentle": "sharper", "sharp": "gentler", "sweeping": "tighter", "long": "shorter", "short": "longer",
+       "steep": "flatter", "flat": "steeper"}  # fmt: skip
+"""What is wanted of what is too long."""
+
+
+def _complains(clause: Clause) -> bool:
+    """Is something too long? Then the clause is one that wants it shorter."""
+    if "too" not in clause.names or not clause.names & TOO.keys():
+        return False
+    clause.row = [replace(x, name=TOO.get(x.name, x.name)) for x in clause.row if x.name != "too"]
+    return True
 
 
 def _is_side_of_new(clause: Clause, out: Sequence[Change]) -> bool:

@@ -113,7 +113,7 @@ WORDS: dict[str, str] = {
     " finish with | finishes with",
     "add at_start": "| start the road with | begin the road with | start with | starts with | begin with"
     " | begins with",
-    "remove": "remove delete drop cut erase eliminate scrap omit skip entferne entfernen losche loschen"
+    "remove": "take remove delete drop cut erase eliminate scrap omit skip entferne entfernen losche loschen"
     " streiche supprime supprimer enleve enlever retire quita quitar elimina eliminar borra rimuovi togli"
     " cancella eliminare weg | take out | take away | leave out | get rid of | cut out | lass weg",
     "swap": "swap flip reverse switch invert vertausche wechsle inverse inverser invierte inverti"
@@ -123,6 +123,7 @@ WORDS: dict[str, str] = {
     "mirror": "mirror mirrored mirrors spiegel spiegle spiegeln gespiegelt miroir symetrique refleja"
     " espeja specchia specchiare",
     "straighten": "straighten | straighten out | begradige | begradigen | redresse | endereza | raddrizza",
+    "too": "too trop demasiado troppo",
     "not": "not don't dont never no nicht kein keine keinen ne pas jamais nunca non if unless wenn falls si"
     " cannot doesn't shouldn't or oder ou either without ohne sans sin senza",
     # how
@@ -174,7 +175,7 @@ WORDS: dict[str, str] = {
     " | a touch | a tad | a little bit | ein wenig | ein bisschen | un peu | un poco | un po",
     # numbers
     "by": "by um",
-    "to": "to auf into towards zu",
+    "to": "to auf into towards zu | down to | up to",
     "at": "at bei",
     "of": "of von de del della di du d vom",
     "with": "with mit avec con having",
@@ -211,7 +212,7 @@ WORDS: dict[str, str] = {
     " | and then | and also | as well as | afterwards",
     # that say nothing here
     "-": "please could can you would like want i we need be is are should must go goes going run runs"
-    " just only now so very quite too there here do does me us bitte ich mochte will sein werden wird ist"
+    " just only now so very quite there here do does me us bitte ich mochte will sein werden wird ist"
     " sind s'il vous plait je veux que soit sea quiero por favor vorrei sia per for from where which who"
     " one ones number no. nr numero nummer some any about around approximately roughly exactly"
     " ungefahr circa etwa environ current existing new present same thing way road's turn's instead really"

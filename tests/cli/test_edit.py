@@ -1,0 +1,141 @@
+"""`roadgpt edit`: a changed road goes into a new folder, and the old one stays as it was."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from edit_truth import roads
+from fake_chat import FakeChat
+from roadgpt.cli import app
+from roadgpt.design import edit as edit_room
+from roadgpt.run import read_run
+
+WORDS = "make the second turn sharper and the end downhill"
+
+
+@pytest.fixture(autouse=True)
+def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("design.json").write_text(json.dumps(roads()["h01"].to_json()))
+
+
+def invoke(*words: str) -> Result:
+    result = CliRunner().invoke(app, [*words], prog_name="roadgpt")
+    assert "Traceback" not in result.output
+    assert result.exit_code != 70, result.output
+    return result
+
+
+def made(*more: str) -> Path:
+    """The folder of a run with three turns."""
+    words = ["run", "a road with 3 turns", "--seed", "5", "--out", "old", "--no-drive", "--no-plot"]
+    assert invoke(*words, *more).exit_code == 0
+    return Path("old", "runs", "0001")
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_a_run_is_changed_into_a_new_folder() -> None:
+    old = made()
+    before = contents(Path("old"))
+    result = invoke("edit", str(old), WORDS, "--out", "new")
+    assert result.exit_code == 0
+    assert contents(Path("old")) == before
+    assert "turn 2: " in result.stdout
+    assert "changed road: " in result.stdout
+    run = read_run("new/runs/0001")
+    card = json.loads(Path("new/runs/0001/edit.json").read_text())
+    assert card["request"] == WORDS
+    assert card["of"] == str(old)
+    assert card["design_before"] == json.loads((old / "design.json").read_text())
+    assert run.design is not None
+    assert run.design.to_json() != card["design_before"]
+    assert run.outcome == "VALID"
+    assert run.request.world == read_run(old).request.world
+    assert Path("new/test.0001.json").is_file()
+
+
+def test_pictures_show_the_road_before_and_after() -> None:
+    made()
+    assert invoke("edit", "old", WORDS, "--out", "new").exit_code == 0
+    for name in ("birds_eye.png", "height.png", "curvature_grade.png"):
+        after, before = Path("new/runs/0001", name), Path("new/runs/0001/before", name)
+        assert after.read_bytes()[:4] == before.read_bytes()[:4] == b"\x89PNG"
+        assert after.read_bytes() != before.read_bytes()
+    assert invoke("edit", "old", WORDS, "--out", "plain", "--no-plot").exit_code == 0
+    assert not [*Path("plain").rglob("*.png")]
+
+
+def test_a_design_from_a_file_is_changed_and_driven() -> None:
+    result = invoke("edit", "design.json", "make the first turn a right turn", "--json", "--no-plot")
+    assert result.exit_code == 0
+    (line,) = result.stdout.splitlines()
+    row = json.loads(line)
+    assert row["test_outcome"] == "PASS"
+    assert row["request"] == "make the first turn a right turn"
+    assert any("to the right" in sentence for sentence in row["changes"])
+    assert Path(row["file"]).is_file()
+    assert read_run(row["file"]).drive is not None
+
+
+def test_a_changed_road_can_be_changed_again() -> None:
+    options = ("--no-drive", "--no-plot", "--out")
+    assert invoke("edit", "design.json", "make the second turn 80 degrees", *options, "one").exit_code == 0
+    assert invoke("edit", "one", "make the second turn 60 degrees", *options, "two").exit_code == 0
+    one, two = (read_run(f"{name}/runs/0001").design for name in ("one", "two"))
+    assert one is not None
+    assert two is not None
+    assert sum(s.turn_degrees for s in two.segments if s.turn_degrees < 0) == pytest.approx(-60, abs=1)
+
+
+@pytest.mark.parametrize(
+    ("words", "advice"),
+    [
+        (["design.json", "make the fifth turn sharper"], "no fifth turn; the road has 2 turns"),
+        (["design.json", "paint it blue"], "not understood"),
+        (["nowhere.json", WORDS], "there is no nowhere.json"),
+        (["design.json", WORDS, "--designer", "gpt"], "gpt"),
+        (["design.json"], "Say what is to be different"),
+        ([], "Name the folder of a run"),
+        (["design.json", WORDS, "--out", "full"], "not empty"),
+        (["points.json", WORDS], "no design"),
+        (["many", WORDS], "holds 2 roads"),
+        (["design.json", WORDS, "--model", "x"], "--model"),
+    ],
+)
+def test_what_cannot_be_done_is_told_and_nothing_is_written(words: list[str], advice: str) -> None:
+    Path("full").mkdir()
+    Path("full", "note.txt").write_text("mine")
+    Path("points.json").write_text(json.dumps([[60, 100], [100, 100], [130, 110]]))
+    for number in ("0001", "0002"):
+        Path("many", "runs", number).mkdir(parents=True)
+        Path("many", "runs", number, "run.json").write_text("{}")
+    before = contents(Path())
+    result = invoke("edit", *words)
+    assert result.exit_code == 2
+    assert advice in result.stderr
+    assert contents(Path()) == before
+
+
+def test_words_that_are_not_understood_are_told() -> None:
+    result = invoke("edit", "design.json", "make the second turn sharper pronto", "--no-drive", "--no-plot")
+    assert "not understood: 'pronto'" in result.stdout
+
+
+def test_the_chat_designer_changes_roads_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    design = roads()["h01"]
+    segments = [
+        {"was": number, **segment.model_dump(include={"distance", "direction", "incline", "turn_degrees"})}
+        for number, segment in enumerate(design.segments, 1)
+    ]
+    segments[3] |= {"turn_degrees": -70}
+    chat = FakeChat(json.dumps({"touched": [4], "theta": 0, "segments": segments}))
+    monkeypatch.setattr(edit_room, "open_chat", lambda settings: chat)
+    more = ("--designer", "chat", "--model", "m", "--no-drive", "--no-plot", "--json")
+    result = invoke("edit", "design.json", "make the second turn sharper", *more)
+    assert result.exit_code == 0, result.output
+    assert any("60 -> 70 degrees" in sentence for sentence in json.loads(result.stdout)["changes"])
