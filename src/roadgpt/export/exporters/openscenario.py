@@ -54,12 +54,12 @@ def scenario(road: Road, world: World, map_: str) -> Element:
     points = route.add("Route", {"name": "to the end", "closed": "false"})
     for s in (start, road.length):
         points.add("Waypoint", {"routeStrategy": "shortest"}).extended(_in_lane(s))
-    _act(story, "drive off").extended(_speed(speed, PULL))
+    _act(story, "drive off").extended(_speed(round(speed, DECIMALS), PULL))
     reached = Element("EntityCondition")
     reached.add(
         "DistanceCondition",
         {
-            "value": road.length - end,
+            "value": round(road.length - end, DECIMALS),
             "freespace": "false",
             "rule": "lessThan",
             "coordinateSystem": "road",
@@ -69,7 +69,8 @@ def scenario(road: Road, world: World, map_: str) -> Element:
     ego = Element("ByEntityCondition")
     ego.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
     ego.extended(reached)
-    _stop(root, {"the end is near": ego, "too long": _after(road.length / speed + speed / PULL + PATIENCE)})
+    most = round(road.length / speed + speed / PULL + PATIENCE, DECIMALS)
+    _stop(root, {"the end is near": ego, "too long": _after(most)})
     return root
 
 
