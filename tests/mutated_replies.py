@@ -161,7 +161,7 @@ def outcome(seed: int) -> str:
     """
     rng = np.random.default_rng(seed)
     brief: Brief = BRIEFS[rng.integers(len(BRIEFS))]
-    kind = str(rng.choice(["whole", "stepwise", "thesis"], p=(0.7, 0.15, 0.15)))
+    kind = str(rng.choice(["whole", "stepwise", "thesis"], p=(0.75, 0.1, 0.15)))
     form = {"whole": str(rng.choice(["list", "numbered"])), "stepwise": "step", "thesis": "numbered"}[kind]
     lines = [mutated(rng, reply(rng, form)) for _ in range(8 if kind == "stepwise" else 1)]
     settings = ChatSettings(
@@ -179,13 +179,14 @@ def outcome(seed: int) -> str:
     road = build(design, "spline" if kind == "thesis" else "arcs")
     if check.inspect(road, brief, WORLD):
         return "invalid"
-    assert_keeps_the_rules(road)
+    assert_keeps_the_rules(road, by_all_pairs=seed % 5 == 0)
     return "valid"
 
 
-def assert_keeps_the_rules(road: Road) -> None:
-    """Looked at without the rules: by the published algorithm, and on points of the finished road."""
-    assert slow.verdict(road.control_points().tolist(), WORLD.map_size) == (True, "")
+def assert_keeps_the_rules(road: Road, by_all_pairs: bool) -> None:
+    """Looked at without the rules: by the published algorithm, which takes long, and on the finished road."""
+    verdict = slow.verdict if by_all_pairs else check.sbft_verdict
+    assert verdict(road.control_points().tolist(), WORLD.map_size) == (True, "")
     points = road.centreline()
     assert np.isfinite(points).all()
     edges = road.at(road.sample().s[:, None], np.array([-4.0, 4.0]))

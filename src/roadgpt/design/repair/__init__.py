@@ -23,7 +23,7 @@ from roadgpt.design.repair.changes import changes_between
 from roadgpt.design.repair.figure import figure_of
 from roadgpt.design.repair.limits import MARGINS, Margins, limits_of
 from roadgpt.design.repair.placing import placed
-from roadgpt.design.repair.proposal import Part, mean_incline, parts_of, shows
+from roadgpt.design.repair.proposal import Part, mean_incline, parts_of, shows, turns_of
 from roadgpt.design.repair.slopes import sloped
 from roadgpt.design.repair.solving import Aim, solved
 from roadgpt.design.repair.wishes import wishes_of
@@ -88,47 +88,59 @@ def _in_place(design: Design, world: World) -> Design:
     return design
 
 
+class _Aims(NamedTuple):
+    """What a proposal is held to: its parts, what was asked of each and of the whole, and the Brief."""
+
+    parts: tuple[Part, ...]
+    wishes: tuple[Feature | None, ...]
+    outline: Outline
+    brief: Brief | None
+
+
 def _mended(design: Design, brief: Brief | None, world: World) -> Design | None:
     """The design with the smallest change of its measures; None where none was found."""
     if len(design.segments) > MOST_SEGMENTS:
         return None
+    parts = parts_of(design.segments)
+    held_to = [_Aims(parts, (None,) * len(parts), promises_of(Brief(), world), None)]
+    if brief:
+        outline = promises_of(brief, world)
+        wishes = wishes_of(parts, [mean_incline(part, design.segments) for part in parts], outline)
+        if wishes:  # else it has not the turns that were asked for, and is made valid only
+            held_to.insert(0, _Aims(parts, wishes.features, outline, brief))
     best: Design | None = None
-    for held_to in (brief, None) if brief else (None,):
+    for aims in held_to:
         for margins in MARGINS:
-            mended = _with_margins(design, held_to, world, margins)
+            mended = _with_margins(design, aims, world, margins)
             if mended is None:  # there is no such road; with wider margins even less
                 break
-            if _is_fine(mended, design, brief, world):
-                return _restored(mended, design, brief, world)
-            if best is None and not check.inspect(build(mended), None, world):
-                best = mended  # valid at least; which promise it breaks, the rules say
+            if _is_fine(mended, design, aims.brief, world):
+                return _restored(mended, design, aims.brief, world)
+            best = best or _second_best(mended, aims, world)
+        if best:
+            break
     return best
 
 
-def _with_margins(design: Design, brief: Brief | None, world: World, margins: Margins) -> Design | None:
-    proposed = design.segments
-    parts = parts_of(proposed)
-    outline = promises_of(brief or Brief(), world)
-    wishes = wishes_of(parts, [mean_incline(part, proposed) for part in parts], outline) if brief else None
-    features: tuple[Feature | None, ...] = wishes.features if wishes else (None,) * len(parts)
-    if wishes is None:
-        outline = promises_of(Brief(), world)
-    segments = _solved(proposed, parts, features, outline, world, margins)
+def _second_best(mended: Design, aims: _Aims, world: World) -> Design | None:
+    """A road that is true to its Brief, where that meant slopes other than those proposed; else None."""
+    road = build(mended)
+    if check.inspect(road, aims.brief, world):
+        return None
+    sides = [turn.side for turn in turns_of(aims.parts)]
+    return mended if [turn.side for turn in measure(road.centreline()).turns] == sides else None
+
+
+def _with_margins(design: Design, aims: _Aims, world: World, margins: Margins) -> Design | None:
+    segments = _solved(design.segments, aims, world, margins)
     if segments is None:
         return None
-    mended = sloped(
-        design.model_copy(update={"segments": segments}), proposed, parts, features, outline, world
-    )
-    return _in_place(mended, world)
+    planned = design.model_copy(update={"segments": segments})
+    return _in_place(sloped(planned, design.segments, aims.parts, aims.wishes, aims.outline, world), world)
 
 
 def _solved(
-    proposed: tuple[Segment, ...],
-    parts: tuple[Part, ...],
-    wishes: tuple[Feature | None, ...],
-    outline: Outline,
-    world: World,
-    margins: Margins,
+    proposed: tuple[Segment, ...], aims: _Aims, world: World, margins: Margins
 ) -> tuple[Segment, ...] | None:
     """The segments with lengths and turns that keep the limits."""
     lengths = np.array([s.distance for s in proposed])
@@ -136,7 +148,7 @@ def _solved(
     now: tuple[Segment, ...] | None = None
     for _ in range(ROUNDS):
         figure = figure_of(now or proposed)
-        rows, most = limits_of(proposed, parts, wishes, figure, outline, world, margins)
+        rows, most = limits_of(proposed, aims.parts, aims.wishes, figure, aims.outline, world, margins)
         found = solved(Aim(lengths, turns, figure, rows, most, world, margins))
         if found is None:
             break
