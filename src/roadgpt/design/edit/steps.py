@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 from math import ceil, floor, radians
 from typing import Literal, Protocol
 
-import numpy as np
-
 from roadgpt.brief.model import Side
 from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.spans import cut, turn_span
@@ -183,85 +181,10 @@ def _with_distance(segment: Segment, distance: float) -> Segment:
     return segment.model_copy(update={"distance": distance})
 
 
-@dataclass(frozen=True, slots=True)
-class Slope:
-    """Another grade of one turn or straight, percent as measured."""
-
-    block: Block
-    grade: float
-    low: float
-    high: float
-
-    @property
-    def goals(self) -> tuple[Goal, ...]:
-        """The grade, where the block is seen."""
-        if self.block.seen is None:
-            return ()
-        return (Goal(self.block.name, "grade", self.grade, self.low, self.high),)
-
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
-        """Inclines in proportion where they all go the same way, else all alike."""
-        limit = 100 * world.max_grade - 0.2
-        aim = float(np.clip(aims.get((self.block.name, "grade"), self.grade), -limit, limit))
-
-        def sloped(block: Block) -> Block:
-            inclines = np.array([s.incline for s in block.segments])
-            mean = block.incline
-            if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
-                wanted = np.clip(inclines * aim / mean, -limit, limit)
-            else:
-                wanted = np.full(len(inclines), aim)
-            return block.with_segments(
-                with_incline(s, g) for s, g in zip(block.segments, wanted, strict=True)
-            )
-
-        return changed(blocks, self.block.name, sloped)
-
-
 def with_incline(segment: Segment, incline: float) -> Segment:
     """The segment on another slope, percent."""
     rounded = round(float(incline) * TENTH) / TENTH
     return segment if rounded == segment.incline else segment.model_copy(update={"incline": rounded})
-
-
-@dataclass(frozen=True, slots=True)
-class SlopeOfAll:
-    """Another slope of many blocks: every incline times a factor, and so much more; then within bounds."""
-
-    names: frozenset[str]
-    times: float = 1.0
-    more: float = 0.0
-    low: float = -100.0
-    high: float = 100.0
-    way: int = 0
-    """1 or -1 makes every slope one uphill or downhill first."""
-
-    @property
-    def goals(self) -> tuple[Goal, ...]:
-        """None: inclines of many segments measure as they are written."""
-        return ()
-
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
-        """Every segment by itself."""
-        limit = 100 * world.max_grade - 0.2
-
-        def one(incline: float) -> float:
-            if self.way:
-                incline = self.way * abs(incline)
-            by = self.more if incline >= 0 else -self.more
-            incline = incline * self.times + by
-            if self.way:
-                incline = self.way * min(max(abs(incline), self.low), self.high)
-            else:
-                incline = min(max(incline, self.low), self.high)
-            return min(max(incline, -limit), limit)
-
-        return tuple(
-            b.with_segments(with_incline(s, one(s.incline)) for s in b.segments)
-            if b.name in self.names
-            else b
-            for b in blocks
-        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Design, Geometry, Segment, World, build
 from roadgpt.road.design import MAX_SEGMENTS
 
-MOST_TRIALS = 240
+MOST_TRIALS = 160
 CORRECTIONS = 6
 REPAIRED = 2  # ways that are repaired in full where none is valid as it is
 LARGEST = 12  # doses of one change that are combined with others

@@ -8,11 +8,12 @@ from collections.abc import Callable, Sequence
 from math import radians
 
 from roadgpt.brief.words import KINDS
-from roadgpt.check.measures import Measures, way
+from roadgpt.check.measures import Measures
 from roadgpt.design.edit.anatomy import Block, Blocks, is_turn
+from roadgpt.design.edit.grading import ways_to_slope, ways_to_slope_all
 from roadgpt.design.edit.growing import ways_to_stretch_the_road
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import Become, Bend, Flip, Slope, SlopeOfAll, Step, Stretch
+from roadgpt.design.edit.steps import Become, Bend, Flip, Step, Stretch
 from roadgpt.errors import EditError
 from roadgpt.road import Segment, World
 
@@ -40,19 +41,17 @@ GENTLER = (
 )
 TIGHTER = ((1.0, 0.7), (1.0, 0.8), (1.0, 0.6), (1.0, 0.88))
 WIDER = ((1.0, 1.4), (1.0, 1.25), (1.0, 1.6), (1.0, 1.15))
+FLIPPED = (
+    (0.9, 1.0), (1.1, 1.0), (1.0, 0.8), (0.8, 1.0), (1.0, 1.25), (1.2, 1.0), (0.65, 1.0), (0.8, 0.8),
+)  # fmt: skip
 RADII = (1.0, 0.85, 1.2, 0.7, 1.4, 0.55, 1.7)  # where the angle was said, and the radius was not
 LONGER, SHORTER = (1.4, 1.25, 1.6, 1.2, 1.9), (0.65, 0.75, 0.55, 0.8, 0.88)
-STEEPER = ((1.5, 2.0), (1.3, 1.2), (1.7, 2.5), (1.15, 0.7))
-FLATTER = (0.5, 0.6, 0.4, 0.75)
-UPHILL = ((5.0, 3.0, 12.0), (4.0, 3.0, 12.0), (6.5, 3.0, 12.0), (5.0, 1.3, 13.0))
 LEAST_STEP = 10.0  # degrees that 'sharper' adds at least
 OVER_LEAST_RADIUS = 1.055  # of the world's least: see design.draw
 WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
 LEAST_ANGLE = 13.0  # degrees: a turn that is gentler yet would not be seen
 MOST_ANGLE = 210.0
-LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
 SEEN = 10.6  # m: the shortest straight that is seen
-STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 
 
 def ways_to_change(change: Change, blocks: Sequence[Block], found: Measures, world: World) -> tuple[Way, ...]:
@@ -76,11 +75,11 @@ def ways_to_change(change: Change, blocks: Sequence[Block], found: Measures, wor
             return _each(blocks, lambda block: _lengths(change, block, world))
         case "slope":
             if change.target is not None and change.target.noun == "road":
-                return _slopes_of_all(change, blocks, found, world)
-            return _each(blocks, lambda block: _slopes(change, block, found, world))
+                return ways_to_slope_all(change, blocks, found, world)
+            return _each(blocks, lambda block: ways_to_slope(change, block, found, world))
         case "side":
             wrong = [b for b in blocks if change.side is None or b.side != change.side]
-            return (tuple(Flip(block) for block in wrong),) if wrong else ()
+            return _flipped(wrong, world) if wrong else ()
         case _:
             return _each(blocks, _straightened)
 
@@ -254,94 +253,22 @@ def _lengths(change: Change, block: Block, world: World) -> list[Step]:
     return [Stretch(block, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
 
 
-def _slopes(change: Change, block: Block, found: Measures, world: World) -> list[Step]:
-    """Grades of one turn or straight."""
-    now = block.seen.grade if block.seen else block.incline
-    limit = 100 * world.max_grade
-    sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
-        1 if now >= LEVEL else -1 if now <= -LEVEL else 0
-    )
-    sign = sign or (-1 if found.grade <= -LEVEL else 1)
-    if change.to is not None and abs(change.to) > limit:
-        raise EditError(f"{change.to:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
-    if change.to is not None and change.way != "flat":
-        aim = sign * change.to
-        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
-    if change.by is not None:
-        aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
-        if abs(aim) > limit:
-            raise EditError(
-                f"{abs(aim):.1f} % is steeper than the {limit:g} % that the rules allow; ask for less"
-            )
-        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
-    if change.times is not None:
-        aim = now * change.times
-        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
-    if change.way == "flat":
-        if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in block.segments):
-            return []
-        return [Slope(block, 0.0, -slack, slack) for slack in (0.5, CLEARLY_LEVEL)]
-    if change.way and not change.more:
-        if way(now) == change.way:
-            return []
-        aims = [tuple(sorted((sign * low, sign * high))) + (sign * aim,) for aim, low, high in UPHILL]
-        return [Slope(block, aim, low, high) for low, high, aim in aims]
-    if change.more > 0 and change.way and way(now) != change.way:
-        return [Slope(block, sign * 6.0, *sorted((sign * 3.0, sign * 12.0)))]
-    return _steeper(change, block, now, sign, limit)
-
-
-def _steeper(change: Change, block: Block, now: float, sign: int, limit: float) -> list[Step]:
-    if change.more < 0:
-        if abs(now) < LEVEL:
-            return []
-        return [
-            Slope(block, now * share, *sorted((now * (share - 0.3), now * min(share + 0.15, 0.9))))
-            for share in FLATTER
-        ]
-    out: list[Step] = []
-    for times, more in STEEPER:
-        aim = max(abs(now) * (1 + (times - 1) * change.dose), abs(now) + more * change.dose)
-        aim = min(aim if abs(now) >= LEVEL else STEEP_FROM * times / 1.5, limit - 0.3)
-        if aim > abs(now) + 0.4:
-            low, high = min(abs(now) + 0.4, aim - 0.2), min(aim + 1.5, limit)
-            out.append(Slope(block, sign * aim, *sorted((sign * low, sign * high))))
-    if not out:
-        raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
-    return out
-
-
-def _slopes_of_all(change: Change, blocks: Sequence[Block], found: Measures, world: World) -> tuple[Way, ...]:
-    """Grades of the whole road, or of all that lies behind a place."""
-    names = frozenset(block.name for block in blocks)
-    limit = 100 * world.max_grade - 0.3
-    sign = {"up": 1, "down": -1}.get(change.way or "", 0)
-    if change.to is not None and change.to > limit + 0.3:
-        raise EditError(
-            f"{change.to:g} % is steeper than the {limit + 0.3:g} % that the rules allow; ask for less"
-        )
-    if change.way == "flat" or change.to == 0:
-        return ((SlopeOfAll(names, times=0.0),),)
-    if change.to is not None:
-        sign = sign or (-1 if found.grade < 0 else 1)
-        return ((SlopeOfAll(names, way=sign, low=change.to, high=change.to),),)
-    if change.by is not None:
-        return ((SlopeOfAll(names, more=(change.more or 1) * change.by),),)
-    if change.times is not None:
-        return ((SlopeOfAll(names, times=change.times),),)
-    if sign and not change.more:
-        inclines = [s.incline * sign for block in blocks for s in block.segments]
-        if inclines and min(inclines) >= 1.5:
-            return ()
-        return tuple((SlopeOfAll(names, way=sign, low=low, high=12.0),) for low in (4.0, 3.0))
-    if change.more < 0:
-        return tuple((SlopeOfAll(names, times=share),) for share in FLATTER)
-    if all(abs(s.incline) < LEVEL for block in blocks for s in block.segments):
-        return ((SlopeOfAll(names, way=sign or 1, low=STEEP_FROM),),)
-    return tuple(
-        (SlopeOfAll(names, times=1 + (times - 1) * change.dose, low=-limit, high=limit),)
-        for times, _ in STEEPER
-    )
+def _flipped(blocks: Sequence[Block], world: World) -> tuple[Way, ...]:
+    """The mirror image of each; where that finds no room, turned a little less or more as well."""
+    flips = tuple(Flip(block) for block in blocks)
+    least = world.min_radius * OVER_LEAST_RADIUS
+    out: list[Way] = [flips]
+    for more, wider in FLIPPED:
+        bends: list[Step] = []
+        for block in blocks:
+            seen = block.seen
+            assert seen is not None
+            degrees, radius = seen.degrees * more, seen.radius * wider
+            if is_turn(degrees - 3) and degrees <= MOST_ANGLE and radius >= min(least, seen.radius):
+                bends.append(Bend(block, degrees, radius, slack=(3.0, 0.12, 0.1)))
+        if len(bends) == len(blocks):
+            out.append((*flips, *bends))
+    return tuple(out)
 
 
 def _straightened(block: Block) -> list[Step]:

@@ -1,0 +1,109 @@
+"""The ways in which a slope can be made another one, the preferred one first."""
+
+from collections.abc import Sequence
+
+from roadgpt.check.measures import Measures, way
+from roadgpt.design.edit.anatomy import Block
+from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.sloping import Slope, SlopeOfAll
+from roadgpt.design.edit.steps import Step
+from roadgpt.errors import EditError
+from roadgpt.road import World
+
+STEEPER = ((1.5, 2.0), (1.3, 1.2), (1.7, 2.5), (1.15, 0.7))
+FLATTER = (0.5, 0.6, 0.4, 0.75)
+UPHILL = ((5.0, 3.0, 12.0), (4.0, 3.0, 12.0), (6.5, 3.0, 12.0), (5.0, 1.3, 13.0))
+LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
+STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
+
+
+def ways_to_slope(change: Change, block: Block, found: Measures, world: World) -> list[Step]:
+    """Grades of one turn or straight."""
+    now = block.seen.grade if block.seen else block.incline
+    limit = 100 * world.max_grade
+    sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
+        1 if now >= LEVEL else -1 if now <= -LEVEL else 0
+    )
+    sign = sign or (-1 if found.grade <= -LEVEL else 1)
+    if change.to is not None and abs(change.to) > limit:
+        raise EditError(f"{change.to:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
+    if change.to is not None and change.way != "flat":
+        aim = sign * change.to
+        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+    if change.by is not None:
+        aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
+        if abs(aim) > limit:
+            raise EditError(
+                f"{abs(aim):.1f} % is steeper than the {limit:g} % that the rules allow; ask for less"
+            )
+        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+    if change.times is not None:
+        aim = now * change.times
+        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+    if change.way == "flat":
+        if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in block.segments):
+            return []
+        return [Slope(block, 0.0, -slack, slack) for slack in (0.5, CLEARLY_LEVEL)]
+    if change.way and not change.more:
+        if way(now) == change.way:
+            return []
+        aims = [tuple(sorted((sign * low, sign * high))) + (sign * aim,) for aim, low, high in UPHILL]
+        return [Slope(block, aim, low, high) for low, high, aim in aims]
+    if change.more > 0 and change.way and way(now) != change.way:
+        return [Slope(block, sign * 6.0, *sorted((sign * 3.0, sign * 12.0)))]
+    return _steeper(change, block, now, sign, limit)
+
+
+def _steeper(change: Change, block: Block, now: float, sign: int, limit: float) -> list[Step]:
+    if change.more < 0:
+        if abs(now) < LEVEL:
+            return []
+        return [
+            Slope(block, now * share, *sorted((now * (share - 0.3), now * min(share + 0.15, 0.9))))
+            for share in FLATTER
+        ]
+    out: list[Step] = []
+    for times, more in STEEPER:
+        aim = max(abs(now) * (1 + (times - 1) * change.dose), abs(now) + more * change.dose)
+        aim = min(aim if abs(now) >= LEVEL else STEEP_FROM * times / 1.5, limit - 0.3)
+        if aim > abs(now) + 0.4:
+            low, high = min(abs(now) + 0.4, aim - 0.2), min(aim + 1.5, limit)
+            out.append(Slope(block, sign * aim, *sorted((sign * low, sign * high))))
+    if not out:
+        raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
+    return out
+
+
+def ways_to_slope_all(
+    change: Change, blocks: Sequence[Block], found: Measures, world: World
+) -> tuple[tuple[Step, ...], ...]:
+    """Grades of the whole road, or of all that lies behind a place."""
+    names = frozenset(block.name for block in blocks)
+    limit = 100 * world.max_grade - 0.3
+    sign = {"up": 1, "down": -1}.get(change.way or "", 0)
+    if change.to is not None and change.to > limit + 0.3:
+        raise EditError(
+            f"{change.to:g} % is steeper than the {limit + 0.3:g} % that the rules allow; ask for less"
+        )
+    if change.way == "flat" or change.to == 0:
+        return ((SlopeOfAll(names, times=0.0),),)
+    if change.to is not None:
+        sign = sign or (-1 if found.grade < 0 else 1)
+        return ((SlopeOfAll(names, way=sign, low=change.to, high=change.to),),)
+    if change.by is not None:
+        return ((SlopeOfAll(names, more=(change.more or 1) * change.by),),)
+    if change.times is not None:
+        return ((SlopeOfAll(names, times=change.times),),)
+    if sign and not change.more:
+        inclines = [s.incline * sign for block in blocks for s in block.segments]
+        if inclines and min(inclines) >= 1.5:
+            return ()
+        return tuple((SlopeOfAll(names, way=sign, low=low, high=12.0),) for low in (4.0, 3.0))
+    if change.more < 0:
+        return tuple((SlopeOfAll(names, times=share),) for share in FLATTER)
+    if all(abs(s.incline) < LEVEL for block in blocks for s in block.segments):
+        return ((SlopeOfAll(names, way=sign or 1, low=STEEP_FROM),),)
+    return tuple(
+        (SlopeOfAll(names, times=1 + (times - 1) * change.dose, low=-limit, high=limit),)
+        for times, _ in STEEPER
+    )
