@@ -44,7 +44,7 @@ def drive(road: Road, world: World = WORLD) -> Poses:
 
 def python_with(module: str, venv: str) -> str:
     """A Python that has this module: ours, or that of an environment in the folder JUDGE_HOME; or skip."""
-    if find_spec(module.split(".")[0]) is not None:
+    if find_spec(module) is not None:
         return sys.executable
     for folder in filter(None, [os.environ.get("JUDGE_HOME"), Path(__file__).parents[2] / "judges"]):
         python = Path(folder, venv, "bin", "python")

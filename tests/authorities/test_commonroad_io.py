@@ -1,6 +1,7 @@
-"""commonroad-io reads our CommonRoad files: lanelets with heights, a network in order, a task with a goal.
+"""commonroad-io reads our CommonRoad files: lanelets, a network in order, a task with a goal.
 
-Its pins do not go with ours, so it is asked where it is installed, here or in an environment of its own.
+The newest that goes with our pins is of 2022. A newer one, with CommonRoad's planners, is asked where an
+environment of its own is at hand.
 """
 
 import json
@@ -21,8 +22,9 @@ from commonroad.common.file_reader import CommonRoadFileReader
 scenario, problems = CommonRoadFileReader(sys.argv[1]).open()
 (problem,) = problems.planning_problem_dict.values()
 network = scenario.lanelet_network
-where = network.find_lanelet_by_position([problem.initial_state.position[:2]])[0]
-way = [where[0]]
+place = problem.initial_state.position
+where = [each.lanelet_id for each in network.lanelets if each.polygon.contains_point(place)]
+way = where[:1]
 while network.find_lanelet_by_id(way[-1]).successor:
     way += network.find_lanelet_by_id(way[-1]).successor
 goals = [id for ids in problem.goal.lanelets_of_goal_position.values() for id in ids]
@@ -54,4 +56,41 @@ def test_commonroad_io_finds_the_lanes_and_the_way_to_the_goal(tmp_path: Path, n
         assert is_valid
         points = np.array([*left, *right])
         s, t = road.locate(points[:, 0], points[:, 1])
-        assert np.abs(road.at(s, t) - points).max() < 2e-3
+        assert np.abs(road.at(s, t)[:, :2] - points).max() < 2e-3
+
+
+PLAN = """
+import sys, warnings
+warnings.simplefilter("ignore")
+import matplotlib
+matplotlib.use("Agg")
+from commonroad.common.file_reader import CommonRoadFileReader
+from commonroad.scenario.lanelet import Lanelet
+from commonroad.visualization.mp_renderer import MPRenderer
+from commonroad_clcs.pycrccosy import CurvilinearCoordinateSystem
+from commonroad_dc.boundary.boundary import create_road_boundary_obstacle
+scenario, problems = CommonRoadFileReader(sys.argv[1]).open()
+network = scenario.lanelet_network
+(problem,) = problems.planning_problem_dict.values()
+(start,) = network.find_lanelet_by_position([problem.initial_state.position])
+first = network.find_lanelet_by_id(start[0])
+lanes, _ = Lanelet.all_lanelets_by_merging_successors_from_lanelet(first, network)
+frame = CurvilinearCoordinateSystem(lanes[0].center_vertices)
+create_road_boundary_obstacle(scenario)
+renderer = MPRenderer()
+scenario.draw(renderer)
+problems.draw(renderer)
+renderer.render()
+print(frame.length())
+"""
+
+
+def test_commonroads_planners_take_the_lanes(tmp_path: Path) -> None:
+    python = python_with("commonroad_clcs", "venv-cr")
+    road = ROADS["arcs"]
+    (file,) = save(road, tmp_path, ["commonroad"], WORLD)
+    done = subprocess.run([python, "-c", PLAN, str(file)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    turn = float(road.heading(road.length) - road.heading(0.0))
+    # their frame is longer than the lane by what it adds at both ends
+    assert float(done.stdout) == pytest.approx(road.length + 2 * turn, abs=5)

@@ -17,7 +17,7 @@ def saved(name: str, folder: Path) -> ET.Element:
 
 def bound(lanelet: ET.Element, side: str) -> np.ndarray:
     points = lanelet.findall(f"{side}Bound/point")
-    return np.array([[float(point.find(axis).text) for axis in "xyz"] for point in points])
+    return np.array([[float(point.find(axis).text) for axis in "xy"] for point in points])
 
 
 @pytest.mark.parametrize("name", ROADS)
@@ -42,7 +42,6 @@ def test_two_chains_run_side_by_side_the_length_of_the_road(tmp_path: Path, name
         s, t = road.locate(right[:, 0], right[:, 1])
         forward = s[-1] > s[0]
         assert t == pytest.approx(-4.0 if forward else 4.0, abs=1e-3)
-        assert right[:, 2] == pytest.approx(road.at(s)[:, 2], abs=2e-3)
         assert id_ <= len(lanelets) / 2 if forward else id_ > len(lanelets) / 2
 
 
@@ -62,7 +61,7 @@ def test_the_task_leads_from_rest_to_the_last_lanelet_of_the_right_lane(tmp_path
     goal = problem.find("goalState/position/lanelet").attrib["ref"]
     last = next(each for each in root.findall("lanelet") if each.attrib["id"] == goal)
     assert last.find("successor") is None
-    assert bound(last, "right")[-1] == pytest.approx(road.at(road.length, -4.0), abs=1e-3)
+    assert bound(last, "right")[-1] == pytest.approx(road.at(road.length, -4.0)[:2], abs=1e-3)
     steps = int(problem.find("goalState/time/intervalEnd").text)
     assert steps * 0.1 > road.length / WORLD.speed_limit
 

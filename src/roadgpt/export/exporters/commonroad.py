@@ -1,6 +1,7 @@
-"""CommonRoad scenarios (XML 2020a): lanelets with heights, a speed limit, and the task to drive to the end.
+"""CommonRoad scenarios (XML 2020a): lanelets, a speed limit, and the task to drive to the end.
 
-Source: CommonRoad, Documentation of the XML Format, version 2020a.
+Source: CommonRoad, Documentation of the XML Format, version 2020a. It has room for heights, but CommonRoad's
+planners, road boundaries and pictures stop at points that have one (commonroad-io 2024.3): none are written.
 """
 
 from collections.abc import Sequence
@@ -24,7 +25,7 @@ SPEED_LIMIT = "274"  # the sign's number in Zamunda, CommonRoad's own country, a
 
 
 class CommonRoad:
-    """CommonRoad scenario 2020a, lanelets with heights, a speed limit, and the task to drive to the end."""
+    """CommonRoad scenario 2020a, lanelets seen from above, a speed limit, the task to drive to the end."""
 
     name = "commonroad"
     suffix = ".cr.xml"
@@ -83,7 +84,7 @@ def _lanelet(chain: Sequence[int], i: int, bounds: tuple[Array, Array], beside: 
     out = Element("lanelet", {"id": chain[i]})
     for name, points, mark in zip(("leftBound", "rightBound"), bounds, ("dashed", "solid"), strict=True):
         bound = out.add(name)
-        for point in points.tolist():
+        for point in points[:, :2].tolist():
             bound.extended(_point(point))
         bound.add("lineMarking", raw=mark)
     if i > 0:
@@ -129,6 +130,6 @@ def _problem(id_: int, road: Road, world: World, goal: int) -> Element:
 
 def _point(values: Sequence[float]) -> Element:
     out = Element("point")
-    for name, value in zip("xyz", values, strict=False):
+    for name, value in zip("xy", values, strict=True):
         out.add(name, raw=number(value))
     return out
