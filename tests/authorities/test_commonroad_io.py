@@ -7,6 +7,7 @@ environment of its own is at hand.
 import json
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,35 +18,46 @@ from roadgpt.export import save
 ASK = """
 import json, sys, warnings
 warnings.simplefilter("ignore")
-import numpy as np
 from commonroad.common.file_reader import CommonRoadFileReader
-scenario, problems = CommonRoadFileReader(sys.argv[1]).open()
-(problem,) = problems.planning_problem_dict.values()
-network = scenario.lanelet_network
-place = problem.initial_state.position
-where = [each.lanelet_id for each in network.lanelets if each.polygon.contains_point(place)]
-way = where[:1]
-while network.find_lanelet_by_id(way[-1]).successor:
-    way += network.find_lanelet_by_id(way[-1]).successor
-goals = [id for ids in problem.goal.lanelets_of_goal_position.values() for id in ids]
-print(json.dumps({
-    "lanelets": [[each.left_vertices.tolist(), each.right_vertices.tolist(),
-                  bool(each.polygon.shapely_object.is_valid)] for each in network.lanelets],
-    "way": way, "goals": goals, "velocity": problem.initial_state.velocity,
-    "limits": [e.additional_values[0] for s in network.traffic_signs for e in s.traffic_sign_elements],
-    "distance": sum(float(network.find_lanelet_by_id(i).distance[-1]) for i in way),
-}))
+
+def ask(file):
+    scenario, problems = CommonRoadFileReader(file).open()
+    (problem,) = problems.planning_problem_dict.values()
+    network = scenario.lanelet_network
+    place = problem.initial_state.position
+    where = [each.lanelet_id for each in network.lanelets if each.polygon.contains_point(place)]
+    way = where[:1]
+    while network.find_lanelet_by_id(way[-1]).successor:
+        way += network.find_lanelet_by_id(way[-1]).successor
+    signs = [element for sign in network.traffic_signs for element in sign.traffic_sign_elements]
+    return {
+        "lanelets": [[each.left_vertices.tolist(), each.right_vertices.tolist(),
+                      bool(each.polygon.shapely_object.is_valid)] for each in network.lanelets],
+        "way": way,
+        "goals": [id for ids in problem.goal.lanelets_of_goal_position.values() for id in ids],
+        "velocity": problem.initial_state.velocity,
+        "limits": [element.additional_values[0] for element in signs],
+        "distance": sum(float(network.find_lanelet_by_id(id).distance[-1]) for id in way),
+    }
+
+print(json.dumps([ask(file) for file in sys.argv[1:]]))
 """
 
 
-@pytest.mark.parametrize("name", ROADS)
-def test_commonroad_io_finds_the_lanes_and_the_way_to_the_goal(tmp_path: Path, name: str) -> None:
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What it read, by the name of the road; it is slow to start, and so is asked once."""
     python = python_with("commonroad", "venv-cr")
-    road = ROADS[name]
-    (file,) = save(road, tmp_path, ["commonroad"], WORLD)
-    done = subprocess.run([python, "-c", ASK, str(file)], capture_output=True, text=True, check=False)
+    folder = tmp_path_factory.mktemp("commonroad")
+    files = [save(road, folder, ["commonroad"], WORLD, name)[0] for name, road in ROADS.items()]
+    done = subprocess.run([python, "-c", ASK, *map(str, files)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
+    return dict(zip(ROADS, json.loads(done.stdout), strict=True))
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_commonroad_io_finds_the_lanes_and_the_way_to_the_goal(answers: dict[str, Any], name: str) -> None:
+    road, found = ROADS[name], answers[name]
     assert found["goals"] == found["way"][-1:]
     assert len(found["way"]) == len(found["lanelets"]) / 2
     turn = float(road.heading(road.length) - road.heading(0.0))
