@@ -1,15 +1,19 @@
 """Roads that exist, one file after the other: one that cannot be read does not stop the others."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import click
 
 from roadgpt.cli.rows import Row, unreadable
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import PartError, UsageError
 
 if TYPE_CHECKING:
-    from roadgpt.road import Design, Road
+    from roadgpt.road import Design, Geometry, Road, World
+    from roadgpt.run import Run
 
 
 def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
@@ -24,6 +28,25 @@ def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
     if Path(file, CARD).is_file():
         raise UsageError(f"{file} is the folder of a whole campaign; give its roads: {Path(file, 'runs')}/*")
     return read_blueprint(file)
+
+
+def shown_run(file: str, world: "World", geometry: "Geometry") -> "Run":
+    """The Run in a folder or of a campaign's test file, or one made of a road that nobody drove, to be shown;
+    tells remarks.
+
+    Raises:
+        UsageError: as for ``blueprint_of``, or the folder's run cannot be read.
+    """
+    from roadgpt.run import Setup, prove, read_run
+    from roadgpt.run.folder import is_run, run_of_test
+
+    if is_run(Path(file)) or run_of_test(Path(file)) is not None:
+        return read_run(file)
+    blueprint, remarks = blueprint_of(file)
+    for remark in remarks:
+        click.echo(f"roadgpt: {file}: {remark}", err=True)
+    run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
+    return replace(run, source=Path(file).name)
 
 
 def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) -> None:

@@ -116,11 +116,16 @@ def read_run(path: Path | str) -> Run:
         raise UsageError(f"the run in {folder} cannot be read ({error!r}); make the road again") from error
 
 
+def run_of_test(path: Path) -> Path | None:
+    """The folder of the run that a campaign's test.NNNN.json belongs to; None for any other file."""
+    parts = path.name.split(".")
+    beside = path.parent / RUNS / parts[1] if len(parts) == 3 and parts[0] == "test" else path
+    return beside if path.is_file() and is_run(beside) else None
+
+
 def _folder_of(path: Path) -> Path:
     if path.is_file():
-        parts = path.name.split(".")
-        is_test = len(parts) == 3 and parts[0] == "test"
-        beside = path.parent / RUNS / parts[1] if is_test else path.parent
+        beside = run_of_test(path) or path.parent
         if not is_run(beside):
             raise UsageError(
                 f"{path} belongs to no run; give a folder like DIR/runs/0001 or DIR/test.0001.json"

@@ -1,13 +1,12 @@
 """``roadgpt plot``: pictures of roads that exist."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 
 from roadgpt.cli.options import axes_option, files_argument, folder, setup_options, world_of, world_options
-from roadgpt.cli.roads import blueprint_of
+from roadgpt.cli.roads import shown_run
 from roadgpt.errors import UsageError
 
 UNREADABLE = 2  # exit status
@@ -27,9 +26,9 @@ def command(
 ) -> int | None:
     """Draw roads that exist: from above, height over distance, curvature and grade.
 
-    ROAD.json is a RoadGPT design, an SBFT test, a list of points [x, y] or [x, y, z], or the folder of a run,
-    whose drive is drawn as well. The pictures of straight.json go into a new folder OUT/straight, or
-    OUT/straight-2 and so on where that exists. Prints the names of the pictures.
+    ROAD.json is a RoadGPT design, an SBFT test, a list of points [x, y] or [x, y, z], or the folder or test
+    file of a run, whose drive is drawn as well. The pictures of straight.json go into a new folder
+    OUT/straight, or OUT/straight-2 and so on where that exists. Prints the names of the pictures.
     """
     from roadgpt.report import draw
 
@@ -37,7 +36,7 @@ def command(
     status = None
     for file in files:
         try:
-            run = _run_of(file, world, geometry)
+            run = shown_run(file, world, geometry)
             place = _place(out, Path(file))
             pictures = draw(run, place, axes)
         except UsageError as error:
@@ -47,20 +46,6 @@ def command(
         if not quiet:
             click.echo("\n".join(str(picture) for picture in pictures))
     return status
-
-
-def _run_of(file: str, world: Any, geometry: Any) -> Any:
-    """The Run in a folder, or one made of a road that nobody drove."""
-    from roadgpt.run import Setup, prove, read_run
-    from roadgpt.run.folder import is_run
-
-    if is_run(Path(file)):
-        return read_run(file)
-    blueprint, remarks = blueprint_of(file)
-    for remark in remarks:
-        click.echo(f"roadgpt: {file}: {remark}", err=True)
-    run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
-    return replace(run, source=Path(file).name)
 
 
 def _place(out: Path, file: Path) -> Path:

@@ -1,0 +1,96 @@
+"""One HTML page of one or two Runs: the road in 3-D and the drive as a replay. Verb: ``write``.
+
+The page needs no server and no network: scripts, styles and data stand in it, and it forbids itself to fetch
+anything. Parts of the page lie in ``page/`` and are put together in the order of SCRIPTS; three.js lies in
+``three/``, with its licence.
+"""
+
+import html
+import json
+import re
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.report.view.scene import scene
+from roadgpt.run import Run
+from roadgpt.run.atomic import write_whole
+
+__all__ = ["page", "scene", "write"]
+
+MOST = 2  # roads on one page
+HERE = Path(__file__).parent
+SCRIPTS = (
+    "numbers.js",
+    "trip.js",
+    "ribbon.js",
+    "land.js",
+    "signs.js",
+    "car.js",
+    "stage.js",
+    "cameras.js",
+    "plan.js",
+    "strip.js",
+    "panel.js",
+    "controls.js",
+    "main.js",
+)
+
+
+def page(runs: Sequence[Run]) -> str:
+    """The whole page, to be written as UTF-8; the same Runs give the same text.
+
+    Raises:
+        UsageError: there is no Run or more than two, one has no road, or a number of it is not finite.
+    """
+    if not 1 <= len(runs) <= MOST:
+        raise UsageError(f"a page shows one road or two side by side; {len(runs)} are given")
+    scenes = [scene(run) for run in runs]
+    title = " and ".join(dict.fromkeys(each["title"] for each in scenes))
+    parts = {
+        "TITLE": html.escape(title.encode("ascii", "xmlcharrefreplace").decode()).replace("&amp;#", "&#"),
+        "STYLE": _part("page/style.css"),
+        "LICENCE": _part("three/LICENSE"),
+        "THREE": _part("three/three.min.js"),
+        "SCRIPT": "\n".join(_part(f"page/{name}") for name in SCRIPTS),
+        "DATA": embedded(scenes),
+    }
+    # in one pass, so that nothing in a description is taken for a place to fill
+    return re.sub("@@([A-Z]+)@@", lambda found: parts[found[1]], _part("page/page.html"))
+
+
+def write(runs: Sequence[Run], path: Path | str) -> Path:
+    """Write the page whole into a file, which is replaced if it is there.
+
+    Raises:
+        UsageError: as for ``page``.
+        RoadGPTError: the file cannot be written.
+    """
+    path = Path(path)
+    text = page(runs)
+    try:
+        write_whole(path, text)
+    except OSError as error:
+        raise RoadGPTError(
+            f"cannot write {path}: {error.strerror or error}; name another file with --out"
+        ) from error
+    return path
+
+
+def embedded(data: object) -> str:
+    """JSON that may stand inside a script element: no ``<``, ``>`` or ``&``, and ASCII only.
+
+    Raises:
+        UsageError: a number is not finite.
+    """
+    try:
+        text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"), sort_keys=True)
+    except ValueError as error:
+        raise UsageError("the road has a number that is not finite; check it before it is shown") from error
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+@cache
+def _part(name: str) -> str:
+    return (HERE / name).read_text(encoding="utf-8")

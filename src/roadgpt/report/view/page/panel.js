@@ -1,0 +1,89 @@
+// A panel: one road with its texts, its stage and its strips.
+
+function makePanel(scene, fastest, { moveTo, wentFree }) {
+  const section = document.getElementById("panel").content.firstElementChild.cloneNode(true);
+  const find = (name) => section.querySelector(name);
+  const trip = tripOf(scene);
+  document.getElementById("panels").append(section);
+  write(find, scene, trip, fastest);
+
+  const stage = stageIn(section, scene, trip, fastest);
+  const cameras = stage && makeCameras(stage, trip, (isDragged) => {
+    if (isDragged) wentFree();
+    panel.isStale = true;
+  });
+  const sheets = [
+    makePlan(find(".plan canvas"), scene, trip, fastest, moveTo),
+    makeStrip(find(".height canvas"), scene, trip, heightOf(scene), moveTo),
+    makeStrip(find(".second canvas"), scene, trip, trip.isDriven ? speedOf(scene, fastest) : bendOf(scene), moveTo),
+  ];
+
+  const panel = {
+    trip, stage, cameras, section,
+    isStale: true,
+    pose: trip.at(0),
+    fit() {
+      if (stage) stage.fit();
+      sheets.forEach((sheet) => sheet.fit());
+      panel.isStale = true;
+    },
+    draw(time) {
+      const pose = trip.at(Math.min(time, trip.duration));
+      panel.pose = pose;
+      tell(find, scene, trip, pose, time);
+      sheets.forEach((sheet) => sheet.draw(pose));
+      if (stage) {
+        stage.place(pose);
+        cameras.follow(Math.min(time, trip.duration));
+        stage.draw();
+      }
+      panel.isStale = false;
+    },
+  };
+  return panel;
+}
+
+function stageIn(section, scene, trip, fastest) {
+  const canvas = section.querySelector(".scene");
+  try {
+    return makeStage(canvas, scene, trip, fastest);
+  } catch (error) {
+    if (document.createElement("canvas").getContext("webgl2")) throw error;
+    section.querySelector(".nothing").hidden = false;
+    for (const name of [".scene", ".hint"]) section.querySelector(name).hidden = true;
+    return null;
+  }
+}
+
+// Texts of a description are set as text, never as markup.
+function write(find, scene, trip, fastest) {
+  find(".title").textContent = scene.title;
+  find(".badge").textContent = scene.outcome;
+  find(".badge").classList.add(scene.outcome);
+  find(".said").textContent = scene.description;
+  find(".origin").textContent = scene.about;
+  find(".told p").textContent = scene.told;
+  find(".told").hidden = !scene.told;
+  find(".hint").textContent = "drag to look around, scroll to come nearer";
+  find(".second figcaption").innerHTML = trip.isDriven ? "speed, km/h <i>over distance, m</i>" : "curvature, 1/(100 m) <i>left is up</i>";
+  find(".legend").hidden = !trip.isDriven;
+  find(".legend .high").textContent = Math.round(kmh(fastest));
+  const stops = [0, 0.25, 0.5, 0.75, 1].map((share) => css(speedColour(share)));
+  find(".legend i").style.background = `linear-gradient(90deg, ${stops.join(",")})`;
+}
+
+function tell(find, scene, trip, pose, time) {
+  const middle = pose.t + scene.world.lane_width / 2;
+  const side = middle > 0 ? "left" : "right";
+  const share = Math.round(100 * pose.outside);
+  const isOver = trip.isDriven && time >= trip.duration;
+  find(".hud .speed").textContent = trip.isDriven ? `${kmh(pose.speed).toFixed(0)} km/h` : `${pose.s.toFixed(0)} m`;
+  find(".hud .place").textContent = trip.isDriven
+    ? `${pose.s.toFixed(0)} of ${scene.road.length.toFixed(0)} m${isOver ? `, ended at ${trip.duration.toFixed(1)} s` : ""}`
+    : `of ${scene.road.length.toFixed(0)} m`;
+  const lane = find(".hud .lane");
+  lane.textContent = trip.isDriven
+    ? share > 0 ? `${share} % outside its lane` : `${Math.abs(middle).toFixed(2)} m ${side} of its lane's middle`
+    : "nobody drove here: a look along the lane";
+  lane.classList.toggle("out", share > 0);
+}

@@ -1,0 +1,156 @@
+// The road's surface: bands between two offsets, swept along the road.
+
+const PINCH = 0.95; // share of the radius; an offset line nearer to the centre of its bend would fold
+const LINE = 0.15, DASH = 4, GAP = 8; // m, as in our OpenDRIVE files, a little wider to be seen
+const THICK = 0.3; // m of asphalt
+const ASPHALT = 0x44474d, SIDE = 0x33353a, GRAVEL = 0x8d8672, BANK = 0x7b8a5f, PAINT = 0xf4f4ef, AGAINST = 0x4a4d53;
+
+// Gathers triangles of one look; colours are per vertex.
+class Shape3 {
+  constructor(origin) {
+    this.origin = origin;
+    this.points = [];
+    this.colours = [];
+    this.corners = [];
+  }
+
+  get count() { return this.points.length / 3; }
+
+  point(x, y, z, colour) {
+    this.points.push(x - this.origin.x, y - this.origin.y, z - this.origin.z);
+    this.colours.push(colour.r, colour.g, colour.b);
+    return this.count - 1;
+  }
+
+  quad(a, b, c, d) { this.corners.push(a, b, c, a, c, d); }
+
+  geometry() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(this.points, 3));
+    geometry.setAttribute("color", new THREE.Float32BufferAttribute(this.colours, 3));
+    geometry.setIndex(this.corners);
+    geometry.computeVertexNormals();
+    return geometry;
+  }
+
+  mesh(kind = THREE.MeshLambertMaterial, look = {}) {
+    return new THREE.Mesh(this.geometry(), new kind({ vertexColors: true, side: THREE.DoubleSide, ...look }));
+  }
+}
+
+const colourOf = (hex) => new THREE.Color(hex);
+
+// Stations from a to b: both, and all of the road's in between.
+function stationsBetween(road, a, b) {
+  return [a, ...road.s.filter((s) => s > a + 1e-6 && s < b - 1e-6), b];
+}
+
+function beside(road, s, t) {
+  const place = placeIn(road.s, s);
+  const bend = read(road.curvature, place);
+  const heading = read(road.heading, place);
+  const off = bend * t > PINCH ? PINCH / bend : t;
+  return [read(road.x, place) - off * Math.sin(heading), read(road.y, place) + off * Math.cos(heading), read(road.z, place)];
+}
+
+// A band from offset and height (t0, h0) to (t1, h1), along these stations. t0 lies left of t1: the band faces up.
+function band(shape, road, stations, [t0, h0], [t1, h1], colour) {
+  let left = -1;
+  let right = -1;
+  for (const s of stations) {
+    const [x0, y0, z0] = beside(road, s, t0);
+    const [x1, y1, z1] = beside(road, s, t1);
+    const l = shape.point(x0, y0, z0 + h0, colour);
+    const r = shape.point(x1, y1, z1 + h1, colour);
+    if (left >= 0) shape.quad(right, r, l, left);
+    left = l;
+    right = r;
+  }
+}
+
+function cap(shape, road, s, half, colour, isEnd) {
+  const [x0, y0, z] = beside(road, s, half);
+  const [x1, y1] = beside(road, s, -half);
+  const corners = [[x0, y0, z], [x1, y1, z], [x1, y1, z - THICK], [x0, y0, z - THICK]].map((p) => shape.point(...p, colour));
+  if (isEnd) corners.reverse();
+  shape.quad(...corners);
+}
+
+function pavement(scene, origin, bank) {
+  const { road, world } = scene;
+  const shape = new Shape3(origin);
+  const half = world.lane_width;
+  const rim = half + world.verge;
+  const s = road.s;
+  band(shape, road, s, [half, 0], [0, 0], colourOf(AGAINST));
+  band(shape, road, s, [0, 0], [-half, 0], colourOf(ASPHALT));
+  band(shape, road, s, [half, -THICK], [half, 0], colourOf(SIDE));
+  band(shape, road, s, [-half, 0], [-half, -THICK], colourOf(SIDE));
+  for (const end of [0, road.length]) cap(shape, road, end, half, colourOf(SIDE), end > 0);
+  if (world.verge > 0) {
+    for (const side of [1, -1]) {
+      const pair = [[side * rim, -0.03], [side * half, -0.02]];
+      const slope = [[side * (rim + bank * 1.3), -bank], [side * rim, -0.03]];
+      if (side < 0) { pair.reverse(); slope.reverse(); }
+      band(shape, road, s, ...pair, colourOf(GRAVEL));
+      band(shape, road, s, ...slope, colourOf(BANK));
+    }
+  }
+  return shape.mesh();
+}
+
+function markings(scene, origin) {
+  const { road, world } = scene;
+  const shape = new Shape3(origin);
+  const paint = colourOf(PAINT);
+  const edge = world.lane_width - LINE / 2;
+  for (const side of [1, -1]) {
+    band(shape, road, road.s, [side * edge + LINE / 2, 0.015], [side * edge - LINE / 2, 0.015], paint);
+  }
+  for (let a = 0; a < road.length; a += DASH + GAP) {
+    const stations = stationsBetween(road, a, Math.min(a + DASH, road.length));
+    band(shape, road, stations, [LINE / 2, 0.015], [-LINE / 2, 0.015], paint);
+  }
+  return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 });
+}
+
+// The driven line, coloured by speed, on a white one that tells it from the asphalt.
+function drivenLine(scene, origin, fastest) {
+  const columns = scene.drive.columns;
+  const group = new THREE.Group();
+  const kept = spaced(columns, 0.25);
+  for (const [width, lift, isCase] of [[0.52, 0.03, true], [0.36, 0.05, false]]) {
+    const shape = new Shape3(origin);
+    let left = -1;
+    let right = -1;
+    kept.forEach((i, n) => {
+      const before = kept[Math.max(0, n - 1)];
+      const after = kept[Math.min(kept.length - 1, n + 1)];
+      const dx = columns.x[after] - columns.x[before];
+      const dy = columns.y[after] - columns.y[before];
+      const long = Math.hypot(dx, dy) || 1;
+      const [ax, ay] = [(-dy / long) * width / 2, (dx / long) * width / 2];
+      const z = Math.min(read(scene.road.z, placeIn(scene.road.s, columns.s[i])), columns.z[i]) + lift;
+      const rgb = isCase ? [250, 250, 250] : speedColour(columns.speed[i] / fastest);
+      const colour = new THREE.Color().setRGB(...rgb.map((v) => v / 255), THREE.SRGBColorSpace);
+      const l = shape.point(columns.x[i] + ax, columns.y[i] + ay, z, colour);
+      const r = shape.point(columns.x[i] - ax, columns.y[i] - ay, z, colour);
+      if (left >= 0) shape.quad(right, r, l, left);
+      left = l;
+      right = r;
+    });
+    const nearer = isCase ? -3 : -4;
+    group.add(shape.mesh(THREE.MeshBasicMaterial, { polygonOffset: true, polygonOffsetFactor: nearer, polygonOffsetUnits: nearer }));
+  }
+  return group;
+}
+
+// Indices of a path that lie at least so many metres apart; a car that stands makes no heap of points.
+function spaced(columns, least) {
+  const kept = [0];
+  for (let i = 1; i < columns.x.length; i++) {
+    const last = kept[kept.length - 1];
+    if (Math.hypot(columns.x[i] - columns.x[last], columns.y[i] - columns.y[last]) >= least) kept.push(i);
+  }
+  return kept;
+}

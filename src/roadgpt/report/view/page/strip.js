@@ -1,0 +1,151 @@
+// A strip: one quantity over the distance along the road, with the car on it.
+
+const LEFT = 34, RIGHT = 12, TOP = 26, BOTTOM = 20; // pixels around the graph
+
+// what: s, values; least: span of the axis; floor: value it starts from; limit: a line with a name;
+// colour: of the line at index i; at: value under the car.
+function makeStrip(canvas, scene, trip, what, moveTo) {
+  const { road, world } = scene;
+  const view = { low: 0, high: 1, wide: 1, tall: 1 };
+  const px = (s) => LEFT + (s / road.length) * view.wide;
+  const py = (value) => TOP + view.tall * (1 - (value - view.low) / (view.high - view.low));
+
+  function aim({ wide, high }) {
+    const limits = what.limit ? [what.limit.value] : [];
+    let [low, top] = extent([...extent(what.values), ...limits], what.least);
+    const air = (top - low) * 0.08;
+    low = what.floor === undefined ? low - air : what.floor;
+    Object.assign(view, { low, high: top + air, wide: Math.max(1, wide - LEFT - RIGHT), tall: Math.max(1, high - TOP - BOTTOM) });
+  }
+
+  function axes(pen, { high }) {
+    pen.lineWidth = 1;
+    const up = tidyStep(view.high - view.low, Math.max(2, view.tall / 30));
+    for (let value = Math.ceil(view.low / up) * up; value <= view.high; value += up) {
+      rule(pen, LEFT, py(value), LEFT + view.wide, py(value));
+      said(pen, String(+value.toFixed(6)), LEFT - 5, py(value), "right", SOFT);
+    }
+    const along = tidyStep(road.length, Math.max(2, view.wide / 62));
+    for (let s = 0; s <= road.length * 1.0001; s += along) {
+      rule(pen, px(s), TOP, px(s), TOP + view.tall);
+      said(pen, String(+s.toFixed(6)), px(s), high - BOTTOM / 2 - 1, "center", SOFT);
+    }
+  }
+
+  function rule(pen, x0, y0, x1, y1) {
+    pen.strokeStyle = "#e6e9ed";
+    pen.lineWidth = 1;
+    pen.beginPath();
+    pen.moveTo(x0, y0);
+    pen.lineTo(x1, y1);
+    pen.stroke();
+  }
+
+  // Where the car was outside its lane, as the verdict counts it.
+  function outside(pen) {
+    if (!scene.drive) return;
+    const { s, outside: share } = scene.drive.columns;
+    pen.fillStyle = "rgba(213,94,0,.20)";
+    for (let i = 1; i < s.length; i++) {
+      if (share[i] > world.oob_tolerance) pen.fillRect(px(s[i - 1]), TOP, Math.max(1, px(s[i]) - px(s[i - 1]) + 0.3), view.tall);
+    }
+  }
+
+  function ground(pen, size) {
+    aim(size);
+    axes(pen, size);
+    outside(pen);
+    pen.lineJoin = "round";
+    if (what.fill) {
+      pen.beginPath();
+      pen.moveTo(px(what.s[0]), py(view.low));
+      what.s.forEach((s, i) => pen.lineTo(px(s), py(what.values[i])));
+      pen.lineTo(px(what.s[what.s.length - 1]), py(view.low));
+      pen.fillStyle = what.fill;
+      pen.fill();
+    }
+    for (let i = 1; i < what.s.length; i++) {
+      pen.beginPath();
+      pen.moveTo(px(what.s[i - 1]), py(what.values[i - 1]));
+      pen.lineTo(px(what.s[i]), py(what.values[i]));
+      pen.strokeStyle = what.colour(i);
+      pen.lineWidth = 2.2;
+      pen.lineCap = "round";
+      pen.stroke();
+    }
+    if (what.limit) {
+      pen.setLineDash([5, 4]);
+      pen.strokeStyle = SOFT;
+      pen.lineWidth = 1;
+      pen.beginPath();
+      pen.moveTo(LEFT, py(what.limit.value));
+      pen.lineTo(LEFT + view.wide, py(what.limit.value));
+      pen.stroke();
+      pen.setLineDash([]);
+      said(pen, what.limit.name, LEFT + 4, py(what.limit.value) + 9, "left", SOFT);
+    }
+    for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), TOP + 5, 4);
+  }
+
+  function over(pen, size, pose) {
+    const s = clamp(pose.s, 0, road.length);
+    const value = what.at(pose);
+    pen.strokeStyle = HERE;
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    pen.moveTo(px(s), TOP);
+    pen.lineTo(px(s), TOP + view.tall);
+    pen.stroke();
+    pen.beginPath();
+    pen.arc(px(s), py(value), 5, 0, 7);
+    pen.fillStyle = HERE;
+    pen.fill();
+    pen.strokeStyle = "#fff";
+    pen.lineWidth = 1.5;
+    pen.stroke();
+    said(pen, what.tell(pose), size.wide - RIGHT + 2, 12, "right", INK);
+  }
+
+  takesHold(canvas, (u) => moveTo(trip.timeAt(clamp(((u - LEFT) / view.wide) * road.length, 0, road.length))));
+  return makeSheet(canvas, ground, over);
+}
+
+function heightOf(scene) {
+  const { road } = scene;
+  return {
+    s: road.s, values: road.z, least: 4, fill: "#dfe5d6",
+    colour: () => "#55604a",
+    at: (pose) => read(road.z, placeIn(road.s, pose.s)),
+    tell(pose) {
+      const grade = 100 * read(road.grade, placeIn(road.s, pose.s));
+      const slope = Math.abs(grade) < 0.05 ? "level" : `${grade > 0 ? "up" : "down"} ${Math.abs(grade).toFixed(1)} %`;
+      return `${read(road.z, placeIn(road.s, pose.s)).toFixed(1)} m, ${slope}`;
+    },
+  };
+}
+
+function speedOf(scene, fastest) {
+  const { columns } = scene.drive;
+  const limit = kmh(scene.world.speed_limit);
+  return {
+    s: columns.s, values: columns.speed.map(kmh), least: 10, floor: 0,
+    limit: { value: limit, name: `limit ${Math.round(limit)}` },
+    colour: (i) => css(speedColour(columns.speed[i] / fastest)),
+    at: (pose) => kmh(pose.speed),
+    tell: (pose) => `${kmh(pose.speed).toFixed(0)} km/h`,
+  };
+}
+
+function bendOf(scene) {
+  const { road } = scene;
+  const curvature = road.curvature.map((value) => 100 * value);
+  return {
+    s: road.s, values: curvature, least: 2,
+    colour: () => "#7a4b9a",
+    at: (pose) => read(curvature, placeIn(road.s, pose.s)),
+    tell(pose) {
+      const bend = read(road.curvature, placeIn(road.s, pose.s));
+      return Math.abs(bend) < 1 / 2000 ? "straight" : `radius ${Math.round(1 / Math.abs(bend))} m to the ${bend > 0 ? "left" : "right"}`;
+    },
+  };
+}

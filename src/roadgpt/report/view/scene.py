@@ -1,0 +1,114 @@
+"""What the page shows of one Run, as plain data: the road, its world, the drive, the places of a failure."""
+
+from typing import Any
+
+import numpy as np
+
+from roadgpt.brief import sentence
+from roadgpt.check.describing import describe
+from roadgpt.errors import ExportError, UsageError
+from roadgpt.export.edges import stations
+from roadgpt.geometry.curve import Array
+from roadgpt.report.canvas import origin
+from roadgpt.report.places import places_of
+from roadgpt.road import Road, World
+from roadgpt.run import Run
+
+CHORD = 0.01  # m, most distance between what is drawn and the road
+MOST_STEPS = 6000  # of a drive; 2 minutes are complete, longer ones are thinned
+MILLIMETRES, FINE = 3, 5  # digits
+DRIVE = {
+    "time": 3,
+    "x": MILLIMETRES,
+    "y": MILLIMETRES,
+    "z": MILLIMETRES,
+    "heading": FINE,
+    "pitch": FINE,
+    "roll": FINE,
+    "speed": MILLIMETRES,
+    "steer": FINE,
+    "throttle": 2,
+    "brake": 2,
+    "s": MILLIMETRES,
+    "t": MILLIMETRES,
+    "outside": 4,
+}
+"""Columns of a drive that the page uses, and how many digits of them."""
+WORLD = {"map_size", "lane_width", "verge", "speed_limit", "oob_tolerance", "friction", "z_floor"}
+
+
+def scene(run: Run) -> dict[str, Any]:
+    """All that the page shows of a Run. Metres, seconds and radians; every list of the road has one length.
+
+    Raises:
+        UsageError: the Run has no road, or a number of it is not finite.
+    """
+    if run.road is None:
+        raise UsageError(f"there is no road to show: {run.description}")
+    return {
+        "title": run.words or run.source or "a road that was given",
+        "outcome": run.outcome,
+        "description": run.description,
+        "about": origin(run),
+        "told": _told(run.road),
+        "road": _road(run.road, run.world),
+        "world": run.world.model_dump(include=WORLD),
+        "drive": _drive(run),
+        "places": _places(run),
+    }
+
+
+def _told(road: Road) -> str:
+    """The geometry in words; nothing for a road that is too odd to be measured."""
+    try:
+        return sentence(describe(road))
+    except UsageError:
+        return ""
+
+
+def _road(road: Road, world: World) -> dict[str, Any]:
+    try:
+        s = stations(road, world.lane_width + world.verge, CHORD)
+    except ExportError as error:
+        raise UsageError("the road has a number that is not finite; check it before it is shown") from error
+    points = road.at(s)
+    return {
+        "length": road.length,
+        "s": _rounded(s, MILLIMETRES),
+        "x": _rounded(points[:, 0], MILLIMETRES),
+        "y": _rounded(points[:, 1], MILLIMETRES),
+        "z": _rounded(points[:, 2], MILLIMETRES),
+        "heading": _rounded(np.unwrap(road.heading(s)), FINE),
+        "curvature": _rounded(road.curvature(s), FINE),
+        "grade": _rounded(road.grade(s), FINE),
+    }
+
+
+def _drive(run: Run) -> dict[str, Any] | None:
+    drive, road = run.drive, run.road
+    if drive is None or road is None:
+        return None
+    every = -(-len(drive) // MOST_STEPS)
+    kept = np.unique(np.r_[np.arange(0, len(drive), every), len(drive) - 1])
+    columns = {name: drive[name][kept] for name in DRIVE}
+    columns["heading"] = np.unwrap(columns["heading"])
+    height = drive["z"][0] - float(road.profile.height(drive["s"][0]))
+    return {
+        "driver": drive.driver,
+        "simulator": drive.simulator,
+        "ended": drive.ended,
+        "car": {**drive.car._asdict(), "height": round(float(height), MILLIMETRES)},
+        "columns": {name: _rounded(column, DRIVE[name]) for name, column in columns.items()},
+    }
+
+
+def _places(run: Run) -> list[dict[str, Any]]:
+    found = []
+    for place in places_of(run):
+        time = None if run.drive is None or place.step is None else float(run.drive["time"][place.step])
+        found.append({"x": place.x, "y": place.y, "s": place.s, "text": place.text, "time": time})
+    return found
+
+
+def _rounded(values: Array, digits: int) -> list[float]:
+    return [round(float(value), digits) for value in values]

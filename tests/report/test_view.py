@@ -1,0 +1,266 @@
+"""The page of a road: what stands in it, and that nothing in a description gets out of its place."""
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt.cli import app
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.report import view
+from roadgpt.report.view.scene import DRIVE, MOST_STEPS
+from roadgpt.road import Design, Road, Segment, World
+from roadgpt.run import Run, Setup, prove, write_run
+
+EVIL = (
+    "</script><script>alert(1)</script><!-- &lt; @@SCRIPT@@ ' \" \\ \u2028 \ud800 "
+    "<img src=x onerror=alert(2)>"
+)
+
+
+def design(turn: float = 65) -> Design:
+    return Design(
+        starting_point=(60, 60, 0),
+        theta=20,
+        segments=(
+            Segment(distance=60, direction="straight", incline=5),
+            Segment(distance=45, direction="left", incline=2, turn_degrees=turn),
+            Segment(distance=50, direction="straight", incline=-3),
+        ),
+    )
+
+
+def named(run: Run, words: str) -> Run:
+    return replace(run, request=run.request.model_copy(update={"words": words}))
+
+
+@pytest.fixture(scope="module")
+def driven() -> Run:
+    return named(prove(design(), 7), "a road with one left turn")
+
+
+@pytest.fixture(scope="module")
+def alone() -> Run:
+    return replace(prove(design(), setup=Setup(drives=False)), source="alone.json")
+
+
+class Reader(HTMLParser):
+    """What a browser would see: elements, what scripts hold, and addresses."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.scripts: list[str] = []
+        self.fetched: list[str] = []
+        self._is_script = self._is_title = False
+        self.title = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self._is_script, self._is_title = tag == "script", tag == "title"
+        self.fetched += [
+            value or "" for name, value in attrs if name in ("src", "href", "srcset", "data", "action")
+        ]
+        if self._is_script:
+            self.scripts.append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        self._is_script = self._is_title = False
+
+    def handle_data(self, data: str) -> None:
+        if self._is_script:
+            self.scripts[-1] += data
+        if self._is_title:
+            self.title += data
+
+
+def seen(page: str) -> Reader:
+    reader = Reader()
+    reader.feed(page)
+    return reader
+
+
+def data_of(page: str) -> list[dict[str, object]]:
+    found: list[dict[str, object]] = json.loads(seen(page).scripts[0])
+    return found
+
+
+def test_the_page_holds_everything_and_fetches_nothing(driven: Run) -> None:
+    page = view.page([driven])
+    reader = seen(page)
+    assert reader.fetched == []
+    assert len(reader.scripts) == 3
+    assert "default-src 'none'" in page
+    assert "@import" not in page
+    assert not re.search(r"url\(", page.split("</style>")[0])
+    assert "@@" not in page.replace(reader.scripts[1], "")
+
+
+def test_three_js_comes_with_its_licence(driven: Run) -> None:
+    licence = (Path(view.__file__).parent / "three" / "LICENSE").read_text(encoding="utf-8")
+    assert "The MIT License" in licence
+    assert "three.js authors" in licence
+    assert licence in view.page([driven])
+
+
+def test_the_same_run_gives_the_same_page(driven: Run) -> None:
+    assert view.page([driven]) == view.page([driven])
+
+
+def test_a_description_cannot_break_out(driven: Run) -> None:
+    plain, evil = seen(view.page([driven])), view.page([replace(named(driven, EVIL), description=EVIL)])
+    reader = seen(evil)
+    assert reader.tags == plain.tags
+    assert reader.scripts[1:] == plain.scripts[1:]
+    assert data_of(evil)[0]["title"] == EVIL
+    assert reader.title.startswith("</script><script>alert(1)")
+    evil.encode("utf-8")
+
+
+@settings(max_examples=60)
+@given(st.recursive(st.text() | st.floats(allow_nan=False, allow_infinity=False), st.lists))
+def test_what_is_embedded_comes_back(data: object) -> None:
+    text = view.embedded(data)
+    assert json.loads(text) == data
+    assert text.isascii()
+    assert not {*text} & {*"<>&"}
+
+
+def test_the_road_is_drawn_where_it_is(driven: Run) -> None:
+    road = view.scene(driven)["road"]
+    assert driven.road is not None
+    assert len({len(road[name]) for name in ("s", "x", "y", "z", "heading", "curvature", "grade")}) == 1
+    points = np.stack([road["x"], road["y"], road["z"]], axis=-1)
+    assert points == pytest.approx(driven.road.at(np.array(road["s"])), abs=2e-3)
+    # between two stations the drawn line stays within 2 cm of the road
+    middle = (np.array(road["s"])[1:] + np.array(road["s"])[:-1]) / 2
+    assert (points[1:] + points[:-1]) / 2 == pytest.approx(driven.road.at(middle), abs=0.02)
+
+
+def test_the_drive_is_that_of_the_run(driven: Run) -> None:
+    drive = view.scene(driven)["drive"]
+    assert driven.drive is not None
+    for name, digits in DRIVE.items():
+        wanted = driven.drive[name]
+        found = np.array(drive["columns"][name])
+        if name == "heading":
+            found, wanted = np.cos(found), np.cos(wanted)
+        assert found == pytest.approx(wanted, abs=10.0**-digits)
+    assert drive["car"]["length"] == driven.drive.car.length
+
+
+def test_a_long_drive_is_thinned_and_keeps_its_end(driven: Run) -> None:
+    drive = driven.drive
+    assert drive is not None
+    count = 5 * MOST_STEPS + 3
+    long = {
+        name: np.interp(np.linspace(0, 1, count), np.linspace(0, 1, len(drive)), drive[name])
+        for name in drive.columns
+    }
+    columns = view.scene(replace(driven, drive=replace(drive, columns=type(drive.columns)(long))))["drive"][
+        "columns"
+    ]
+    assert len(columns["time"]) <= MOST_STEPS + 1
+    assert columns["time"][-1] == pytest.approx(drive.duration, abs=1e-3)
+
+
+def test_a_failed_drive_tells_where_and_when() -> None:
+    run = prove(design(), 7, World(friction=0.15))
+    assert run.outcome == "FAIL"
+    assert run.verdict is not None
+    (place,) = view.scene(run)["places"]
+    assert place["time"] == pytest.approx(run.verdict.at_time, abs=0.02)
+    assert (place["x"], place["y"]) == pytest.approx(run.verdict.at_xy)
+
+
+def test_a_road_without_a_drive_and_one_that_rules_object_to(alone: Run) -> None:
+    shown = view.scene(alone)
+    assert shown["drive"] is None
+    assert shown["title"] == "alone.json"
+    assert shown["places"] == []
+    tight = prove(Road.through([[20, 20], [60, 20], [62, 24], [20, 30]]), setup=Setup(drives=False))
+    assert view.scene(tight)["outcome"] == "INVALID"
+    assert view.scene(tight)["places"]
+
+
+def test_what_cannot_be_shown_is_told(driven: Run, alone: Run, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="no road to show"):
+        view.page([replace(driven, road=None)])
+    with pytest.raises(UsageError, match="3 are given"):
+        view.page([driven] * 3)
+    with pytest.raises(UsageError, match="not finite"):
+        view.embedded([float("nan")])
+    with pytest.raises(RoadGPTError, match="--out"):
+        view.write([alone], tmp_path / "none" / "page.html")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.fixture
+def folder(driven: Run, tmp_path: Path) -> Path:
+    (tmp_path / "road.json").write_text("[[20, 20], [60, 40], [120, 60], [160, 120]]")
+    write_run(driven, tmp_path / "campaign")
+    return tmp_path
+
+
+def test_the_command_writes_one_page_of_a_file_and_a_run(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", lambda address: opened.append(address) or True)
+    run, page = folder / "campaign" / "runs" / "0001", folder / "page.html"
+    words = ["view", str(folder / "road.json"), str(run), "--out", str(page), "--open"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
+    assert done.stdout == f"{page}\n"
+    first, second = data_of(page.read_text(encoding="utf-8"))
+    assert (first["title"], first["drive"]) == ("road.json", None)
+    assert second["drive"] is not None
+    assert opened == [page.resolve().as_uri()]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], "road file or the folder of a run"),
+        (["road.json"] * 3, "one road or two"),
+        (["none.json"], "none.json"),
+        (["campaign"], "road.json"),
+        (["road.json", "--out", "campaign"], "is a folder"),
+        (["road.json", "--out", "road.json"], "ends in .html"),
+        (["road.json", "--out", "no/such/page.html"], "--out"),
+    ],
+)
+def test_wrong_words_get_advice(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], said: str
+) -> None:
+    monkeypatch.chdir(folder)
+    done = CliRunner().invoke(app, ["view", *words])
+    assert done.exit_code in (1, 2)
+    assert said in done.output
+    assert not (folder / "roadgpt-view.html").exists()
+
+
+def test_the_test_file_of_a_campaign_stands_for_its_run(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
+    done = CliRunner().invoke(app, ["view", "campaign/test.0001.json"])
+    assert done.exit_code == 0, done.output
+    (shown,) = data_of((folder / "roadgpt-view.html").read_text(encoding="utf-8"))
+    assert shown["drive"] is not None
+
+
+def test_the_page_has_a_name_of_its_own(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr("webbrowser.open", lambda address: False)
+    done = CliRunner().invoke(app, ["view", "road.json", "--open"])
+    assert done.exit_code == 0
+    assert "no browser could be started" in done.stderr
+    assert (folder / "roadgpt-view.html").is_file()

@@ -1,0 +1,315 @@
+"""The page of a road in a real browser: what it draws, and what it does when it is touched."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from chromium import FOUND, Page, browser
+from roadgpt.report import view
+from roadgpt.road import Design, Segment, World
+from roadgpt.run import Run, Setup, prove
+
+pytestmark = pytest.mark.skipif(FOUND is None, reason="no chromium is installed")
+
+EVIL = "</script><script>document.title = 'broken'</script><b>bold</b> & <!-- <img src=x onerror=alert(1)>"
+LANE = "document.querySelector('.hud .lane').textContent"
+
+
+def design(side: int = 1) -> Design:
+    return Design(
+        starting_point=(60, 120, 0),
+        theta=20,
+        segments=(
+            Segment(distance=50, direction="straight", incline=6),
+            Segment(
+                distance=45, direction="left" if side > 0 else "right", incline=2, turn_degrees=side * 65
+            ),
+            Segment(distance=40, direction="straight", incline=-4),
+        ),
+    )
+
+
+@pytest.fixture(scope="module")
+def driven() -> Run:
+    run = prove(design(), 7)
+    return replace(run, request=run.request.model_copy(update={"words": EVIL}))
+
+
+@pytest.fixture(scope="module")
+def tab() -> Iterator[Page]:
+    with browser() as page:
+        yield page
+
+
+@pytest.fixture(scope="module")
+def pages(driven: Run, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("pages")
+    failed = prove(design(-1), 7, World(friction=0.15))
+    assert failed.outcome == "FAIL"
+    alone = replace(prove(design(), setup=Setup(drives=False)), source="alone.json")
+    floats = prove(design(), 7, World(verge=0))
+    made = {"driven": [driven], "two": [failed, driven], "alone": [alone], "floats": [floats]}
+    return {name: view.write(runs, folder / f"{name}.html") for name, runs in made.items()}
+
+
+@pytest.fixture
+def page(tab: Page, pages: dict[str, Path]) -> Iterator[Page]:
+    """The page of one drive, as a person finds it; whatever a test does, it must not complain or fetch."""
+    tab.size(820, 540)
+    tab.open(pages["driven"])
+    yield tab
+    assert_quiet(tab, pages["driven"])
+
+
+def assert_quiet(tab: Page, path: Path) -> None:
+    assert tab.told == []
+    assert {address.partition("#")[0] for address in tab.asked} == {path.resolve().as_uri()}
+
+
+def is_drawn(picture: np.ndarray) -> bool:
+    """Many colours, and no single one that covers it: neither empty nor a plain ground."""
+    shades = (picture[..., :3] * 15).round().astype(int) @ [256, 16, 1]
+    counts = np.unique(shades, return_counts=True)[1]
+    return len(counts) > 12 and counts.max() < 0.85 * counts.sum()
+
+
+def changed(before: np.ndarray, after: np.ndarray) -> float:
+    """The share of pixels that are others."""
+    return float((np.abs(before[..., :3] - after[..., :3]).max(axis=-1) > 0.04).mean())
+
+
+def most_of(picture: np.ndarray, much: int, little: int) -> float:
+    """The share of pixels in which one colour is strong and another weak."""
+    return float(np.mean((picture[..., much] > 0.35) & (picture[..., much] > 2 * picture[..., little])))
+
+
+def slide(tab: Page, time: float) -> None:
+    tab.run(f"slider.value = {time}; slider.dispatchEvent(new Event('input')); 0")
+    tab.settle()
+
+
+def pose(tab: Page, number: int = 0) -> dict[str, float]:
+    found: dict[str, float] = tab.run(f"roadgpt.poses[{number}]")
+    return found
+
+
+def middle_of(tab: Page, name: str, across: float = 0.5, down: float = 0.5) -> tuple[float, float]:
+    box = tab.run(
+        f"(r => [r.x, r.y, r.width, r.height])(document.querySelector('{name}').getBoundingClientRect())"
+    )
+    return box[0] + across * box[2], box[1] + down * box[3]
+
+
+def test_the_picture_and_every_strip_are_drawn(page: Page) -> None:
+    for name in (".stage .scene", ".plan canvas", ".height canvas", ".second canvas"):
+        picture = page.picture(name)
+        assert picture.shape[0] > 60
+        assert len(np.unique((picture[..., :3] * 255).round().reshape(-1, 3), axis=0)) > 12, name
+    assert is_drawn(page.picture(".stage .scene"))
+
+
+def test_texts_are_texts(page: Page) -> None:
+    assert page.run("document.querySelector('.title').textContent") == EVIL
+    assert page.run("document.title").startswith("</script>")
+    assert page.run("document.querySelectorAll('.title *, .said *, img').length") == 0
+    assert page.run("document.querySelector('.badge').textContent") == "PASS"
+    assert page.run("document.querySelector('.said').textContent").startswith("kept its lane")
+    assert "metre road" in page.run("document.querySelector('.told p').textContent")
+
+
+def test_the_slider_moves_the_car_to_where_it_was(page: Page, driven: Run) -> None:
+    drive = driven.drive
+    assert drive is not None
+    pictures = []
+    for time in (2.0, 6.5):
+        slide(page, time)
+        found = pose(page)
+        for name in ("x", "y", "z", "heading", "speed", "pitch"):
+            wanted = float(
+                np.interp(time, drive["time"], np.unwrap(drive[name]) if name == "heading" else drive[name])
+            )
+            turns = round((found[name] - wanted) / math.tau) * math.tau if name == "heading" else 0
+            assert found[name] == pytest.approx(wanted + turns, abs=5e-3), name
+        pictures.append(page.picture(".stage .scene"))
+    assert changed(*pictures) > 0.1
+    assert page.run("clock.textContent") == f"6.5 / {drive.duration:.1f} s"
+
+
+def test_cameras_switch_and_stand_where_they_should(page: Page) -> None:
+    slide(page, 5)
+    eyes, pictures = {}, {}
+    for name in ("behind", "bonnet", "free"):
+        page.click(*middle_of(page, f"[data-camera={name}]"))
+        page.settle()
+        assert page.run(f"document.querySelector('[data-camera={name}]').ariaChecked") == "true"
+        eyes[name], pictures[name] = np.array(page.run("roadgpt.eyes[0]")), page.picture(".stage .scene")
+        assert is_drawn(pictures[name]), name
+    assert changed(pictures["behind"], pictures["bonnet"]) > 0.2
+    assert changed(pictures["bonnet"], pictures["free"]) > 0.2
+    heading = pose(page)["heading"]
+    way = eyes["bonnet"] - eyes["behind"]
+    # from behind to the bonnet it is straight on, about as far as the camera stays behind and a little down
+    assert way[:2] @ [math.cos(heading), math.sin(heading)] == pytest.approx(9.5, abs=1)
+    assert abs(way[:2] @ [-math.sin(heading), math.cos(heading)]) < 2.5
+    assert eyes["free"][2] > eyes["behind"][2] + 20
+
+
+def test_dragging_the_picture_sets_the_camera_free(page: Page) -> None:
+    before = np.array(page.run("roadgpt.eyes[0]"))
+    x, y = middle_of(page, ".stage .scene")
+    page.mouse("mousePressed", x, y)
+    for step in range(1, 6):
+        page.mouse("mouseMoved", x + 25 * step, y + 5 * step)
+    page.mouse("mouseReleased", x + 125, y + 25)
+    page.settle()
+    assert page.run("roadgpt.player.camera") == "free"
+    after = np.array(page.run("roadgpt.eyes[0]"))
+    assert np.linalg.norm(after - before) > 1
+    slide(page, 3)
+    assert page.run("roadgpt.eyes[0]") == pytest.approx(after)
+
+
+def test_a_click_on_a_strip_moves_the_car_there(page: Page, driven: Run) -> None:
+    assert driven.road is not None
+    for name in (".height canvas", ".second canvas"):
+        stations = []
+        for across in (0.4, 0.8):
+            page.click(*middle_of(page, name, across))
+            page.settle()
+            stations.append(pose(page)["s"])
+        wide = page.run(f"document.querySelector('{name}').clientWidth")
+        # the graph begins 34 pixels from the left and ends 12 from the right
+        wanted = [(across * wide - 34) / (wide - 46) * driven.road.length for across in (0.4, 0.8)]
+        assert stations == pytest.approx(wanted, abs=1.5)
+    page.click(*middle_of(page, ".plan canvas", 0.02, 0.98))
+    page.settle()
+    assert pose(page)["s"] < 30  # the road starts in the lower left corner of its map
+
+
+def test_it_plays_and_pauses_and_ends(page: Page) -> None:
+    page.click(*middle_of(page, "#play"))
+    page.wait_for("roadgpt.player.time > 0.3")
+    page.key(" ")
+    page.settle()
+    stopped = page.run("roadgpt.player.time")
+    page.settle()
+    assert page.run("roadgpt.player.time") == stopped
+    page.run("roadgpt.player.setRate(8); 0")
+    slide(page, page.run("roadgpt.player.duration") - 0.2)
+    page.key(" ")
+    page.wait_for("!roadgpt.player.isPlaying")
+    assert page.run("roadgpt.player.time === roadgpt.player.duration")
+    page.key(" ")
+    page.wait_for("roadgpt.player.time < roadgpt.player.duration / 2")
+
+
+def test_keys(page: Page) -> None:
+    page.key("ArrowRight")
+    page.key("ArrowRight", modifiers=8)
+    assert page.run("roadgpt.player.time") == pytest.approx(1.1)
+    page.key("ArrowLeft")
+    assert page.run("roadgpt.player.time") == pytest.approx(0.1)
+    page.key("End")
+    assert page.run("roadgpt.player.time === roadgpt.player.duration")
+    page.key("Home")
+    for key, camera in (("2", "bonnet"), ("3", "free"), ("1", "behind"), ("f", "free")):
+        page.key(key)
+        assert page.run("roadgpt.player.camera") == camera
+    page.key("]")
+    assert page.run("[roadgpt.player.time, roadgpt.player.rate]") == [0, 2]
+    with_line = page.picture(".stage .scene")
+    page.key("l")
+    assert changed(with_line, page.picture(".stage .scene")) > 0.001
+    page.key("?")
+    assert page.run("keys.open")
+
+
+def test_the_address_names_time_and_camera(tab: Page, pages: dict[str, Path]) -> None:
+    tab.open(pages["driven"], "#t=4.5&camera=bonnet")
+    assert tab.run("[roadgpt.player.time, roadgpt.player.camera]") == [4.5, "bonnet"]
+    tab.open(pages["driven"], "#t=never&camera=<b>")
+    assert tab.run("[roadgpt.player.time, roadgpt.player.camera]") == [0, "behind"]
+    assert_quiet(tab, pages["driven"])
+
+
+def test_nothing_is_drawn_while_nothing_changes(page: Page) -> None:
+    page.settle()
+    before = page.run("roadgpt.frames")
+    for _ in range(5):
+        page.settle()
+    assert page.run("roadgpt.frames") == before
+
+
+def test_two_roads_share_one_clock(tab: Page, pages: dict[str, Path]) -> None:
+    tab.size(1000, 560)
+    tab.open(pages["two"])
+    assert tab.run("[...document.querySelectorAll('.badge')].map(b => b.textContent)") == ["FAIL", "PASS"]
+    slide(tab, 3)
+    assert pose(tab, 0)["time"] == pytest.approx(3, abs=1e-3)
+    assert pose(tab, 1)["time"] == pytest.approx(3, abs=1e-3)
+    for number in (1, 2):
+        assert is_drawn(tab.picture(f".panel:nth-child({number}) .scene"))
+        assert is_drawn(tab.picture(f".panel:nth-child({number}) .plan canvas"))
+    lefts = tab.run("[...document.querySelectorAll('.stage')].map(s => s.getBoundingClientRect().x)")
+    assert lefts[1] > lefts[0] + 400
+    # the drive that is shorter stays where it ended; the other goes on
+    slide(tab, tab.run("roadgpt.player.duration"))
+    ends = [tab.run(f"JSON.parse(data.textContent)[{n}].drive.columns.time.at(-1)") for n in (0, 1)]
+    assert ends[0] != ends[1]
+    assert [pose(tab, 0)["time"], pose(tab, 1)["time"]] == pytest.approx(ends)
+    assert tab.run("[...document.querySelectorAll('.place')].every(p => /ended at/.test(p.textContent))")
+    # the car that left its lane is red by now
+    assert "outside its lane" in tab.run(LANE)
+    colours = [tab.picture(f".panel:nth-child({number}) .scene") for number in (1, 2)]
+    reds, blues = ([most_of(each, much, little) for each in colours] for much, little in ((0, 2), (2, 0)))
+    assert reds[0] > 0.01 > blues[0]
+    assert blues[1] > 0.01
+    # a click on a strip of one moves both
+    tab.click(*middle_of(tab, ".panel:nth-child(2) .height canvas", 0.5))
+    tab.settle()
+    assert 1 < pose(tab, 1)["time"] < tab.run("roadgpt.player.duration") - 1
+    assert_quiet(tab, pages["two"])
+
+
+def test_a_road_that_nobody_drove_is_shown_alone(tab: Page, pages: dict[str, Path]) -> None:
+    tab.size(820, 540)
+    tab.open(pages["alone"])
+    assert is_drawn(tab.picture(".stage .scene"))
+    assert "nobody drove" in tab.run(LANE)
+    assert tab.run("document.querySelector('.legend').hidden")
+    slide(tab, tab.run("roadgpt.player.duration"))
+    assert pose(tab)["s"] == pytest.approx(tab.run("JSON.parse(data.textContent)[0].road.length"), abs=0.01)
+    assert_quiet(tab, pages["alone"])
+
+
+def test_a_road_without_a_verge_floats_above_the_ground(tab: Page, pages: dict[str, Path]) -> None:
+    tab.size(820, 540)
+    tab.open(pages["floats"], "#t=4")
+    assert is_drawn(tab.picture(".stage .scene"))
+    assert_quiet(tab, pages["floats"])
+
+
+@pytest.mark.parametrize("name", ["driven", "two"])
+def test_it_fits_a_phone(tab: Page, pages: dict[str, Path], name: str) -> None:
+    tab.size(390, 844, is_phone=True)
+    tab.open(pages[name], "#t=3")
+    assert tab.run("document.documentElement.scrollWidth") <= 390
+    assert is_drawn(tab.picture(".stage .scene"))
+    bar = tab.run("(r => [r.top, r.bottom])(bar.getBoundingClientRect())")
+    assert bar[1] == pytest.approx(844, abs=1)
+    assert tab.run("document.querySelector('.stage').getBoundingClientRect().bottom") < bar[0]
+    smallest = tab.run("Math.min(...[...document.querySelectorAll('button')].map(b => b.offsetHeight))")
+    assert smallest >= 40
+    assert_quiet(tab, pages[name])
+
+
+def test_the_page_would_be_stopped_from_fetching(page: Page) -> None:
+    refused = page.run("fetch('https://example.org/').then(() => 'came', () => 'refused')")
+    assert refused == "refused"
+    assert any("Content Security Policy" in line for line in page.told)
+    page.told.clear()
+    page.asked[:] = [address for address in page.asked if address.startswith("file:")]
