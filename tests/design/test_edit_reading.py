@@ -129,6 +129,19 @@ def test_several_changes_at_once() -> None:
     assert [change.more for change in changes[:2]] == [1, -1]
 
 
+def test_what_is_too_gentle_is_to_be_sharper() -> None:
+    change = one("the second turn is too gentle, make it sharper")
+    assert (change.what, change.more) == ("angle", 1)
+    assert change.target is not None
+    assert change.target.numbers == (2,)
+    assert (one("the road is too long").what, one("the road is too long").more) == ("length", -1)
+
+
+@pytest.mark.parametrize("words", ["add a 90° left at the end", "append a 90 degree left-hander"])
+def test_a_turn_may_be_called_by_its_side(words: str) -> None:
+    assert (one(words).what, one(words).side, one(words).degrees) == ("add", "left", 90)
+
+
 def test_what_is_left_out_is_taken_from_before() -> None:
     first, second = read_request(
         "make the first straight 20 m longer and the second one 10 m shorter"
@@ -184,6 +197,9 @@ def test_five_languages_say_the_same(words: str) -> None:
         ("remove the road", "no road"),
         ("remove a turn", "say: remove the second turn"),
         ("42", "no change"),
+        ("reverse the road", "say: mirror the road"),
+        ("make turn 2 as sharp as turn 4", "say a number"),
+        ("make a turn sharper", "which one is meant"),
         ("x" * 3000, "too long"),
     ],
 )

@@ -95,7 +95,9 @@ class _Reader:
         return self.name(at + 1) in ("sharper", "longer", "shorter", "steeper", "flatter", "gentler", "")
 
     def _leads_to_a_turn(self, at: int) -> bool:
-        return any(self.name(i) in TURNS for i in (at + 1, at + 2)) and self.name(at - 1) in (
+        return any(self.name(i) in {*TURNS, "left", "right"} for i in (at + 1, at + 2)) and self.name(
+            at - 1
+        ) in (
             "the",
             "a",
             "ord",

@@ -189,6 +189,8 @@ def _on(target: Target | None, change: Change, found: Sequence[Change], clause: 
             return Change("mirror", words=change.words)
     if target.noun == "road" and change.what in ("angle", "radius", "shape"):
         target = replace(target, noun="turn", every=True)
+    if target.noun == "road" and change.what == "side" and "reverse" in clause.words.lower().split():
+        raise EditError("a road cannot be turned round; for its mirror image say: mirror the road")
     if target.noun == "road" and change.what == "side" and target.place is None:
         return Change("mirror", words=change.words)
     return replace(change, target=target)
