@@ -34,6 +34,7 @@ SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s
 TURNS_BACK = math.pi / 2  # rad; a line that jumps round by more goes back on itself
 NODES = 5.0  # m between the nodes of a spline that rounds off kinks
 CLOSEST = 0.5  # m between such nodes
+PLACES = 1_000  # at which the spline is held against the line
 
 
 @dataclass(frozen=True)
@@ -155,7 +156,8 @@ def _rounded(found: Line, heights: Array) -> tuple[Road, str]:
             kept.append(i)
     points = np.column_stack([found.poses[:, :2], heights])[[*kept, len(found.s) - 1]]
     road = Road.through(points)
-    _, away = road.locate(found.poses[:, 0], found.poses[:, 1])
+    some = found.poses[:: max(1, len(found.s) // PLACES)]
+    _, away = road.locate(some[:, 0], some[:, 1])
     count = int((np.abs(found.kinks) > KINK).sum())
     what = {0: "bends that are too tight are", 1: f"1 kink of {degrees:.1f} degrees is"}.get(
         count, f"{count} kinks of up to {degrees:.1f} degrees are"

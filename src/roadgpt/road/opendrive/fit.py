@@ -14,11 +14,24 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 _TAU, _W = (_NODES + 1) / 2, _WEIGHTS / 2
 
 
+BLOCK = 20_000  # pieces at a time, to spare memory
+
+
 def clothoids(poses: Array) -> list[Piece] | None:
     """Pieces between poses, rows x, y, heading ``(n + 1, 3)``; None where there is no such piece.
 
     Every piece ends at its pose to rounding, so that nothing adds up along the road.
     """
+    found: list[Piece] = []
+    for first in range(0, len(poses) - 1, BLOCK):
+        some = _block(poses[first : first + BLOCK + 1])
+        if some is None:
+            return None
+        found += some
+    return found
+
+
+def _block(poses: Array) -> list[Piece] | None:
     chord = np.diff(poses[:, :2], axis=0)
     reach = np.hypot(chord[:, 0], chord[:, 1])
     along = np.arctan2(chord[:, 1], chord[:, 0])

@@ -27,11 +27,21 @@ Which = Callable[["Section"], tuple[int, int]]
 
 
 @dataclass(frozen=True)
+class Lane:
+    """One lane of a section: how wide it is, or where its outer edge runs, by the station of the road."""
+
+    node: Node
+    kind: str
+    width: CubicProfile | None
+    border: CubicProfile | None
+
+
+@dataclass(frozen=True)
 class Section:
     """One lane section, the lanes of the driven side from the inside out."""
 
     s: float
-    lanes: tuple[Node, ...]
+    lanes: tuple[Lane, ...]
     driven: int
     """Index of the driven lane; the number of lanes where there is none."""
 
@@ -63,12 +73,10 @@ class Lanes:
         """How far the outer edge of a lane is from lane 0, and the slope of that; 0 before the first."""
         across, lean = np.zeros(len(s)), np.zeros(len(s))
         for lane in section.lanes[: last + 1]:
-            border = cubics(lane.all("border"), "sOffset", section.s)
-            width = cubics(lane.all("width"), "sOffset", section.s)
-            if width is None and border is not None:
-                across, lean = (np.abs(each) for each in _both(border, s))
+            if lane.width is None and lane.border is not None:
+                across, lean = (np.abs(each) for each in _both(lane.border, s))
             else:
-                more, leaning = _both(width, s)
+                more, leaning = _both(lane.width, s)
                 across, lean = across + more, lean + leaning
         return across, lean
 
@@ -78,8 +86,8 @@ class Lanes:
         found += self.offset.stations if self.offset else ()
         for section in self.sections:
             for lane in section.lanes[: section.driven]:
-                for node in (*lane.all("width"), *lane.all("border")):
-                    found.append(section.s + number(node, "sOffset", 0.0))
+                for profile in (lane.width, lane.border):
+                    found += profile.stations if profile else ()
         return found
 
     def widths(self) -> Array:
@@ -90,7 +98,7 @@ class Lanes:
         """Of the shoulder beside the driven lanes, along all of the road, metres."""
 
         def beside(section: Section) -> tuple[int, int]:
-            kinds = [lane.attributes.get("type") for lane in section.lanes]
+            kinds = [lane.kind for lane in section.lanes]
             first = section.driven
             while first < len(kinds) and kinds[first] in DRIVING:
                 first += 1
@@ -115,7 +123,7 @@ class Lanes:
 
     def driven(self) -> Iterator[Node]:
         """The driven lane of each section that has one."""
-        return (each.lanes[each.driven] for each in self.sections if each.driven < len(each.lanes))
+        return (each.lanes[each.driven].node for each in self.sections if each.driven < len(each.lanes))
 
 
 def read_lanes(road: Node, length: float) -> Lanes:
@@ -142,10 +150,19 @@ def read_lanes(road: Node, length: float) -> Lanes:
 
 
 def _section(node: Node, side: str) -> Section:
-    lanes = sorted(node.all(side, "lane"), key=lambda lane: abs(number(lane, "id")))
-    kinds = [lane.attributes.get("type") for lane in lanes]
-    driven = next((i for i, kind in enumerate(kinds) if kind in DRIVING), len(lanes))
-    return Section(number(node, "s"), tuple(lanes), driven)
+    s = number(node, "s")
+    nodes = sorted(node.all(side, "lane"), key=lambda lane: abs(number(lane, "id")))
+    lanes = tuple(
+        Lane(
+            lane,
+            lane.attributes.get("type", ""),
+            cubics(lane.all("width"), "sOffset", s),
+            cubics(lane.all("border"), "sOffset", s),
+        )
+        for lane in nodes
+    )
+    driven = next((i for i, lane in enumerate(lanes) if lane.kind in DRIVING), len(lanes))
+    return Section(s, lanes, driven)
 
 
 def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:

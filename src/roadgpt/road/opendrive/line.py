@@ -26,7 +26,7 @@ KINK = 0.01  # rad; a larger one cannot be driven through at speed, and is round
 STEP = 1.0  # m between the poses that clothoids are fitted to, and less where they would stray
 CLOSE = 1e-4  # m, between clothoids and the line
 GENTLE = 0.02  # rad; over a turn so slight a clothoid strays by micrometres
-MOST_STEPS = 4_096  # of one element
+LEAST = 0.1  # m; nearer to each other no poses are taken
 FEWEST = 2
 
 
@@ -94,9 +94,12 @@ def walk(line: list[Stretch], lanes: Lanes | None, cuts: Sequence[float]) -> Lin
 
 def _part(stretch: Stretch, joints: Array, lanes: Lanes | None) -> tuple[Array, Array]:
     """Stations ``(n,)`` and poses ``(n, 3)`` along one element, both ends included."""
-    cuts = (joints - stretch.s) / stretch.length
+    inside = np.searchsorted(joints, [stretch.s, stretch.s + stretch.length])
+    cuts = (joints[inside[0] : inside[1]] - stretch.s) / stretch.length
     count = max(1, int(np.ceil(stretch.length / STEP)))
-    while isinstance(stretch.shape, Polynomial) and count < MOST_STEPS and _strays(stretch, count):
+    while (
+        isinstance(stretch.shape, Polynomial) and count * LEAST < stretch.length and _strays(stretch, count)
+    ):
         count *= 2
     even = np.linspace(0.0, 1.0, count + 1)
     share = np.unique(np.r_[even, cuts[(cuts > 1e-6) & (cuts < 1 - 1e-6)]])

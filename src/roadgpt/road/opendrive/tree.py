@@ -12,7 +12,7 @@ from roadgpt.errors import UsageError
 
 LARGEST = 50_000_000  # bytes; the largest public maps have 20 MB
 MOST_ELEMENTS = 500_000
-MOST_KEPT = 150_000  # elements of one road
+MOST_KEPT = 60_000  # elements of one road
 DEEPEST = 60
 LONGEST_TAG = 1_000_000  # bytes
 CHUNK = 65_536  # bytes
