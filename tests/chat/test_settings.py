@@ -211,3 +211,32 @@ def test_doctor_looks_for_the_model_that_is_named(stub: Stub, monkeypatch: pytes
     monkeypatch.setenv("ROADGPT_BASE_URL", "http://127.0.0.1:9/v1")
     with pytest.raises(ChatError, match="cannot be reached"):
         looked()
+
+
+@pytest.mark.parametrize(
+    "line", [(".env", "ROADGPT_BASE_URL={}"), ("roadgpt.toml", '[chat]\nbase_url = "{}"')]
+)
+def test_a_folder_does_not_get_the_users_key_sent_anywhere(
+    line: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    url = "https://elsewhere.example/v1"
+    write(Path(line[0]), line[1].format(url))
+    assert key_for(configured().base_url) is None  # there is none that could go there
+    monkeypatch.setenv("OPENAI_API_KEY", KEY)
+    with pytest.raises(ChatError, match=f"named in {line[0]}") as caught:
+        key_for(configured().base_url)
+    assert KEY not in str(caught.value)
+    monkeypatch.setenv("OPENAI_BASE_URL", url)
+    assert key_for(url).value == KEY  # type: ignore[union-attr]
+
+
+def test_a_folder_may_name_a_server_of_this_machine_or_bring_its_own_key(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("OPENAI_API_KEY", KEY)
+    write(Path("roadgpt.toml"), '[chat]\nbase_url = "http://127.0.0.1:11434/v1"')
+    assert key_for(configured().base_url).value == KEY  # type: ignore[union-attr]
+    write(
+        Path("roadgpt.toml"), '[chat]\nbase_url = "https://own.example/v1"\napi_key = "of-folder-0123456789"'
+    )
+    assert key_for(configured().base_url).value == "of-folder-0123456789"  # type: ignore[union-attr]

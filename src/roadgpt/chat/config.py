@@ -21,13 +21,16 @@ from pydantic import ValidationError
 
 from roadgpt.chat.model import ChatSettings
 from roadgpt.chat.secret import Key, usable
-from roadgpt.errors import UsageError
+from roadgpt.errors import ChatError, UsageError
 
 FIELDS = tuple(ChatSettings.model_fields)
 KEY = "api_key"
 DEFAULT = "default"
 DOTENV = ".env"
 PROJECT = "roadgpt.toml"
+FOLDER = (DOTENV, PROJECT)
+"""Files that come along with a working folder, and so may be somebody else's."""
+LOOPBACK = ("localhost", "127.0.0.1", "::1")
 LINE = re.compile(r"\s*(?:export\s+)?([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
 OF_OTHERS = "ROADGPT_NO_NUMBA"  # the room drive heeds it
 MOST_BYTES = 1_000_000  # of a file of settings
@@ -93,18 +96,43 @@ def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
 def key_for(base_url: str | None) -> Key | None:
     """The key for a server; None where there is none.
 
+    A server that a file of the working folder names gets only a key from there: the folder may be somebody
+    else's.
+
     Raises:
         UsageError: a file of settings cannot be read.
-        ChatError: the key holds what no key has.
+        ChatError: the key holds what no key has, or belongs to the user and the server to the folder.
     """
+    host = urlsplit(base_url or "").hostname or ""
     names = ["ROADGPT_API_KEY", "OPENAI_API_KEY"]
-    if (urlsplit(base_url or "").hostname or "").endswith(".azure.com"):
+    if host.endswith(".azure.com"):
         names.insert(1, "AZURE_OPENAI_API_KEY")
+    keys = [
+        Key(str(value), f"{layer.name} ({name})")
+        for layer in _layers()
+        for name in (*names, KEY)
+        if (value := layer.found.get(name))
+    ]
+    place = _folder_naming(base_url)
+    if place and keys and host not in LOOPBACK:
+        keys = [key for key in keys if key.origin.startswith(FOLDER)]
+        if not keys:
+            raise ChatError(
+                f"the server {host} is named in {place} of this folder, so your own key is not sent there; "
+                f"if you trust it, say so in your environment: OPENAI_BASE_URL={base_url}"
+            )
+    return usable(keys[0]) if keys else None
+
+
+def _folder_naming(base_url: str | None) -> str:
+    """The file of the working folder that names this server, where the user does not."""
+    if not base_url:
+        return ""
     for layer in _layers():
-        for name in (*names, KEY):
-            if value := layer.found.get(name):
-                return usable(Key(str(value), f"{layer.name} ({name})"))
-    return None
+        said = _looked_up(layer).get("base_url")
+        if said and said.value == base_url:
+            return layer.name if layer.name in FOLDER else ""
+    return ""
 
 
 def _layers() -> list[Layer]:
