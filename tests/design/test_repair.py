@@ -184,6 +184,16 @@ def test_a_grade_beyond_the_limit_is_brought_to_it() -> None:
     assert changes == ("segment 1: grade 22 -> 15 %", "segment 2: grade -40 -> -15 %")
 
 
+def test_a_long_straight_road_is_turned_into_the_diagonal_and_not_made_shorter() -> None:
+    proposed = road_of(
+        (49, 0, 5), (123, 0, -2), (75, 0, 22), (37, 0, -9), start=(60.0, 100.0, 0.0), theta=20.0
+    )
+    after = repair(proposed, None, WORLD, "full").design
+    assert is_valid(after)
+    assert [s.distance for s in after.segments] == [49, 123, 75, 37]
+    assert [s.incline for s in after.segments] == [5, -2, 15, -9]
+
+
 def test_two_turns_of_one_hand_close_together_are_parted() -> None:
     proposed = road_of((40, 40, 0), (4, 0, 0), (40, 40, 0), start=(80.0, 80.0, 0.0))
     assert len(shown_turns(proposed)) == 1

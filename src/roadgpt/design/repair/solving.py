@@ -21,6 +21,9 @@ Indices = NDArray[np.intp]
 LENGTH_WEIGHT, TURN_WEIGHT = 1.0, 1.4  # of a relative change
 LEAST_TURN_COUNTED = radians(15)  # changes of slighter turns are taken as relative to this
 SPARSE = 2  # steps between the points that are held apart
+HEADINGS = np.radians(
+    [0, 5, -5, 10, -10, 15, -15, 20, -20, 30, -30, 40, -40, 45]
+)  # of the start, in this order
 NEIGHBOURS = 27.0  # m along the road: places nearer than this cannot meet
 PENALTIES = (0.05, 1.0, 20.0)  # of a square metre that breaks a limit
 STEPS = 25  # at every penalty, at most
@@ -84,7 +87,7 @@ def _descended(aim: Aim, share: float) -> Solution:
     n = len(aim.lengths)
     hands = np.where(aim.turns < 0, -1.0, 1.0)
     start = np.concatenate([aim.lengths, share * np.abs(aim.turns), [0.0, 0.0, 0.0]])
-    start[2 * n + 1 :] = _centred(aim, start, hands)
+    start[2 * n :] = _laid(aim, start, hands)
     units = _units(aim)
     weights = np.ones(2 * n)
     v, steps = start, 0
@@ -111,12 +114,20 @@ def _units(aim: Aim) -> Array:
     return np.concatenate([LENGTH_WEIGHT / aim.lengths, by_turn])
 
 
-def _centred(aim: Aim, v: Array, hands: Array) -> Array:
-    """Where the start lies when the middle of the road is the middle of the map."""
+def _laid(aim: Aim, v: Array, hands: Array) -> Array:
+    """Heading and start at which the road's box is smallest, and lies in the middle of the map.
+
+    Left at heading 0, a straight road would be made shorter, as a small turn alone gains nothing.
+    """
     n = len(aim.lengths)
     z, _ = aim.figure.walk(v[:n], hands * v[n : 2 * n], 0.0)
-    middle = np.array([np.ptp(z.real) / 2 + z.real.min(), np.ptp(z.imag) / 2 + z.imag.min()])
-    return np.asarray(aim.world.map_size / 2 - middle)
+    turned = np.exp(1j * HEADINGS)[:, None] * z
+    box = np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1))
+    fits = np.flatnonzero(box <= aim.world.map_size - aim.world.road_width - 2 * aim.margins.edge)
+    best = int(fits[0]) if fits.size else int(box.argmin())
+    x, y = turned[best].real, turned[best].imag
+    middle = np.array([np.ptp(x) / 2 + x.min(), np.ptp(y) / 2 + y.min()])
+    return np.concatenate([HEADINGS[best : best + 1], aim.world.map_size / 2 - middle])
 
 
 def _settled(
