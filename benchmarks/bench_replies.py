@@ -10,7 +10,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 from mutated_replies import outcomes
 
-
 PORTION = 1000
 
 
