@@ -1,6 +1,7 @@
 # make demo    words to driven roads and pictures, from nothing but Python, pip and make
 # make test    format, types and every test; ends with the seconds it took
 # make bench   the figures of benchmarks/        make docs    the site in site/
+# make judges  ASAM's checker of OpenDRIVE, which wants an environment of its own; then make test asks it
 # make format  mend the format                   make clean   remove what make made
 #
 # Another Python: make test PYTHON=python3.12
@@ -16,7 +17,7 @@ WANTED := $(shell $(PYTHON) -c '$(FIND_VERSION)' 2>/dev/null)
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint constraints.txt
 
-.PHONY: help demo test bench docs format clean
+.PHONY: help demo test bench docs judges format clean
 .DELETE_ON_ERROR:
 
 help:
@@ -64,6 +65,11 @@ docs: $(VENV)/.installed-docs
 	$(BIN)/python docs/commands.py
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 	@echo "make docs: site/index.html, $(SECONDS_SO_FAR) s"
+
+judges:
+	$(PYTHON) -m venv judges/venv-qc
+	judges/venv-qc/bin/python -m pip --disable-pip-version-check install --quiet asam-qc-opendrive==1.0.0
+	@echo "make judges: judges/venv-qc, $(SECONDS_SO_FAR) s"
 
 format: $(VENV)/.installed-test
 	$(BIN)/python -m ruff check --fix .
