@@ -27,6 +27,7 @@ _ROOMS = {
     "Road": "road",
     "build": "road",
     "read_design": "road",
+    "read_opendrive": "road",
     "read_road": "road",
     "Finding": "check",
     "inspect": "check",
