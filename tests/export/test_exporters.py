@@ -15,7 +15,9 @@ FORMATS = plugins.names("exporters")
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in folder.iterdir()}
+    """Every file by its path; some formats are folders."""
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
 @pytest.mark.parametrize("format_", FORMATS)
@@ -32,10 +34,10 @@ def test_the_same_road_gives_the_same_bytes_wherever_it_is_written(
             save(road, tmp_path / str(i) / "deep er", [format_], WORLD, "a road", poses) for i in (1, 2)
         ]
         assert written[0][0].parent / f"a road{part.suffix}" in written[0]
-        assert all(path.name.startswith("a road") and path.is_file() for path in written[0])
+        assert all(path.name.startswith("a road") and path.exists() for path in written[0])
         one, other = contents(tmp_path / "1" / "deep er"), contents(tmp_path / "2" / "deep er")
         assert one == other
-        assert set(one) >= {path.name for path in written[0]}
+        assert {name.split("/")[0] for name in one} >= {path.name for path in written[0]}
         assert all(one.values())
         assert not any(str(tmp_path).encode() in data for data in one.values())
 
@@ -44,11 +46,9 @@ def test_the_same_road_gives_the_same_bytes_wherever_it_is_written(
 def test_a_wider_world_is_another_file(tmp_path: Path, format_: str) -> None:
     if format_ == "sbft":  # holds the centre line, whatever lies beside it
         return
-    one, other = (
-        save(ROADS["arcs"], tmp_path / str(width), [format_], World(lane_width=width))[0]
-        for width in (3.0, 3.5)
-    )
-    assert one.read_bytes() != other.read_bytes()
+    for width in (3.0, 3.5):
+        save(ROADS["arcs"], tmp_path / str(width), [format_], World(lane_width=width))
+    assert contents(tmp_path / "3.0") != contents(tmp_path / "3.5")
 
 
 def test_formats_are_written_in_their_order_and_once(tmp_path: Path) -> None:

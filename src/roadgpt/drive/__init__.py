@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 from roadgpt import plugins
 from roadgpt.drive.custom import load_driver
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
-from roadgpt.drive.view import Command, View
+from roadgpt.drive.view import Camera, Command, View
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = [
     "COLUMNS",
     "Box",
+    "Camera",
     "Columns",
     "Command",
     "Drive",

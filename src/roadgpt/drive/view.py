@@ -1,6 +1,6 @@
 """What a driver sees, and what it answers, at every control step."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -40,6 +40,25 @@ class View(NamedTuple):
     """Metres per second, forward along the car; negative when it rolls back."""
     vy: float
     """Metres per second, to the car's left."""
+    image: Any = None
+    """What the driver's camera sees, shape (height, width, 3), uint8; None where it has no attribute
+    ``camera``, or the simulator has no images."""
+
+
+class Camera(NamedTuple):
+    """What a driver asks for with an attribute ``camera``; the competition's by default."""
+
+    width: int = 320
+    """Pixels."""
+    height: int = 160
+    field_of_view: float = 1.22
+    """Radians, from the top of the image to the bottom."""
+    ahead: float = 0.3
+    """Metres before the centre of gravity."""
+    up: float = 1.3
+    """Metres above the road."""
+    down: float = 0.05
+    """Radians by which it looks down."""
 
 
 class Command(NamedTuple):

@@ -1,0 +1,121 @@
+"""BeamNG as a process of ours: found in its folder, started, watched, ended.
+
+The client could start it as well; but then it waits for minutes on a process that is dead, and knows only
+the newest versions' options. The command line is the one that beamngpy 1.36 writes.
+"""
+
+import os
+import platform
+import signal
+import subprocess
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from roadgpt.drive.simulators.beamng.settings import Settings
+from roadgpt.drive.simulators.beamng.wire import is_taken
+from roadgpt.errors import SimulationError, UsageError
+
+BINARIES = {
+    "Linux": ("BinLinux/BeamNG.tech.x64", "BinLinux/BeamNG.x64", "BinLinux/BeamNG.drive.x64"),
+    "Windows": ("BeamNG.tech.exe", "BeamNG.drive.exe", "Bin64/BeamNG.tech.x64.exe", "Bin64/BeamNG.x64.exe"),
+}
+LOOK = 0.1  # s between two looks
+GRACE = 10.0  # s to end by itself
+
+
+def binary_of(home: Path) -> Path:
+    """BeamNG's program in its folder.
+
+    Raises:
+        UsageError: there is none.
+    """
+    names = BINARIES.get(platform.system(), BINARIES["Linux"])
+    for name in names:
+        if (home / name).is_file():
+            return home / name
+    raise UsageError(f"no BeamNG in {home}: --beamng-home is the folder that holds {names[0]}")
+
+
+def command_line(binary: Path, settings: Settings, port: int, user: Path | None) -> list[str]:
+    """The words that start it."""
+    words = [str(binary), "-nosteam", "-tcom", "-tport", str(port)]
+    if platform.system() != "Linux":
+        words.append("-console")
+    words += ["-tcom-listen-ip", settings.host]
+    if settings.headless or settings.nogpu:
+        words.append("-headless")
+    if settings.nogpu:
+        words += ["-gfx", "null"]
+    elif settings.gfx:
+        words += ["-gfx", settings.gfx]
+    if user is not None:
+        words += ["-userpath", str(user)]
+    return words
+
+
+class Game:
+    """A running BeamNG that belongs to us."""
+
+    def __init__(self, words: list[str], host: str, port: int) -> None:
+        """Starts it.
+
+        Raises:
+            SimulationError: the system does not start it.
+        """
+        self.words, self.host, self.port = words, host, port
+        try:
+            # a session of its own, so that what it starts ends with it, and Ctrl-C comes to us first
+            self.process = subprocess.Popen(  # noqa: S603 - the program that the user named
+                words,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                start_new_session=os.name == "posix",
+            )
+        except OSError as error:
+            raise SimulationError(f"BeamNG cannot be started ({error}); check --beamng-home") from error
+
+    def wait(self, patience: float) -> None:
+        """Until it listens.
+
+        Raises:
+            SimulationError: it ended, or does not listen within so many seconds; it is ended then.
+        """
+        due = time.monotonic() + patience
+        while not is_taken(self.host, self.port):
+            status = self.process.poll()
+            if status is not None:
+                raise SimulationError(
+                    f"BeamNG ended at once (exit status {status}); start it by hand to see why: "
+                    f"{' '.join(self.words)}"
+                )
+            if time.monotonic() > due:
+                self.kill()
+                raise SimulationError(
+                    f"BeamNG does not listen on port {self.port} after {patience:g} s; give it more time "
+                    "(ROADGPT_BEAMNG_START_TIMEOUT), and see that it is BeamNG.tech and has its key"
+                )
+            time.sleep(LOOK)
+
+    @property
+    def is_alive(self) -> bool:
+        """Does the process run?"""
+        return self.process.poll() is None
+
+    def kill(self) -> None:
+        """End it and what it started, whether it wants to or not."""
+        if os.name == "posix":
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(self.process.pid, signal.SIGKILL)
+        elif self.is_alive:
+            words = ["taskkill", "/F", "/T", "/PID", str(self.process.pid)]
+            subprocess.run(words, capture_output=True, check=False)  # noqa: S603
+        with suppress(subprocess.TimeoutExpired):
+            self.process.wait(GRACE)
+
+    def end(self) -> None:
+        """Let it end after it was told to quit; end it where it does not."""
+        with suppress(subprocess.TimeoutExpired):
+            self.process.wait(GRACE)
+        self.kill()

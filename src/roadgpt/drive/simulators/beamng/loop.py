@@ -1,0 +1,203 @@
+"""One drive in BeamNG: step, sample, ask the driver, and notice how it ends; crossings are interpolated."""
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
+from roadgpt.drive.seat import Seat
+from roadgpt.drive.simulators.beamng.body import LOCK, Moment, Track, between
+from roadgpt.drive.simulators.beamng.stage import Stage
+from roadgpt.drive.view import View
+from roadgpt.errors import SimulationError
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+GOAL = 8.0  # m from the end of the centre line (SBFT)
+STUCK_TIME = 10.0  # s in which a car must move ... (SBFT)
+STUCK_WAY = 1.0  # m ... this far
+SLOWEST = 2.0  # m/s, mean, before time is out
+SPARE = 30.0  # s, on top
+FALLEN = 1.0  # m below the road's surface
+HALVINGS = 20  # of the time between two samples, to find a crossing
+
+AI = "beamng_ai"
+"""Name of the driver where BeamNG's own AI drives."""
+
+
+class Sample(NamedTuple):
+    """The car at one time, and where on the road that is."""
+
+    car: Moment
+    s: float
+    t: float
+    outside: float
+    steer: float
+    throttle: float
+    brake: float
+
+
+class Recorder:
+    """Drives one road and keeps what happened."""
+
+    def __init__(self, stage: Stage, road: "Road", world: "World", seat: Seat | None) -> None:
+        """``seat`` is None where BeamNG's AI drives."""
+        self.stage, self.road, self.world, self.seat = stage, road, world, seat
+        self.track = Track(road, world, stage.body)
+        self.end = np.asarray(road.at(road.length))[:2].tolist()
+        self.samples: list[Sample] = []
+
+    def drive(self, keep_driving: bool) -> Ended:
+        """Until the drive ends.
+
+        Raises:
+            DriverError: the driver failed.
+            SimulationError: BeamNG's AI does not set off, or the physics broke down.
+        """
+        stage, world = self.stage, self.world
+        self._keep(stage.now, (0.0, 0.0, 0.0))
+        if self.seat is None:
+            stage.let_ai_drive(world.speed_limit)
+        limit = self.road.length / SLOWEST + SPARE
+        tolerance = 2.0 if keep_driving else world.oob_tolerance
+        since = self.samples[0].car
+        while True:
+            here = self.samples[-1]
+            now = here.car
+            if self._is_at_goal(now, here.s):
+                self._cut(lambda sample: self._is_at_goal(sample.car, sample.s))
+                return "goal"
+            if math.hypot(now.x - since.x, now.y - since.y) >= STUCK_WAY:
+                since = now
+            elif now.time - since.time >= STUCK_TIME:
+                self._check_ai()
+                return "stuck"
+            if here.outside > world.oob_tolerance and self._is_first_out():
+                self._cut(lambda sample: sample.outside > world.oob_tolerance, keep=keep_driving)
+            if here.outside > tolerance:
+                return "out_of_lane"
+            if now.z < self.track.place(now.x, now.y)[2] - FALLEN:
+                return "fell"
+            if now.time >= limit:
+                return "timeout"
+            self._go_on(here)
+
+    def _go_on(self, here: Sample) -> None:
+        command = (0.0, 0.0, 0.0)
+        if self.seat is not None:
+            stage = self.stage
+            stage.session.watchdog.due_in(stage.settings.poll_timeout)
+            image = stage.image()
+            stage.session.watchdog.pause()  # the seat has its own clock
+            command = self.seat.ask(self._view(here, image))
+            stage.session.watchdog.due_in(stage.settings.poll_timeout)
+            stage.steer(*command)
+        self._keep(self.stage.step(), command)
+
+    def _view(self, here: Sample, image: FloatArray | None) -> View:
+        now = here.car
+        return View(
+            now.time,
+            now.x,
+            now.y,
+            now.z,
+            now.heading,
+            now.speed,
+            now.yaw_rate,
+            here.s,
+            here.t,
+            self.road,
+            self.world,
+            here.steer,
+            1.0 / self.stage.settings.rate,
+            now.vx,
+            now.vy,
+            image,
+        )
+
+    def _keep(self, now: Moment, command: tuple[float, float, float]) -> None:
+        self.samples.append(self._sample(now, command))
+
+    def _sample(self, now: Moment, command: tuple[float, float, float]) -> Sample:
+        s, t, _ = self.track.place(now.x, now.y)
+        outside = self.track.outside(now, s)
+        gain = self.stage.session.gain
+        steer = now.steer if gain is None else now.steer * gain
+        pedals = (now.throttle, now.brake) if self.seat is None else command[1:]
+        return Sample(now, s, t, outside, steer, pedals[0], pedals[1])
+
+    def _is_at_goal(self, now: Moment, s: float) -> bool:
+        # Where a road ends near its start, only a car that has come round has arrived.
+        return s > self.road.length / 2 and math.hypot(now.x - self.end[0], now.y - self.end[1]) < GOAL
+
+    def _is_first_out(self) -> bool:
+        return not any(sample.outside > self.world.oob_tolerance for sample in self.samples[:-1])
+
+    def _cut(self, has_happened: Callable[[Sample], bool], keep: bool = False) -> None:
+        """Put the moment at which it happened in the place of the last sample, or before it."""
+        if len(self.samples) < 2 or has_happened(self.samples[-2]):
+            return
+        before, after = self.samples[-2:]
+        low, high = 0.0, 1.0
+        found = after
+        for _ in range(HALVINGS):
+            share = (low + high) / 2
+            tried = self._sample(between(before.car, after.car, share), (0.0, after.throttle, after.brake))
+            if has_happened(tried):
+                high, found = share, tried
+            else:
+                low = share
+        if before.car.time < found.car.time < after.car.time:
+            self.samples[-1:] = [found, after] if keep else [found]
+
+    def _check_ai(self) -> None:
+        if self.seat is None and self.samples[-1].s - self.samples[0].s < STUCK_WAY:
+            raise SimulationError(
+                "BeamNG's AI did not set off, as if it saw no road there; run 'roadgpt beamng selftest' "
+                "and see what it says of the AI"
+            )
+
+    def columns(self) -> tuple[Columns, float]:
+        """Everything as a Drive has it, and the lock of the front wheels in radians."""
+        cars = {name: np.array([getattr(each.car, name) for each in self.samples]) for name in Moment._fields}
+        gain = self.stage.session.gain
+        lock = LOCK if gain is None else abs(gain)
+        steer = np.array([each.steer for each in self.samples])
+        if gain is None:  # nobody tried: the way it turned tells what is left
+            turned = float(np.sum(steer * cars["yaw_rate"]))
+            steer = steer * math.copysign(LOCK, turned)
+        ours = {
+            "steer": steer,
+            "ax": _slope(cars["vx"], cars["time"]) - cars["yaw_rate"] * cars["vy"],
+            "ay": _slope(cars["vy"], cars["time"]) + cars["yaw_rate"] * cars["vx"],
+            "s": np.array([each.s for each in self.samples]),
+            "t": np.array([each.t for each in self.samples]),
+            "outside": np.array([each.outside for each in self.samples]),
+            "throttle": np.array([each.throttle for each in self.samples]),
+            "brake": np.array([each.brake for each in self.samples]),
+        }
+        return Columns({name: ours.get(name, cars.get(name)) for name in COLUMNS}), lock  # type: ignore[misc]
+
+
+def record(
+    stage: Stage, road: "Road", world: "World", seat: Seat | None, seed: int, keep_driving: bool
+) -> Drive:
+    """One driver on the road that is laid.
+
+    Raises:
+        DriverError, SimulationError: as for a Recorder.
+    """
+    with stage.session.within(stage.settings.poll_timeout, "it was driving"):
+        recorder = Recorder(stage, road, world, seat)
+        stage.session.watchdog.due_in(stage.settings.poll_timeout)
+        ended = recorder.drive(keep_driving)
+    columns, lock = recorder.columns()
+    name = AI if seat is None else seat.name
+    return Drive(name, "beamng", seed, columns, ended, stage.body.box(lock))
+
+
+def _slope(values: FloatArray, time: FloatArray) -> FloatArray:
+    return np.gradient(values, time) if len(values) > 1 else np.zeros_like(values)

@@ -1,0 +1,268 @@
+"""A road and a car in a running BeamNG: laid, loaded, settled; then stepped and asked."""
+
+import os
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roadgpt.drive.drive import FloatArray
+from roadgpt.drive.simulators.beamng.body import Body, Moment, moment_of
+from roadgpt.drive.simulators.beamng.session import Session, client
+from roadgpt.drive.view import Camera
+from roadgpt.errors import RoadGPTError, SimulationError
+from roadgpt.export.exporters.beamng.files import ABOVE_GROUND, rotation
+from roadgpt.export.exporters.beamng.scene import GOAL, Materials, Strip, scene_of
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+# Of the competition's level, and of the stock levels' shared art.
+TIG = Materials("tig_road_rubber_sticky", "tig_grass", "tig_road_rubber_sticky", "line_white", "line_yellow")
+STOCK = Materials(
+    "track_editor_C_center", "track_editor_C_border", "road_rubber_sticky", "line_white", "line_yellow"
+)
+CALM = 0.05  # m/s under which the car stands
+SETTLING = 3.0  # s, at most, until it does
+DROP = 0.02  # m above the ground at which a car of known height is put down
+DECIMALS = 4
+TRIAL, TRIAL_TIME = 0.4, 4.0  # steering input, and s at most, of the trial of the steering
+TRIAL_SPEED = 1.0, 4.0  # m/s between which it counts
+STRAIGHT = 0.003  # 1/m; a trial that bends less was no turn
+WHEELBASE = 0.6  # of the length, as saloons have it
+LOCKS = 0.3, 1.0  # rad that front wheels turn
+REFRESH = "if map and map.reset then map.reset() end"
+"""Lua: have the AI's map read again, since the road came after the level."""
+
+
+class Stage:
+    """One road in BeamNG. Use it as ``with Stage(...) as stage``: what was laid is cleared away again."""
+
+    def __init__(self, session: Session, road: "Road", world: "World", seed: int) -> None:
+        """Lay the road and put the car on its start.
+
+        Raises:
+            Exception: whatever the client raises; the session is of no use then.
+        """
+        self.session, self.bng = session, session.bng
+        self.settings = session.settings
+        # A road on the floor of the world lies on the level's ground.
+        self.lift = session.ground - world.z_floor
+        session.laid += 1
+        self.prefix = f"roadgpt_{os.getpid()}_{session.laid}_"
+        materials = TIG if session.level == "tig" else STOCK
+        self.scene = scene_of(road, world, seed, materials, self.lift, self.prefix)
+        self.goal = self.prefix + GOAL
+        self.camera: Any = None
+        self.now: Moment
+        self._begun = 0.0
+        self._load()
+        self._settle()
+
+    def _load(self) -> None:
+        package, scene = client(), self.scene
+        scenario = package.Scenario(self.session.level, f"{self.prefix}road_scene")
+        for strip in scene.strips:
+            if strip.is_mesh:
+                scenario.add_mesh_road(_mesh_road(package, strip))
+            else:
+                scenario.add_road(_decal_road(package, strip))
+        scenario.add_checkpoints([_triple(scene.goal)], [(4.0, 4.0, 4.0)], [self.goal])
+        self.vehicle = package.Vehicle("ego", self.settings.model)
+        self.vehicle.sensors.attach("electrics", package.sensors.Electrics())
+        self.session.vehicle = self.vehicle
+        place, turn = self._start()
+        # Never put down by BeamNG itself: it takes the level's ground for the place to stand on.
+        scenario.add_vehicle(self.vehicle, place, turn, False)
+        with self.session.within(self.settings.load_timeout, "it was loading a road"):
+            scenario.make(self.bng)
+            self.scenario = scenario
+            self.bng.control.pause()  # loading keeps physics as it is
+            self.bng.scenario.load(scenario)
+            self.bng.scenario.start()
+            self.bng.control.pause()
+            self.bng.control.queue_lua_command(REFRESH)
+
+    def _start(self) -> tuple[tuple[float, float, float], tuple[float, float, float, float]]:
+        """Where the reference node goes, and how the car is turned."""
+        scene, body = self.scene, self.session.body
+        turn = rotation(scene.heading, scene.grade)
+        if body is None:
+            place = scene.start + [0.0, 0.0, ABOVE_GROUND]
+        else:
+            ahead, left, up = body.node
+            left_row, back_row, up_row = turn
+            place = scene.start - ahead * back_row + left * left_row + (up + body.height + DROP) * up_row
+        return _triple(place), _quaternion(turn)
+
+    def _settle(self) -> None:
+        """Let the car come to rest; the first one is measured, and put where it should be."""
+        with self.session.within(self.settings.poll_timeout, "the car was put down"):
+            self._rest()
+            if self.session.body is None:
+                self._measure()
+                self.vehicle.teleport(*self._start(), True)
+                self._rest()
+            self._begun = self._clock()
+            self.now = self._sample(None, 0.0)
+
+    def _rest(self) -> None:
+        self.vehicle.control(steering=0.0, throttle=0.0, brake=0.0, parkingbrake=1.0)
+        every = max(1, self.settings.rate // 5)
+        for _ in range(int(SETTLING * self.settings.rate / every)):
+            self.session.watchdog.due_in(self.settings.poll_timeout)
+            self.bng.control.step(every)
+            self.vehicle.sensors.poll("state")
+            if np.linalg.norm(self.vehicle.state["vel"]) < CALM:
+                break
+
+    def _measure(self) -> None:
+        state = self.vehicle.state
+        gravity = self.vehicle.get_center_of_gravity()
+        self.session.body = Body.measured(state, gravity, self.vehicle.get_bbox(), self.scene.start)
+
+    @property
+    def body(self) -> Body:
+        """The car's."""
+        assert self.session.body is not None
+        return self.session.body
+
+    def _clock(self) -> float:
+        return float(self.vehicle.state.get("time", 0.0))
+
+    def _sample(self, since: Moment | None, least: float) -> Moment:
+        """Ask where the car is; its clock counts, but never stands still."""
+        self.vehicle.sensors.poll("state", "electrics")
+        time = max(self._clock() - self._begun, least)
+        return moment_of(
+            self.vehicle.state, self.vehicle.sensors["electrics"], self.body, self.lift, since, time
+        )
+
+    def step(self) -> Moment:
+        """One step of physics; the sample after it."""
+        self.session.watchdog.due_in(self.settings.poll_timeout)
+        self.bng.control.step(1)
+        # A state without time, or a clock that counts otherwise, leaves us the steps.
+        self.now = self._sample(self.now, self.now.time + 0.5 / self.settings.rate)
+        return self.now
+
+    def steer(self, angle: float, throttle: float, brake: float) -> None:
+        """Pass on a driver's command; ``angle`` in radians at the front wheels, left positive."""
+        gain = self.session.gain or -1.0
+        stands = self.now.vx < 0.5 and brake > 0 and throttle == 0
+        self.vehicle.control(
+            steering=min(max(angle / gain, -1.0), 1.0),
+            throttle=throttle,
+            brake=0.0 if stands else brake,  # a standing car's brake is the reverse gear in arcade mode
+            parkingbrake=1.0 if stands else 0.0,
+        )
+
+    def let_ai_drive(self, limit: float) -> None:
+        """BeamNG's own AI takes the wheel, bound for the goal."""
+        self.vehicle.control(parkingbrake=0.0)
+        ai = self.vehicle.ai
+        ai.set_waypoint(self.goal)
+        ai.set_aggression(self.settings.aggression)
+        ai.set_speed(limit, "limit")
+        ai.drive_in_lane(True)
+
+    def measure_steering(self) -> None:
+        """Find out to which side, and how far, a steering input turns the wheels; then go back to the start.
+
+        No document says it, and it is another for every car.
+        """
+        if self.session.gain is not None:
+            return
+        found: list[float] = []
+        with self.session.within(self.settings.poll_timeout, "the steering was measured"):
+            self.vehicle.control(steering=TRIAL, throttle=0.4, brake=0.0, parkingbrake=0.0)
+            for _ in range(int(TRIAL_TIME * self.settings.rate)):
+                now = self.step()
+                if now.vx > TRIAL_SPEED[0]:
+                    found.append(now.yaw_rate / now.vx)
+                if now.vx > TRIAL_SPEED[1]:
+                    break
+            self.vehicle.teleport(*self._start(), True)
+            self._rest()
+            self._begun = self._clock()
+            self.now = self._sample(None, 0.0)
+        bend = float(np.median(found[len(found) // 2 :])) if found else 0.0
+        if abs(bend) < STRAIGHT:
+            raise SimulationError("BeamNG's car does not answer to the steering; check ROADGPT_BEAMNG_MODEL")
+        wheelbase = WHEELBASE * (self.body.front - self.body.rear)
+        lock = np.arctan(wheelbase * abs(bend)) / TRIAL
+        self.session.gain = float(np.copysign(np.clip(lock, *LOCKS), bend))
+
+    def open_camera(self, camera: Camera) -> None:
+        """Put the driver's camera onto the car."""
+        body = self.body
+        # The camera is placed from the reference node; BeamNG's cars look along -y, their left is +x.
+        place = (-body.node[1], -(camera.ahead - body.node[0]), camera.up - body.height - body.node[2])
+        with self.session.within(self.settings.poll_timeout, "the camera was opened"):
+            self.camera = client().sensors.Camera(
+                f"{self.prefix}eye",
+                self.bng,
+                self.vehicle,
+                requested_update_time=1.0 / self.settings.rate,
+                pos=place,
+                dir=(0, -1, float(-np.tan(camera.down))),
+                resolution=(camera.width, camera.height),
+                field_of_view_y=float(np.degrees(camera.field_of_view)),
+                is_using_shared_memory=False,
+                is_render_annotations=False,
+                is_render_depth=False,
+            )
+
+    def image(self) -> FloatArray | None:
+        """What the camera sees, shape (height, width, 3), uint8; None where there is no camera.
+
+        Raises:
+            SimulationError: BeamNG draws nothing.
+        """
+        if self.camera is None:
+            return None
+        seen = self.camera.poll().get("colour")
+        if seen is None:
+            raise SimulationError("BeamNG's camera sees nothing; leave out --nogpu")
+        return np.asarray(seen)[..., :3]
+
+    def __enter__(self) -> "Stage":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        """Clear away; where something failed, as far as that goes."""
+        session = self.session
+        if kind is not None and not issubclass(kind, RoadGPTError):
+            return  # the session is dropped as a whole
+        with session.within(self.settings.load_timeout, "a road was cleared away"), suppress(Exception):
+            if self.camera is not None:
+                self.camera.remove()
+            self.bng.scenario.stop()
+            self.scenario.delete(self.bng)
+        session.vehicle = None
+        if session.watchdog.has_bitten:
+            session.drop()
+
+
+def _mesh_road(package: Any, strip: Strip) -> Any:
+    road = package.MeshRoad(strip.material, rid=strip.name)
+    road.add_nodes(*(tuple(node) for node in strip.nodes.round(DECIMALS).tolist()))
+    return road
+
+
+def _decal_road(package: Any, strip: Strip) -> Any:
+    road = package.Road(strip.material, rid=strip.name, drivability=strip.drivability)
+    road.add_nodes(*(tuple(node) for node in strip.nodes.round(DECIMALS).tolist()))
+    return road
+
+
+def _triple(point: FloatArray) -> tuple[float, float, float]:
+    x, y, z = (round(float(value), DECIMALS) for value in point)
+    return x, y, z
+
+
+def _quaternion(matrix: FloatArray) -> tuple[float, float, float, float]:
+    from scipy.spatial.transform import Rotation
+
+    x, y, z, w = Rotation.from_matrix(matrix).as_quat().tolist()
+    return x, y, z, w

@@ -1,0 +1,60 @@
+"""The first words with whatever listens on a port: is it BeamNG, and of which version?
+
+A message is its length, four bytes big-endian, and one MessagePack map; the first is Hello.
+"""
+
+import socket
+import struct
+from importlib import import_module
+from typing import Any
+
+from roadgpt.errors import SimulationError
+
+MOST = 1 << 20  # bytes of an answer to Hello; who sends more is no BeamNG
+
+
+def is_taken(host: str, port: int) -> bool:
+    """Does anybody listen there?"""
+    try:
+        with socket.create_connection((host, port), timeout=1.0):
+            return True
+    except OSError:
+        return False
+
+
+def protocol_at(host: str, port: int, protocol: str, patience: float) -> str:
+    """The protocol version that BeamNG answers with.
+
+    Raises:
+        OSError: nobody listens there, or no answer came in time.
+        SimulationError: somebody listens who is no BeamNG.
+    """
+    msgpack: Any = import_module("msgpack")
+
+    hello = msgpack.packb({"type": "Hello", "protocolVersion": protocol, "_id": 0}, use_bin_type=True)
+    with socket.create_connection((host, port), timeout=patience) as link:
+        link.sendall(struct.pack("!I", len(hello)) + hello)
+        try:
+            (length,) = struct.unpack("!I", _exactly(link, 4))
+            answer: Any = msgpack.unpackb(_exactly(link, length), raw=False) if length <= MOST else None
+        except (ValueError, EOFError) as error:
+            raise _stranger(host, port) from error
+    if not isinstance(answer, dict) or "protocolVersion" not in answer:
+        raise _stranger(host, port)
+    return str(answer["protocolVersion"])
+
+
+def _exactly(link: socket.socket, length: int) -> bytes:
+    parts = b""
+    while len(parts) < length:
+        part = link.recv(length - len(parts))
+        if not part:
+            raise EOFError
+        parts += part
+    return parts
+
+
+def _stranger(host: str, port: int) -> SimulationError:
+    return SimulationError(
+        f"what listens on {host}:{port} does not speak as BeamNG.tech does; name another --beamng-port"
+    )

@@ -1,0 +1,71 @@
+"""BeamNG: a level folder with mesh road, decal roads, materials, start and a scenario.
+
+    NAME-beamng/levels/LEVEL/info.json
+                             main.materials.json
+                             main/items.level.json, main/MissionGroup/...
+                             scenarios/drive/drive.json, drive.prefab.json
+
+Put ``NAME-beamng`` into ``mods/unpacked`` of BeamNG's user folder, or what is in its ``levels`` into
+``levels`` there.
+"""
+
+import json
+import re
+from pathlib import Path
+
+from roadgpt.export.exporters.beamng import files
+from roadgpt.export.exporters.beamng.scene import scene_of
+from roadgpt.export.poses import Poses
+from roadgpt.road import Road, World
+
+MODEL = "etk800"  # RoadGPT's and the competition's car
+SEED = 0  # of the offsets against flicker
+
+
+class BeamNG:
+    """BeamNG level folder: mesh road, drivable decal road, markings, materials, start, goal, scenario."""
+
+    name = "beamng"
+    suffix = "-beamng"
+
+    def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
+        """Write the folder; a drive is not part of it."""
+        title = path.name.removesuffix(self.suffix)
+        write_level(road, path / "levels", level_name(title), world, title)
+
+
+def level_name(title: str) -> str:
+    """What BeamNG takes for the name of a level: small letters, digits and underscores."""
+    plain = re.sub(r"[^a-z0-9]+", "_", title.lower()).strip("_")
+    return f"roadgpt_{plain or 'road'}"
+
+
+def write_level(
+    road: Road, levels: Path, name: str, world: World, title: str = "", seed: int = SEED, model: str = MODEL
+) -> Path:
+    """Write a level into a folder of levels; gives back the level's own folder.
+
+    Raises:
+        ExportError: the road has a number that is not finite.
+        OSError: the folder cannot be written.
+    """
+    scene = scene_of(road, world, seed)
+    title = title or name
+    about, group = files.scenario(name, title)
+    written = {
+        "info.json": _json(files.info(name, title, world)),
+        "main.materials.json": _json(files.materials(world)),
+        "scenarios/drive/drive.json": _json([about]),
+        "scenarios/drive/drive.prefab.json": files.one_per_line([files.car(name, scene, model), *group]),
+    }
+    for folder, objects in files.items(name, scene, world).items():
+        written[f"main/{folder}/items.level.json"] = files.one_per_line(objects)
+    for place, text in written.items():
+        target = levels / name / place
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text, encoding="utf-8", newline="\n")
+    return levels / name
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, indent=1) + "\n"

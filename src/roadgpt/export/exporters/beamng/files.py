@@ -1,0 +1,217 @@
+"""The files of a level: one JSON object per line in ``items.level.json``, materials, ``info.json``, scenario.
+
+Source: BeamNG documentation, "Level format"; levels as the SBFT competition and BeamNGpy write them. No tool
+outside the game checks such files: ``roadgpt beamng selftest`` loads one in the game.
+"""
+
+import json
+import uuid
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from roadgpt.export.exporters.beamng.scene import GOAL, OWN, Scene, Strip
+from roadgpt.geometry.curve import Array
+from roadgpt.road import World
+
+Item = dict[str, Any]
+
+NAMESPACE = uuid.UUID("6f1d2c0e-5b0a-5c39-9d3e-0f3a52b1c7aa")  # any fixed one: ids must not change by the day
+ABOVE_GROUND = 0.5  # m above the road at which a car is put down
+# From what friction on a surface is taken for this ground model of BeamNG.
+GROUNDS = ((0.8, "ASPHALT"), (0.45, "ASPHALT_WET"), (0.25, "SNOW"), (0.0, "ICE"))
+DECIMALS = 4
+
+
+def ground_model(friction: float) -> str:
+    """Of BeamNG, that comes nearest to a friction."""
+    return next(name for least, name in GROUNDS if friction >= least)
+
+
+def items(name: str, scene: Scene, world: World) -> Mapping[str, Sequence[Item]]:
+    """What each ``items.level.json`` holds, by its folder below ``main``."""
+    groups = ("sky_and_ground", "roads", "player")
+    return {
+        "": [_object(name, "MissionGroup", "SimGroup", "", enabled="1")],
+        "MissionGroup": [_object(name, group, "SimGroup", "MissionGroup") for group in groups],
+        "MissionGroup/sky_and_ground": _surroundings(name, world),
+        "MissionGroup/roads": [_strip(name, strip, priority) for priority, strip in enumerate(scene.strips)],
+        "MissionGroup/player": list(_player(name, scene)),
+    }
+
+
+def _object(level: str, name: str, kind: str, parent: str, **fields: Any) -> Item:
+    given = {"name": name, "class": kind, "persistentId": str(uuid.uuid5(NAMESPACE, f"{level}/{name}"))}
+    return {**given, **({"__parent": parent} if parent else {}), **fields}
+
+
+def _surroundings(level: str, world: World) -> list[Item]:
+    group = "sky_and_ground"
+    half = world.map_size / 2
+    ground = [half, half, world.z_floor - 0.05]  # just below a road that lies on the floor
+    return [
+        _object(level, "level_info", "LevelInfo", group, gravity=-9.81, visibleDistance=4000, nearClip=0.1),
+        _object(level, "tod", "TimeOfDay", group, time=0.1, startTime=0.1, play=False),
+        _object(level, "sky", "ScatterSky", group, skyBrightness=40, shadowDistance=1000),
+        _object(
+            level, "ground", "GroundPlane", group, position=ground, material="roadgpt_grass", squareSize=128
+        ),
+    ]
+
+
+def _strip(level: str, strip: Strip, priority: int) -> Item:
+    nodes = _rows(strip.nodes)
+    place = nodes[0][:3]
+    if strip.is_mesh:
+        return _object(
+            level,
+            strip.name,
+            "MeshRoad",
+            "roads",
+            position=place,
+            topMaterial=strip.material,
+            bottomMaterial=strip.material,
+            sideMaterial=strip.material,
+            textureLength=5,
+            breakAngle=3,
+            widthSubdivisions=0,
+            nodes=[[*node, 0, 0, 1] for node in nodes],
+        )
+    return _object(
+        level,
+        strip.name,
+        "DecalRoad",
+        "roads",
+        position=place,
+        material=strip.material,
+        drivability=strip.drivability,
+        improvedSpline=True,
+        overObjects=True,
+        breakAngle=3,
+        detail=0.1,
+        distanceFade=[1000, 1000],
+        renderPriority=priority,
+        textureLength=5,
+        zBias=0,
+        nodes=nodes,
+    )
+
+
+def _player(level: str, scene: Scene) -> Iterator[Item]:
+    start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
+    matrix = rotation(scene.heading, scene.grade).ravel().round(9).tolist()
+    yield _object(
+        level,
+        "spawn",
+        "SpawnSphere",
+        "player",
+        position=start,
+        rotationMatrix=matrix,
+        radius=1,
+        sphereWeight=1,
+    )
+    goal = scene.goal.round(DECIMALS).tolist()
+    yield _object(level, GOAL, "BeamNGWaypoint", "player", position=goal, scale=[4, 4, 4], drawDebug="0")
+
+
+def rotation(heading: float, grade: float) -> Array:
+    """Rotation matrix (3, 3), row-major as level files and prefabs have it, of a car that looks this way.
+
+    Its rows are where the car's left, its back and its roof point: at rest, BeamNG's cars look along -y.
+    """
+    size = np.hypot(1.0, grade)
+    ahead = np.array([np.cos(heading), np.sin(heading), grade]) / size
+    left = np.array([-np.sin(heading), np.cos(heading), 0.0])
+    return np.array([left, -ahead, np.cross(ahead, left)])
+
+
+def materials(world: World) -> Item:
+    """``main.materials.json``: plain colours, with the ground models that tyres feel."""
+    ground = ground_model(world.friction)
+    wanted = (
+        (OWN.road, (0.16, 0.16, 0.17), ground),
+        (OWN.surface, (0.16, 0.16, 0.17), ground),
+        (OWN.verge, (0.24, 0.29, 0.15), "GRASS"),
+        ("roadgpt_grass", (0.15, 0.30, 0.10), "GRASS"),
+        (OWN.edge, (0.90, 0.90, 0.88), ground),
+        (OWN.middle, (0.85, 0.65, 0.10), ground),
+    )
+    return {name: _material(name, colour, model) for name, colour, model in wanted}
+
+
+def _material(name: str, colour: tuple[float, float, float], model: str) -> Item:
+    stage = {"baseColorFactor": [*colour, 1], "roughnessFactor": 0.9, "metallicFactor": 0}
+    is_decal = name in (OWN.surface, OWN.edge, OWN.middle)
+    return {
+        "name": name,
+        "mapTo": name,
+        "class": "Material",
+        "persistentId": str(uuid.uuid5(NAMESPACE, f"material/{name}")),
+        "Stages": [stage, {}, {}, {}],
+        "groundType": model,
+        "materialTag0": "RoadAndPath",
+        "translucent": is_decal,
+        "translucentZWrite": is_decal,
+        "version": 1.5,
+    }
+
+
+def info(name: str, title: str, world: World) -> Item:
+    """``info.json`` of the level."""
+    side = int(np.ceil(world.map_size))
+    return {
+        "title": title,
+        "description": "A road to be driven, as RoadGPT made it.",
+        "authors": "RoadGPT",
+        "size": [side, side],
+        "biome": "Grass",
+        "previews": [],
+        "defaultSpawnPointName": "spawn",
+        "spawnPoints": [{"objectname": "spawn", "translationId": title, "previews": []}],
+        "isAuxiliary": False,
+        "levelName": name,
+    }
+
+
+def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
+    """A scenario: drive from the start to the goal; and its prefab with the car."""
+    path = f"levels/{name}/scenarios/drive/drive.prefab.json"
+    about = {
+        "name": title,
+        "description": "Keep to the right lane until the end of the road.",
+        "difficulty": 0,
+        "authors": "RoadGPT",
+        "lapConfig": [GOAL],
+        "forceNoCountDown": True,
+        "vehicles": {"ego": {"playerUsable": True, "startFocus": True}},
+        "prefabs": [path],
+    }
+    return about, [_object(name, "drive_group", "SimGroup", "")]
+
+
+def car(name: str, scene: Scene, model: str) -> Item:
+    """The car on its start, as a prefab holds it."""
+    start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
+    return _object(
+        name,
+        "ego",
+        "BeamNGVehicle",
+        "drive_group",
+        position=start,
+        rotationMatrix=rotation(scene.heading, scene.grade).ravel().round(9).tolist(),
+        dataBlock="default_vehicle",
+        jBeam=model,
+        autoEnterVehicle="false",
+        spawnAutoplace="false",
+    )
+
+
+def one_per_line(objects: Sequence[Item]) -> str:
+    """As ``items.level.json`` and prefabs hold objects."""
+    return "".join(json.dumps(each) + "\n" for each in objects)
+
+
+def _rows(nodes: Array) -> list[list[float]]:
+    rows: list[list[float]] = (np.round(nodes, DECIMALS) + 0.0).tolist()
+    return rows

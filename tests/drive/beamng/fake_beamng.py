@@ -1,0 +1,468 @@
+# ruff: noqa: N802 - methods are named for the messages that they answer
+"""A fake BeamNG.tech: speaks its protocol, refuses what it refuses, drives a car, and fails on demand.
+
+    with FakeBeamNG() as fake: BeamNGpy("127.0.0.1", fake.port).open(launch=False)
+    fake_home(folder, faults=[...])         a folder that can be given as home=: its binary is this file
+
+Wire: a big-endian uint32 length, then one MessagePack map; ``_id`` comes back; the first message of every
+socket is Hello; every vehicle has its own server. As Lua does, numbers go out as floats (``_id`` as well),
+an empty map goes out as an empty list, and what is nil is missing.
+"""
+
+import argparse
+import json
+import os
+import socket
+import struct
+import sys
+import threading
+import time
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import msgpack
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).parent))
+    from fake_car import RefusedError, World, objects_of
+else:
+    from drive.beamng.fake_car import RefusedError, World, objects_of
+
+LEVELS = {"tech_ground": 0.0, "smallgrid": 0.0}  # and the heights of their ground
+VEHICLES = ("etk800", "pickup")
+VERSIONS = {"v1.24": "0.37", "v1.26": "0.38", "v1.27": "0.39"}
+
+
+@dataclass
+class Fault:
+    """Something that goes wrong once: at the nth message of a type within the nth scenario."""
+
+    kind: str
+    """hang, drop, die, error, value_error, wrong_ack, garbage or half."""
+    on: str = "SensorRequest"
+    scenario: int = 1
+    nth: int = 1
+
+
+@dataclass
+class Settings:
+    """How this fake is set up."""
+
+    protocol: str = "v1.27"
+    faults: tuple = ()
+    slow_start: float = 0.0
+    levels: tuple = tuple(LEVELS)
+    steer_sign: float = -1.0
+    is_blind: bool = False
+    """The AI does not see roads of prefabs."""
+    tech: bool = True
+    state: str = ""
+    """A file that survives restarts: scenarios so far, and faults that have been."""
+
+
+class FakeBeamNG:
+    """The server. ``transcript`` lists (vehicle or "", type) of all messages, ``unknown`` those not known."""
+
+    def __init__(self, port=0, user="", **settings):
+        self.settings = Settings(**settings)
+        self.lock = threading.RLock()
+        self.transcript, self.unknown, self.stepped = [], [], []
+        self.scenarios, self.world, self.loaded, self.cameras = {}, None, None, {}
+        self.is_running = self.is_paused = False
+        self.fps, self.counts, self.quit = None, {}, threading.Event()
+        self.made, self.fired = 0, []
+        self.user = user
+        self._sockets, self._vehicles = [], {}
+        self._remember(read=True)
+        self.port = self._serve("", port)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
+
+    def stop(self):
+        self.quit.set()
+        for each in list(self._sockets):
+            with suppress(OSError):
+                each.shutdown(socket.SHUT_RDWR)
+            each.close()
+
+    # --- sockets -----------------------------------------------------------------------------------------
+
+    def _serve(self, vehicle, port=0):
+        server = socket.socket()
+        server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        server.bind(("127.0.0.1", port))
+        server.listen()
+        self._sockets.append(server)
+        threading.Thread(target=self._accept, args=(server, vehicle), daemon=True).start()
+        return server.getsockname()[1]
+
+    def _accept(self, server, vehicle):
+        while not self.quit.is_set():
+            try:
+                client, _ = server.accept()
+            except OSError:
+                return
+            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            self._sockets.append(client)
+            threading.Thread(target=self._talk, args=(client, vehicle), daemon=True).start()
+
+    def _talk(self, client, vehicle):
+        has_greeted = False
+        with suppress(OSError, EOFError):
+            while True:
+                (length,) = struct.unpack("!I", _exactly(client, 4))
+                message = msgpack.unpackb(_exactly(client, length), raw=False, strict_map_key=False)
+                kind, number = message.pop("type"), message.pop("_id")
+                if not has_greeted and kind != "Hello":
+                    break  # who does not greet is not talked to
+                has_greeted = True
+                reply = self._answer(vehicle, kind, message, client)
+                if reply is not None:
+                    _send(client, {**reply, "_id": number})
+        with suppress(OSError):
+            client.close()
+
+    def _answer(self, vehicle, kind, message, client):
+        with self.lock:
+            self.transcript.append((vehicle, kind))
+            fault = self._fault(kind)
+        if fault is not None:
+            spoilt = self._fail(fault, kind, client)
+            if spoilt is not None:
+                return spoilt
+        with self.lock:
+            handler = getattr(self, f"{'veh' if vehicle else 'ge'}_{kind}", None)
+            if kind == "Hello":
+                return {"type": "Hello", "protocolVersion": self.settings.protocol}
+            if handler is None:
+                self.unknown.append((vehicle, kind))
+                return {"bngValueError": f"the fake knows no message {kind}"}
+            try:
+                return handler(self._car(vehicle), message) if vehicle else handler(message)
+            except RefusedError as error:
+                return {"bngError": str(error)}
+
+    # --- faults ------------------------------------------------------------------------------------------
+
+    def _fault(self, kind):
+        key = (self.made, kind)
+        self.counts[key] = self.counts.get(key, 0) + 1
+        for index, fault in enumerate(self.settings.faults):
+            if index in self.fired or (fault.scenario, fault.on) != key:
+                continue
+            if self.counts[key] >= fault.nth:
+                self.fired.append(index)
+                self._remember()
+                return fault
+        return None
+
+    def _fail(self, fault, kind, client):
+        if fault.kind == "hang":
+            self.quit.wait(3600)
+            raise EOFError
+        if fault.kind == "die":
+            if self.settings.state:
+                os._exit(1)
+            self.stop()
+            raise EOFError
+        if fault.kind == "drop":
+            client.shutdown(socket.SHUT_RDWR)
+            raise EOFError
+        if fault.kind == "half":
+            client.sendall(struct.pack("!I", 100) + b"only this")
+            client.shutdown(socket.SHUT_RDWR)
+            raise EOFError
+        if fault.kind == "garbage":
+            client.sendall(struct.pack("!I", 4) + b"\xc1\xc1\xc1\xc1")
+            raise EOFError
+        return {
+            "error": {"bngError": f"a Lua error in {kind}"},
+            "value_error": {"bngValueError": f"a wrong value in {kind}"},
+            "wrong_ack": {"type": "SomethingElse"},
+        }[fault.kind]
+
+    def _remember(self, read=False):
+        """Keep, or take up, what must survive a restart of this process."""
+        path = Path(self.settings.state) if self.settings.state else None
+        if path is None:
+            return
+        if read and path.exists():
+            kept = json.loads(path.read_text())
+            self.made, self.fired = kept["made"], kept["fired"]
+        elif not read:
+            path.write_text(json.dumps({"made": self.made, "fired": self.fired}))
+
+    # --- the game engine ---------------------------------------------------------------------------------
+
+    def ge_GetSystemInfo(self, message):
+        return {"type": "SystemInfo", "os": {"type": "Linux"}, "tech": self.settings.tech}
+
+    def ge_GetEnvironmentPaths(self, message):
+        version = VERSIONS.get(self.settings.protocol, "current")
+        return {"type": "Paths", "home": "/fake", "user": f"{self.user or '/fake/user'}/{version}"}
+
+    def ge_GetLevels(self, message):
+        return {"type": "GetLevels", "result": [self._level(name) for name in self.settings.levels]}
+
+    def _level(self, name):
+        return {"levelName": name, "title": name, "dir": f"/levels/{name}", "size": [256, 256]}
+
+    def ge_CreateScenario(self, message):
+        self.made += 1
+        self._remember()
+        level, name = message["level"], message["name"]
+        if level not in self.settings.levels:
+            raise RefusedError(f"level {level} not found")
+        if not name or "/" in name or " " in name:
+            raise RefusedError(f"'{name}' is no name of a scenario")
+        path = f"/levels/{level}/scenarios/{name}/{name}.json"
+        self.scenarios[path] = (level, objects_of(message["prefab"]), message["info"])
+        return {"type": "CreateScenario", "result": path}
+
+    def ge_DeleteScenario(self, message):
+        self.scenarios.pop(message["path"], None)
+        return {"type": "DeleteScenario"}
+
+    def ge_LoadScenario(self, message):
+        if message["path"] not in self.scenarios:
+            raise RefusedError(f"scenario {message['path']} not found")
+        level, objects, _ = self.scenarios[message["path"]]
+        for each in objects:
+            if each["class"] == "BeamNGVehicle" and each["jBeam"] not in VEHICLES:
+                raise RefusedError(f"vehicle {each['jBeam']} not found")
+        self.world = World(
+            objects, LEVELS.get(level, -28.0), self.settings.steer_sign, self.settings.is_blind
+        )
+        self.loaded, self.is_running = message["path"], False
+        return {"type": "MapLoaded"}
+
+    def ge_GetCurrentVehicles(self, message):
+        if self.world is None:
+            return {"type": "GetCurrentVehicles", "result": {}}
+        found = {
+            name: {"id": i, "name": name, "model": car.spec["jBeam"]}
+            for i, (name, car) in enumerate(self.world.cars.items(), 1)
+        }
+        return {"type": "GetCurrentVehicles", "result": found}
+
+    def ge_GetPlayerVehicleID(self, message):
+        if self.world is None or not self.world.cars:
+            raise RefusedError("no player vehicle")
+        return {"type": "getPlayerVehicleID", "id": 1, "vid": next(iter(self.world.cars))}
+
+    def ge_StartVehicleConnection(self, message):
+        vid = message["vid"]
+        self._car(vid)
+        if vid not in self._vehicles:
+            self._vehicles[vid] = self._serve(vid)
+        return {"type": "StartVehicleConnection", "vid": vid, "result": self._vehicles[vid]}
+
+    def ge_StartScenario(self, message):
+        if self.loaded is None:
+            raise RefusedError("no scenario is loaded")
+        self.is_running = True
+        return {"type": "ScenarioStarted"}
+
+    def ge_StopScenario(self, message):
+        self.world = self.loaded = None
+        self.is_running = False
+        return {"type": "ScenarioStopped"}
+
+    def ge_GameStateRequest(self, message):
+        if self.loaded is None:
+            return {"type": "GameState", "state": "menu"}
+        state = "running" if self.is_running else "pre-running"
+        return {"type": "GameState", "state": "scenario", "scenario_state": state}
+
+    def ge_Pause(self, message):
+        self.is_paused = True
+        return {"type": "Paused"}
+
+    def ge_Resume(self, message):
+        self.is_paused = False
+        return {"type": "Resumed"}
+
+    def ge_Step(self, message):
+        if self.world is not None and self.is_running:
+            self.world.step(message["count"] / (self.fps or 60.0))
+            self.stepped.append(message["count"])
+        return {"type": "Stepped"} if message["ack"] else None
+
+    def ge_SetPhysicsDeterministic(self, message):
+        return {"type": "SetPhysicsDeterministic"}
+
+    def ge_SetPhysicsNonDeterministic(self, message):
+        return {"type": "SetPhysicsNonDeterministic"}
+
+    def ge_FPSLimit(self, message):
+        self.fps = float(message["fps"])
+        return {"type": "SetFPSLimit"}
+
+    def ge_QueueLuaCommandGE(self, message):
+        return {"type": "ExecutedLuaChunkGE"}
+
+    def ge_HideHUD(self, message):
+        return None
+
+    def ge_GetBBoxCorners(self, message):
+        return {"type": "BBoxCorners", "points": self._car(message["vid"]).corners()}
+
+    def ge_Teleport(self, message):
+        x, y, z, w = message["rot"]
+        ahead = (
+            -2 * (x * y + z * w),
+            -(1 - 2 * (x * x + z * z)),
+            -2 * (y * z - x * w),
+        )
+        self._car(message["vehicle"]).put(message["pos"], ahead)
+        return {"type": "Teleported", "success": True}
+
+    def ge_GetRoadNetwork(self, message):
+        roads = {} if self.world is None else self.world.decals
+        data = {name: {"drivability": road["drivability"]} for name, road in roads.items()}
+        return {"type": "RoadNetwork", "data": data}
+
+    def ge_OpenCamera(self, message):
+        self._car(message["vid"])
+        self.cameras[message["name"]] = message
+        return {"type": "OpenedCamera"}
+
+    def ge_CloseCamera(self, message):
+        self.cameras.pop(message["name"], None)
+        return {"type": "ClosedCamera"}
+
+    def ge_PollCamera(self, message):
+        if message["name"] not in self.cameras:
+            raise RefusedError(f"no camera {message['name']}")
+        width, height = (int(side) for side in self.cameras[message["name"]]["size"])
+        shade = int(self.world.time * 50) % 256
+        return {"type": "PollCamera", "data": {"colour": bytes([shade, 20, 30, 255]) * (width * height)}}
+
+    def ge_SensorRequest(self, message):
+        return {"type": "SensorData", "data": {}}
+
+    def ge_Quit(self, message):
+        threading.Timer(0.05, self.stop).start()
+        return {"type": "Quit"}
+
+    # --- a vehicle ---------------------------------------------------------------------------------------
+
+    def _car(self, name):
+        if self.world is None or name not in self.world.cars:
+            raise RefusedError(f"vehicle {name} not found")
+        return self.world.cars[name]
+
+    def veh_SensorRequest(self, car, message):
+        known = {
+            "State": lambda: {"state": car.state()},
+            "Electrics": lambda: {"values": car.electrics()},
+            "Damage": lambda: {"damage": 0},
+        }
+        data = {}
+        for name, wish in message["sensors"].items():
+            if wish["type"] not in known:
+                raise RefusedError(f"no sensor {wish['type']}")
+            data[name] = known[wish["type"]]()
+        return {"type": "SensorData", "data": data}
+
+    def veh_Control(self, car, message):
+        for name, value in message.items():
+            if name in car.inputs:
+                low = -1.0 if name == "steering" else 0.0
+                car.inputs[name] = min(max(float(value), low), 1.0)
+        return {"type": "Controlled"}
+
+    def veh_SetShiftMode(self, car, message):
+        return {"type": "ShiftModeSet"}
+
+    def veh_GetCenterOfGravity(self, car, message):
+        return {"type": "CenterOfGravity", "data": [car.x, car.y, car.z]}
+
+    def veh_SetAiMode(self, car, message):
+        car.ai.mode = message["mode"]
+        return {"type": "AiModeSet"}
+
+    def veh_SetAiSpeed(self, car, message):
+        car.ai.limit = float(message["speed"])
+        return {"type": "AiSpeedSet"}
+
+    def veh_SetAiAggression(self, car, message):
+        car.ai.aggression = float(message["aggression"])
+        return {"type": "AiAggressionSet"}
+
+    def veh_SetDriveInLane(self, car, message):
+        car.ai.lane = message["lane"] == "on"
+        return {"type": "AiDriveInLaneSet"}
+
+    def veh_SetAiWaypoint(self, car, message):
+        if message["target"] not in self.world.waypoints:
+            raise RefusedError(f"no waypoint {message['target']}")
+        car.ai.target = message["target"]
+        return {"type": "AiWaypointSet"}
+
+
+def _exactly(client, length):
+    parts = b""
+    while len(parts) < length:
+        part = client.recv(length - len(parts))
+        if not part:
+            raise EOFError
+        parts += part
+    return parts
+
+
+def _send(client, reply):
+    data = msgpack.packb(_as_lua(reply), use_bin_type=True)
+    client.sendall(struct.pack("!I", len(data)) + data)
+
+
+def _as_lua(value):
+    if isinstance(value, dict):
+        return {key: _as_lua(each) for key, each in value.items() if each is not None} or []
+    if isinstance(value, (list, tuple)):
+        return [_as_lua(each) for each in value]
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def fake_home(folder, **settings):
+    """A folder that can be given as BeamNG's home; its binary starts this fake with these settings."""
+    folder = Path(folder)
+    binary = folder / "BinLinux" / "BeamNG.tech.x64"
+    binary.parent.mkdir(parents=True)
+    settings["faults"] = [asdict(fault) for fault in settings.get("faults", ())]
+    settings["state"] = str(folder / "state.json")
+    (folder / "settings.json").write_text(json.dumps(settings))
+    binary.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{Path(__file__).resolve()}" "{folder}" "$@"\n')
+    binary.chmod(0o755)
+    return folder
+
+
+def main():
+    """As the binary: takes the options that BeamNG takes, and no others."""
+    parser = argparse.ArgumentParser(allow_abbrev=False)
+    parser.add_argument("home", type=Path)
+    for flag in ("-nosteam", "-tcom", "-console", "-headless", "-tcom-debug"):
+        parser.add_argument(flag, action="store_true")
+    parser.add_argument("-tport", type=int, required=True)
+    parser.add_argument("-tcom-listen-ip", default="127.0.0.1")
+    parser.add_argument("-gfx", choices=["null", "dx11", "vk"])
+    parser.add_argument("-lua")
+    parser.add_argument("-userpath", default="")
+    given = parser.parse_args()
+    if not given.tcom:
+        parser.error("without -tcom nobody can connect")
+    with (given.home / "started.jsonl").open("a") as log:
+        log.write(json.dumps({"pid": os.getpid(), "words": sys.argv[2:]}) + "\n")
+    settings = json.loads((given.home / "settings.json").read_text())
+    settings["faults"] = tuple(Fault(**each) for each in settings["faults"])
+    time.sleep(settings.get("slow_start", 0.0))
+    FakeBeamNG(given.tport, given.userpath, **settings).quit.wait()
+
+
+if __name__ == "__main__":
+    main()
