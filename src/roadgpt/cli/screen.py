@@ -18,7 +18,7 @@ class Screen:
     """Told of every road as it ends; at its own end it shows the table of outcomes.
 
     Roads go to standard output, all talk goes there too unless the roads are JSON; the bar goes to standard
-    error, and only where that is a terminal.
+    error, and only where that is a terminal. A total of 0: nobody knows how many there will be.
     """
 
     def __init__(self, total: int, as_json: bool = False, quiet: bool = False, verbose: bool = False) -> None:
@@ -32,7 +32,7 @@ class Screen:
         self._begun = time.perf_counter()
         if not self.quiet and sys.stderr.isatty():
             self._bar = _new_bar()
-            self._task = self._bar.add_task("roads", total=self.total, rate="")
+            self._task = self._bar.add_task("roads", total=self.total or None, rate="")
             self._bar.start()
         return self
 
@@ -42,7 +42,7 @@ class Screen:
         if self._bar is not None:
             self._bar.stop()
         if isinstance(error, KeyboardInterrupt):
-            finished = f"{len(self.rows)} of {self.total} roads are finished and complete"
+            finished = f"{self._number()} roads are finished and complete"
             _show(f"roadgpt: stopped; {finished}", on_stderr=True)
 
     @property
@@ -66,7 +66,8 @@ class Screen:
         if self.as_json:
             _show(row.to_json())
         elif not self.quiet:
-            done = f"{len(self.rows):>{len(str(self.total))}}/{self.total}"
+            count = len(self.rows)
+            done = f"{count:>{len(str(self.total))}}/{self.total}" if self.total else f"{count:>4}"
             _show(f"{done}  {_coloured(row)}")
         if self._bar is not None and self._task is not None:
             rate = f"{len(self.rows) / max(self.seconds, 1e-9):.1f} roads/s"
@@ -82,7 +83,10 @@ class Screen:
             colour = COLOURS[outcome.split(" ")[0]]
             _show(click.style(f"{outcome:<19}", fg=colour) + f" {count:>7} {share:>7}  {least:>12}")
         rate = len(self.rows) / max(self.seconds, 1e-9)
-        _show(f"{len(self.rows)} of {self.total} roads in {self.seconds:.1f} s ({rate:.1f} roads/s)")
+        _show(f"{self._number()} roads in {self.seconds:.1f} s ({rate:.1f} roads/s)")
+
+    def _number(self) -> str:
+        return f"{len(self.rows)} of {self.total}" if self.total else f"{len(self.rows)}"
 
 
 def _show(line: str, on_stderr: bool = False) -> None:

@@ -1,0 +1,160 @@
+"""``roadgpt sbft``: a generator of the SBFT tool competition, unchanged, in our simulator."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from roadgpt.cli.crash import crashes_go_to
+from roadgpt.cli.flags import measure
+from roadgpt.cli.options import SEED, axes_option, folder, screen_options, setup_options, whole
+from roadgpt.cli.rows import row_of
+from roadgpt.cli.screen import Screen
+from roadgpt.cli.streams import apart
+
+if TYPE_CHECKING:
+    from roadgpt.report import Scale
+    from roadgpt.sbft import Competition
+
+FAILED = 1  # exit status: the generator crashed, hung or left; its results are complete
+KMH = 3.6
+
+
+@click.command()
+@click.option("--module-name", required=True, help="Module of the generator, as Python imports it.")
+@click.option("--class-name", required=True, help="Its class.")
+@click.option(
+    "--module-path",
+    type=click.Path(exists=True, file_okay=False),
+    default=None,
+    help="Folder that Python is to look for the module in, besides this one.",
+)
+@click.option(
+    "--time-budget",
+    type=measure(0, 10_000_000, "s", above=True),
+    default=None,
+    help="Seconds for generating and driving.",
+)
+@click.option("--test-budget", type=whole(1, 10**7, "tests"), default=None, help="Tests, invalid ones too.")
+@click.option(
+    "--map-size",
+    type=whole(100, 1000, "metres"),
+    default=200,
+    show_default=True,
+    help="Side of the square map, metres.",
+)
+@click.option(
+    "--oob-tolerance",
+    type=measure(0, 1, above=True),
+    default=0.95,
+    show_default=True,
+    help="Share of the car that may be outside its lane.",
+)
+@click.option(
+    "--speed-limit",
+    type=measure(10, 300, "km/h"),
+    default=70,
+    show_default=True,
+    help="For the driver, km/h.",
+)
+@setup_options("driver", "simulator")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="Handed to the driver.")
+@click.option(
+    "--patience",
+    type=measure(0, 86_400, "s", above=True),
+    default=600,
+    show_default=True,
+    help="Seconds in which a generator must bring its next test.",
+)
+@click.option(
+    "--out",
+    type=folder,
+    default=None,
+    help="An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]",
+)
+@click.option("--plot", "has_pictures", is_flag=True, help="Draw every test, not only the page of all.")
+@click.option("--no-plot", is_flag=True, help="Draw nothing.")
+@axes_option
+@click.option("--debug", is_flag=True, help="Let the generator's log hold more.")
+@screen_options
+def command(
+    module_name: str,
+    class_name: str,
+    module_path: str | None,
+    time_budget: float | None,
+    test_budget: int | None,
+    map_size: int,
+    oob_tolerance: float,
+    speed_limit: float,
+    driver: str,
+    simulator: str,
+    seed: int,
+    patience: float,
+    out: Path | None,
+    has_pictures: bool,
+    no_plot: bool,
+    axes: "Scale",
+    debug: bool,
+    **screens: Any,
+) -> int:
+    """Let a generator of the SBFT tool competition loose on the simulator.
+
+    The generator runs unchanged, in a process of its own, on the budget that is given: of time, of tests, or
+    both. Files and tables are the competition's. The exit status is 1 where the generator crashed, hung or
+    called sys.exit; all tests before that are on the disk.
+
+    \b
+    roadgpt sbft --module-name my_generator --class-name MyGenerator --test-budget 100
+    roadgpt sbft --module-name src.gen --class-name Gen --module-path ~/gen --time-budget 3600 --map-size 200
+    """
+    from roadgpt.road import World
+    from roadgpt.run import Setup
+    from roadgpt.sbft import Experiment, compete
+
+    experiment = Experiment(
+        module_name=module_name,
+        class_name=class_name,
+        module_path=module_path,
+        time_budget=time_budget,
+        test_budget=test_budget,
+        patience=patience,
+        debug=debug,
+    )
+    world = World(map_size=map_size, oob_tolerance=oob_tolerance, speed_limit=speed_limit / KMH)
+    setup = Setup(driver=driver, simulator=simulator, rules="sbft")
+    draw = None
+    if has_pictures and not no_plot:
+        from roadgpt.report import drawing
+
+        draw = drawing(axes)
+    work = compete(experiment, world, setup, seed, out, draw)
+    crashes_go_to(work.folder)
+    screen = Screen(test_budget or 0, screens["as_json"], screens["quiet"], screens["verbose"])
+    screen.say(f"{class_name} of {module_name}, into {work.folder}")
+    return _watched(work, screen, has_overview=not no_plot)
+
+
+def _watched(work: "Competition", screen: Screen, has_overview: bool) -> int:
+    """Show every test as it ends; then how the generator ended, and the page of all tests."""
+    from roadgpt.run.sbft_json import test_name
+
+    try:
+        with screen:
+            for run in apart(work):
+                name = test_name(run.index)
+                screen.row(row_of(run, str(work.folder / name), name))
+                screen.detail(f"  {run.description}")
+    finally:
+        screen.close()
+        if work.ending is not None:
+            screen.say(f"the generator: {work.ending.sentence}")
+        if screen.rows and has_overview:
+            _overview(work.folder)
+        screen.say(f"tests and tables: {work.folder}")
+    return 0 if work.ending is None or work.ending.is_fine else FAILED
+
+
+def _overview(folder: Path) -> None:
+    from roadgpt.report import drawing
+
+    drawing().of_campaign(folder)

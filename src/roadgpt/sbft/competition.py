@@ -1,0 +1,200 @@
+"""A Competition: one generator at work, test after test, until its budget is over or it ends."""
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.road import Road, World
+from roadgpt.run import Draw, Request, Run, Setup, prove, roll_call
+from roadgpt.sbft.experiment import Ending, Experiment
+from roadgpt.sbft.host import GoneError, Host
+from roadgpt.sbft.line import Message
+from roadgpt.sbft.results import LOG, Results, new_folder
+from roadgpt.sbft.trial import tried
+
+USUAL = World(map_size=200.0)
+PLAIN = Setup(rules="sbft")
+WARM = [[60.0, 100.0], [100.0, 100.0], [140.0, 100.0]]  # a road to compile the simulator on
+LARGEST_ID = 999_999_999
+LOADING = 120.0  # s of wall time for a generator's module to be imported
+
+OVER: Message = {"is_over": True}
+
+
+@dataclass
+class Competition:
+    """Iterate over it to make it work; each Run is on the disk when it is handed out."""
+
+    experiment: Experiment
+    request: Request
+    folder: Path
+    results: Results
+    ending: Ending | None = None
+    """How the generator ended; None while it works."""
+    tests: int = 0
+    _deadline: float = field(default=0.0, repr=False)
+
+    def __iter__(self) -> Iterator[Run]:
+        """The Runs, as tests end.
+
+        Raises:
+            UsageError: the generator cannot be loaded.
+            PartError: a part is not installed.
+            RoadGPTError: a file cannot be written.
+        """
+        host = Host(self.folder / LOG)
+        try:
+            self._begin(host)
+            yield from self._work(host)
+        except GoneError as error:
+            self.ending = Ending(how="died", sentence=_died(error.status))
+        except OSError as error:
+            raise RoadGPTError(
+                f"cannot write into {self.folder}: {error.strerror or error}; make room there"
+            ) from error
+        finally:
+            host.stop()
+            self.results.close()
+        if self.ending is not None and self.ending.how == "unloadable":
+            raise UsageError(self.ending.sentence)
+
+    def _begin(self, host: Host) -> None:
+        """Load the generator, and have the simulator ready before the clock runs."""
+        task = self.experiment.model_dump(
+            include={"module_name", "class_name", "module_path", "time_budget", "test_budget", "debug"}
+        )
+        map_size = self.request.world.map_size
+        whole = int(map_size) if map_size.is_integer() else map_size
+        host.tell({**task, "map_size": whole, "folder": str(self.folder.resolve())})
+        prove(Road.through(WARM), 0, self.request.world, self.request.setup)
+        heard = host.hear(LOADING)
+        if heard is None:
+            self.ending = Ending(how="hung", sentence=f"it was not loaded within {LOADING:g} s")
+        elif heard["op"] == "end":
+            self.ending = self._ended(heard)
+        else:
+            self._deadline = time.monotonic() + (self.experiment.time_budget or float("inf"))
+            host.tell({"go": True})
+
+    def _work(self, host: Host) -> Iterator[Run]:
+        while self.ending is None:
+            heard = host.hear(self._wait())
+            if heard is None:
+                self.ending = self._silent()
+            elif heard.get("op") == "end":
+                self.ending = self._ended(heard)
+            elif heard.get("op") == "test":
+                yield from self._test(heard, host.tell)
+
+    def _test(self, asked: Message, answer: Callable[[Message], None]) -> Iterator[Run]:
+        """Drive one test, unless the budget is over; the one in which the time ran out is dropped."""
+        if self._is_over:
+            answer(OVER)
+            return
+        run = tried(
+            asked["points"], self._number(asked["id"]), self.request, asked["generating"], asked["is_test"]
+        )
+        if time.monotonic() >= self._deadline:
+            answer(OVER)
+            return
+        self.tests += 1
+        test = self.results.add(run)
+        answer(_answer(run, test))
+        yield run
+
+    def _number(self, asked: Any) -> int:
+        """The generator's own number of a test, where a file can have it and none has."""
+        is_number = isinstance(asked, int) and not isinstance(asked, bool) and 0 < asked <= LARGEST_ID
+        return asked if is_number and not self.results.has(asked) else self.results.last + 1
+
+    @property
+    def _has_tests_left(self) -> bool:
+        return self.experiment.test_budget is None or self.tests < self.experiment.test_budget
+
+    @property
+    def _is_over(self) -> bool:
+        return not self._has_tests_left or time.monotonic() >= self._deadline
+
+    def _wait(self) -> float:
+        """Seconds that the generator has to say something."""
+        left = self._deadline - time.monotonic() + self.experiment.grace
+        return min(left, self.experiment.patience if self._has_tests_left else self.experiment.grace)
+
+    @property
+    def _patience(self) -> str:
+        return f"{self.experiment.patience:g} s"
+
+    def _silent(self) -> Ending:
+        if self._is_over:
+            sentence = "the budget is over; it had not noticed, and was stopped"
+            return Ending(how="budget", sentence=sentence)
+        return Ending(how="hung", sentence=f"it brought no test within {self._patience}, and was stopped")
+
+    def _ended(self, heard: Message) -> Ending:
+        said = heard.get("said", "")
+        name = f"{self.experiment.class_name} of {self.experiment.module_name}"
+        sentences = {
+            "done": "it had enough",
+            "budget": "the budget is over",
+            "exit": f"it called sys.exit({said})",
+            "raised": f"it raised {said}",
+            "unloadable": f"the generator {name} cannot be loaded: {said}; check --module-name, --class-name "
+            f"and --module-path, or see {self.folder / LOG}",
+        }
+        how = heard.get("how", "died")
+        return Ending(how=how, sentence=sentences.get(how, said))
+
+
+def compete(
+    experiment: Experiment,
+    world: World = USUAL,
+    setup: Setup = PLAIN,
+    seed: int = 0,
+    out: Path | None = None,
+    draw: Draw | None = None,
+) -> Competition:
+    """Let a generator loose on the simulator; the work begins when the Competition is iterated over.
+
+    Args:
+        experiment: which generator, and its budget.
+        world: map, speed limit, tolerance.
+        setup: who drives in what; the rules are the competition's.
+        seed: the driver's.
+        out: an empty folder, or one to be made; None: the competition's name for it, under ``results``.
+        draw: draws every test, as ``report.drawing()`` does; None draws none.
+
+    Raises:
+        UsageError: there is no budget, or a part or the folder cannot be used.
+    """
+    if experiment.time_budget is None and experiment.test_budget is None:
+        raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")
+    setup = setup.model_copy(update={"rules": "sbft"})
+    roll_call(setup)
+    request = Request(seed=seed, world=world, setup=setup)
+    folder = new_folder(experiment, out)
+    results = Results(folder, request, draw)
+    results.describe(experiment)
+    return Competition(experiment, request, folder, results)
+
+
+def _answer(run: Run, test: dict[str, Any]) -> Message:
+    """What the generator is told of its test."""
+    return {
+        "is_over": False,
+        "is_valid": run.is_valid,
+        "message": run.validation_message,
+        "outcome": run.outcome,
+        "description": test.get("description", run.description),
+        "records": test.get("execution_data", []),
+        "features": test.get("features", {}),
+        "seconds": run.seconds.drive,
+    }
+
+
+def _died(status: int | None) -> str:
+    if status is not None and status < 0:
+        return f"its process was ended by signal {-status}"
+    return f"its process ended without a word (exit status {status})"

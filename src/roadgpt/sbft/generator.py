@@ -1,0 +1,128 @@
+"""Our generator in the competition's own pipeline: descriptions become tests.
+
+    python competition.py --module-name roadgpt.sbft --class-name RoadGPTTestGenerator ...
+
+What it makes is said by the environment (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER, ROADGPT_READER)
+or by a class of the user's own:
+
+    class Hairpins(RoadGPTTestGenerator):
+        description = "three hairpins"
+        seed = 7
+"""
+
+import logging
+import os
+from collections import deque
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from typing import Any
+
+from roadgpt.chat import ReplyError
+from roadgpt.check import sbft_verdict
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.road import Design, Road, World
+from roadgpt.run import Setup, brief_of, perform
+
+log = logging.getLogger(__name__)
+
+USUAL = "a winding road with at least 3 turns"
+MAP_SIZE = 200  # m, the competition's
+DECIMALS = 5
+DENSE = 2.0  # m between road points: closer than this, the competition's spline keeps our radii
+MOST_POINTS = 500
+GIVE_UP = 20  # roads in a row that cannot be
+REMEMBERED = 50  # designs that the next one is not to repeat
+
+Points = list[tuple[float, float]]
+
+
+class RoadGPTTestGenerator:
+    """Brings roads that keep a description, one after another, until the budget is over."""
+
+    description = USUAL
+    seed = 0
+    designer = "planner"
+    reader = "model"
+
+    def __init__(self, executor: Any = None, map_size: int | None = None) -> None:
+        """As the competition makes it; the environment is heeded before the class's own values."""
+        self.executor = executor
+        self.map_size = map_size or MAP_SIZE
+        self.description = os.environ.get("ROADGPT_DESCRIPTION", self.description)
+        self.designer = os.environ.get("ROADGPT_DESIGNER", self.designer)
+        self.reader = os.environ.get("ROADGPT_READER", self.reader)
+        self.seed = _whole(os.environ.get("ROADGPT_SEED"), self.seed)
+
+    def start(self) -> None:
+        """Test after test.
+
+        Raises:
+            BriefError: the description cannot be read, or asks for what the map does not allow.
+            DesignError: no road can be designed.
+        """
+        create: Callable[[Points], Any] = import_module(
+            "code_pipeline.tests_generation"
+        ).RoadTestFactory.create_road_test
+        for points in self.roads():
+            if self.executor.is_over():
+                return
+            outcome, said, _ = self.executor.execute_test(create(points))
+            log.info("%s: %s", outcome, said)
+
+    def roads(self) -> Iterator[Points]:
+        """Road points without end: at most 2 m apart, at most 500, and valid for the competition.
+
+        Raises:
+            BriefError, DesignError: as ``start``.
+        """
+        world = World(map_size=float(self.map_size))
+        setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))
+        brief = brief_of(self.description, world, setup)
+        earlier: deque[Design] = deque(maxlen=REMEMBERED)
+        index = failures = 0
+        while True:
+            index += 1
+            try:
+                run = perform(brief, self.seed, world, setup, index, [*earlier])
+            except (DesignError, ReplyError):
+                failures += 1
+                if failures >= GIVE_UP:
+                    raise
+                continue
+            if run.design is not None:
+                earlier.append(run.design)
+            points = road_points(run.road) if run.road is not None and run.is_valid else None
+            if points is not None and sbft_verdict(points, world.map_size)[0]:
+                failures = 0
+                yield points
+                continue
+            failures += 1
+            if failures >= GIVE_UP:
+                raise DesignError(
+                    f"{failures} roads in a row are not valid for the competition on a map of "
+                    f"{self.map_size} m; ask for shorter roads or gentler turns"
+                )
+
+
+def road_points(road: Road) -> Points | None:
+    """Points for the competition's spline, in metres; None where 500 would be too few."""
+    if road.length > DENSE * (MOST_POINTS - 1):
+        return None
+    return [(round(float(x), DECIMALS), round(float(y), DECIMALS)) for x, y in road.control_points()]
+
+
+def _whole(text: str | None, usual: int) -> int:
+    if text is None:
+        return usual
+    if not text.isdecimal():
+        raise UsageError(f"ROADGPT_SEED is '{text}'; give a whole number from 0 up")
+    return int(text)
+
+
+def _chat(made: RoadGPTTestGenerator) -> Any:
+    """The language model of the user's settings, where one is asked."""
+    from roadgpt import plugins
+    from roadgpt.chat import asks_a_model, configured
+
+    parts = (plugins.find("designers", made.designer), plugins.find("readers", made.reader))
+    return configured({}) if any(map(asks_a_model, parts)) else None

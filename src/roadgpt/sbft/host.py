@@ -1,0 +1,96 @@
+"""Our end of the line: starts a generator's process, hears it with a time limit, and ends it in any case.
+
+Two threads read and write, so that a process that neither speaks nor listens holds up nobody.
+"""
+
+import os
+import queue
+import signal
+import subprocess
+import sys
+import threading
+from contextlib import suppress
+from pathlib import Path
+from typing import IO
+
+from roadgpt.sbft.line import Message, received, send
+
+FAREWELL = 10.0  # s for a process that was killed to be gone
+
+
+class GoneError(Exception):
+    """The process is there no more; its exit status, negative for a signal."""
+
+    def __init__(self, status: int | None) -> None:
+        super().__init__(status)
+        self.status = status
+
+
+class Host:
+    """One generator's process."""
+
+    def __init__(self, log: Path) -> None:
+        """Starts it; what it prints goes into the file."""
+        self._log = log.open("wb")
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "roadgpt.sbft.inside"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._log,
+            env={**os.environ, "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"},
+            start_new_session=True,  # processes that it starts itself end with it
+        )
+        self._heard: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
+        self._to_tell: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
+        assert self._process.stdout is not None
+        assert self._process.stdin is not None
+        for work, stream in ((self._read, self._process.stdout), (self._write, self._process.stdin)):
+            threading.Thread(target=work, args=(stream,), name="roadgpt-sbft", daemon=True).start()
+
+    def _read(self, stream: IO[bytes]) -> None:
+        with suppress(OSError, ValueError):
+            for line in stream:
+                message = received(line)
+                if message is not None:
+                    self._heard.put(message)
+        self._heard.put(None)
+
+    def _write(self, stream: IO[bytes]) -> None:
+        with suppress(OSError, ValueError):
+            while (message := self._to_tell.get()) is not None:
+                send(stream, message)
+
+    def tell(self, message: Message) -> None:
+        """Say something, and do not wait for anybody to listen."""
+        self._to_tell.put(message)
+
+    def hear(self, seconds: float) -> Message | None:
+        """The next message; None where none came in time.
+
+        Raises:
+            GoneError: there will be none any more.
+        """
+        try:
+            message = self._heard.get(timeout=max(seconds, 0.0))
+        except queue.Empty:
+            return None
+        if message is None:
+            raise GoneError(self._status())
+        return message
+
+    def _status(self) -> int | None:
+        try:
+            return self._process.wait(FAREWELL)
+        except subprocess.TimeoutExpired:
+            return None
+
+    def stop(self) -> None:
+        """End the process and those that it started."""
+        self._to_tell.put(None)
+        if hasattr(os, "killpg"):
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+        with suppress(ProcessLookupError):
+            self._process.kill()
+        self._status()
+        self._log.close()

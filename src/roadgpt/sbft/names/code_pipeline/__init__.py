@@ -1,0 +1,6 @@
+"""The names that generators of the SBFT tool competition import; what is not here is looked for in a checkout
+of the competition's own code, where Python finds one."""
+
+from pkgutil import extend_path
+
+__path__ = extend_path(__path__, __name__)

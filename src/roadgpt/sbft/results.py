@@ -1,0 +1,143 @@
+"""The competition's folder of results: its files, its fields in its order, its columns.
+
+results/MODULE_CLASS_STAMP/
+  test.NNNN.json  generation_stats.csv  oob_stats.csv  experiment_description.csv    theirs
+  campaign.json  runs/NNNN/  overview.png  generator.log                             ours
+"""
+
+import csv
+import io
+import time
+from pathlib import Path
+from typing import Any
+
+from roadgpt.errors import UsageError
+from roadgpt.run import Run
+from roadgpt.run.atomic import json_text, write_whole
+from roadgpt.run.card import CARD, Card
+from roadgpt.run.features import features_of
+from roadgpt.run.folder import RUNS, Draw, write_run
+from roadgpt.run.model import Request
+from roadgpt.run.sbft_json import test_name
+from roadgpt.run.tables import DESCRIPTION, Tally
+from roadgpt.sbft.experiment import Experiment
+from roadgpt.sbft.trial import plan_of, records_at_their_height, told
+
+HOME = Path("results")
+LOG = "generator.log"
+
+
+def new_folder(experiment: Experiment, out: Path | None = None) -> Path:
+    """The folder, made now; the competition's name for it where none is given.
+
+    Raises:
+        UsageError: it holds something, or cannot be made.
+    """
+    stamp = time.time_ns() // 1_000_000
+    name = f"{experiment.module_name}_{experiment.class_name}_{stamp}".replace("/", "-").replace("\\", "-")
+    folder = HOME / name if out is None else out
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        is_used = any(folder.iterdir())
+        (folder / RUNS).mkdir(exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder with --out") from error
+    if is_used:
+        raise UsageError(f"{folder} is not empty; name another folder with --out")
+    return folder
+
+
+class Results:
+    """Writes as tests end; what is there is whole at any time."""
+
+    def __init__(self, folder: Path, request: Request, draw: Draw | None = None) -> None:
+        """Results in an empty folder."""
+        self.folder = folder
+        self._request = request
+        self._draw = draw
+        self._tally = Tally()
+        self._numbers: set[int] = set()
+
+    def add(self, run: Run) -> dict[str, Any]:
+        """Write a test; gives back what stands in its file."""
+        test = test_of(run)
+        write_run(run, self.folder, self._draw)
+        write_whole(self.folder / test_name(run.index), json_text(test, indent=None))
+        self._tally.add(run)
+        self._numbers.add(run.index)
+        self._tally.write(self.folder)
+        return test
+
+    @property
+    def last(self) -> int:
+        """The largest number of a test so far."""
+        return max(self._numbers, default=0)
+
+    def has(self, number: int) -> bool:
+        """Is there a test of this number?"""
+        return number in self._numbers
+
+    def describe(self, experiment: Experiment) -> None:
+        """Write what was asked for."""
+        self._tally.write(self.folder)
+        self._write_card(is_finished=False)
+        row = described(experiment, self._request)
+        text = io.StringIO()
+        writer = csv.DictWriter(text, fieldnames=list(row), lineterminator="\n")
+        writer.writeheader()
+        writer.writerow(row)
+        write_whole(self.folder / DESCRIPTION, text.getvalue())
+
+    def close(self) -> None:
+        """All tests are there."""
+        self._write_card(is_finished=True)
+
+    def _write_card(self, is_finished: bool) -> None:
+        card = Card(request=self._request, roads=max(len(self._numbers), 1), is_finished=is_finished)
+        write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
+
+
+def test_of(run: Run) -> dict[str, Any]:
+    """A test as the competition writes it; of an invalid one, the first five fields."""
+    plan = plan_of(run)
+    test: dict[str, Any] = {
+        "is_valid": run.is_valid,
+        "validation_message": run.validation_message,
+        "road_points": [] if run.road is None else run.road.control_points().tolist(),
+        "interpolated_points": plan.tolist(),
+        "id": run.index,
+    }
+    if not run.is_valid:
+        return test
+    records = records_at_their_height(run.drive, run.world)
+    return test | {
+        "execution_data": records,
+        "test_outcome": run.outcome,
+        "description": told(run),
+        "features": features_of(plan, records),
+    }
+
+
+def described(experiment: Experiment, request: Request) -> dict[str, Any]:
+    """The columns of experiment_description.csv: theirs in their order, then ours."""
+    setup, world = request.setup, request.world
+    theirs = {
+        "executor": setup.simulator,
+        "dave2_model": "",
+        "beamng_home": "",
+        "beamng_user": "",
+        "time_budget": experiment.time_budget,
+        "map_size": world.map_size,
+        "oob_tolerance": world.oob_tolerance,
+        "speed_limit": round(world.speed_limit * 3.6, 6),
+        "module_name": experiment.module_name,
+        "module_path": experiment.module_path,
+        "class_name": experiment.class_name,
+        "visualize_tests": "",
+        "log_to": LOG,
+        "debug": experiment.debug,
+    }
+    ours = {name: value for name, value in experiment.model_dump().items() if name not in theirs}
+    driven = {"driver": setup.driver, "seed": request.seed}
+    rest = {name: value for name, value in world.model_dump().items() if name not in theirs}
+    return theirs | ours | driven | rest

@@ -1,0 +1,86 @@
+"""One test from road points to a Run: what the competition's validator says, then the drive."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from roadgpt.check import Finding, sbft_verdict
+from roadgpt.check.sbft import TOO_FEW
+from roadgpt.drive import Drive
+from roadgpt.errors import PartError, RoadGPTError
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+from roadgpt.run import Request, Run, Seconds, prove
+from roadgpt.run.execution import Record, records_of
+from roadgpt.sbft.road_test import HEIGHT, WRONG_TYPE
+
+SUCCESS = "Successful test"
+
+
+def tried(points: Any, index: int, request: Request, generating: float, is_test: bool = True) -> Run:
+    """The Run of a test.
+
+    Args:
+        points: control points ``(n, 2)`` in metres; of something that is no test, whatever.
+        index: number of the test.
+        request: world, setup and seed; its rules are the competition's.
+        generating: seconds that the generator took.
+        is_test: False for what is no test, which is invalid and has no road.
+
+    Raises:
+        PartError: a part is not installed.
+    """
+    if not is_test:
+        return _invalid(WRONG_TYPE, None, index, request, generating)
+    table = np.asarray(points, float).reshape(-1, 2)
+    if len(table) < 2:
+        return _invalid(TOO_FEW, None, index, request, generating)
+    try:
+        road = Road.through(table)
+        is_valid, message = sbft_verdict(table, request.world.map_size)
+    except RoadGPTError as error:
+        return _invalid(str(error), None, index, request, generating)
+    if not is_valid:
+        return _invalid(message, road, index, request, generating)
+    try:
+        run = prove(road, request.seed, request.world, request.setup, index)
+    except PartError:
+        raise
+    except Exception as error:  # a road on which anything breaks down costs itself
+        said = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
+        run = Run(request, index, request.seed, outcome="ERROR", description=said, road=road)
+    return replace(run, request=request, seconds=Seconds(generating, run.seconds.drive))
+
+
+def _invalid(message: str, road: Road | None, index: int, request: Request, generating: float) -> Run:
+    finding = (Finding("sbft", message),)
+    seconds = Seconds(generating)
+    return Run(request, index, request.seed, "INVALID", message, road=road, findings=finding, seconds=seconds)
+
+
+def told(run: Run) -> str:
+    """The outcome in the competition's words, which name the drive where it failed."""
+    if run.verdict is None:
+        return run.description
+    said = run.verdict.sbft_description
+    return said if said == SUCCESS else f"{said} {run.request.setup.simulator}/{run.index:04d}"
+
+
+def records_at_their_height(drive: Drive | None, world: World) -> list[Record]:
+    """Execution data; the competition's level lies 28 m below zero, and so does the car's road."""
+    if drive is None:
+        return []
+    return [_lowered(record) for record in records_of(drive, world)]
+
+
+def _lowered(record: Record) -> Record:
+    x, y, z = record.pos
+    return record._replace(pos=[x, y, round(z + HEIGHT, 4)])
+
+
+def plan_of(run: Run) -> Array:
+    """The competition's interpolated points ``(n, 2)``; none of a test without a road."""
+    from roadgpt.geometry import interpolate
+
+    return np.empty((0, 2)) if run.road is None else interpolate(run.road.control_points())

@@ -1,0 +1,249 @@
+"""Generators of the competition in our simulator: whatever they do, what they brought is on the disk."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from misbehaving import write
+from roadgpt.errors import UsageError
+from roadgpt.run import Run
+from roadgpt.sbft import Competition, Experiment, compete
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "sbft"
+POSIX = os.name == "posix"
+
+
+def let_loose(folder: Path, tests: int | None = 10, **more: object) -> tuple[Competition, list[Run]]:
+    values = {"module_name": "misbehaves", "class_name": "Generator", "module_path": str(folder)}
+    experiment = Experiment.model_validate({**values, "test_budget": tests, "patience": 60, **more})
+    work = compete(experiment, out=folder / "out")
+    return work, list(work)
+
+
+def numbers(folder: Path) -> list[int]:
+    return sorted(int(path.name.split(".")[1]) for path in (folder / "out").glob("test.*.json"))
+
+
+def counted(folder: Path) -> dict[str, str]:
+    header, row = (folder / "out" / "generation_stats.csv").read_text().splitlines()
+    return dict(zip(header.split(","), row.split(","), strict=True))
+
+
+ENDS = {
+    "enough": ("pass", "done", "enough"),
+    "raises": ("raise KeyError('lane')", "raised", r"KeyError \(.*misbehaves.py, line \d+\): 'lane'"),
+    "exits": ("sys.exit(3)", "exit", r"sys.exit\(3\)"),
+    "leaves": ("os._exit(9)", "died", "exit status 9"),
+    "recursion": ("def f():\n    f()\nf()", "raised", "RecursionError"),
+    "interrupt": ("raise KeyboardInterrupt", "raised", "KeyboardInterrupt"),
+    "noise": (
+        'print(\'{"op": "end", "how": "died"}\', flush=True)\nos.write(1, b\'x\' * 300000)\n'
+        "sys.stdin.read()\nraise ValueError('noise')",
+        "raised",
+        "ValueError.*noise",
+    ),
+    "closed": ("os.close(0); os.close(1); os.close(2)", "done", "enough"),
+    "thread": ("threading.Thread(target=time.sleep, args=(600,)).start()", "done", "enough"),
+    "assertion": ("RoadTestFactory.create_road_test([(1, 2, 3), (4, 5, 6)])", "raised", "AssertionError"),
+    "double point": ("RoadTestFactory.create_road_test([(50, 50), (50, 50)])", "raised", "ValueError"),
+    "too long": ("RoadTestFactory.create_road_test([(0, 0), (1e9, 0)])", "raised", "ValueError"),
+}
+if POSIX:
+    ENDS["crash"] = ("os.kill(os.getpid(), signal.SIGSEGV)", "died", "signal 11")
+
+
+@pytest.mark.parametrize("name", ENDS)
+def test_however_a_generator_ends_its_tests_are_kept(name: str, tmp_path: Path) -> None:
+    does, how, said = ENDS[name]
+    write(tmp_path, does)
+    work, runs = let_loose(tmp_path)
+    assert work.ending is not None
+    assert work.ending.how == how
+    assert re.search(said, work.ending.sentence), work.ending.sentence
+    assert [run.outcome for run in runs] == ["PASS", "PASS"]
+    assert numbers(tmp_path) == [1, 2]
+    assert counted(tmp_path)["test_passed"] == "2"
+    assert json.loads((tmp_path / "out" / "campaign.json").read_text())["is_finished"]
+
+
+@pytest.mark.parametrize("does", ["while True: pass", "time.sleep(600)"])
+def test_one_that_hangs_is_stopped(does: str, tmp_path: Path) -> None:
+    write(tmp_path, does)
+    begun = time.monotonic()
+    work, runs = let_loose(tmp_path, patience=5)
+    assert time.monotonic() - begun < 40
+    assert work.ending is not None
+    assert work.ending.how == "hung"
+    assert "5 s" in work.ending.sentence
+    assert len(runs) == 2
+    assert numbers(tmp_path) == [1, 2]
+
+
+@pytest.mark.skipif(not POSIX, reason="processes are looked for by their numbers")
+def test_processes_that_it_started_end_with_it(tmp_path: Path) -> None:
+    write(
+        tmp_path,
+        "other = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)'])\n"
+        f"open({str(tmp_path / 'pid')!r}, 'w').write(str(other.pid))",
+    )
+    let_loose(tmp_path)
+    pid = int((tmp_path / "pid").read_text())
+    for _ in range(100):
+        try:
+            state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        except (FileNotFoundError, ProcessLookupError):
+            return
+        if state == "Z":
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"process {pid} is still there")
+
+
+def test_garbage_is_an_invalid_test(tmp_path: Path) -> None:
+    write(
+        tmp_path,
+        "answers = [self.executor.execute_test(what)[:2] for what in ('a road', None, 7, [[1, 2], [3, 4]])]\n"
+        "assert answers == [('INVALID', 'Wrong type')] * 4, answers\n"
+        "test = RoadTestFactory.create_road_test(straight())\n"
+        "test.road_points[1] = (float('nan'), 3)\n"
+        "assert self.executor.validate_test(test)[0] is False\n"
+        "assert self.executor.execute_test(test)[0] == 'INVALID'\n"
+        "test = RoadTestFactory.create_road_test(straight(5.0))\n"
+        "test.id = '../../evil'\n"
+        "outcome, said, records = self.executor.execute_test(test)\n"
+        "assert (outcome, records) == ('PASS', test.execution_data), said\n"
+        "test = RoadTestFactory.create_road_test([(100 + i, 100) for i in range(501)])\n"
+        "assert self.executor.execute_test(test)[:2] == "
+        "('INVALID', 'The road definition contains too many points')\n"
+        "assert (test.is_valid, test.validation_message) == "
+        "(False, 'The road definition contains too many points')",
+    )
+    work, runs = let_loose(tmp_path, tests=20)
+    assert work.ending is not None
+    assert work.ending.how == "done", work.ending.sentence
+    assert [run.outcome for run in runs] == ["PASS"] * 2 + ["INVALID"] * 5 + ["PASS", "INVALID"]
+    assert len(numbers(tmp_path)) == len(runs)
+    assert counted(tmp_path)["test_invalid"] == "6"
+
+
+def test_the_budget_of_tests_ends_it_with_123(tmp_path: Path) -> None:
+    write(
+        tmp_path,
+        "assert not self.executor.is_over()\n"
+        "self.two()\n"
+        "assert self.executor.is_over()\n"
+        "assert self.executor.get_remaining_time()['time-budget'] == 0\n"
+        "assert str(self.executor.get_stats()).startswith('test generated: 4')\n"
+        "try:\n"
+        "    self.two()\n"
+        "except SystemExit as error:\n"
+        "    print('left with', error.code)\n"
+        "    raise",
+    )
+    work, runs = let_loose(tmp_path, tests=4)
+    assert work.ending is not None
+    assert work.ending.how == "budget"
+    assert len(runs) == 4
+    assert "left with 123" in (tmp_path / "out" / "generator.log").read_text()
+
+
+def test_one_that_does_not_leave_when_its_budget_is_over_is_stopped(tmp_path: Path) -> None:
+    write(tmp_path, "while True:\n    try:\n        self.two()\n    except BaseException:\n        pass")
+    work, runs = let_loose(tmp_path, tests=3, grace=2)
+    assert work.ending is not None
+    assert work.ending.how == "budget"
+    assert len(runs) == 3
+    assert numbers(tmp_path) == [1, 2, 3]
+
+
+def test_the_budget_of_time_drops_the_last_test(tmp_path: Path) -> None:
+    write(tmp_path, "while True:\n    self.two()")
+    work, runs = let_loose(tmp_path, tests=None, time_budget=4, grace=20)
+    assert work.ending is not None
+    assert work.ending.how == "budget"
+    assert len(runs) >= 2
+    assert numbers(tmp_path) == [*range(1, len(runs) + 1)]
+    assert int(counted(tmp_path)["test_generated"]) == len(runs)
+
+
+def test_one_of_2021_is_told_its_budget_as_a_number(tmp_path: Path) -> None:
+    (tmp_path / "misbehaves.py").write_text(
+        "from code_pipeline.tests_generation import RoadTestFactory\n"
+        "class Generator:\n"
+        "    def __init__(self, time_budget=None, executor=None, map_size=None):\n"
+        "        assert 0 < time_budget <= 60 and map_size == 200\n"
+        "        self.executor = executor\n"
+        "    def start(self):\n"
+        "        left = self.executor.get_remaining_time()\n"
+        "        assert left > 0 and not left <= 0 and 60 - left >= 0 and f'{left:.0f}'.isdigit()\n"
+        "        assert self.executor.time_budget.get_remaining_time()['time-budget'] <= 60\n"
+        "        test = RoadTestFactory.create_road_test([(60, 100), (80, 100), (100, 100)])\n"
+        "        assert test.get_road_length() > 39 and test.get_road_polygon().polygon.area > 300\n"
+        "        assert self.executor.validate_test(test) == (True, '')\n"
+        "        self.executor.execute_test(test)\n"
+    )
+    work, runs = let_loose(tmp_path, tests=None, time_budget=60)
+    assert work.ending is not None
+    assert work.ending.how == "done", work.ending.sentence
+    assert len(runs) == 1
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"module_name": "nowhere"}, "No module named 'nowhere'"),
+        ({"class_name": "Nobody"}, "has no class 'Nobody'; it has .*Generator"),
+        ({"module_name": "broken"}, "SyntaxError"),
+        ({"module_name": "leaving"}, "SystemExit"),
+    ],
+)
+def test_one_that_cannot_be_loaded_is_told_of(values: dict[str, str], said: str, tmp_path: Path) -> None:
+    write(tmp_path, "pass")
+    (tmp_path / "broken.py").write_text("class (:")
+    (tmp_path / "leaving.py").write_text("import sys\nsys.exit(4)")
+    with pytest.raises(UsageError, match=said):
+        let_loose(tmp_path, **values)
+
+
+def test_folders_and_budgets_are_looked_at_first(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="needs a budget"):
+        let_loose(tmp_path, tests=None)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "thesis.txt").write_text("mine")
+    with pytest.raises(UsageError, match="is not empty"):
+        let_loose(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "tests"), [("random_points", "RandomPoints", 60), ("simple_ga", "SimpleGA", 12)]
+)
+def test_the_examples_work(module: str, name: str, tests: int, tmp_path: Path) -> None:
+    work, runs = let_loose(tmp_path, tests, module_name=module, class_name=name, module_path=str(EXAMPLES))
+    assert work.ending is not None
+    assert work.ending.is_fine, work.ending.sentence
+    assert len(runs) == tests
+    assert {run.outcome for run in runs} <= {"PASS", "FAIL", "INVALID"}
+    assert any(run.outcome == "PASS" for run in runs)
+
+
+def test_the_same_seed_gives_the_same_tests(tmp_path: Path) -> None:
+    made = []
+    for folder in (tmp_path / "one", tmp_path / "other"):
+        folder.mkdir()
+        values = {"module_name": "curvature_walk", "class_name": "CurvatureWalk"}
+        let_loose(folder, 4, **values, module_path=str(EXAMPLES))
+        made.append([path.read_bytes() for path in sorted((folder / "out").glob("test.*.json"))])
+    assert made[0] == made[1]
+    assert len(made[0]) == 4
+
+
+def test_a_generators_process_needs_no_simulator() -> None:
+    code = "import sys, roadgpt.sbft.inside; print(*{name.split('.')[0] for name in sys.modules})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"mujoco", "numba", "matplotlib"} & {*done.stdout.split()}
