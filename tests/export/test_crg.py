@@ -31,7 +31,7 @@ def test_asams_library_finds_our_points_within_a_millimetre(tmp_path: Path, name
             for v in (-6.9, -4.0, -1.3, 0.0, 4.0, 6.9):
                 x, y = contact.uv_to_xy_many(u, np.full(len(u), v))
                 ours = road.at(u, v)
-                # a reader's cross sections are square to steps of 0.1 m, not to the curve
+                # a reader's cross sections are square to its steps, not to the curve
                 allowed = 1e-3 if v == 0 else 0.03
                 assert np.hypot(x - ours[:, 0], y - ours[:, 1]).max() < allowed
                 z = contact.uv_to_z_many(u, np.full(len(u), v))
