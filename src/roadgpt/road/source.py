@@ -1,4 +1,4 @@
-"""Roads from files: ours, SBFT test JSON, RoadGPT designs, a plain list of points, or OpenDRIVE."""
+"""Roads from files: ours, RoadGPT designs, tests and points of other tools, tables, or OpenDRIVE."""
 
 import json
 from pathlib import Path
@@ -12,14 +12,15 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, read_design
 from roadgpt.road.opendrive import read_opendrive
+from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
 from roadgpt.road.road import Road
 
 ASTRAY = 1.5  # m between a control point and the nearest of the road's points, a metre apart
 OPENDRIVE = ".xodr"
 LARGEST = 50_000_000  # bytes of a road file
 SHAPES = (
-    "a road, a design or a test written by roadgpt, an SBFT test with road_points, "
-    "a list of [x, y] or [x, y, z], or an OpenDRIVE file (.xodr)"
+    "a road, a design or a test written by roadgpt, an SBFT or SDC-Scissor test with road_points, "
+    "a list of [x, y] or [x, y, z], a table of points (.csv), or an OpenDRIVE file (.xodr)"
 )
 
 
@@ -52,12 +53,16 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
     try:
         if path.stat().st_size > LARGEST:
             raise UsageError(f"{path} is larger than {LARGEST // 1_000_000} MB; that is no road file")
-        data = json.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        is_table = path.suffix.lower() in SUFFIXES
+        data = None if is_table else json.loads(text)
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}; give the path of a road file") from error
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{path} is not valid JSON ({error}); give {SHAPES}") from error
     try:
+        if is_table:
+            return Road.through(points_of_table(text)), ()
         if isinstance(data, dict) and "starting_point" in data:
             return read_design(data)
         if isinstance(data, dict) and _is_test(data):
@@ -73,16 +78,22 @@ def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
     Raises:
         UsageError: it holds no road.
     """
-    if isinstance(data, list):
-        return Road.through(data)
     if isinstance(data, dict):
-        if "pieces" in data or "nodes" in data:
+        if "pieces" in data or ("nodes" in data and not _has_widths(data["nodes"])):
             return Road.from_json(data)
         if "starting_point" in data:
             return build(read_design(data)[0], geometry)
         if _is_test(data):
             return _test_road(data)[0]
+    points = points_in(data)
+    if points is not None:
+        return Road.through(points)
     raise UsageError(f"there is no road in it; a road file is {SHAPES}")
+
+
+def _has_widths(nodes: Any) -> bool:
+    """Are these another tool's points?"""
+    return isinstance(nodes, list) and plain(nodes) != nodes
 
 
 def _is_test(data: dict[str, Any]) -> bool:
@@ -94,7 +105,7 @@ def _test_road(data: dict[str, Any]) -> tuple[Road, tuple[str, ...]]:
     dense, control = data.get("interpolated_points"), data.get("road_points")
     if not (isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3):
         points: Any = dense if control is None else control
-        return Road.through(points), ()
+        return Road.through(plain(points) if isinstance(points, list) else points), ()
     road = Road.through(dense, control)
     if road.road_points is None or _follows(road, road.road_points):
         return road, ()

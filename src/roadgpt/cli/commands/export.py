@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 FAILED = 1  # exit status: a format cannot hold a road
 UNREADABLE = 2
-ENDINGS = (".json", ".xodr", ".sbft")
+ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
 
 
 @click.command()

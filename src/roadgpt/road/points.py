@@ -1,0 +1,136 @@
+"""Road points in the shapes in which other tools keep them.
+
+    SBFT tests             {"road_points": [[x, y], ...]}
+    SDC-Scissor's tests    the same, or with [x, y, z, width], or "interpolated_road_points"
+    SensoDat's tests       [{"road_points": [{"x": ..., "y": ...}, ...]}, ...]
+    AsFault and DeepJanus  [[x, y, z, width], ...], alone or as "nodes", "sample_nodes" or "control_nodes"
+    tables                 .csv and .tsv, with a head that names x and y, or without one
+
+All in metres. A width is left out: lanes are the World's. So is a height that is the same everywhere, where a
+width follows it: it is that of a level.
+"""
+
+import csv
+import math
+from typing import Any
+
+from roadgpt.errors import UsageError
+
+KEYS = (
+    "road_points",
+    "interpolated_road_points",
+    "sample_nodes",
+    "control_nodes",
+    "nodes",
+    "points",
+    "polyline",
+    "coordinates",
+)
+INSIDE = ("m1", "road", "test", "seed")  # what may hold one of them, once more
+SUFFIXES = (".csv", ".tsv")
+DELIMITERS = (";", "\t", ",")
+X = ("x", "x_m", "pos_x", "east", "easting")
+Y = ("y", "y_m", "pos_y", "north", "northing")
+Z = ("z", "z_m", "pos_z", "height", "elevation", "altitude")
+DEGREES = {"lat", "lon", "lng", "latitude", "longitude"}
+WITH_WIDTH = 4  # numbers of a point
+
+
+def points_in(data: Any) -> list[Any] | None:
+    """The first list of points in parsed JSON; None where there is none.
+
+    Raises:
+        UsageError: it holds many roads.
+    """
+    if isinstance(data, dict):
+        for key in KEYS:
+            if isinstance(data.get(key), list) and data[key]:
+                return plain(data[key])
+        held = (points_in(data[key]) for key in INSIDE if isinstance(data.get(key), dict))
+        return next((points for points in held if points is not None), None)
+    if isinstance(data, list) and data and _is_test(data[0]):
+        if len(data) > 1:
+            raise UsageError(f"it holds {len(data)} roads; put each into a file of its own")
+        return points_in(data[0])
+    return plain(data) if isinstance(data, list) else None
+
+
+def _is_test(value: Any) -> bool:
+    return isinstance(value, dict) and any(isinstance(value.get(key), list) for key in KEYS)
+
+
+def plain(points: list[Any]) -> list[Any]:
+    """The same points as lists of two or three numbers; what is none of these shapes is left as it is."""
+    if all(isinstance(point, dict) and {"x", "y"} <= point.keys() for point in points):
+        points = sorted(points, key=_number)
+        return [[point[name] for name in ("x", "y", "z") if name in point] for point in points]
+    if all(isinstance(point, (list, tuple)) and len(point) == WITH_WIDTH for point in points):
+        is_level = len({point[2] for point in points if isinstance(point[2], (int, float))}) <= 1
+        return [list(point[: 2 if is_level else 3]) for point in points]
+    return points
+
+
+def _number(point: dict[str, Any]) -> float:
+    """Where a point comes in its road, where it says so."""
+    number = point.get("sequenceNumber", 0)
+    return float(number) if isinstance(number, (int, float)) else 0.0
+
+
+def points_of_table(text: str) -> list[list[float]]:
+    """Points of a table: [x, y] or [x, y, z] for each row.
+
+    Raises:
+        UsageError: it has no columns for x and y, or a cell is no number.
+    """
+    lines = [line for line in text.lstrip("\ufeff").splitlines() if line.strip() and line.lstrip()[0] != "#"]
+    if not lines:
+        raise UsageError("the table is empty; give one row with x and y for each point")
+    delimiter = next((one for one in DELIMITERS if one in lines[0]), None)
+    try:
+        rows = list(csv.reader(lines, delimiter=delimiter)) if delimiter else [line.split() for line in lines]
+    except csv.Error as error:
+        raise UsageError(f"the table cannot be read ({error}); write it again") from error
+    rows = [[cell.strip() for cell in row] for row in rows]
+    has_head = any(_value(cell, delimiter) is None for cell in rows[0])
+    columns = _named(rows[0]) if has_head else _first(rows[0])
+    body = rows[1:] if has_head else rows
+    points = [[_cell(row, c, n, delimiter) for c in columns] for n, row in enumerate(body, 1 + has_head)]
+    if len(points) < 2:
+        raise UsageError("a road needs two points or more; give a row for each")
+    if not has_head and len(rows[0]) == WITH_WIDTH and len({point[2] for point in points}) == 1:
+        return [point[:2] for point in points]
+    return points
+
+
+def _named(head: list[str]) -> list[int]:
+    """Columns of x, y and, if there is one, z."""
+    names = [cell.lower() for cell in head]
+    found = [next((i for i, name in enumerate(names) if name in known), None) for known in (X, Y, Z)]
+    if found[0] is None or found[1] is None:
+        if DEGREES & {*names}:
+            raise UsageError("points in degrees on the Earth cannot be used; give x and y in metres")
+        raise UsageError(f"no column of the table is called x or y; there are: {', '.join(head)}")
+    return [column for column in found if column is not None]
+
+
+def _first(row: list[str]) -> list[int]:
+    if not 2 <= len(row) <= WITH_WIDTH:
+        raise UsageError(f"the table has {len(row)} columns and no head; name them x, y, z in its first row")
+    return list(range(min(len(row), 3)))
+
+
+def _cell(row: list[str], column: int, number: int, delimiter: str | None) -> float:
+    text = row[column] if column < len(row) else ""
+    value = _value(text, delimiter)
+    if value is None:
+        raise UsageError(f"row {number} of the table has '{text[:40]}' in place of a number; correct it")
+    return value
+
+
+def _value(text: str, delimiter: str | None) -> float | None:
+    """A number, with a decimal comma too where the comma does not part cells; None where it is none."""
+    try:
+        value = float(text.replace(",", ".") if delimiter in (";", "\t") else text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
