@@ -18,7 +18,15 @@ def versions_of(setup: Setup) -> dict[str, str]:
         "python": platform.python_version(),
         "machine": f"{platform.system()} {platform.machine()}",
         **_libraries(DESIGNING + (DRIVING if setup.drives else ())),
+        **(_beamng() if setup.drives and setup.simulator == "beamng" else {}),
     }
+
+
+def _beamng() -> dict[str, str]:
+    """Its client, and how it is driven; the client's version decides on that of the game."""
+    from roadgpt.drive.simulators.beamng.settings import Settings
+
+    return {**_libraries(("beamngpy",)), "beamng": Settings.of().summary()}
 
 
 @cache

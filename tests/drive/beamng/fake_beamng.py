@@ -62,12 +62,12 @@ class Settings:
 
 
 class FakeBeamNG:
-    """The server. ``transcript`` lists (vehicle or "", type) of all messages, ``unknown`` those not known."""
+    """The server. ``transcript`` lists (vehicle or "", type) of all messages, ``unknown`` those not known, ``broken`` faults of the fake."""
 
     def __init__(self, port=0, user="", **settings):
         self.settings = Settings(**settings)
         self.lock = threading.RLock()
-        self.transcript, self.unknown, self.stepped = [], [], []
+        self.transcript, self.unknown, self.stepped, self.broken = [], [], [], []
         self.scenarios, self.world, self.loaded, self.cameras = {}, None, None, {}
         self.is_running = self.is_paused = False
         self.fps, self.counts, self.quit = None, {}, threading.Event()
@@ -146,6 +146,9 @@ class FakeBeamNG:
                 return handler(self._car(vehicle), message) if vehicle else handler(message)
             except RefusedError as error:
                 return {"bngError": str(error)}
+            except Exception as error:
+                self.broken.append(f"{kind}: {error!r}")
+                return {"bngError": f"the fake broke: {error!r}"}
 
     # --- faults ------------------------------------------------------------------------------------------
 
@@ -207,7 +210,18 @@ class FakeBeamNG:
         return {"type": "Paths", "home": "/fake", "user": f"{self.user or '/fake/user'}/{version}"}
 
     def ge_GetLevels(self, message):
-        return {"type": "GetLevels", "result": [self._level(name) for name in self.settings.levels]}
+        return {"type": "GetLevels", "result": [self._level(name) for name in self._levels()]}
+
+    def _levels(self):
+        """Those that come with the game, and those in the user folder, with their objects."""
+        found = {name: [] for name in self.settings.levels}
+        folder = Path(self.ge_GetEnvironmentPaths({})["user"], "levels")
+        for info in sorted(folder.glob("*/info.json")) if folder.is_dir() else ():
+            json.loads(info.read_text())
+            json.loads((info.parent / "main.materials.json").read_text())
+            files = sorted((info.parent / "main").rglob("items.level.json"))
+            found[info.parent.name] = objects_of("".join(path.read_text() for path in files))
+        return found
 
     def _level(self, name):
         return {"levelName": name, "title": name, "dir": f"/levels/{name}", "size": [256, 256]}
@@ -216,7 +230,7 @@ class FakeBeamNG:
         self.made += 1
         self._remember()
         level, name = message["level"], message["name"]
-        if level not in self.settings.levels:
+        if level not in self._levels():
             raise RefusedError(f"level {level} not found")
         if not name or "/" in name or " " in name:
             raise RefusedError(f"'{name}' is no name of a scenario")
@@ -232,6 +246,7 @@ class FakeBeamNG:
         if message["path"] not in self.scenarios:
             raise RefusedError(f"scenario {message['path']} not found")
         level, objects, _ = self.scenarios[message["path"]]
+        objects = objects + self._levels()[level]
         for each in objects:
             if each["class"] == "BeamNGVehicle" and each["jBeam"] not in VEHICLES:
                 raise RefusedError(f"vehicle {each['jBeam']} not found")

@@ -178,7 +178,7 @@ class Car:
         if route is None:
             return 0.0, 0.0, 1.0  # nothing to drive on: the AI stands still
         if self.plan is None:
-            sideways = G * (0.64 + 2.0 * (self.ai.aggression - 0.7))
+            sideways = G * max(0.64 + 2.0 * (self.ai.aggression - 0.7), 0.2)
             plan = [min(self.ai.limit, math.sqrt(sideways / max(k, 1e-4))) for k in route.bends()]
             for i in reversed(range(len(plan) - 1)):
                 plan[i] = min(plan[i], math.sqrt(plan[i + 1] ** 2 + 2 * 6.0 * 2.0))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.options import (
     SEED,
     files_argument,
@@ -30,6 +31,7 @@ UNREADABLE = 2  # exit status
 @click.option("--seed", type=SEED, default=1, show_default=True, help="Handed to the driver.")
 @world_options()
 @setup_options("driver", "simulator", "keep_driving", "geometry", "rules")
+@beamng_options
 @screen_options
 def command(
     files: tuple[str, ...],

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.dashes import DescribedCommand
 from roadgpt.cli.options import (
     ROADS,
@@ -36,6 +37,7 @@ from roadgpt.cli.work import Wish, work_off
 @axes_option
 @formats_option("--export")
 @chat_options
+@beamng_options
 @screen_options
 def command(
     words: tuple[str, ...],

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from roadgpt.drive.simulators.beamng.settings import Settings
 from roadgpt.drive.simulators.beamng.wire import is_taken
-from roadgpt.errors import SimulationError, UsageError
+from roadgpt.errors import PartError, SimulationError
 
 BINARIES = {
     "Linux": ("BinLinux/BeamNG.tech.x64", "BinLinux/BeamNG.x64", "BinLinux/BeamNG.drive.x64"),
@@ -28,13 +28,13 @@ def binary_of(home: Path) -> Path:
     """BeamNG's program in its folder.
 
     Raises:
-        UsageError: there is none.
+        PartError: there is none.
     """
     names = BINARIES.get(platform.system(), BINARIES["Linux"])
     for name in names:
         if (home / name).is_file():
             return home / name
-    raise UsageError(f"no BeamNG in {home}: --beamng-home is the folder that holds {names[0]}")
+    raise PartError(f"no BeamNG in {home}: --beamng-home is the folder that holds {names[0]}")
 
 
 def command_line(binary: Path, settings: Settings, port: int, user: Path | None) -> list[str]:

@@ -68,9 +68,9 @@ class Session:
         """See that a BeamNG is there that can take a road.
 
         Raises:
-            PartError: beamngpy is not installed.
-            UsageError: BeamNG is not where it is said to be.
-            SimulationError: it does not start, is another version, or is not BeamNG.tech.
+            PartError: beamngpy is not installed or of another version than BeamNG, BeamNG is not where it is
+                said to be or not BeamNG.tech, or has no level for our roads: no road could be driven.
+            SimulationError: it does not start or does not answer.
         """
         if self.bng is not None and self.settings.launches and self.roads >= self.settings.recycle:
             self.close()
@@ -106,17 +106,17 @@ class Session:
                 f"BeamNG on {host}:{port} does not answer ({error}); end it and start it anew"
             ) from error
         if theirs != ours:
-            raise SimulationError(cure(theirs, ours, version("beamngpy")))
+            raise PartError(cure(theirs, ours, version("beamngpy")))
 
     def _prepare(self) -> None:
         """Choose the level, and have physics in steps."""
         if self.bng.tech_enabled() is False:
-            raise SimulationError("this is BeamNG.drive or has no tech.key; RoadGPT needs BeamNG.tech")
+            raise PartError("this is BeamNG.drive or has no tech.key; RoadGPT needs BeamNG.tech")
         there = set(self.bng.scenario.get_levels())
         wanted = [self.settings.level] if self.settings.level else list(LEVELS)
         self.level = next((name for name in wanted if name in there), "")
         if not self.level:
-            raise SimulationError(
+            raise PartError(
                 f"BeamNG has no level {' or '.join(wanted)}; name another with --beamng-level, there are: "
                 f"{', '.join(sorted(there)[:20])}"
             )

@@ -93,7 +93,7 @@ class Stage:
             ahead, left, up = body.node
             left_row, back_row, up_row = turn
             place = scene.start - ahead * back_row + left * left_row + (up + body.height + DROP) * up_row
-        return _triple(place), _quaternion(turn)
+        return _triple(place), as_quaternion(turn)
 
     def _settle(self) -> None:
         """Let the car come to rest; the first one is measured, and put where it should be."""
@@ -261,7 +261,8 @@ def _triple(point: FloatArray) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _quaternion(matrix: FloatArray) -> tuple[float, float, float, float]:
+def as_quaternion(matrix: FloatArray) -> tuple[float, float, float, float]:
+    """x, y, z, w of a rotation matrix, as the client wants a car's attitude."""
     from scipy.spatial.transform import Rotation
 
     x, y, z, w = Rotation.from_matrix(matrix).as_quat().tolist()

@@ -1,0 +1,59 @@
+"""``roadgpt beamng``: is there a BeamNG, and does it do what RoadGPT expects of it?"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from roadgpt.cli.beamng import beamng_options
+from roadgpt.cli.options import folder, whole
+from roadgpt.errors import RoadGPTError
+
+if TYPE_CHECKING:
+    from roadgpt.drive.simulators.beamng.selftest import Check
+
+
+@click.group()
+def command() -> None:
+    """Try out a BeamNG.tech that is installed."""
+
+
+@command.command()
+@click.option(
+    "--out",
+    type=folder,
+    default=Path(),
+    show_default="this folder",
+    help="Folder for the report and pictures.",
+)
+@click.option(
+    "--repeats",
+    type=whole(2, 1000, "a number of runs"),
+    default=5,
+    show_default=True,
+    help="Of one road, for the spread.",
+)
+@beamng_options
+def selftest(out: Path, repeats: int) -> None:
+    """Try with a real BeamNG what could not be tried without one, and write a report of it.
+
+    Connection, level, BeamNG's AI on flat, floating and steep roads, the spread of repeated runs, a driver of
+    ours, a picture of the road, a level folder. Takes some minutes. The exit status is 0 where all is fine.
+
+    \b
+    roadgpt beamng selftest --beamng-home C:\\BeamNG.tech.v0.39 --beamng-user C:\\BeamNG.user
+    """
+    from roadgpt.drive.simulators.beamng import Settings
+    from roadgpt.drive.simulators.beamng.selftest import REPORT, run
+
+    out.mkdir(parents=True, exist_ok=True)
+    checks = run(Settings.of(), out, repeats, _tell)
+    click.echo(f"report: {out / f'{REPORT}.md'} and .json; please send it to RoadGPT's makers")
+    problems = sum(not check.is_fine for check in checks)
+    if problems:
+        raise RoadGPTError(f"{problems} of {len(checks)} checks found a problem; see the report")
+
+
+def _tell(check: "Check") -> None:
+    mark = click.style("ok     ", fg="green") if check.is_fine else click.style("PROBLEM", fg="red")
+    click.echo(f"{mark}  {check.about}: {check.said}")
