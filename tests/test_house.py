@@ -180,7 +180,8 @@ def test_the_wheel_holds_the_package_its_types_its_parts_and_its_licence(tmp_pat
     with zipfile.ZipFile(wheel) as archive:
         inside = {*archive.namelist()}
         (points,) = [archive.read(name).decode() for name in inside if name.endswith("entry_points.txt")]
-    assert {f"roadgpt/{path.relative_to(SOURCE).as_posix()}" for path in sources()} <= inside
+    files = {path for path in SOURCE.rglob("*") if path.is_file() and "__pycache__" not in path.parts}
+    assert {f"roadgpt/{path.relative_to(SOURCE).as_posix()}" for path in files} <= inside
     assert "roadgpt/py.typed" in inside
     assert any(name.endswith("licenses/LICENSE") for name in inside)
     assert all(f"[roadgpt.{shelf}]" in points for shelf in plugins.SHELVES)

@@ -4,6 +4,8 @@ birds_eye.png          the road from above, the driven path by speed, the place 
 height.png             distance against height
 curvature_grade.png    curvature, grade and speed along the road, with the limits of the rules
 overview.png           all roads of a campaign
+
+``view`` makes a page with the road in 3-D instead; its verb is ``view.write``.
 """
 
 from dataclasses import dataclass

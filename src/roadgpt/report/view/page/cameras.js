@@ -39,7 +39,7 @@ function makeCameras(stage, trip, onDrag) {
       .multiply(new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(1, 0, 0), pose.roll));
     const car = spot(pose);
     const eye = new THREE.Vector3(EYE.x + trip.car.ahead, 0, EYE.z - trip.car.height).applyQuaternion(turn);
-    const ahead = new THREE.Vector3(1, 0, -0.07).applyQuaternion(turn);
+    const ahead = new THREE.Vector3(1, 0, camera.aspect < 0.9 ? 0.05 : -0.07).applyQuaternion(turn);
     camera.position.copy(car).add(eye);
     camera.up.set(0, 0, 1).applyQuaternion(turn);
     camera.lookAt(camera.position.clone().add(ahead));

@@ -45,14 +45,18 @@ function makePanel(scene, fastest, { moveTo, wentFree }) {
 
 function stageIn(section, scene, trip, fastest) {
   const canvas = section.querySelector(".scene");
-  try {
-    return makeStage(canvas, scene, trip, fastest);
-  } catch (error) {
-    if (document.createElement("canvas").getContext("webgl2")) throw error;
-    section.querySelector(".nothing").hidden = false;
-    for (const name of [".scene", ".hint"]) section.querySelector(name).hidden = true;
-    return null;
-  }
+  if (drawsSolids()) return makeStage(canvas, scene, trip, fastest);
+  section.querySelector(".nothing").hidden = false;
+  for (const name of [".scene", ".hint"]) section.querySelector(name).hidden = true;
+  return null;
+}
+
+// Has this browser WebGL 2? What was made to find out is given back at once.
+function drawsSolids() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  const release = context && context.getExtension("WEBGL_lose_context");
+  if (release) release.loseContext();
+  return Boolean(context);
 }
 
 // Texts of a description are set as text, never as markup.
@@ -83,7 +87,7 @@ function tell(find, scene, trip, pose, time) {
     : `of ${scene.road.length.toFixed(0)} m`;
   const lane = find(".hud .lane");
   lane.textContent = trip.isDriven
-    ? share > 0 ? `${share} % outside its lane` : `${Math.abs(middle).toFixed(2)} m ${side} of its lane's middle`
+    ? share > 0 ? `${share} % outside its lane` : `${Math.abs(middle).toFixed(2)} m ${side} of mid-lane`
     : "nobody drove here: a look along the lane";
   lane.classList.toggle("out", share > 0);
 }
