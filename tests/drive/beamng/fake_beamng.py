@@ -62,7 +62,9 @@ class Settings:
 
 
 class FakeBeamNG:
-    """The server. ``transcript`` lists (vehicle or "", type) of all messages, ``unknown`` those not known, ``broken`` faults of the fake."""
+    """The server. ``transcript`` lists (vehicle or "", type) of all messages, ``unknown`` those not known,
+    ``broken`` faults of the fake itself.
+    """
 
     def __init__(self, port=0, user="", **settings):
         self.settings = Settings(**settings)

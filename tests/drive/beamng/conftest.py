@@ -1,0 +1,37 @@
+"""Fake BeamNGs for tests; no BeamNG that a test started outlives it."""
+
+import socket
+from collections.abc import Iterator
+
+import pytest
+
+from roadgpt.drive.simulators.beamng.session import leave_all
+
+
+@pytest.fixture(autouse=True)
+def _left() -> Iterator[None]:
+    yield
+    leave_all()
+
+
+@pytest.fixture(autouse=True)
+def _environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing of the user's own settings."""
+    import os
+
+    for name in list(os.environ):
+        if name.startswith("ROADGPT_BEAMNG_") or name == "BNG_HOME":
+            monkeypatch.delenv(name)
+
+
+@pytest.fixture
+def port() -> int:
+    """One that nobody listens on; of a range in which the system itself hands out none."""
+    for number in range(21000, 32000, 7):
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", number))
+            except OSError:
+                continue
+            return number
+    raise AssertionError

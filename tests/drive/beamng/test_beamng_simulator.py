@@ -1,0 +1,270 @@
+"""The simulator 'beamng' with the unmodified client against the fake: scene, drives, verdicts, faults."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from beamngpy.connection import Connection
+
+from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
+from exported import HILLY
+from roadgpt.drive import Camera, Command, View
+from roadgpt.drive.drivers.beamng_like import BeamngLike
+from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
+from roadgpt.drive.simulators.beamng.session import leave_all, session_of
+from roadgpt.errors import DriverError, PartError, SimulationError, UsageError
+from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.verdict import judge
+
+OURS = Connection.PROTOCOL_VERSION
+WORLD = World()
+HILLS = build(HILLY)
+SHORT = Road.through([[40, 100], [70, 100], [100, 100]])
+
+
+def hairpin() -> Road:
+    """A long straight into a bend of 15 m radius."""
+    bend = Segment(distance=45, direction="left", turn_degrees=170, radius=15)
+    straight = Segment(distance=90, direction="straight")
+    return build(Design(starting_point=(20, 100, -10), theta=0, segments=(straight, bend, straight)))
+
+
+class Spy:
+    """Drives well, and keeps what it saw."""
+
+    def __init__(self) -> None:
+        self.inside = Reference()
+        self.views: list[View] = []
+
+    def start(self, road: Road, world: World, seed: int) -> None:
+        self.inside.start(road, world, seed)
+
+    def steer(self, view: View) -> Command:
+        self.views.append(view)
+        return self.inside.steer(view)
+
+
+@pytest.fixture
+def fake() -> Iterator[FakeBeamNG]:
+    with FakeBeamNG(protocol=OURS) as server:
+        yield server
+        leave_all()
+        assert server.unknown == []
+        assert server.broken == []
+
+
+def simulator(fake: FakeBeamNG, **settings: Any) -> BeamngSimulator:
+    return BeamngSimulator(Settings(port=fake.port, **settings))
+
+
+def test_beamngs_ai_drives_in_place_of_its_imitation(fake: FakeBeamNG) -> None:
+    drive = simulator(fake).simulate(HILLS, WORLD, BeamngLike(), 7)
+    assert (drive.driver, drive.simulator, drive.ended) == ("beamng_ai", "beamng", "goal")
+    assert judge(HILLS, drive, WORLD).kept
+    kinds = {kind for _, kind in fake.transcript}
+    assert {"SetAiWaypoint", "SetDriveInLane", "SetAiAggression", "SetAiSpeed", "FPSLimit"} <= kinds
+
+
+def test_the_imitation_drives_where_it_is_told_to(fake: FakeBeamNG) -> None:
+    drive = simulator(fake, imitation=True).simulate(SHORT, WORLD, BeamngLike(), 7)
+    assert drive.driver == "beamng_like"
+    assert ("ego", "SetAiWaypoint") not in fake.transcript
+
+
+def test_the_drive_starts_at_rest_at_its_place_in_the_right_lane(fake: FakeBeamNG) -> None:
+    drive = simulator(fake).simulate(HILLS, WORLD, Reference(), 7)
+    assert drive["s"][0] == pytest.approx(2.5, abs=0.05)
+    assert drive["t"][0] == pytest.approx(-2.0, abs=0.02)
+    assert drive["speed"][0] < 0.05
+    assert drive["time"][0] == 0.0
+    assert drive["z"][0] - HILLS.at(2.5)[2] == pytest.approx(0.56, abs=0.02)
+    assert drive["pitch"][0] == pytest.approx(math.atan(float(HILLS.grade(2.5))), abs=0.01)
+    assert np.diff(drive["time"])[:-1] == pytest.approx(0.02)
+    assert drive.car[:3] == pytest.approx((4.70, 1.86, -0.10), abs=1e-6)
+
+
+def test_speeds_and_rates_are_those_of_the_positions(fake: FakeBeamNG) -> None:
+    drive = simulator(fake).simulate(HILLS, WORLD, Reference(), 7)
+    time = drive["time"]
+    moved = np.hypot(np.gradient(drive["x"], time), np.gradient(drive["y"], time))
+    level = np.hypot(drive["vx"], drive["vy"]) * np.cos(drive["pitch"])
+    assert np.median(np.abs(moved - level)[5:-5]) < 0.05
+    turned = np.gradient(np.unwrap(drive["heading"]), time)
+    assert np.median(np.abs(turned - drive["yaw_rate"])) < 0.01
+    s, t = HILLS.locate(drive["x"], drive["y"])
+    assert drive["s"] == pytest.approx(s, abs=0.01)
+    assert drive["t"] == pytest.approx(t, abs=0.01)
+
+
+def test_the_same_road_is_driven_the_same_way_and_in_one_session(fake: FakeBeamNG) -> None:
+    one, other = (simulator(fake).simulate(SHORT, WORLD, Reference(), 7) for _ in range(2))
+    assert one["x"] == pytest.approx(other["x"], abs=1e-6)
+    assert [kind for _, kind in fake.transcript].count("GetSystemInfo") == 1
+    assert fake.scenarios == {}  # cleared away
+    assert fake.world is None
+
+
+def test_the_goal_is_eight_metres_before_the_end(fake: FakeBeamNG) -> None:
+    drive = simulator(fake, rate=20).simulate(SHORT, WORLD, Reference(), 7)
+    end = SHORT.at(SHORT.length)[:2]
+    assert np.hypot(drive["x"][-1] - end[0], drive["y"][-1] - end[1]) == pytest.approx(8.0, abs=0.001)
+
+
+def test_a_road_on_the_floor_lies_on_the_levels_ground(fake: FakeBeamNG) -> None:
+    low = Road.through([[40, 100, -28], [70, 100, -28], [110, 100, -28]])
+    drive = simulator(fake).simulate(low, WORLD, Reference(), 7)
+    assert drive["z"] == pytest.approx(-28 + 0.56, abs=0.05)
+
+
+def test_too_fast_into_a_bend_is_out_of_the_lane_at_the_very_moment(fake: FakeBeamNG) -> None:
+    road, times = hairpin(), []
+    for rate in (20, 50, 200):
+        drive = simulator(fake, aggression=1.0, rate=rate).simulate(road, WORLD, BeamngLike(), 7)
+        verdict = judge(road, drive, WORLD)
+        assert (drive.ended, verdict.outcome, verdict.side) == ("out_of_lane", "FAIL", "right")
+        assert drive["outside"][-1] == pytest.approx(WORLD.oob_tolerance, abs=1e-3)
+        times.append(drive.duration)
+    # interpolated: 50 ms between samples cost no 50 ms of doubt
+    assert max(times) - min(times) < 0.03
+
+
+def test_keep_driving_goes_on_and_keeps_the_moment(fake: FakeBeamNG) -> None:
+    drive = simulator(fake, aggression=1.0, rate=20).simulate(hairpin(), WORLD, BeamngLike(), 7, True)
+    assert drive.ended != "out_of_lane"
+    first = int(np.argmax(drive["outside"] > WORLD.oob_tolerance))
+    assert drive["outside"][first] == pytest.approx(WORLD.oob_tolerance, abs=1e-3)
+    assert (np.diff(drive["time"]) > 0).all()
+
+
+def test_a_car_that_leaves_a_floating_road_falls(fake: FakeBeamNG) -> None:
+    class Away:
+        def steer(self, view: View) -> Command:
+            return Command(-0.2, 0.6)
+
+    road = Road.through([[40, 100, 0], [90, 100, 0], [140, 100, 0]])
+    drive = simulator(fake).simulate(road, World(verge=0), Away(), 7, keep_driving=True)
+    assert drive.ended == "fell"
+    assert drive["t"][-1] < -4.0
+
+
+def test_who_does_not_move_is_stuck_and_an_ai_that_never_sets_off_is_an_error(fake: FakeBeamNG) -> None:
+    class Asleep:
+        def steer(self, view: View) -> Command:
+            return Command(0.0, 0.0, 1.0)
+
+    assert simulator(fake).simulate(SHORT, WORLD, Asleep(), 7).ended == "stuck"
+    with FakeBeamNG(protocol=OURS, is_blind=True) as blind:
+        with pytest.raises(SimulationError, match=r"did not set off.*selftest"):
+            simulator(blind).simulate(SHORT, WORLD, BeamngLike(), 7)
+        leave_all()
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_driver_steers_to_its_left_whichever_way_the_input_turns(sign: float) -> None:
+    spy = Spy()
+    with FakeBeamNG(protocol=OURS, steer_sign=sign) as fake:
+        drive = simulator(fake).simulate(HILLS, WORLD, spy, 7)
+        gain = session_of(Settings(port=fake.port)).gain
+        leave_all()
+    assert gain == pytest.approx(sign * 0.6, rel=0.05)
+    assert drive.ended == "goal"
+    assert np.abs(drive["t"] + 2.0).max() < 0.5
+    bend = drive["steer"] - np.arctan(2.83 * drive["yaw_rate"] / np.maximum(drive["vx"], 1.0))
+    assert np.abs(bend[drive["vx"] > 5]).max() < 0.05
+    assert {view.dt for view in spy.views} == {0.02}
+    assert all(view.image is None for view in spy.views)
+    assert spy.views[10].steer == pytest.approx(drive["steer"][10])
+
+
+def test_a_driver_that_asks_for_a_camera_sees(fake: FakeBeamNG) -> None:
+    spy = Spy()
+    spy.camera = Camera(width=32, height=16)  # type: ignore[attr-defined]
+    simulator(fake).simulate(SHORT, WORLD, spy, 7)
+    shades = [int(view.image[0, 0, 0]) for view in spy.views]
+    assert {view.image.shape for view in spy.views} == {(16, 32, 3)}
+    assert spy.views[0].image.dtype == np.uint8
+    assert len(set(shades)) > 50  # a new image each time
+    assert fake.cameras == {}
+    spy.camera = "front"  # type: ignore[attr-defined]
+    with pytest.raises(UsageError, match=r"roadgpt\.drive\.Camera"):
+        simulator(fake).simulate(SHORT, WORLD, spy, 7)
+
+
+def test_a_driver_that_fails_costs_its_drive_and_not_the_session(fake: FakeBeamNG) -> None:
+    class Broken:
+        def steer(self, view: View) -> Command:
+            raise ValueError("no idea")
+
+    with pytest.raises(DriverError, match="no idea"):
+        simulator(fake).simulate(SHORT, WORLD, Broken(), 7)
+    assert simulator(fake).simulate(SHORT, WORLD, Reference(), 7).ended == "goal"
+    assert [kind for _, kind in fake.transcript].count("GetSystemInfo") == 1
+
+
+FAULTS = ["hang", "drop", "die", "error", "value_error", "wrong_ack", "half", "garbage"]
+PLACES = [
+    ("SensorRequest", 40),
+    ("Step", 30),
+    ("LoadScenario", 1),
+    ("CreateScenario", 1),
+    ("SetAiWaypoint", 1),
+]
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+@pytest.mark.parametrize(("on", "nth"), PLACES[:2])
+def test_a_fault_costs_one_more_try(tmp_path: Path, port: int, kind: str, on: str, nth: int) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
+    made = BeamngSimulator(Settings(home=home, port=port, rate=20, poll_timeout=0.6, load_timeout=5))
+    drive = made.simulate(SHORT, WORLD, BeamngLike(), 7)
+    assert drive.ended == "goal"
+    assert len((home / "started.jsonl").read_text().splitlines()) == 2
+    assert len(drive) == pytest.approx(drive.duration * 20, abs=2)
+
+
+@pytest.mark.parametrize(("on", "nth"), PLACES[2:])
+@pytest.mark.parametrize("kind", ["hang", "die"])
+def test_a_fault_while_loading_costs_one_more_try(
+    tmp_path: Path, port: int, kind: str, on: str, nth: int
+) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
+    made = BeamngSimulator(Settings(home=home, port=port, rate=20, poll_timeout=0.6, load_timeout=0.6))
+    assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
+
+
+def test_a_second_fault_is_an_error_of_this_road_and_the_next_is_driven(tmp_path: Path, port: int) -> None:
+    faults = [Fault("die", "Step", 1, 9), Fault("hang", "SensorRequest", 2, 9)]
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=faults)
+    made = BeamngSimulator(Settings(home=home, port=port, rate=20, poll_timeout=0.6))
+    with pytest.raises(
+        SimulationError, match=r"failed 2 times .* no answer within 0\.6 s while it was driving"
+    ):
+        made.simulate(SHORT, WORLD, BeamngLike(), 7)
+    assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
+
+
+def test_somebody_elses_beamng_that_hangs_is_left_and_found_again(port: int) -> None:
+    with FakeBeamNG(port=port, protocol=OURS, faults=(Fault("hang", "Step", 1, 20),)) as fake:
+        made = simulator(fake, poll_timeout=0.6)
+        assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
+        leave_all()
+
+
+def test_beamng_is_started_anew_after_so_many_roads(tmp_path: Path, port: int) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS)
+    made = BeamngSimulator(Settings(home=home, port=port, rate=20, recycle=2))
+    for _ in range(5):
+        assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
+    assert len((home / "started.jsonl").read_text().splitlines()) == 3
+
+
+def test_a_level_without_the_ground_that_we_know_can_be_named(fake: FakeBeamNG) -> None:
+    assert simulator(fake, level="smallgrid").simulate(SHORT, WORLD, Reference(), 7).ended == "goal"
+    with pytest.raises(
+        PartError, match="no level atlantis; name another with --beamng-level, there are: small"
+    ):
+        simulator(fake, level="atlantis").simulate(SHORT, WORLD, Reference(), 7)
