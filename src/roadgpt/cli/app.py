@@ -30,6 +30,7 @@ COMMANDS = {
     "show": "Tell what is in the folder of a run or a campaign.",
     "learn": "Descriptions by hand and by the thousand; train, judge and export a reader of your own.",
     "sbft": "Let a generator of the SBFT tool competition loose on the simulator.",
+    "sdc": "Serve the competition on choosing tests of self-driving cars.",
     "parts": "List what is installed on each shelf.",
     "config": "Tell which language model is asked, and where each setting comes from.",
     "beamng": "Try out a BeamNG.tech that is installed.",

@@ -1,0 +1,69 @@
+"""``roadgpt sdc``: the service of the SDC testing competition."""
+
+import logging
+
+import click
+
+from roadgpt.cli.flags import measure
+from roadgpt.cli.options import whole
+from roadgpt.errors import UsageError
+
+EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
+KMH = 3.6
+
+
+@click.group()
+def command() -> None:
+    """Serve the competition on choosing tests of self-driving cars."""
+
+
+@command.command()
+@click.option(
+    "--port", type=whole(0, 65_535, "a port"), default=4545, show_default=True, help="0: one that is free."
+)
+@click.option(
+    "--host",
+    default="127.0.0.1",
+    show_default=True,
+    help="Who may ask: 127.0.0.1, this machine; 0.0.0.0, all (in a container).",
+)
+@click.option(
+    "--speed-limit",
+    type=measure(10, 300, "km/h"),
+    default=120,
+    show_default=True,
+    help="For the driver, km/h.",
+)
+@click.option(
+    "--oob-tolerance",
+    type=measure(0, 1, above=True),
+    default=0.5,
+    show_default=True,
+    help="Share of the car that may be outside its lane.",
+)
+@click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
+def serve(port: int, host: str, speed_limit: float, oob_tolerance: float, quiet: bool) -> None:
+    """Select or prioritise roads by how likely the car is to leave its lane, over gRPC.
+
+    Every road is driven in the embedded simulator. Outcomes that the evaluator tells are learnt from. Ctrl-C
+    ends it.
+
+    \b
+    roadgpt sdc serve --port 4545
+    roadgpt sdc serve --host 0.0.0.0
+    """
+    try:
+        from roadgpt.sbft.sdc.service import serve as serve_on
+    except ImportError as error:
+        raise UsageError(f"{EXTRA} ({error})") from error
+    from roadgpt.sbft.sdc.risk import PLAIN
+
+    logging.basicConfig(level=logging.WARNING if quiet else logging.INFO, format="%(asctime)s %(message)s")
+    world = PLAIN.model_copy(update={"speed_limit": speed_limit / KMH, "oob_tolerance": oob_tolerance})
+    server, got = serve_on(host, port, world)
+    if not quiet:
+        click.echo(f"listening on {host}:{got}")
+    try:
+        server.wait_for_termination()
+    finally:
+        server.stop(grace=0)

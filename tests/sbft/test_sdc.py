@@ -1,0 +1,201 @@
+"""The SDC service over loopback, asked by a client that gRPC's own compiler made from competition.proto."""
+
+import importlib
+import math
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import grpc
+import numpy as np
+import pytest
+from google.protobuf import descriptor_pb2
+from grpc_tools import protoc
+
+from roadgpt.errors import UsageError
+from roadgpt.sbft.sdc import messages
+from roadgpt.sbft.sdc.risk import BY_DRIVE, UNKNOWN, Signs, learnt, order, signs_of
+from roadgpt.sbft.sdc.service import serve
+
+PROTO = Path(messages.__file__).with_name("competition.proto")
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Any, Any]]:
+    """(compiled messages, a stub that is connected to a service of ours)"""
+    folder = tmp_path_factory.mktemp("compiled")
+    words = [
+        "protoc",
+        f"-I{PROTO.parent}",
+        f"--python_out={folder}",
+        f"--grpc_python_out={folder}",
+        PROTO.name,
+    ]
+    assert protoc.main(words) == 0
+    sys.path.insert(0, str(folder))
+    try:
+        compiled = importlib.import_module("competition_pb2")
+        stubs = importlib.import_module("competition_pb2_grpc")
+    finally:
+        sys.path.remove(str(folder))
+    server, port = serve("127.0.0.1", 0)
+    with grpc.insecure_channel(f"127.0.0.1:{port}") as channel:
+        yield compiled, stubs.CompetitionToolStub(channel)
+    server.stop(0).wait()
+
+
+def arc(radius: float, degrees: float = 90.0) -> list[tuple[float, float]]:
+    """Straight, a bend to the left, straight; 2 m apart."""
+    points = [(2.0 * i, 0.0) for i in range(20)]
+    steps = max(2, round(math.radians(degrees) * radius / 2))
+    angles = [math.radians(degrees) * i / steps for i in range(steps + 1)]
+    points += [(40 + radius * math.sin(a), radius - radius * math.cos(a)) for a in angles]
+    (x, y), a = points[-1], angles[-1]
+    return points + [(x + 2 * i * math.cos(a), y + 2 * i * math.sin(a)) for i in range(1, 20)]
+
+
+def case_of(compiled: Any, name: str, points: list[tuple[float, float]], shuffled: bool = False) -> Any:
+    made = [compiled.RoadPoint(sequenceNumber=i, x=x, y=y) for i, (x, y) in enumerate(points)]
+    return compiled.SDCTestCase(testId=name, roadPoints=made[::-1] if shuffled else made)
+
+
+def test_the_table_says_what_the_file_says(tmp_path: Path) -> None:
+    out = tmp_path / "set"
+    words = ["protoc", f"-I{PROTO.parent}", f"--descriptor_set_out={out}", PROTO.name]
+    assert protoc.main(words) == 0
+    (compiled,) = descriptor_pb2.FileDescriptorSet.FromString(out.read_bytes()).file
+    ours = messages.description()
+    for file in (compiled, ours):
+        for message in file.message_type:
+            for field in message.field:
+                field.ClearField("json_name")
+    assert {m.name: m for m in compiled.message_type} == {m.name: m for m in ours.message_type}
+    for theirs, own in zip(compiled.service[0].method, ours.service[0].method, strict=True):
+        theirs.ClearField("options")
+        assert theirs == own
+    assert compiled.service[0].name == ours.service[0].name
+    assert not compiled.package
+
+
+def test_it_says_its_name(client: tuple[Any, Any]) -> None:
+    compiled, stub = client
+    assert stub.Name(compiled.Empty()).name == "RoadGPT"
+
+
+def test_tests_come_back_the_likeliest_to_fail_first(client: tuple[Any, Any]) -> None:
+    compiled, stub = client
+    roads = {"gentle": arc(120, 20), "sharp": arc(16), "straight": arc(1e5, 0.01), "medium": arc(45, 60)}
+    asked = [case_of(compiled, name, points) for name, points in roads.items()]
+    answer = [reply.testId for reply in stub.Prioritize(iter(asked))]
+    assert sorted(answer) == sorted(roads)
+    assert answer[0] == "sharp"
+    assert answer.index("medium") < answer.index("straight")
+    chosen = [reply.testId for reply in stub.Select(iter(asked))]
+    assert "sharp" in chosen
+    assert "straight" not in chosen
+
+
+def test_points_are_taken_by_their_numbers(client: tuple[Any, Any]) -> None:
+    compiled, stub = client
+    sharp = case_of(compiled, "sharp", arc(16), shuffled=True)
+    asked = [case_of(compiled, "straight", arc(1e5, 0.01)), sharp]
+    assert [reply.testId for reply in stub.Prioritize(iter(asked))] == ["sharp", "straight"]
+
+
+def test_every_test_is_answered_whatever_its_road(client: tuple[Any, Any]) -> None:
+    compiled, stub = client
+    roads = {
+        "none": [],
+        "one": [(1.0, 1.0)],
+        "same": [(5.0, 5.0)] * 4,
+        "double": [(0.0, 0.0), (30.0, 0.0), (30.0, 0.0), (60.0, 1.0)],
+        "nan": [(0.0, 0.0), (math.nan, 3.0), (9.0, 9.0)],
+        "huge": [(0.0, 0.0), (3e38, 3e38)],
+        "tiny": [(0.0, 0.0), (1.0, 0.0)],
+        "knot": [(0.0, 0.0), (20.0, 0.0), (0.0, 1.0), (20.0, 1.0), (0.0, 2.0)],
+    }
+    asked = [case_of(compiled, name, points) for name, points in roads.items()]
+    assert sorted(reply.testId for reply in stub.Prioritize(iter(asked))) == sorted(roads)
+    assert [reply.testId for reply in stub.Prioritize(iter([]))] == []
+    assert [reply.testId for reply in stub.Select(iter([]))] == []
+    assert len([*stub.Select(iter(asked[:3]))]) >= 1
+
+
+def test_it_learns_from_known_outcomes(client: tuple[Any, Any]) -> None:
+    compiled, stub = client
+    # An odd car, which fails on gentle roads only: only what is told can say so.
+    oracles = [
+        compiled.Oracle(testCase=case_of(compiled, f"{radius}", arc(radius, 40)), hasFailed=radius > 60)
+        for radius in np.linspace(20, 100, 24).tolist()
+    ]
+    try:
+        assert stub.Initialize(iter(oracles)).ok
+        asked = [case_of(compiled, name, arc(radius, 40)) for name, radius in (("a", 25.0), ("b", 95.0))]
+        assert [reply.testId for reply in stub.Prioritize(iter(asked))] == ["b", "a"]
+        assert [reply.testId for reply in stub.Select(iter(asked))] == ["b"]
+    finally:
+        assert stub.Initialize(iter([])).ok
+    assert [reply.testId for reply in stub.Prioritize(iter(asked))] == ["a", "b"]
+
+
+def test_weighing_finds_the_sign_that_counts() -> None:
+    rng = np.random.default_rng(3)
+    table = rng.normal(size=(200, len(Signs._fields)))
+    failed = table[:, 2] + 0.3 * rng.normal(size=200) > 0.5
+    weighing = learnt([Signs(*row) for row in table], failed.tolist())
+    scores = weighing.scores([Signs(*row) for row in table])
+    first = order(scores)[: int(failed.sum())]
+    assert failed[first].mean() > 0.8
+    chosen = weighing.worth([Signs(*row) for row in table])
+    assert failed[chosen].mean() > 0.75
+    assert failed[chosen].sum() > 0.75 * failed.sum()
+
+
+def test_too_little_teaches_nothing() -> None:
+    assert learnt([UNKNOWN] * 5, [True, False] * 2 + [True]) is BY_DRIVE
+    assert learnt([UNKNOWN] * 50, [True] * 50) is BY_DRIVE
+    assert np.isfinite(learnt([UNKNOWN] * 50, [True, False] * 25).scores([UNKNOWN])).all()
+
+
+def test_the_same_road_has_the_same_signs() -> None:
+    assert signs_of(arc(30)) == signs_of(arc(30))
+    assert signs_of(arc(16)).near > signs_of(arc(60)).near
+    # the spline bends more where arcs begin
+    assert signs_of(arc(20)).tightest == pytest.approx(1 / 20, rel=0.15)
+
+
+def test_a_port_in_use_is_told_of() -> None:
+    server, port = serve("127.0.0.1", 0)
+    try:
+        import socket
+
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            with pytest.raises(UsageError, match="cannot listen"):
+                serve("127.0.0.1", taken.getsockname()[1])
+    finally:
+        server.stop(0).wait()
+    assert port > 0
+
+
+def test_the_command_serves_until_it_is_stopped() -> None:
+    code = "from roadgpt.cli import main; main()"
+    command = [sys.executable, "-c", code, "sdc", "serve", "--port", "0"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        said = process.stdout.readline()
+        address = said.removeprefix("listening on ").strip()
+        with grpc.insecure_channel(address) as channel:
+            ask = channel.unary_unary(
+                "/CompetitionTool/Name",
+                request_serializer=messages.message("Empty").SerializeToString,
+                response_deserializer=messages.message("NameReply").FromString,
+            )
+            assert ask(messages.message("Empty")(), timeout=30).name == "RoadGPT"
+    finally:
+        process.terminate()
+        process.communicate(timeout=30)
