@@ -52,7 +52,9 @@ class Budget:
         """The first two exist for the sake of their names; the competition has not used them since 2022."""
         self.generation_budget = generation_budget
         self.execution_budget = execution_budget
-        self.time_budget = time_budget
+        self._has_clock = time_budget is not None
+        self.time_budget = PER_TEST * (test_budget or 0) if time_budget is None else time_budget
+        """Seconds; generators multiply it, so it is always a number."""
         self.test_budget = test_budget
         self.tests = 0
         self.start_real_time = time.monotonic()
@@ -67,7 +69,7 @@ class Budget:
 
     def get_remaining_real_time(self) -> float:
         """Seconds."""
-        if self.time_budget is not None:
+        if self._has_clock:
             return self.time_budget - (time.monotonic() - self.start_real_time)
         return PER_TEST * max((self.test_budget or 0) - self.tests, 0)
 

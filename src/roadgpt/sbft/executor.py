@@ -62,6 +62,8 @@ class AbstractTestExecutor:
         self.test_validator = TestValidator(map_size)
         self.road_visualizer: Any = None
         self.timeout_forced = False
+        self.start_time = time.time()
+        self.beamng_home = self.beamng_user = None
         self.start_generation_time: float | None = time.monotonic()
         self._ask = ask
         self._lock = threading.Lock()
@@ -69,6 +71,7 @@ class AbstractTestExecutor:
     def start(self) -> None:
         """The budget runs from now on."""
         self.time_budget.start()
+        self.start_time = time.time()
         self.start_generation_time = time.monotonic()
 
     def execute_test(self, the_test: Any) -> Tried:

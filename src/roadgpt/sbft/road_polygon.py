@@ -34,6 +34,13 @@ class RoadPolygon:
         return _area(self.left, self.right)
 
     @cached_property
+    def polygons(self) -> "list[Polygon]":
+        """The road between each two nodes."""
+        from shapely.geometry import Polygon
+
+        return [Polygon(quad) for quad in quads_of(self.left, self.right)]
+
+    @cached_property
     def right_polygon(self) -> "Polygon":
         """The right lane."""
         return _area(self.nodes, self.right)
