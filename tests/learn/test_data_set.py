@@ -13,7 +13,7 @@ from roadgpt.learn.labels import read_pairs
 from roadgpt.learn.originality import report
 
 HAND = Path(__file__).parents[2] / "data" / "descriptions"
-SPLITS = ("train", "validation", "test")
+SPLITS = ("train", "validation", "test", "exam")
 
 
 @pytest.fixture(scope="module")
@@ -26,11 +26,14 @@ def splits() -> dict[str, list[Pair]]:
 
 
 def test_there_are_enough_in_five_languages(splits: dict[str, list[Pair]]) -> None:
-    assert sum(map(len, splits.values())) >= 3000
+    assert sum(map(len, splits.values())) >= 17_000
     assert len(splits["test"]) >= 500
     for pairs in splits.values():
         assert {*Counter(pair.lang for pair in pairs)} >= {"en", "de", "fr"}
     assert {pair.lang for pair in splits["train"]} == {"en", "de", "fr", "es", "it"}
+    refusals = sum(pair.plan.startswith("!") for pair in splits["exam"])
+    assert refusals >= 200
+    assert len(splits["exam"]) - refusals >= 200
 
 
 def test_no_family_of_phrasing_is_on_two_sides(splits: dict[str, list[Pair]]) -> None:
