@@ -41,8 +41,8 @@ class BeamngSimulator:
         """See `roadgpt.drive.Simulator`. The seed is the driver's, and moves the road by millimetres."""
         session = session_of(self.settings)
         for tried in range(TRIES):
-            session.ready()
             try:
+                session.ready()
                 drive = self._once(session, road, world, driver, seed, keep_driving)
             except RoadGPTError:
                 if session.watchdog.has_bitten:

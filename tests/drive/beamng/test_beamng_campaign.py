@@ -1,0 +1,82 @@
+"""A campaign of 100 roads through a BeamNG that fails ten times loses nothing; so do workers side by side."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from beamngpy.connection import Connection
+
+from drive.beamng.fake_beamng import Fault, fake_home
+from roadgpt.road import World
+from roadgpt.run import Setup, campaign
+
+OURS = Connection.PROTOCOL_VERSION
+ROADS = 100
+# Every kind, in the middle of driving and while a road is laid; what is made anew counts as a scenario too.
+FAULTS = [
+    Fault("hang", "SensorRequest", 6, 30),
+    Fault("drop", "Step", 14, 25),
+    Fault("die", "SensorRequest", 23, 40),
+    Fault("error", "LoadScenario", 32, 1),
+    Fault("half", "SensorRequest", 45, 20),
+    Fault("garbage", "Step", 51, 12),
+    Fault("die", "CreateScenario", 63, 1),
+    Fault("wrong_ack", "Step", 75, 33),
+    Fault("hang", "LoadScenario", 88, 1),
+    Fault("value_error", "SetAiWaypoint", 97, 1),
+]
+
+
+def settings(monkeypatch: pytest.MonkeyPatch, home: Path, port: int, **more: object) -> None:
+    given = {"home": home, "port": port, "rate": 20, "poll_timeout": 1.5, "load_timeout": 1.5, **more}
+    for name, value in given.items():
+        monkeypatch.setenv(f"ROADGPT_BEAMNG_{name.upper()}", str(value))
+
+
+def test_a_hundred_roads_and_ten_faults_lose_nothing(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=FAULTS)
+    settings(monkeypatch, home, port, recycle=40)
+    setup = Setup(reader="grammar", simulator="beamng")
+    work = campaign("a straight road of 50 m", ROADS, 5, World(), setup, tmp_path / "out")
+    outcomes = [run.outcome for run in work]
+    assert outcomes == ["PASS"] * ROADS
+    assert json.loads((home / "state.json").read_text())["fired"] == list(range(len(FAULTS)))
+    kept = [json.loads(path.read_text()) for path in sorted((tmp_path / "out").glob("test.*.json"))]
+    assert len(kept) == ROADS
+    assert all(test["test_outcome"] == "PASS" and test["execution_data"] for test in kept)
+
+
+def test_a_road_that_fails_twice_is_one_error_and_the_campaign_goes_on(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    faults = [Fault("die", "Step", 2, 9), Fault("drop", "SensorRequest", 3, 9)]
+    settings(monkeypatch, fake_home(tmp_path / "home", protocol=OURS, faults=faults), port)
+    setup = Setup(reader="grammar", simulator="beamng")
+    runs = list(campaign("a straight road of 50 m", 4, 5, World(), setup, tmp_path / "out"))
+    assert [run.outcome for run in runs] == ["PASS", "ERROR", "PASS", "PASS"]
+    assert "BeamNG failed 2 times on this road" in runs[1].description
+    assert runs[0].versions["beamngpy"]
+    assert "aggression 0.7, 20 steps/s" in runs[0].versions["beamng"]
+
+
+def test_each_worker_has_its_own_port_and_user_folder(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    user = tmp_path / "user"
+    (user / "0.39").mkdir(parents=True)
+    (user / "0.39" / "tech.key").write_text("key")
+    settings(monkeypatch, fake_home(tmp_path / "home", protocol=OURS), port, user=user)
+    script = Path(__file__).with_name("beamng_worker.py")
+    words = [sys.executable, str(script), str(tmp_path)]
+    workers = [subprocess.Popen([*words, str(number), "2"]) for number in range(2)]
+    assert [worker.wait(120) for worker in workers] == [0, 0]
+    told = [json.loads(path.read_text()) for path in tmp_path.glob("worker-*.json")]
+    done = sorted(told, key=lambda each: int(each["port"]))
+    assert [each["outcome"] for each in done] == ["PASS", "PASS"]
+    assert done[0]["port"] != done[1]["port"]
+    assert [Path(each["user"]).name for each in done] == ["user", "user-2"]
+    assert (tmp_path / "user-2" / "0.39" / "tech.key").read_text() == "key"

@@ -1,0 +1,211 @@
+"""Settings, version pairs, the command line, ports, the watchdog and the self test, each on its own."""
+
+import json
+import os
+import socket
+import threading
+import time
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from beamngpy.connection import Connection
+from click.testing import CliRunner
+
+from drive.beamng.fake_beamng import VERSIONS, FakeBeamNG, Fault, fake_home
+from roadgpt.cli.app import app
+from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
+from roadgpt.drive.simulators.beamng import session as sessions
+from roadgpt.drive.simulators.beamng.launch import command_line
+from roadgpt.drive.simulators.beamng.pairs import PAIRS, cure
+from roadgpt.drive.simulators.beamng.slots import take
+from roadgpt.drive.simulators.beamng.watchdog import OverdueError, Watchdog
+from roadgpt.errors import PartError, SimulationError, UsageError
+from roadgpt.road import Road, World
+
+OURS = Connection.PROTOCOL_VERSION
+SHORT = Road.through([[40, 100], [70, 100], [100, 100]])
+
+
+def drive(settings: Settings) -> str:
+    return BeamngSimulator(settings).simulate(SHORT, World(), Reference(), 1).ended
+
+
+def test_settings_come_from_the_environment() -> None:
+    told = {"ROADGPT_BEAMNG_PORT": "4000", "ROADGPT_BEAMNG_NOGPU": "1", "BNG_HOME": "/games/b"}
+    settings = Settings.of(told)
+    assert (settings.port, settings.nogpu, settings.home) == (4000, True, Path("/games/b"))
+    assert not Settings.of({**told, "ROADGPT_BEAMNG_HOST": "other"}).launches
+    with pytest.raises(UsageError, match="ROADGPT_BEAMNG_RATE cannot be '5'"):
+        Settings.of({"ROADGPT_BEAMNG_RATE": "5"})
+
+
+def test_every_pair_has_its_cure() -> None:
+    said = cure("v1.24", "v1.27", "1.36")
+    assert "BeamNG.tech 0.37 speaks protocol v1.24" in said
+    assert "pip install beamngpy==1.34.1'" in said
+    assert "install BeamNG.tech 0.39" in said
+    assert "pip install beamngpy==1.36'" in cure("v1.27", "v1.26", "1.35.1")
+    assert "versions before 0.37 are not driven" in cure("v1.19", "v1.27", "1.36")
+    assert "0.39 with 1.36" in cure("v9", "v1.27", "1.36")
+    assert {pair.protocol: pair.tech for pair in PAIRS[:3]} == VERSIONS
+
+
+@pytest.mark.parametrize("other", sorted({*VERSIONS, "v1.19", "v2.0"} - {OURS}))
+def test_another_version_is_told_of_with_the_cure(other: str) -> None:
+    with FakeBeamNG(protocol=other) as fake:
+        with pytest.raises(PartError, match=f"protocol {other}, and the installed beamngpy .* speaks {OURS}"):
+            drive(Settings(port=fake.port))
+        assert {kind for _, kind in fake.transcript} == {"Hello"}
+
+
+def test_a_game_that_is_not_tech_is_told_of() -> None:
+    with (
+        FakeBeamNG(protocol=OURS, tech=False) as fake,
+        pytest.raises(PartError, match="needs BeamNG\\.tech"),
+    ):
+        drive(Settings(port=fake.port))
+
+
+def test_a_stranger_on_the_port_is_told_of(port: int) -> None:
+    def chat(server: socket.socket) -> None:
+        for _ in range(2):  # one who only looks, one who greets
+            client, _ = server.accept()
+            with suppress(OSError), client:
+                client.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+                client.recv(100)
+
+    with socket.create_server(("127.0.0.1", port)) as server:
+        threading.Thread(target=chat, args=(server,), daemon=True).start()
+        with pytest.raises(SimulationError, match="does not speak as BeamNG\\.tech does"):
+            drive(Settings(port=port))
+
+
+def test_nobody_on_the_port_and_no_home_are_told_of(tmp_path: Path, port: int) -> None:
+    with pytest.raises(SimulationError, match=f"nobody listens on 127.0.0.1:{port}; give --beamng-home"):
+        drive(Settings(port=port))
+    with pytest.raises(PartError, match=r"no BeamNG in .*: --beamng-home is the folder"):
+        drive(Settings(port=port, home=tmp_path))
+    with pytest.raises(UsageError, match="has a space"):
+        drive(Settings(port=port, home=tmp_path, user=tmp_path / "a b"))
+
+
+def test_a_beamng_that_ends_at_once_or_never_listens_is_told_of(tmp_path: Path, port: int) -> None:
+    home = fake_home(tmp_path / "slow", protocol=OURS, slow_start=60)
+    with pytest.raises(SimulationError, match=f"does not listen on port {port} after 0.5 s"):
+        drive(Settings(port=port, home=home, start_timeout=0.5))
+    (home / "settings.json").write_text("no JSON")
+    with pytest.raises(SimulationError, match="BeamNG ended at once \\(exit status 1\\)"):
+        drive(Settings(port=port, home=home))
+
+
+def test_a_slow_start_is_waited_for(tmp_path: Path, port: int) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS, slow_start=1.0)
+    assert drive(Settings(port=port, home=home, rate=20)) == "goal"
+
+
+def test_a_beamng_that_hangs_while_it_starts_costs_one_more_try(tmp_path: Path, port: int) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault("hang", "GetLevels", 0, 1)])
+    assert drive(Settings(port=port, home=home, rate=20, start_timeout=1.5)) == "goal"
+    assert len((home / "started.jsonl").read_text().splitlines()) == 2
+
+
+def test_a_port_that_is_taken_is_passed_over(tmp_path: Path, port: int) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS)
+    with socket.create_server(("127.0.0.1", port)):
+        assert drive(Settings(port=port, home=home, rate=20)) == "goal"
+    words = json.loads((home / "started.jsonl").read_text().splitlines()[0])["words"]
+    assert words[words.index("-tport") + 1] == str(port + 1)
+    sessions.leave_all()
+    slot = take(Settings(port=port, home=home))
+    assert slot.port == port  # let go of, it can be had again
+    slot.release()
+
+
+def test_nothing_of_ours_runs_on_after_a_session(tmp_path: Path, port: int) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS)
+    drive(Settings(port=port, home=home, rate=20))
+    (started,) = (home / "started.jsonl").read_text().splitlines()
+    sessions.leave_all()
+    with pytest.raises(ProcessLookupError):
+        os.kill(json.loads(started)["pid"], 0)
+
+
+def test_the_command_line_is_the_clients(tmp_path: Path) -> None:
+    """Ours and beamngpy's own, for all that can be asked for."""
+    from beamngpy import BeamNGpy
+
+    for given in ({"headless": True}, {"nogpu": True}, {"gfx": "vk"}, {}):
+        settings = Settings(home=tmp_path, **given)
+        ours = command_line(Path("b"), settings, 4, tmp_path)
+        if OURS == "v1.27":  # the first that knows all of these options
+            theirs = BeamNGpy("127.0.0.1", 4, user=str(tmp_path), **given)
+            assert ours == theirs._prepare_call("b", None, "-tcom-listen-ip", "127.0.0.1")
+        assert ("-headless" in ours) == bool({"headless", "nogpu"} & {*given})
+
+
+def test_the_watchdog_ends_a_call_that_hangs_and_lets_others_be() -> None:
+    ours, theirs = socket.socketpair()
+    killed: list[bool] = []
+    dog = Watchdog(lambda: [ours], lambda: killed.append(True))
+    begun = time.monotonic()
+
+    def ask() -> None:
+        with dog.within(0.3, "it was asleep"):
+            if not ours.recv(1):
+                raise ConnectionError
+
+    with pytest.raises(OverdueError, match=r"no answer within 0\.3 s while it was asleep"):
+        ask()
+    assert time.monotonic() - begun < 3
+    assert killed == [True]
+    other = Watchdog(lambda: [theirs], lambda: killed.append(True))
+    with other.within(0.2, "others"):
+        other.pause()  # a driver thinks
+        time.sleep(0.5)
+        other.due_in(5)
+    with pytest.raises(KeyError), other.within(5, "others"):
+        raise KeyError
+    assert not other.has_bitten
+    ours.close()
+    theirs.close()
+
+
+def test_the_self_test_writes_a_report(tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS)
+    monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
+    for name in ("HOME", "USER", "PORT"):  # what the options set goes again with the test
+        monkeypatch.setenv(f"ROADGPT_BEAMNG_{name}", "")
+    words = [
+        "beamng",
+        "selftest",
+        "--out",
+        str(tmp_path / "out"),
+        "--repeats",
+        "2",
+        "--beamng-home",
+        str(home),
+    ]
+    words += ["--beamng-user", str(tmp_path / "user"), "--beamng-port", str(port)]
+    done = CliRunner().invoke(app, words, standalone_mode=False)
+    assert done.exception is None, done.output
+    report = json.loads((tmp_path / "out" / "beamng-selftest.json").read_text())
+    assert len(report["checks"]) == 10
+    assert all(check["is_fine"] for check in report["checks"]), report
+    assert "34 degrees to the right" in report["checks"][7]["said"]
+    page = (tmp_path / "out" / "beamng-selftest.md").read_text()
+    assert page.count("| yes |") == 10
+    assert (tmp_path / "out" / report["pictures"][0]).stat().st_size > 100
+
+
+def test_the_self_test_finds_what_is_wrong(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("HOME", "PORT"):
+        monkeypatch.setenv(f"ROADGPT_BEAMNG_{name}", "")
+    words = ["beamng", "selftest", "--out", str(tmp_path), "--beamng-port", str(port)]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 1
+    assert "PROBLEM  connection: SimulationError: nobody listens" in done.output
+    assert "1 of 1 checks found a problem" in done.output
