@@ -29,8 +29,9 @@ UNREADABLE = 2
 def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **rest: Any) -> int:
     """Check roads that exist against the rules.
 
-    ROAD.json is a RoadGPT design, an SBFT test, or a list of points [x, y] or [x, y, z]. The exit status is 0
-    when all roads are valid, 1 when one is not, 2 when one cannot be read.
+    ROAD.json is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table
+    of points (.csv) or OpenDRIVE (.xodr). The exit status is 0 when all roads are valid, 1 when one is not, 2
+    when one cannot be read.
     """
     world = world_of(rest)
     screen = Screen(len(files), rest["as_json"], rest["quiet"], verbose)

@@ -1,0 +1,63 @@
+"""How well `roadgpt sdc` orders and selects tests that BeamNG's AI was recorded on.
+
+    python benchmarks/sdc_labels.py LABELS.csv.gz [--every 10]
+
+LABELS as for beamng_labels.py: recorded at 70 km/h, aggression 0.7 and a tolerance of 0.85, not at the SDC
+competition's 120 km/h, risk 1.5 and 0.5. Every second run, by name, is told to the service; the others are
+ordered. APFD: 1 when all failures come first, 0.5 in a random order.
+"""
+
+import argparse
+import csv
+import gzip
+
+import numpy as np
+
+from beamng_labels import auc, road_of
+from roadgpt.sbft.sdc.risk import BY_DRIVE, PLAIN, Weighing, learnt, order, signs_of
+
+
+def apfd(ranked: np.ndarray) -> float:
+    """Of outcomes in the order in which tests are run."""
+    places = np.flatnonzero(ranked) + 1
+    count = len(ranked)
+    return float(1 - places.sum() / (count * len(places)) + 1 / (2 * count))
+
+
+def told(name: str, weighing: Weighing, signs: list, failed: np.ndarray) -> str:
+    scores = weighing.scores(signs)
+    chosen = weighing.worth(signs)
+    return (
+        f"{name}: AUC {auc(scores, failed):.2f}, APFD {apfd(failed[order(scores)]):.2f}; "
+        f"selects {len(chosen)} of {len(failed)}, {failed[chosen].mean():.0%} of them fail "
+        f"(of all, {failed.mean():.0%})"
+    )
+
+
+def main(labels: str, every: int) -> None:
+    with gzip.open(labels, "rt", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    known_runs = set(sorted({row["run"] for row in rows})[::2])
+    halves = []
+    for is_known in (True, False):
+        some = [row for row in rows if (row["run"] in known_runs) == is_known][::every]
+        points = [road_of([float(row[f"k{i}"]) for i in range(17)]).control_points().tolist() for row in some]
+        failed = np.array([row["failed"] == "1" for row in some])
+        halves.append((points, failed))
+    for name, world in (
+        ("at 120 km/h, 0.5", PLAIN),
+        ("at 70 km/h, 0.85", PLAIN.model_copy(update={"speed_limit": 70 / 3.6, "oob_tolerance": 0.85})),
+    ):
+        (known, known_failed), (rest, failed) = (
+            ([signs_of(points, world) for points in roads], outcomes) for roads, outcomes in halves
+        )
+        weighing = learnt(known, known_failed.tolist())
+        print(told(f"{name}, by the drive alone", BY_DRIVE, rest, failed))
+        print(told(f"{name}, after {len(known)} known outcomes", weighing, rest, failed))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("labels")
+    parser.add_argument("--every", type=int, default=10)
+    main(**vars(parser.parse_args()))
