@@ -38,8 +38,10 @@ def shown_run(file: str, world: "World", geometry: "Geometry") -> "Run":
         UsageError: as for ``blueprint_of``, or the folder's run cannot be read.
     """
     from roadgpt.run import Setup, prove, read_run
-    from roadgpt.run.folder import is_run, run_of_test
+    from roadgpt.run.folder import is_run, only_run, run_of_test
 
+    if Path(file).is_dir():
+        file = str(only_run(Path(file)))
     if is_run(Path(file)) or run_of_test(Path(file)) is not None:
         return read_run(file)
     blueprint, remarks = blueprint_of(file)

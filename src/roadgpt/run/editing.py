@@ -13,7 +13,7 @@ from pathlib import Path
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, World, read_blueprint
 from roadgpt.run.atomic import json_text, to_bytes
-from roadgpt.run.folder import RUNS, Draw, is_run, read_run, write_run
+from roadgpt.run.folder import Draw, is_run, only_run, read_run, write_run
 from roadgpt.run.model import Run, Setup
 from roadgpt.run.naming import new_folder
 
@@ -44,7 +44,7 @@ def original(path: Path | str, world: World, setup: Setup) -> Original:
     Raises:
         UsageError: there is no Design, or there are several.
     """
-    path = _one_road(Path(path))
+    path = only_run(Path(path))
     if path.is_dir() or is_run(path.parent) or path.name.startswith("test."):
         run = read_run(path)
         if run.design is None:
@@ -54,19 +54,6 @@ def original(path: Path | str, world: World, setup: Setup) -> Original:
     if not isinstance(blueprint, Design):
         raise UsageError(f"{path} holds points and no design; only a design with segments can be changed")
     return Original(blueprint, world, setup, 0, str(path), remarks)
-
-
-def _one_road(path: Path) -> Path:
-    """The folder of the only run of a campaign's folder; any other path as it is."""
-    if not path.exists():
-        raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
-    if is_run(path) or not (path / RUNS).is_dir():
-        return path
-    inside = sorted(folder for folder in (path / RUNS).iterdir() if is_run(folder))
-    if len(inside) != 1:
-        what = f"{len(inside)} roads" if inside else "no road"
-        raise UsageError(f"{path} holds {what}; give one of the folders in {path / RUNS}")
-    return inside[0]
 
 
 def folder_for(words: str, seed: int, out: Path | None) -> Path:

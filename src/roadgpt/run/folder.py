@@ -100,6 +100,23 @@ def is_run(path: Path) -> bool:
     return (path / "run.json").is_file()
 
 
+def only_run(path: Path) -> Path:
+    """The folder of the only run of a campaign's folder; any other path as it is.
+
+    Raises:
+        UsageError: nothing is there, or the campaign has several runs, or none.
+    """
+    if not path.exists():
+        raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
+    if is_run(path) or not (path / RUNS).is_dir():
+        return path
+    inside = sorted(folder for folder in (path / RUNS).iterdir() if is_run(folder))
+    if len(inside) != 1:
+        what = f"{len(inside)} roads" if inside else "no road"
+        raise UsageError(f"{path} holds {what}; give one of the folders in {path / RUNS}")
+    return inside[0]
+
+
 def read_run(path: Path | str) -> Run:
     """The Run in a folder, or the one that a campaign's test file belongs to.
 
