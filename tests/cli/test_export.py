@@ -62,9 +62,61 @@ def test_a_campaign_is_exported_as_it_goes_and_afterwards(here: Path) -> None:
     assert ran.exit_code == 0
     run = here / "camp" / "runs" / "0001"
     assert {"road.xodr", "road.csv", "road.drive.csv"} <= {path.name for path in run.iterdir()}
-    out = said("export", "camp", "camp/runs/0001", "--to", "opendrive")
-    assert out.stdout.split() == ["exports/0001.xodr", "exports/0002.xodr", "exports/0001-2.xodr"]
-    assert (here / "exports" / "0001.xodr").read_bytes() == (run / "road.xodr").read_bytes()
+    out = said("export", "camp", "camp/runs/0001", "--to", "opendrive", "--speed-limit", "30")
+    assert out.stdout.split() == ["exports/camp-0001.xodr", "exports/camp-0002.xodr"]
+    assert out.stderr == "roadgpt: runs keep their own lanes and limits; --speed-limit is for road files\n"
+    assert (here / "exports" / "camp-0001.xodr").read_bytes() == (run / "road.xodr").read_bytes()
+    test = said("export", "camp/test.0001.json", "--to", "csv")  # the run itself, with its drive
+    assert test.stdout.split() == ["exports/test.0001.csv", "exports/test.0001.drive.csv"]
+    assert (here / "exports" / "test.0001.csv").read_bytes() == (run / "road.csv").read_bytes()
+
+
+def test_two_sources_of_one_name_and_one_source_twice(here: Path) -> None:
+    Path("other").mkdir()
+    Path("other/hill.json").write_text(json.dumps(DESIGN))
+    out = said("export", "hill.json", "other/hill.json", "./hill.json", "--to", "opendrive")
+    assert out.stdout.split() == ["exports/hill.xodr", "exports/hill-2.xodr"]
+
+
+def test_opendrive_keeps_its_lanes_and_limits_on_its_way_through(here: Path) -> None:
+    world = ["--lane-width", "3.25", "--verge", "1.5", "--speed-limit", "50", "--friction", "0.6"]
+    said("export", "hill.json", "--to", "opendrive", *world)
+    said("export", "exports/hill.xodr", "--to", "opendrive", "--out", "again")
+    assert Path("again/hill.xodr").read_bytes() == Path("exports/hill.xodr").read_bytes()
+    said("export", "exports/hill.xodr", "--to", "opendrive", "--out", "again", "--speed-limit", "70")
+    told = Path("again/hill.xodr").read_text()
+    assert 'max="70"' in told
+    assert 'max="50"' not in told
+    assert 'friction="0.6"' in told
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_quiet_is_quiet(here: Path, quiet: bool) -> None:
+    said("export", "hill.json", "--to", "opendrive", "-q")
+    file = Path("exports/hill.xodr")
+    file.write_text(file.read_text().replace('rule="RHT"', 'rule="LHT"'))
+    for words in (["import", str(file)], ["export", str(file), "--to", "csv"]):
+        result = said(*words, *["-q"] * quiet)
+        assert result.exit_code == 0
+        assert ("left-hand traffic" in result.stderr) is not quiet
+        assert bool(result.stdout) is not quiet
+
+
+def test_the_command_that_drives_an_import_can_be_typed(here: Path) -> None:
+    said("export", "hill.json", "--to", "opendrive")
+    file = Path("exports/hill.xodr")
+    file.write_text(file.read_text().replace('max="70" unit="km/h"', 'max="13.9" unit="m/s"'))
+    told = said("import", str(file), "--out", "my hill.json").stdout.splitlines()[-1]
+    assert told.endswith("roadgpt drive 'my hill.json' --speed-limit 50.04")
+
+
+def test_a_folder_without_a_run_is_told_of(here: Path) -> None:
+    Path("empty").mkdir()
+    result = said("export", "empty", "--to", "csv")
+    assert result.exit_code == 2
+    assert result.stderr == (
+        "roadgpt: empty is a folder without a run; name the folder of a run or of a campaign\n"
+    )
 
 
 def test_a_format_that_nobody_writes_is_told_of_before_any_work(here: Path) -> None:

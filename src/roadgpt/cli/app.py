@@ -45,6 +45,7 @@ MISSING = {
     "RUN|ROAD...": "Name one or more folders of runs, or road files.",
     "FILE|RUN [FILE|RUN]": "Name a road file or the folder of a run, or two to see them side by side.",
     "FILE.xodr": "Name an OpenDRIVE file.",
+    "formats": "Name a format: --to opendrive; 'roadgpt parts' lists them.",
     "RUN": "Name the folder of a run, or the file of a design.",
     "CHANGE": 'Say what is to be different: roadgpt edit RUN "make the second turn sharper"',
     "OUT": "Name the folder to write into.",

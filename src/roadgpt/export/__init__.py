@@ -95,9 +95,8 @@ def save(
                 part.save(road, Path(draft, name + part.suffix), world, poses)
                 written += _moved(Path(draft), folder)
     except OSError as error:
-        raise ExportError(
-            f"cannot write into {folder}: {error.strerror or error}; name another folder"
-        ) from error
+        why = error.strerror or error
+        raise ExportError(f"cannot write into {folder}: {why}; name another folder") from error
     return tuple(dict.fromkeys(written))
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from roadgpt.errors import ExportError
+from roadgpt.export.finite import finite
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
@@ -27,9 +27,8 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
         ExportError: the road has a number that is not finite.
     """
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / STEP)) + 1))
-    plan, upright = np.abs(road.curvature(s)), np.abs(road.vertical_curvature(s))
-    if not (np.isfinite(plan).all() and np.isfinite(upright).all() and np.isfinite(road.at(s)).all()):
-        raise ExportError("the road has a number that is not finite; check it before it is exported")
+    finite(road.at(s))
+    plan, upright = np.abs(finite(road.curvature(s))), np.abs(finite(road.vertical_curvature(s)))
     bend = _widened(np.maximum(plan * (1 + plan * reach), upright))
     spacing = np.clip(np.sqrt(8 * chord / np.maximum(bend, 1e-12)), SHORTEST, LONGEST)
     along = np.r_[0.0, np.cumsum(np.diff(s) * (1 / spacing[1:] + 1 / spacing[:-1]) / 2)]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from roadgpt.errors import ExportError
+from roadgpt.export.finite import NOT_FINITE
 
 DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 _ESCAPES = str.maketrans(
@@ -23,7 +24,7 @@ def number(value: float) -> str:
     """
     value = float(value) + 0.0  # -0.0 becomes 0.0
     if not math.isfinite(value):
-        raise ExportError("the road has a number that is not finite; check it before it is exported")
+        raise ExportError(NOT_FINITE)
     return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
 
 

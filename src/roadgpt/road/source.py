@@ -1,6 +1,7 @@
 """Roads from files: ours, RoadGPT designs, tests and points of other tools, tables, or OpenDRIVE."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,10 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, read_design
-from roadgpt.road.opendrive import read_opendrive
+from roadgpt.road.opendrive import Imported, read_opendrive
 from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
 from roadgpt.road.road import Road
+from roadgpt.road.world import World
 
 ASTRAY = 1.5  # m between a control point and the nearest of the road's points, a metre apart
 OPENDRIVE = ".xodr"
@@ -49,7 +51,7 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
         path = path / "road.json"
     if path.suffix.lower() == OPENDRIVE:
         found = read_opendrive(path)
-        return found.road, found.remarks
+        return found.road, (*found.remarks, *_lanes_told(found))
     try:
         if path.stat().st_size > LARGEST:
             raise UsageError(f"{path} is larger than {LARGEST // 1_000_000} MB; that is no road file")
@@ -70,6 +72,22 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
         return road_of(data), ()
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from error
+
+
+def _lanes_told(found: Imported) -> tuple[str, ...]:
+    """What its file says of lanes and limits that a World as usual does not have."""
+    usual = World()
+    own = found.world(usual)
+    told = {
+        f"lanes of {own.lane_width:g} m": own.lane_width == usual.lane_width,
+        f"a verge of {own.verge:g} m": own.verge == usual.verge,
+        f"{own.speed_limit * 3.6:.4g} km/h": math.isclose(own.speed_limit, usual.speed_limit),
+        f"a friction of {own.friction:g}": own.friction == usual.friction,
+    }
+    others = [what for what, is_usual in told.items() if not is_usual]
+    if not others:
+        return ()
+    return (f"its file says {', '.join(others)}; roadgpt import tells the options for that",)
 
 
 def road_of(data: Any, geometry: Geometry = "arcs") -> Road:

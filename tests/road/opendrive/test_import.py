@@ -81,7 +81,9 @@ def test_a_road_file_may_be_opendrive(tmp_path: Path) -> None:
     road, remarks = read_blueprint(path)
     assert isinstance(road, Road)
     assert apart(road, ROADS["arcs"]) < 1e-6
-    assert remarks == ()
+    assert remarks == ("its file says 50 km/h, a friction of 0.6; roadgpt import tells the options for that",)
+    save(ROADS["arcs"], tmp_path, ["opendrive"], World())
+    assert read_blueprint(path)[1] == ()
 
 
 def test_poly3_is_a_height_over_the_chord(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """``roadgpt import``: a road out of somebody else's OpenDRIVE file."""
 
 import json
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,17 +45,17 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
 
     found = read_opendrive(file, wanted)
     road, size, told = (found.road, World().map_size, "") if keep_place else _on_a_map(found.road)
-    for remark in (*found.remarks, *([told] if told else [])):
+    for remark in () if quiet else (*found.remarks, *([told] if told else [])):
         click.echo(f"roadgpt: {file}: {remark}", err=True)
     out = out or _new(Path.cwd(), f"{file.stem}-{found.id}")
     try:
         out.write_text(json.dumps(road.to_json()) + "\n", encoding="utf-8")
     except OSError as error:
-        raise RoadGPTError(f"cannot write {out}: {error.strerror}; say --out FILE") from error
+        raise RoadGPTError(f"cannot write {out}: {error.strerror}; name another file with --out") from error
     if not quiet:
         name = f" ({found.name})" if found.name else ""
         click.echo(f"road {found.id}{name}: {sentence(describe(road))}")
-        click.echo(f"written to {out}; drive it: roadgpt drive {out}{_options(found, size)}")
+        click.echo(f"written to {out}; drive it: {_drive(out, found, size)}")
 
 
 def _on_a_map(road: "Road") -> tuple["Road", float, str]:
@@ -73,13 +74,15 @@ def _on_a_map(road: "Road") -> tuple["Road", float, str]:
     return moved(road, x, y), size, f"it is moved by ({x:g}, {y:g}) m into the middle of the map"
 
 
-def _options(found: "Imported", size: float) -> str:
-    """What a drive must be told so that lanes and limits are those of the file."""
+def _drive(file: Path, found: "Imported", size: float) -> str:
+    """The command that drives the road, with lanes and limits as the OpenDRIVE file has them."""
     from roadgpt.road import World
 
     world = found.world(World(map_size=size))
+    # as a sign shows it: files in m/s are no whole km/h to the last digit
+    world = world.model_copy(update={"speed_limit": round(world.speed_limit * 3.6, 3) / 3.6})
     words = [word for flag in WORLD for word in flag.written(getattr(world, flag.field))]
-    return "".join(f" {word}" for word in words)
+    return shlex.join(["roadgpt", "drive", str(file), *words])
 
 
 def _new(folder: Path, stem: str) -> Path:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.errors import ExportError
+from roadgpt.export.finite import finite
 from roadgpt.export.poses import Poses
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
@@ -40,15 +41,21 @@ def document(road: Road, world: World) -> str:
     """
     count = min(MOST, max(1, math.ceil(road.length / STEP)))
     step = road.length / count
-    points = road.at(np.linspace(0.0, road.length, count + 1))
-    if not np.isfinite(points).all():
-        raise ExportError("the road has a number that is not finite; check it before it is exported")
+    points = finite(road.at(np.linspace(0.0, road.length, count + 1)))
     headings = np.array(_headings(points[:, :2].tolist(), step))
     reach = _reach(headings, step, world)
+    phi = [NOTHING, *map(_field, headings.tolist())]
+    heights = list(map(_field, points[:, 2].tolist()))
+    rows = [f"{turned}{height}{height}" for turned, height in zip(phi, heights, strict=True)]
+    return "\n".join([*_header(road.length, step, points, headings, reach), *rows, ""])
+
+
+def _header(length: float, step: float, points: Array, headings: Array, reach: float) -> list[str]:
+    """Lines that say where the reference line runs, how wide the surface is, what a cross section holds."""
     end = points[0, :2] + step * np.array([np.cos(headings).sum(), np.sin(headings).sum()])
     numbers = {
         "start_u": 0.0,
-        "end_u": road.length,
+        "end_u": length,
         "increment": step,
         "start_x": points[0, 0],
         "start_y": points[0, 1],
@@ -58,7 +65,7 @@ def document(road: Road, world: World) -> str:
         "end_phi": headings[-1],
     }
     across = {"v_right": -reach, "v_left": reach, "v_increment": 2 * reach}
-    header = [
+    return [
         "$CT",
         "RoadGPT: smooth road, heights along the centre line",
         "$",
@@ -77,10 +84,6 @@ def document(road: Road, world: World) -> str:
         "$",
         RULER,
     ]
-    phi = [NOTHING, *map(_field, headings.tolist())]
-    heights = list(map(_field, points[:, 2].tolist()))
-    rows = [f"{turned}{height}{height}" for turned, height in zip(phi, heights, strict=True)]
-    return "\n".join([*header, *rows, ""])
 
 
 def _headings(points: list[list[float]], step: float) -> list[float]:

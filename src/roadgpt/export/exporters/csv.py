@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.errors import ExportError
+from roadgpt.export.finite import finite
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
@@ -35,8 +35,6 @@ class Csv:
 
 
 def _write(path: Path, header: str, columns: list[Array]) -> None:
-    table = np.round(np.column_stack(columns), DECIMALS) + 0.0
-    if not np.isfinite(table).all():
-        raise ExportError("the road has a number that is not finite; check it before it is exported")
+    table = np.round(finite(np.column_stack(columns)), DECIMALS) + 0.0
     rows = [",".join(map(repr, row)) for row in table.tolist()]
     path.write_bytes("\n".join([header, *rows, ""]).encode())

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roadgpt.errors import ExportError
+from roadgpt.export.finite import finite
 from roadgpt.export.place import degrees
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
@@ -56,10 +56,9 @@ def _feature(name: str, geometry: dict[str, Any], told: dict[str, Any]) -> dict[
 
 
 def _on_globe(points: Array) -> list[list[float]]:
-    if not np.isfinite(points).all():
-        raise ExportError("the road has a number that is not finite; check it before it is exported")
-    longitude, latitude = degrees(points[:, 0], points[:, 1])
+    x, y, z = finite(points).T
+    longitude, latitude = degrees(x, y)
     columns = [np.round(longitude, DECIMALS), np.round(latitude, DECIMALS)]
-    heights = np.round(points[:, 2], HEIGHT_DECIMALS) + 0.0
+    heights = np.round(z, HEIGHT_DECIMALS) + 0.0
     rows: list[list[float]] = np.column_stack([*columns, heights]).tolist()
     return rows

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.errors import ExportError
+from roadgpt.export.finite import finite
 from roadgpt.export.poses import Poses
 from roadgpt.road import Road, World
 
@@ -22,7 +22,5 @@ class Sbft:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Write the test; what came of driving it stands in the ``test.NNNN.json`` of a campaign."""
         points = {"road_points": road.control_points(), "interpolated_points": road.centreline(STEP)}
-        if not all(np.isfinite(each).all() for each in points.values()):
-            raise ExportError("the road has a number that is not finite; check it before it is exported")
-        data = {name: (np.round(each, DECIMALS) + 0.0).tolist() for name, each in points.items()}
+        data = {name: (np.round(finite(each), DECIMALS) + 0.0).tolist() for name, each in points.items()}
         path.write_bytes((json.dumps(data) + "\n").encode())

@@ -11,7 +11,7 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
-from roadgpt.road.opendrive.numbers import number
+from roadgpt.road.opendrive.numbers import Cubic, number
 from roadgpt.road.opendrive.tree import Node
 from roadgpt.road.road import check_length
 
@@ -23,8 +23,6 @@ MOST = 4_000  # elements of one line
 OFF = 0.1  # m, between the end of an element and the station of the next
 SMALLEST_RADIUS = 0.1  # m
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-
-Cubic = tuple[float, float, float, float]
 
 
 class Shape(Protocol):

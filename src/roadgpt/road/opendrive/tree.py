@@ -11,6 +11,7 @@ from xml.parsers import expat
 from roadgpt.errors import UsageError
 
 LARGEST = 50_000_000  # bytes; the largest public maps have 20 MB
+TOO_LARGE = f"it is larger than {LARGEST // 1_000_000} MB; cut out the roads that you need"
 MOST_ELEMENTS = 500_000
 MOST_KEPT = 60_000  # elements of one road
 DEEPEST = 60
@@ -59,11 +60,13 @@ def read_tree(path: Path, wanted: str | None) -> Choice:
     parser.StartDoctypeDeclHandler = _refuse_doctype
     try:
         if path.stat().st_size > LARGEST:
-            raise UsageError(f"it is larger than {LARGEST // 1_000_000} MB; cut out the roads that you need")
+            raise UsageError(TOO_LARGE)
         with path.open("rb") as file:
             fed = 0
             while chunk := file.read(CHUNK):
                 fed += len(chunk)
+                if fed > LARGEST:  # of a pipe nobody knows the size
+                    raise UsageError(TOO_LARGE)
                 parser.Parse(chunk, False)
                 if fed - max(parser.CurrentByteIndex, 0) > LONGEST_TAG:
                     raise UsageError("one tag is longer than a megabyte; that is no OpenDRIVE file")

@@ -48,24 +48,7 @@ def to_bytes(shapes: Sequence[Shape], near: Array) -> bytes:
     """
     origin = np.round(near)
     used = list(dict.fromkeys(shape.material for shape in shapes))
-    data: dict[str, Any] = {
-        "asset": {"version": "2.0", "generator": "RoadGPT"},
-        "scene": 0,
-        "scenes": [{"name": "road", "nodes": [0]}],
-        "nodes": [
-            {
-                "name": "map",
-                "translation": (Y_UP @ origin + 0.0).tolist(),
-                "children": list(range(1, len(shapes) + 1)),
-            },
-            *({"name": shape.name, "mesh": i} for i, shape in enumerate(shapes)),
-        ],
-        "materials": [_material(name) for name in used],
-        "meshes": [],
-        "accessors": [],
-        "bufferViews": [],
-        "buffers": [],
-    }
+    data = _scene(shapes, origin, used)
     content = bytearray()
     for shape in shapes:
         where = {
@@ -81,6 +64,28 @@ def to_bytes(shapes: Sequence[Shape], near: Array) -> bytes:
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(content), b"BIN\0")
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks) + len(content)) + chunks + bytes(content)
+
+
+def _scene(shapes: Sequence[Shape], origin: Array, materials: Sequence[str]) -> dict[str, Any]:
+    """What is where, before any shape is put into the buffer."""
+    return {
+        "asset": {"version": "2.0", "generator": "RoadGPT"},
+        "scene": 0,
+        "scenes": [{"name": "road", "nodes": [0]}],
+        "nodes": [
+            {
+                "name": "map",
+                "translation": (Y_UP @ origin + 0.0).tolist(),
+                "children": list(range(1, len(shapes) + 1)),
+            },
+            *({"name": shape.name, "mesh": i} for i, shape in enumerate(shapes)),
+        ],
+        "materials": [_material(name) for name in materials],
+        "meshes": [],
+        "accessors": [],
+        "bufferViews": [],
+        "buffers": [],
+    }
 
 
 def _put(data: dict[str, Any], content: bytearray, values: np.ndarray, bounded: bool = False) -> int:
