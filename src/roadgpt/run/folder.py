@@ -50,15 +50,20 @@ def run_folder(campaign: Path, index: int) -> Path:
     return campaign / RUNS / f"{index:04d}"
 
 
-def write_run(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
-    """Write a Run into a campaign's folder, its test file last; gives back the Run's own folder."""
+def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | None = None) -> Path:
+    """Write a Run into a campaign's folder, its test file last; gives back the Run's own folder.
+
+    Args:
+        run, campaign, draw: what, where, and who draws it.
+        test: what is to stand in the test file, where that is not the usual.
+    """
     folder = run_folder(campaign, run.index)
     with whole_folder(folder) as draft:
         for name, content in _files(run):
             (draft / name).write_bytes(content)
         if draw is not None:
             draw.of_run(run, draft)
-    write_whole(campaign / test_name(run.index), test_text(run))
+    write_whole(campaign / test_name(run.index), test_text(run) if test is None else test)
     return folder
 
 

@@ -18,7 +18,6 @@ from roadgpt.run.card import CARD, Card
 from roadgpt.run.features import features_of
 from roadgpt.run.folder import RUNS, Draw, write_run
 from roadgpt.run.model import Request
-from roadgpt.run.sbft_json import test_name
 from roadgpt.run.tables import DESCRIPTION, Tally
 from roadgpt.sbft.experiment import Experiment
 from roadgpt.sbft.trial import plan_of, records_at_their_height, told
@@ -61,8 +60,7 @@ class Results:
     def add(self, run: Run) -> dict[str, Any]:
         """Write a test; gives back what stands in its file."""
         test = test_of(run)
-        write_run(run, self.folder, self._draw)
-        write_whole(self.folder / test_name(run.index), json_text(test, indent=None))
+        write_run(run, self.folder, self._draw, json_text(test, indent=None))
         self._tally.add(run)
         self._numbers.add(run.index)
         self._tally.write(self.folder)
