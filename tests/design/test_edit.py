@@ -1,7 +1,6 @@
 """Edits of a Design: what is asked for is measured afterwards, and nothing else is touched."""
 
 from contextlib import suppress
-from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -111,6 +110,8 @@ def test_turns_to_one_hand_do_not_run_into_each_other() -> None:
         ("h07", "mirror the road", "mirror image is the same"),
         ("h01", "make the second turn a chicane", "cannot be made several"),
         ("h01", "add a left turn of 500 degrees", "cannot be added"),
+        ("h01", "make the first straight tighter", "does not bend; name a turn"),
+        ("h01", "make the first straight a left turn", "has no side; name a turn"),
         ("h01", ", ".join(["make the first turn sharper"] * 13), "too many"),
     ],
 )
@@ -125,6 +126,27 @@ def test_a_straight_between_turns_of_one_hand_goes_and_the_turns_stay_two() -> N
     after = seen(changed("h13", "remove the second straight"))
     assert len(before.straights) - len(after.straights) == 1
     assert [turn.side for turn in after.turns] == ["left", "left"]
+
+
+def test_an_angle_and_a_radius_may_both_be_said() -> None:
+    turn = seen(changed("h01", "second turn: 80 degrees, radius 25 m")).turns[1]
+    assert turn.degrees == pytest.approx(80, abs=2)
+    assert turn.radius == pytest.approx(25, rel=0.08)
+
+
+def test_turns_that_are_excepted_by_number_stay() -> None:
+    before, after = (seen(road).turns for road in
+                     (ROADS["h08"], changed("h08", "make turns 1 to 3 gentler except turn 2")))  # fmt: skip
+    same = [(one.degrees, one.radius) == pytest.approx((other.degrees, other.radius), rel=0.03)
+            for one, other in zip(before, after, strict=True)]  # fmt: skip
+    assert same == [False, True, False, True]
+
+
+def test_half_of_a_road_has_turns_of_its_own() -> None:
+    before, after = (seen(road).turns for road in
+                     (ROADS["h08"], changed("h08", "make the turns tighter in the second half")))  # fmt: skip
+    assert after[0].radius == pytest.approx(before[0].radius, rel=0.03)
+    assert after[-1].radius < 0.95 * before[-1].radius
 
 
 def test_a_changed_road_is_told_as_it_measures() -> None:
@@ -195,4 +217,3 @@ def test_a_segment_without_a_radius_keeps_what_its_writer_left_open() -> None:
 def test_blocks_are_named_for_what_they_were() -> None:
     blocks, _ = blocks_of(ROADS["h01"])
     assert [block.name for block in blocks] == ["gap 0", "turn 1", "gap 1", "turn 2", "gap 2"]
-    assert replace(blocks[1], kind="gap").segments == blocks[1].segments

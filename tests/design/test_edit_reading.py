@@ -111,6 +111,16 @@ def test_a_place_may_be_named_by_another_one() -> None:
         ("make the second turn go right", "side", "side", "right"),
         ("flip the second turn", "side", "side", None),
         ("turn the second bend into a hairpin", "shape", "kind", "hairpin"),
+        ("turn the second right into a left", "side", "side", "left"),
+        ("give the second turn a bigger radius", "radius", "more", 1),
+        ("the second turn needs a bigger radius, 60 m", "radius", "to", 60),
+        ("make the road shorter, 300 m in total", "length", "to", 300),
+        ("tighten the second turn to half its radius", "radius", "times", 0.5),
+        ("stretch the second straight by half", "length", "times", 1.5),
+        ("double the distance between turns 2 and 3", "length", "times", 2),
+        ("make the 40 m straight longer", "length", "more", 1),
+        ("insert a 40 m straight between turns 2 and 3", "add", "length", 40),
+        ("put 50 m of straight road before the second turn", "add", "length", 50),
         ("make the second turn gentle", "shape", "sharpness", "gentle"),
     ],
 )
@@ -118,6 +128,34 @@ def test_amounts(words: str, what: str, field: str, value: object) -> None:
     change = one(words)
     assert change.what == what
     assert getattr(change, field) == value
+
+
+def test_something_new_stands_where_it_was_said() -> None:
+    place = one("insert a 40 m straight between turns 2 and 3").place
+    assert place is not None
+    assert place.how == "between"
+    assert place.target is not None
+    assert place.target.numbers == (2,)
+
+
+def test_what_is_to_stay_is_left_alone() -> None:
+    assert target("make turns 1 and 3 sharper but leave turn 2 alone").but is None
+    for words in ("make all turns sharper but leave turn 2 alone", "make all turns sharper, keep the second"):
+        but = target(words).but
+        assert but is not None
+        assert but.numbers == (2,)
+    several = target("make all turns sharper but leave the first and the third as they are").but
+    assert several is not None
+    assert several.numbers == (1, 3)
+
+
+def test_that_turn_is_the_one_that_was_spoken_of() -> None:
+    _, second = read_request(
+        "extend the straight before the last turn by 30 m and make that turn tighter"
+    ).changes
+    assert second.target is not None
+    assert (second.target.noun, second.target.numbers) == ("turn", (-1,))
+    assert target("make that hairpin 120 degrees").kind == "hairpin"
 
 
 def test_several_changes_at_once() -> None:
@@ -200,6 +238,8 @@ def test_five_languages_say_the_same(words: str) -> None:
         ("reverse the road", "say: mirror the road"),
         ("make turn 2 as sharp as turn 4", "say a number"),
         ("make a turn sharper", "which one is meant"),
+        ("alternate the turns: left, right, left", "left and right"),
+        ("merge the last two turns, make the first one sharper", "'merge'"),
         ("x" * 3000, "too long"),
     ],
 )

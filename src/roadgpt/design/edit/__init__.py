@@ -7,6 +7,7 @@ edit. Segments that nobody spoke of keep every number; the road as a whole may b
 stays inside the map.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -15,11 +16,12 @@ from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.anatomy import Blocks, blocks_of
 from roadgpt.design.edit.chatting import edited_by_chat
-from roadgpt.design.edit.inserting import ways_to_add, ways_to_remove
+from roadgpt.design.edit.inserting import ways_to_add
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.reading import read_request
-from roadgpt.design.edit.request import Change, Request
-from roadgpt.design.edit.steps import FlipAll
+from roadgpt.design.edit.removing import ways_to_remove
+from roadgpt.design.edit.request import Change, Request, What
+from roadgpt.design.edit.steps import Bend, FlipAll, Step
 from roadgpt.design.edit.telling import sentences
 from roadgpt.design.edit.trying import tried
 from roadgpt.design.edit.ways import Way, ways_to_change
@@ -75,7 +77,7 @@ def _by_rules(design: Design, request: Request, world: World, geometry: Geometry
             f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
         )
     blocks, found = blocks_of(design, geometry)
-    rows: list[tuple[Change, tuple[Way, ...]]] = []
+    rows: list[tuple[Change, Sequence[Way]]] = []
     idle: list[Change] = []
     for number, change in enumerate(_folded(request.changes), 1):
         ways = _ways(change, blocks, found, world, number)
@@ -85,7 +87,7 @@ def _by_rules(design: Design, request: Request, world: World, geometry: Geometry
             idle.append(change)
     if not rows:
         raise EditError(f"nothing is to be changed: '{idle[0].words}' is so already")
-    result = tried(design, blocks, [ways for _, ways in rows], world, geometry)
+    result = tried(design, blocks, _agreed(rows), world, geometry)
     if result.made is None:
         said = " and ".join(dict.fromkeys(f"'{change.words}'" for change, _ in rows))
         raise EditError(f"{said} cannot be done on this road: {result.objection}; ask for less, or elsewhere")
@@ -94,6 +96,22 @@ def _by_rules(design: Design, request: Request, world: World, geometry: Geometry
     told = sentences(design, blocks, found, result.made)
     told += tuple(f"'{change.words}' was so already" for change in idle)
     return Edited(result.made.design, told, request.unused)
+
+
+def _agreed(rows: Sequence[tuple[Change, Sequence[Way]]]) -> list[Sequence[Way]]:
+    """The ways of all; where one says the angle of a turn and another its radius, each keeps to its own."""
+    said: dict[What, set[str]] = {"angle": set(), "radius": set()}
+    for change, ways in rows:
+        if change.what in said and (change.to or change.by or change.times):
+            said[change.what] |= {step.block.name for step in ways[0] if isinstance(step, Bend)}
+    both = said["angle"] & said["radius"]
+
+    def own(step: Step, what: What) -> Step:
+        if not isinstance(step, Bend) or step.block.name not in both or what not in said:
+            return step
+        return replace(step, radius=None) if what == "angle" else replace(step, degrees=None)
+
+    return [[tuple(own(step, change.what) for step in way) for way in ways] for change, ways in rows]
 
 
 def _is_mirror(request: Request) -> bool:
@@ -110,7 +128,7 @@ def _ways(change: Change, blocks: Blocks, found: Measures, world: World, number:
     assert change.target is not None
     meant = pointed(change.target, blocks, change.what)
     if change.what == "remove":
-        return ways_to_remove(change, meant, blocks)
+        return ways_to_remove(meant, blocks)
     return ways_to_change(change, meant, found, world)
 
 

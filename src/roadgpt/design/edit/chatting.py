@@ -63,21 +63,19 @@ def edited_by_chat(
     messages, wrong, problem = opening, "", None
     allowed = _spoken_of(words, blocks)
     for _ in range(settings.rounds):
+        said, problem = "", None
         try:
             reply = chat.ask(messages, EditedRoad)
+            said = json.dumps(reply.data.model_dump(), separators=(",", ":"))
+            new = _kept(design, reply.data, allowed)
+            wrong = _objection(design, new, world, geometry)
         except UnparsableError as error:
             wrong, said, problem = f"it could not be read: {error}", error.text, error
-        else:
-            said = json.dumps(reply.data.model_dump(), separators=(",", ":"))
-            problem = None
-            try:
-                new = _kept(design, reply.data, allowed)
-                wrong = _objection(design, new, world, geometry)
-            except UsageError as error:
-                wrong = str(error)
-            if not wrong:
-                placed = repair(new, None, world, "place").design
-                return placed, between(design, placed, geometry)
+        except UsageError as error:
+            wrong = str(error)
+        if not wrong:
+            placed = repair(new, None, world, "place").design
+            return placed, between(design, placed, geometry)
         messages = [
             *opening,
             Message(role="assistant", text=said[:MOST_SHOWN] or "(nothing)"),

@@ -1,11 +1,10 @@
 """What the words of one clause say of angle, radius, length, slope and side, and by how much."""
 
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 from roadgpt.brief.model import Sharpness, Side
-from roadgpt.design.edit.lexing import Lexeme
-from roadgpt.design.edit.request import Change, Target, Way
+from roadgpt.design.edit.clause import Clause
+from roadgpt.design.edit.request import Change, Way
 
 PREPOSITIONS = {"by", "to", "at", "of", "with"}
 LONG, SHORT = 70.0, 22.0  # m: what a straight is made that is to be long, or short
@@ -19,19 +18,6 @@ OF_ANGLES = ("radius", "tighter", "wider", "sharper", "gentler", "angle_noun")
 STEEPLY, GENTLY = 10.0, 3.5  # percent: inside what brief.words promises
 SLIGHTLY, MUCH = 0.5, 1.8
 NEAR = 3  # words between a number and the noun that it belongs to
-
-
-class Words(Protocol):
-    """What is left of a clause when places are taken out, and the new things that it names."""
-
-    new: list[Target]
-    row: list[Lexeme]
-    words: str
-
-    @property
-    def names(self) -> set[str]:
-        """Of all meanings that are left."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +34,7 @@ class Amount:
 class Dimensions:
     """What a clause says of angle, radius, length, slope and side."""
 
-    def __init__(self, clause: Words) -> None:
+    def __init__(self, clause: Clause) -> None:
         self.clause, self.row, self.names = clause, clause.row, clause.names
         self.amounts = [self._amount(i) for i, x in enumerate(self.row) if x.name == "#"]
         self.dose = SLIGHTLY if "slightly" in self.names else MUCH if "much" in self.names else 1.0
@@ -61,7 +47,8 @@ class Dimensions:
             before = "to"  # 'à 50 m'
         if next_to is not None and next_to.text.lower() in FROM_ABROAD:
             before = "by"  # 'rallonge de 15 m'
-        around = [*reversed(self.row[max(at - NEAR, 0) : at]), *self.row[at + 1 : at + 2]]
+        behind = [x for x in self.row[at + 1 : at + NEAR] if x.name not in ("the", "a")]  # 'half its radius'
+        around = [*reversed(self.row[max(at - NEAR, 0) : at]), *behind[:1]]
         nouns = {"radius": "radius", "angle_noun": "angle", "length_noun": "length", "slope_noun": "slope"}
         noun = next((nouns[x.name] for x in around if x.name in nouns), "")
         after = self.row[at + 1].name if at + 1 < len(self.row) else ""
@@ -117,6 +104,8 @@ class Dimensions:
             times = amount.value
             if change.more < 0 and times > 1:
                 times = 1 / times
+            if change.more > 0 and times < 1 and amount.preposition == "by":
+                times += 1  # 'longer by half'
             return replace(change, times=times, more=0)
         if amount.unit == "%" and change.what != "slope":
             sign = -1 if change.more < 0 else 1

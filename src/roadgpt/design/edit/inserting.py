@@ -1,24 +1,22 @@
-"""Ways to add turns and straights, and to take them away; what stands around them keeps every number."""
+"""Ways to add turns and straights; what stands around them keeps every number."""
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
-from math import radians, sqrt
+from math import radians
 
 from roadgpt.brief.model import Side
 from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import OTHER, Become, Goal, Insert, Step, Stretch, turn_segments
-from roadgpt.design.edit.ways import Way, straight
+from roadgpt.design.edit.room import SEPARATE, gap
+from roadgpt.design.edit.steps import OTHER, Goal, Insert, Step, turn_segments
+from roadgpt.design.edit.ways import Way
 from roadgpt.errors import EditError
-from roadgpt.road import Segment, World
+from roadgpt.road import World
 
-SEPARATE = 18.0  # m between turns of one hand, so that they are seen as two
 JOINT = 8.0  # m between turns of either hand
 LEAD = 17.0  # m before the first turn and behind the last
 NEW_STRAIGHT = 40.0  # m of one whose length was not said
-HIDDEN = 9.0  # m, measured: turns of one hand with so much between them are two, but no straight is seen
 OVER_LEAST_RADIUS = 1.055
 SPARE = ((0.0, 0.0), (20.0, 0.0), (0.0, 20.0), (25.0, 25.0), (45.0, 0.0), (0.0, 45.0))
 """Metres of straight road before and behind a new turn, besides what it needs: where it would meet others."""
@@ -191,19 +189,19 @@ def _turns(
     goals: list[Goal] = []
     lead = _lead(turn_before, sides[0], gap_before) + spare[0]
     if lead:
-        new.append(_gap(f"new {number} lead", lead, incline))
+        new.append(gap(f"new {number} lead", lead, incline))
     degrees, radius = measures
     ramp = min(max(RAMP_SHARE * radius * radians(degrees), 3.0), 12.0)
     for i, side in enumerate(sides):
         if i:
-            new.append(_gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
+            new.append(gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
         name = f"new {number} turn {i + 1}"
         segments = turn_segments(degrees, 1 if side == "left" else -1, radius, ramp, incline)
         new.append(Block(name, "turn", segments, side))
         goals += _goals(change, name, degrees, radius)
     tail = _lead(turn_after, sides[-1], gap_after) + spare[1]
     if tail:
-        new.append(_gap(f"new {number} tail", tail, incline))
+        new.append(gap(f"new {number} tail", tail, incline))
     return Insert(before, tuple(new), tuple(goals), *split)
 
 
@@ -242,10 +240,6 @@ def _lead(turn: Block | None, side: Side, gap: float) -> float:
     return round(needed - gap, 1) if gap < needed - 0.5 else 0.0
 
 
-def _gap(name: str, length: float, incline: float) -> Block:
-    return Block(name, "gap", (straight(length, incline),))
-
-
 def _incline(blocks: Blocks, at: int) -> float:
     """Percent, of what stands next to a place."""
     before = [s for block in blocks[:at] for s in block.segments]
@@ -266,70 +260,13 @@ def _straight_ways(
         incline = change.grade
     elif change.way:
         incline = {"up": 5.0, "down": -5.0, "flat": 0.0}[change.way]
+    beside = blocks[at] if before and blocks[at].kind == "gap" else blocks[at - 1]
+    stands_alone = beside.kind == "gap" and beside.seen is None
+    name = f"new {number} straight"
     out = []
     for split in splits:
         for length in lengths:
-            name = f"new {number} straight"
-            out.append((Insert(before, (_gap(name, length + 2.0, incline),), (), *split),))
+            new = (gap(name, length + 2.0, incline),)
+            goal = Goal(name, "length", length, length - 2.0, length + 2.0)
+            out.append((Insert(before, new, (goal,) if stands_alone else (), *split),))
     return tuple(out)
-
-
-def ways_to_remove(change: Change, gone: Sequence[Block], blocks: Blocks) -> tuple[Way, ...]:
-    """All ways to take turns or straights away: nothing, or a straight, in their place."""
-    if len(gone) == len([b for b in blocks if b.segments]):
-        raise EditError("then no road would be left; remove fewer")
-    fillers = (0.0, SEPARATE, 1.0, 45.0)
-    out: list[Way] = []
-    for filler in fillers:
-        steps: list[Step] = []
-        for block in gone:
-            steps.append(_without(block, blocks, filler))
-        out.append(tuple(steps))
-    return tuple(out)
-
-
-def _without(block: Block, blocks: Blocks, filler: float) -> Step:
-    at = blocks.index(block)
-    if block.kind == "gap":
-        bends = tuple(s for s in block.segments if s.turn_degrees)
-        sides = [b.side for b in (*blocks[max(at - 1, 0) : at], *blocks[at + 1 : at + 2]) if b.kind == "turn"]
-        if len(sides) == 2 and sides[0] == sides[1]:
-            return Stretch(block, HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), 0.6)
-        return Become(block, bends)
-    length = {0.0: 0.0, 1.0: _chord(block)}.get(filler, filler)
-    kept: tuple[Segment, ...] = (straight(length, block.incline),) if length else ()
-    return Become(block, kept)
-
-
-def _chord(block: Block) -> float:
-    seen = block.seen
-    assert seen is not None
-    return max(0.7 * block.length, sqrt(2) * min(seen.radius, 60.0))
-
-
-def with_room(blocks: Blocks, before: Blocks) -> Blocks:
-    """Straights between new neighbours of one hand, so that they are not seen as one turn.
-
-    Turns that were neighbours before, on the same sides, are two already.
-    """
-    known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
-    out: list[Block] = []
-    last: Block | None = None
-    metres = 0.0
-    for block in blocks:
-        if block.kind == "turn":
-            is_new = last is not None and last.side == block.side and _pair(last, block) not in known
-            if is_new and metres < SEPARATE - 2:
-                out.append(_gap(f"room before {block.name}", round(SEPARATE - metres, 1), block.incline))
-            last, metres = block, 0.0
-        else:
-            metres += block.length
-        out.append(block)
-    return tuple(out)
-
-
-def _pair(one: Block, other: Block) -> tuple[str, Side | None, str, Side | None]:
-    return one.name, one.side, other.name, other.side
-
-
-__all__ = ["ways_to_add", "ways_to_remove", "with_room"]

@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, cast
 
-from roadgpt.brief.model import Kind, Sharpness
+from roadgpt.brief.model import Kind
+from roadgpt.design.edit.counting import Row
 from roadgpt.design.edit.lexing import Lexeme
-from roadgpt.design.edit.request import Measure, Noun, Place, Target, Way
+from roadgpt.design.edit.request import Measure, Noun, Place, Target
 
 TURNS: dict[str, Kind | None] = {
     "turn": None,
@@ -29,6 +30,8 @@ SHARPNESS = {"sharp", "gentle", "sweeping"}
 WAYS = {"up", "down", "flat"}
 HALVES = {"half1": 1, "half2": 2}
 SLOPES = {"climb", "ascent", "rise", "descent", "montee", "descente", "subida", "bajada", "salita", "discesa"}
+STRAIGHTS = {"straights", "geraden", "rectas"}  # several of them
+DEMONSTRATIVES = {"this", "that", "these", "those"}
 PLACES = {"after", "before", "between", "on"}
 
 
@@ -49,14 +52,8 @@ def place_at(row: Sequence[Lexeme], at: int) -> tuple[int, Place | None]:
     return _Reader(row).place_behind(at)
 
 
-class _Reader:
+class _Reader(Row):
     """Modifiers in any order, then a noun, then what stands behind it."""
-
-    def __init__(self, row: Sequence[Lexeme]) -> None:
-        self.row = row
-
-    def name(self, at: int) -> str:
-        return self.row[at].name if 0 <= at < len(self.row) else ""
 
     def read(self, at: int) -> Named | None:
         begun, found = at, dict[str, Any]()
@@ -67,7 +64,7 @@ class _Reader:
                 if name == "of" and at == begun:
                     return None
                 if name == "ord":
-                    at = self._ordinals(at, found)
+                    at = self.ordinals(at, found)
                     continue
                 if name == "a":
                     found["indefinite"] = True
@@ -84,6 +81,11 @@ class _Reader:
                 found["count"] = int(self.row[at].value)
             elif name == "#" and self.row[at].unit == "deg" and self._leads_to_a_turn(at):
                 found["degrees"] = self.row[at].value
+            elif name == "#" and self.row[at].unit == "m" and (stop := self._straight_behind(at, begun)):
+                found["length"] = self.row[at].value
+                found["indefinite"] = found.get("indefinite", at == begun)
+                at = stop
+                continue
             elif self._is_modifier(at, begun, is_definite, found):
                 self._modify(name, found)
             else:
@@ -102,6 +104,13 @@ class _Reader:
             "a",
             "ord",
         )
+
+    def _straight_behind(self, at: int, begun: int) -> int:
+        """Of 'a 40 m straight' and '40 m of straight road': where the noun stands; 0 where none does."""
+        has_of = self.name(at + 1) == "of"
+        stop = at + 1 + has_of
+        leads = has_of if at == begun else self.name(at - 1) in ("the", "a", "ord")
+        return stop if leads and self.name(stop) == "straight" else 0
 
     def _is_modifier(self, at: int, begun: int, is_definite: bool, found: dict[str, Any]) -> bool:
         """Adjectives belong to a noun where one follows; a side also stands for a turn by itself."""
@@ -145,30 +154,6 @@ class _Reader:
         elif name in ("long", "short"):
             found["size"] = name
 
-    def _ordinals(self, at: int, found: dict[str, Any]) -> int:
-        """'second', 'first and third', 'last two', 'second to fourth'."""
-        numbers = [int(self.row[at].value)]
-        at += 1
-        if self.name(at) == "#" and not self.row[at].unit and abs(numbers[0]) == 1:
-            count, sign = int(self.row[at].value), numbers[0]
-            found["numbers"] = tuple(sign * i for i in range(1, count + 1))
-            return at + 1
-        while True:
-            step = at + 1
-            if self.name(at) in ("and", "comma", "to") and self.name(step) == "and":
-                step += 1
-            if self.name(step) == "the":
-                step += 1
-            if self.name(at) not in ("and", "comma", "to") or self.name(step) != "ord":
-                break
-            after = int(self.row[step].value)
-            if self.name(at) == "to" and 0 < numbers[-1] < after:
-                numbers += range(numbers[-1] + 1, after)
-            numbers.append(after)
-            at = step + 1
-        found["numbers"] = (*found.get("numbers", ()), *numbers)
-        return at
-
     def _noun(self, begun: int, at: int, found: dict[str, Any], is_definite: bool) -> Named | None:
         name = self.name(at)
         noun: Noun | None
@@ -182,11 +167,7 @@ class _Reader:
             at += 1
         elif name in ("straight", "road", "end", "start"):
             noun = cast(Noun, name)
-            found["every"] = found.get("every", False) or self.row[at].text in (
-                "straights",
-                "geraden",
-                "rectas",
-            )
+            found["every"] = found.get("every", False) or self.row[at].text in STRAIGHTS
             at += 1
         elif name in HALVES and not found.get("numbers"):
             target = Target("road", half=HALVES[name], every=True, words=f"the {self.row[at].text}")
@@ -196,7 +177,7 @@ class _Reader:
             found["way"] = name
             at += 1
         elif name == "it" and at == begun:
-            return Named(Target("it", words=self.row[at].text), at + 1)
+            return self._that(at) or Named(Target("it", words=self.row[at].text), at + 1)
         elif at > begun and self.row[at - 1].text.lower() == "final":
             noun = "end"
             found["numbers"] = ()
@@ -208,33 +189,19 @@ class _Reader:
         else:
             return None
         if noun in ("turn", "straight"):
-            at = self._numbers(at, found)
+            at = self.numbers(at, found)
         return self._built(begun, at, noun, found, is_definite, is_said)
 
-    def _numbers(self, at: int, found: dict[str, Any]) -> int:
-        """'turns 2 to 4', 'turn 3', 'turns 1, 3 and 5'."""
-        numbers: list[int] = []
-        while (
-            self.name(at) == "#" and not self.row[at].unit and self.row[at].value == int(self.row[at].value)
-        ):
-            value = int(self.row[at].value)
-            joined = self.name(at + 1)
-            step = at + 1
-            if numbers and self.name(at - 1) == "to":
-                numbers += range(numbers[-1] + 1, value)
-            numbers.append(value)
-            if joined in ("comma", "and", "to"):
-                step = at + 2
-                if self.name(step) == "and":
-                    step += 1
-                if self.name(step) == "#" and not self.row[step].unit:
-                    at = step
-                    continue
-            at += 1
-            break
-        if numbers:
-            found["numbers"] = (*found.get("numbers", ()), *numbers)
-        return at
+    def _that(self, at: int) -> Named | None:
+        """'that turn'; not 'make that straight'."""
+        noun = self.name(at + 1)
+        leads = noun in TURNS or (noun == "straight" and bool(self.name(at + 2)))
+        found = self.read(at + 1) if leads and self.row[at].text.lower() in DEMONSTRATIVES else None
+        if found is None:
+            return None
+        words = f"{self.row[at].text} {found.target.words}"
+        is_that = not found.target.numbers
+        return Named(replace(found.target, is_that=is_that, is_definite=True, words=words), found.stop)
 
     def _built(
         self,
@@ -249,18 +216,7 @@ class _Reader:
         words = " ".join(lexeme.text for lexeme in self.row[begun:at])
         target = Target(
             noun=noun,
-            kind=found.get("kind"),
-            numbers=found.get("numbers", ()),
-            middle=found.get("middle", False),
-            every=found.get("every", False),
-            side=found.get("side"),
-            sharpness=cast(Sharpness | None, found.get("sharpness")),
-            way=cast(Way | None, found.get("way")),
-            size=found.get("size"),
-            most=found.get("most"),
-            indefinite=indefinite,
-            count=found.get("count"),
-            degrees=found.get("degrees"),
+            **(found | {"indefinite": indefinite}),
             is_bare=noun == "turn" and not is_said,
             is_definite=is_definite or bool(found.get("numbers")) or noun not in ("turn", "straight"),
             words=words,
@@ -299,6 +255,3 @@ class _Reader:
             low, high = (replace(first.target, numbers=(n,), every=False) for n in first.target.numbers)
             return first.stop, Place("between", low, high)
         return first.stop, Place("between", first.target)
-
-
-__all__ = ["NOUNS", "PLACES", "SHARPNESS", "SIDED", "TURNS", "WAYS", "Named", "named", "place_at"]

@@ -31,12 +31,13 @@ def pointed(target: Target, blocks: Blocks, what: What) -> list[Block]:
         case "road":
             return _road(target, blocks, what)
         case "straight":
-            return _chosen(target, _among(target, straights(blocks), blocks), "straight")
+            found, noun = straights(blocks), "straight"
         case _:
-            found = turns(blocks)
+            found, noun = turns(blocks), "turn"
             if target.noun is None and what == "length" and not target.side:
-                return _chosen(target, _among(target, found or straights(blocks), blocks), "turn")
-            return _chosen(target, _among(target, found, blocks), "turn")
+                found = found or straights(blocks)
+    chosen = _chosen(target, _among(target, found, blocks), noun)
+    return _spared(target, chosen, blocks) if target.numbers else chosen  # 'turns 1 to 4 except turn 2'
 
 
 def turns(blocks: Blocks) -> list[Block]:
@@ -100,14 +101,22 @@ def _single(target: Target) -> Target:
 def _among(target: Target, found: Sequence[Block], blocks: Blocks) -> list[Block]:
     """Those that are as they were said to be, and where."""
     out = [block for block in found if _fits(target, block)]
+    if target.half:
+        there = {block.name for block in _half(blocks, target.half)}
+        out = [block for block in out if block.name in there]
     place = target.place
     if place and place.target:
         out = _placed(place, out, blocks, many=target.every or bool(target.numbers))
-    if target.but:
-        but = replace(target.but, noun=target.but.noun or target.noun)
-        gone = {block.name for block in pointed(but, blocks, "length")}
-        out = [block for block in out if block.name not in gone]
-    return out
+    return out if target.numbers else _spared(target, out, blocks)
+
+
+def _spared(target: Target, found: list[Block], blocks: Blocks) -> list[Block]:
+    """Without those that 'except' names."""
+    if target.but is None:
+        return found
+    but = replace(target.but, noun=target.but.noun or target.noun)
+    gone = {block.name for block in pointed(but, blocks, "length")}
+    return [block for block in found if block.name not in gone]
 
 
 def _fits(target: Target, block: Block) -> bool:
@@ -121,6 +130,8 @@ def _fits(target: Target, block: Block) -> bool:
     if target.size and not (seen.length >= LONG if target.size == "long" else seen.length <= SHORT):
         return False
     if target.degrees is not None and abs(seen.degrees - target.degrees) > 10:
+        return False
+    if target.length is not None and abs(seen.length - target.length) > max(5.0, 0.1 * target.length):
         return False
     if target.sharpness == "sharp" and seen.radius > 30:
         return False
@@ -206,6 +217,8 @@ def _told(target: Target, noun: str) -> str:
     words.append(target.sharpness or target.size or "")
     if target.degrees is not None:
         words.append(f"{target.degrees:g} degree")
+    if target.length is not None:
+        words.append(f"{target.length:g} m")
     words.append(KIND_NAMES.get(target.kind or "", noun))
     where = ""
     if target.place and target.place.target:

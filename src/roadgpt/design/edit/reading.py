@@ -6,45 +6,19 @@ last turn sharper', 'make it longer, too'.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
+from roadgpt.design.edit.clause import Clause
+from roadgpt.design.edit.gathering import ADVICE, gathered, short
 from roadgpt.design.edit.lexing import UNKNOWN, Lexeme, lexemes
-from roadgpt.design.edit.naming import NOUNS, PLACES, named, place_at
+from roadgpt.design.edit.naming import NOUNS, PLACES, SIDED, named, place_at
 from roadgpt.design.edit.request import Change, Place, Request, Target
-from roadgpt.design.edit.wording import wanted
 from roadgpt.errors import EditError
 
 MOST_CHARACTERS = 2000
 SEPARATORS = {"comma", "and", "then", "stop"}
-IDLE = {"too", "make", "with", "of", "at", "as", "to", "by", "a", "the", "on"}
-"""Words that ask for nothing by themselves."""
 AT = {"at_start": "start", "at_end": "end", "at_mid": "middle"}
-ADVICE = "say what is to be different where, for example: make the second turn sharper, and the end downhill"
-
-
-@dataclass
-class Clause:
-    """What was found in one clause."""
-
-    targets: list[Target] = field(default_factory=list)
-    new: list[Target] = field(default_factory=list)
-    places: list[Place] = field(default_factory=list)
-    row: list[Lexeme] = field(default_factory=list)
-    """What is left: verbs, comparatives and amounts."""
-    unknown: list[str] = field(default_factory=list)
-    words: str = ""
-
-    @property
-    def names(self) -> set[str]:
-        """Of all meanings that are left."""
-        return {lexeme.name for lexeme in self.row}
-
-    @property
-    def is_action(self) -> bool:
-        """Does it say what is to be done?"""
-        is_side = "make" in self.names and any(target.is_bare for target in self.targets)
-        return bool(self.new) or is_side or bool(self.names - IDLE)
 
 
 def read_request(words: str) -> Request:
@@ -63,19 +37,17 @@ def read_request(words: str) -> Request:
     refused = next((x.text for x in row if x.name == "not"), None)
     if refused:
         raise EditError(f"'{refused}' is not understood in a change request; {ADVICE}")
-    clauses = [_clause(part) for part in _parts(row)]
-    clauses = [clause for clause in clauses if clause.words]
-    changes = _changes(clauses)
+    clauses = _with_amounts([clause for part in _parts(row) if (clause := _clause(part)).words])
+    kept = [target for clause in clauses if clause.keeps for target in clause.targets]
+    changes = [_sparing(change, kept) for change in gathered(clauses)]
+    sides = {(change.target, change.side): change for change in changes if change.what == "side"}
+    if len(sides) > len({target for target, _ in sides}):
+        raise EditError("the same turns are to go left and right; say which turn is to go where")
     unused = tuple(word for clause in clauses for word in clause.unknown)
     if not changes:
-        told = f"'{_short(words)}' is no change of a road that I know"
+        told = f"'{short(words)}' is no change of a road that I know"
         raise EditError(f"{told}; {ADVICE}")
     return Request(words, tuple(changes), unused)
-
-
-def _short(words: str) -> str:
-    plain = " ".join(words.split())
-    return plain if len(plain) <= 60 else f"{plain[:59]}…"
 
 
 def _parts(row: Sequence[Lexeme]) -> list[list[Lexeme]]:
@@ -144,85 +116,32 @@ def _clause(row: Sequence[Lexeme]) -> Clause:
 
 def _is_verb(row: Sequence[Lexeme]) -> bool:
     """'Turn the second bend left': the first word is what to do."""
-    return row[1].name in ("the", "every", "ord", "it") and any(x.name in NOUNS for x in row[1:])
+    things = {*NOUNS, *SIDED, "left", "right"}
+    return row[1].name in ("the", "every", "ord", "it") and any(x.name in things for x in row[1:])
 
 
-def _changes(clauses: Sequence[Clause]) -> list[Change]:
-    out: list[Change] = []
-    before: tuple[Target, ...] = ()
-    waiting: list[Clause] = []
-    last: Clause | None = None
-    for number, clause in enumerate(clauses):
-        if _complains(clause):  # 'the second turn is too gentle, make it sharper'
-            rest = clauses[number + 1 :]
-            if rest and rest[0].is_action and all(target.noun == "it" for target in rest[0].targets):
-                before = tuple(clause.targets) or before
-                continue
-        if not clause.is_action:
-            if not clause.targets and not clause.places:
-                if clause.unknown:
-                    _not_understood(clause)
-                continue
-            if _is_side_of_new(clause, out):
-                out[-1] = replace(out[-1], side=clause.targets[0].side)
-                continue
-            added = [index for index, change in enumerate(out) if change.what == "add"]
-            if not clause.targets and added:  # 'add a left turn, radius 40 m, after the second turn'
-                out[added[-1]] = replace(out[added[-1]], place=clause.places[0])
-                continue
-            is_last = not any(other.is_action for other in clauses[number + 1 :])
-            if clause.unknown and is_last and not out:
-                _not_understood(clause)
-            if is_last and last is not None:  # 'make the first turn sharper, and the last'
-                targets = [_like(target, before) for target in clause.targets]
-                out += wanted(replace(last, targets=targets, new=[], words=clause.words), before)
-                before = tuple(clause.targets)
-            else:
-                waiting.append(clause)
-            continue
-        targets = [target for other in waiting for target in other.targets] + clause.targets
-        waiting_places = [place for other in waiting for place in other.places]
-        waiting = []
-        targets = [_like(target, before) for target in targets]
-        whole = replace(clause, targets=targets, places=waiting_places + clause.places)
-        found = wanted(whole, before)
-        if not found and clause.unknown:
-            _not_understood(clause)
-        out += found
-        last = clause
-        before = tuple(dict.fromkeys(c.target for c in found if c.target is not None)) or before
-    if waiting:
-        said = " and ".join(clause.words for clause in waiting)
-        if out and last is None:
-            return out
-        raise EditError(f"what is to be different about '{_short(said)}' is not said; {ADVICE}")
+def _with_amounts(clauses: Sequence[Clause]) -> list[Clause]:
+    """'Make it shorter, 300 m in total': a number by itself belongs to what stands before it."""
+    out: list[Clause] = []
+    for clause in clauses:
+        before = out[-1] if out else None
+        if clause.is_amount and before and before.is_action and "#" not in before.names:
+            before.row += [*([] if clause.names & {"by", "to"} else [Lexeme("to", "")]), *clause.row]
+            before.words = f"{before.words}, {clause.words}"
+        else:
+            out.append(clause)
     return out
 
 
-TOO = {"gentle": "sharper", "sharp": "gentler", "sweeping": "tighter", "long": "shorter", "short": "longer",
-       "steep": "flatter", "flat": "steeper"}  # fmt: skip
-"""What is wanted of what is too long."""
-
-
-def _complains(clause: Clause) -> bool:
-    """Is something too long? Then the clause is one that wants it shorter."""
-    if "too" not in clause.names or not clause.names & TOO.keys():
-        return False
-    clause.row = [replace(x, name=TOO.get(x.name, x.name)) for x in clause.row if x.name != "too"]
-    return True
-
-
-def _is_side_of_new(clause: Clause, out: Sequence[Change]) -> bool:
-    """'Add an S-bend, first to the right'."""
-    return bool(out) and out[-1].what == "add" and bool(clause.targets) and clause.targets[0].is_bare
-
-
-def _like(target: Target, before: Sequence[Target]) -> Target:
-    """'The first one' is a straight where straights were spoken of before."""
-    nouns = [other.noun for other in before if other.noun in ("turn", "straight")]
-    return replace(target, noun=nouns[-1]) if target.noun is None and nouns else target
-
-
-def _not_understood(clause: Clause) -> None:
-    told = ", ".join(f"'{word}'" for word in clause.unknown)
-    raise EditError(f"{told} in '{_short(clause.words)}' is not understood; {ADVICE}")
+def _sparing(change: Change, kept: Sequence[Target]) -> Change:
+    """'Make all turns sharper, but leave the second one alone'."""
+    target = change.target
+    kept = [replace(one, noun=one.noun or "turn") for one in kept]
+    kept = [one for one in kept if target and target.noun in (one.noun, "road")]
+    is_counted = target is not None and bool(target.numbers)
+    if target is None or target.but or not kept or is_counted or not (target.every or target.noun == "road"):
+        return change
+    numbers = tuple(number for one in kept for number in one.numbers)
+    if len(kept) > 1 and not all(one.numbers and one.noun == kept[0].noun for one in kept):
+        raise EditError("several things are to be left alone; name them with numbers: leave turns 1 and 3")
+    return replace(change, target=replace(target, but=replace(kept[0], numbers=numbers)))

@@ -51,6 +51,10 @@ class Target:
     """'Two turns', of new ones."""
     degrees: float | None = None
     """'The 90 degree bend'."""
+    length: float | None = None
+    """'The 40 m straight'."""
+    is_that: bool = False
+    """'That turn': the one that was spoken of last."""
     is_bare: bool = False
     """A side without a noun: 'the third left'."""
     half: int | None = None

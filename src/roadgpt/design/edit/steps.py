@@ -117,6 +117,11 @@ def scaled(segment: Segment, more: float, wider: float) -> Segment:
     )
 
 
+def straight(length: float, incline: float) -> Segment:
+    """A straight segment with numbers as they are written."""
+    return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
+
+
 def rewritten(block: Block, degrees: float, radius: float) -> Block:
     """A turn of a block's side and slope that is written anew."""
     ramps = [s.transition for s in block.segments if s.transition]
@@ -253,7 +258,7 @@ class Insert:
 
     def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
         """The new blocks in their place, on the slope that is aimed at."""
-        new = tuple(self._sloped(block, aims) for block in self.blocks)
+        new = tuple(self._aimed(block, aims) for block in self.blocks)
         if self.split:
             return tuple(
                 part for b in blocks for part in (self._halves(b, new) if b.name == self.split else (b,))
@@ -262,8 +267,10 @@ class Insert:
         at = names.index(self.before) if self.before else len(blocks)
         return (*blocks[:at], *new, *blocks[at:])
 
-    def _sloped(self, block: Block, aims: Aims) -> Block:
-        aim = aims.get((block.name, "grade"))
+    def _aimed(self, block: Block, aims: Aims) -> Block:
+        length, aim = aims.get((block.name, "length")), aims.get((block.name, "grade"))
+        if length is not None:
+            block = block.with_segments(_with_distance(s, length) for s in block.segments)
         if aim is None:
             return block
         return block.with_segments(with_incline(s, min(max(aim, -14.8), 14.8)) for s in block.segments)

@@ -8,11 +8,17 @@ from roadgpt.design.edit.trying import Made, seen_as
 from roadgpt.road import Design, Geometry
 
 MOVED = 0.005  # m
+FADING = 12.0  # m that a straight gains at most from turns that fade into it
+AGAIN = ("start ", "turned ", "theta ")  # what a repair says of the road as a whole, which is measured here
 
 
 def sentences(before: Design, blocks: Blocks, found: Measures, made: Made) -> tuple[str, ...]:
     """One for every turn and straight that is not as it was, and for the road as a whole."""
-    return (*_things(blocks, made), *_whole(found, made.found), *_placing(before, made.design), *made.besides)
+    besides = [said for said in made.besides if not said.startswith(AGAIN)]
+    if besides:
+        besides = [f"to keep it valid: {'; '.join(besides)}"]
+    things, whole = _things(blocks, made), _whole(found, made.found)
+    return (*things, *whole, *_placing(before, made.design), *besides)
 
 
 def between(before: Design, after: Design, geometry: Geometry) -> tuple[str, ...]:
@@ -47,7 +53,9 @@ def _things(before: Blocks, made: Made) -> Iterator[str]:
         if block.kind == "turn" and seen:
             yield f"{numbers[block.name]} is new: {_turn(seen)}"
         elif block.kind == "gap":
-            yield f"a straight of {block.length:g} m is new"
+            is_alone = seen is not None and abs(seen.length - block.length) < FADING
+            length = seen.length if seen and is_alone else block.length
+            yield f"a straight of {length:.0f} m is new, {block.incline:+.1f} %"
 
 
 def _names(blocks: Sequence[Block]) -> dict[str, str]:
@@ -59,10 +67,8 @@ def _names(blocks: Sequence[Block]) -> dict[str, str]:
             out[block.name] = f"turn {turns}"
         else:
             straights += block.seen is not None
-            at = f"straight {straights}" if block.seen is not None else "the road"
-            out[block.name] = (
-                at if block.seen is not None else f"the road behind turn {turns}" if turns else at
-            )
+            behind = f"the road behind turn {turns}" if turns else "the road"
+            out[block.name] = f"straight {straights}" if block.seen is not None else behind
     return out
 
 
@@ -82,11 +88,8 @@ def _other(block: Block, now: Block, name: str, made: Made) -> Iterator[str]:
     """What is different about a block that stayed."""
     was, seen = block.seen, seen_as(block.name, made.blocks, made.found)
     if not now.segments or (was is not None and seen is None and now.length < was.length):
-        yield (
-            f"{name} is gone"
-            if not now.segments
-            else f"{name}: {now.length:g} m as written, too short to be seen"
-        )
+        short = f"{name}: {now.length:g} m as written, too short to be seen"
+        yield short if now.segments else f"{name} is gone"
         return
     said = []
     if was and seen:
@@ -94,7 +97,11 @@ def _other(block: Block, now: Block, name: str, made: Made) -> Iterator[str]:
             said.append(f"to the {seen.side} and not to the {was.side}")
         if was.kind == "turn" and abs(was.degrees - seen.degrees) >= 0.5:
             said.append(f"{was.degrees:.0f} -> {seen.degrees:.0f} degrees")
-        if was.kind == "turn" and abs(was.radius / seen.radius - 1) >= 0.02:
+        if (
+            was.kind == "turn"
+            and abs(was.radius / seen.radius - 1) >= 0.02
+            and abs(was.radius - seen.radius) >= 1
+        ):
             said.append(f"radius {was.radius:.0f} -> {seen.radius:.0f} m")
         if abs(was.length - seen.length) >= 1 and (was.kind == "straight" or not said):
             said.append(f"length {was.length:.0f} -> {seen.length:.0f} m")
@@ -103,9 +110,8 @@ def _other(block: Block, now: Block, name: str, made: Made) -> Iterator[str]:
         said.append(f"grade {one:+.1f} -> {other:+.1f} %")
     if not (was and seen) and abs(block.length - now.length) >= 0.05:
         said.append(f"length {block.length:.0f} -> {now.length:.0f} m")
-    if not said and was and seen:
-        said.append(f"length {was.length:.1f} -> {seen.length:.1f} m")
-    yield f"{name}: {', '.join(said)}" if said else f"{name}: its segments were cut anew"
+    if said:
+        yield f"{name}: {', '.join(said)}"
 
 
 def _whole(before: Measures, after: Measures) -> Iterator[str]:

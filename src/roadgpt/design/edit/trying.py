@@ -12,7 +12,7 @@ from typing import NamedTuple
 from roadgpt import check
 from roadgpt.check.measures import Measures, Stretch, measure
 from roadgpt.design.edit.anatomy import Block, Blocks, joined
-from roadgpt.design.edit.inserting import with_room
+from roadgpt.design.edit.room import with_room
 from roadgpt.design.edit.steps import FlipAll, Goal, Quantity, Step
 from roadgpt.design.edit.ways import Way
 from roadgpt.design.repair import repair
@@ -236,4 +236,4 @@ def _mended(draft: Made, steps: Sequence[Step], world: World) -> Made | None:
         wide = 0.5 * (goal.high - goal.low)
         if not goal.low - wide <= _value(goal, after, found) <= goal.high + wide:
             return None
-    return Made(mended.design, after, found, tuple(f"to keep it valid: {said}" for said in mended.changes))
+    return Made(mended.design, after, found, mended.changes)

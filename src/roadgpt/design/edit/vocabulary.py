@@ -51,9 +51,9 @@ WORDS: dict[str, str] = {
     "s_bend": "s bend | s curve | s kurve",
     "chicane": "chicane chicanes schikane chicana",
     "straight": "straight straights straightaway gerade geraden geradeaus recta rectas rettilineo"
-    " rettilinei"
-    " rettifilo | straight bit | straight line | straight section | straight stretch | straight part"
-    " | straight piece | ligne droite | tout droit | lignes droites | tramo recto | tratto dritto",
+    " rettilinei rettifilo | straight road | straight bit | straight line | straight section"
+    " | straight stretch | straight part | straight piece | ligne droite | tout droit | lignes droites"
+    " | tramo recto | tratto dritto",
     "road": "road track route strasse strecke carretera strada camino percorso ruta circuit everything"
     " overall"
     " | whole road | entire road | whole thing | ganze strasse | ganze strecke | toute la route"
@@ -63,7 +63,7 @@ WORDS: dict[str, str] = {
     " | end of the road | end of road | end of the track",
     "start": "start beginning anfang beginn debut depart inicio comienzo principio inizio | first part"
     " | first section | first bit | first stretch | start of the road | beginning of the road | opening",
-    "it": "it them they this that es sie ihn",
+    "it": "it them they this that these those es sie ihn",
     "half1": "| first half | erste halfte | ersten halfte | premiere moitie | primera mitad | prima meta",
     "half2": "| second half | last half | zweite halfte | zweiten halfte | deuxieme moitie | seconde moitie"
     " | segunda mitad | seconda meta",
@@ -101,7 +101,10 @@ WORDS: dict[str, str] = {
     "flattest": "flattest flachste flachsten",
     "but": "except excluding | except for | apart from | other than | all but | ausser | sauf | excepto"
     " | menos | tranne",
+    "straight between": "| distance between | gap between | space between | spacing between",
     # what to do
+    "keep": "keep keeps kept leave leaves unchanged untouched unaltered alone lass behalte | as it is"
+    " | as they are | as is",
     "make": "replace replaced make makes let set change turn put have give convert shift adjust modify"
     " edit mach mache machen"
     " lass andere mets rends fais rendre rend faire haz pon haga hacer cambia fai rendi metti soll sollen"
@@ -109,8 +112,8 @@ WORDS: dict[str, str] = {
     "add": "add insert append include attach place hinzu fuge hange einfugen hinzufugen ajoute ajouter"
     " ajoutez insere inserer anade anadir agrega agregar aggiungi aggiungere inserisci | put in"
     " | bau ein | fuge hinzu",
-    "add at_end": "| end the road with | finish the road with | end with | ends with | ending with |"
-    " finish with | finishes with",
+    "add at_end": "| end in | ends in | end the road with | finish the road with | end with | ends with"
+    " | ending with | finish with | finishes with",
     "add at_start": "| start the road with | begin the road with | start with | starts with | begin with"
     " | begins with",
     "remove": "take remove delete drop cut erase eliminate scrap omit skip entferne entfernen losche loschen"
@@ -143,7 +146,7 @@ WORDS: dict[str, str] = {
     " allonger"
     " rallonge alarga alargar prolonga allunga allungare | more long | plus long | plus longue"
     " | plus longues | mas larga | mas largo | mas larga | piu lungo | piu lunga | plus longs",
-    "shorter": "shorter shorten trim kurzer verkurze verkurzen kurze raccourcis raccourcir acorta"
+    "shorter": "shorter shorten shrink trim kurzer verkurze verkurzen kurze raccourcis raccourcir acorta"
     " acortar accorcia accorciare | less long | plus court | plus courte | mas corta | mas corto"
     " | piu corto | piu corta | piu breve",
     "long": "long lang lange langen longue larga largo lunga lungo",
@@ -166,8 +169,9 @@ WORDS: dict[str, str] = {
     " | bergab gehen",
     "gently": "gently softly mildly",
     "steep": "steep steeply steil raide empinada ripida",
-    "more": "more mehr mas piu plus increase raise enlarge erhohe augmente aumenta",
-    "less": "less weniger moins menos meno reduce decrease lower verringere reduis reduce riduci",
+    "more": "more bigger larger greater higher mehr mas piu plus increase raise enlarge erhohe augmente"
+    " aumenta",
+    "less": "less smaller weniger moins menos meno reduce decrease lower verringere reduis reduce riduci",
     "much": "much far considerably significantly really lot strongly viel deutlich beaucoup mucho molto"
     " | a lot | a great deal | a good deal | by far | sehr viel",
     "slightly": "slightly somewhat bit little touch tad etwas leicht peu poco leggermente | a bit | a"
@@ -220,6 +224,6 @@ WORDS: dict[str, str] = {
     " still roadgpt shape section part piece segment segments angle's out off other over"
     " au aux se al alla zur zum im am an auch nur have been get gets got makes making made whole"
     " entire ganze ganzen total rather fairly pretty such image sort kind my our your was were what"
-    " that's i'd"
+    " that's i'd ordinary normal regular away"
     " let's it's amount value additional extra bergwarts sich mir uns dalla dal nello su",
 }

@@ -9,13 +9,13 @@ from math import radians
 
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures
-from roadgpt.design.edit.anatomy import Block, Blocks, is_turn
+from roadgpt.design.edit.anatomy import Block, is_turn
 from roadgpt.design.edit.grading import ways_to_slope, ways_to_slope_all
 from roadgpt.design.edit.growing import ways_to_stretch_the_road
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import Become, Bend, Flip, Step, Stretch
+from roadgpt.design.edit.steps import Become, Bend, Flip, Step, Stretch, straight
 from roadgpt.errors import EditError
-from roadgpt.road import Segment, World
+from roadgpt.road import World
 
 Way = tuple[Step, ...]
 
@@ -78,6 +78,8 @@ def ways_to_change(change: Change, blocks: Sequence[Block], found: Measures, wor
                 return ways_to_slope_all(change, blocks, found, world)
             return _each(blocks, lambda block: ways_to_slope(change, block, found, world))
         case "side":
+            if any(block.kind != "turn" for block in blocks):
+                raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
             wrong = [b for b in blocks if change.side is None or b.side != change.side]
             return _flipped(wrong, world) if wrong else ()
         case _:
@@ -95,7 +97,7 @@ def _each(blocks: Sequence[Block], ways: Callable[[Block], Sequence[Step]]) -> t
 def _bends(change: Change, block: Block, world: World) -> list[Step]:
     seen = block.seen
     if block.kind != "turn" or seen is None:
-        return []
+        raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
     least = world.min_radius * OVER_LEAST_RADIUS
     if change.what == "shape":
         pairs = _shapes(change, block, least)
@@ -278,11 +280,3 @@ def _straightened(block: Block) -> list[Step]:
     chord = 2 * block.seen.radius * abs(radians(min(block.seen.degrees, 180)) / 2) * 0.8
     lengths = [block.length, chord, 25.0, 60.0]
     return [Become(block, (straight(length, block.incline),)) for length in lengths]
-
-
-def straight(length: float, incline: float) -> Segment:
-    """A straight segment with numbers as they are written."""
-    return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
-
-
-__all__ = ["Blocks", "Way", "straight", "ways_to_change"]

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Protocol, cast
+from typing import Any, cast
 
+from roadgpt.design.edit.clause import Clause
 from roadgpt.design.edit.dimensions import ADJECTIVES, LONG, SHORT, Dimensions
-from roadgpt.design.edit.lexing import Lexeme
 from roadgpt.design.edit.request import Change, Place, Target
 from roadgpt.errors import EditError
 
@@ -13,21 +13,6 @@ ABROAD = {"gauche", "droite", "izquierda", "derecha", "sinistra", "destra"}  # s
 VERBS = {"remove", "swap", "mirror", "straighten", "sharper", "gentler", "tighter", "wider", "longer",
          "shorter", "steeper", "flatter", "more", "less"}  # fmt: skip
 """Of what is there already."""
-
-
-class Clause(Protocol):
-    """What was found in one clause."""
-
-    targets: list[Target]
-    new: list[Target]
-    places: list[Place]
-    row: list[Lexeme]
-    words: str
-
-    @property
-    def names(self) -> set[str]:
-        """Of all meanings that are left."""
-        ...
 
 
 def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
@@ -78,10 +63,13 @@ def _targets(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
     for target in clause.targets:
         if target.noun == "it":
             out += before or (Target("road", words="the road"),)
+        elif target.is_that:
+            out += _spoken_of(target, before) or (target,)
         else:
             out.append(_without_it(target, before))
-    if len(out) > 1 and out[-1].noun == "road":
-        out = [target for target in out if target.noun != "road"]  # 'the second turn of the road'
+    if len(out) > 1 and out[-1].noun == "road":  # 'the turns of the road', 'the turns in its second half'
+        half = out[-1].half
+        out = [replace(target, half=half) for target in out if target.noun != "road"]
     places = clause.places
     if places and (not out or out[0].noun == "road"):
         ends = [p for p in places if p.how in ("start", "end")]
@@ -90,11 +78,22 @@ def _targets(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
         if places[0].how == "on" and places[0].target:
             return [places[0].target]
         return [Target("road", place=places[0], words=clause.words)]
-    sides = [place.how for place in places if place.how in ("start", "end")]
+    sides = [place.how for place in places if place.how in ("start", "end", "middle")]
     if sides and out and out[0].noun in ("turn", "straight") and not out[0].numbers and not out[0].every:
-        number = 1 if sides[0] == "start" else -1  # 'a longer straight at the end'
-        out[0] = replace(out[0], numbers=(number,), indefinite=False)
+        number = {"start": (1,), "end": (-1,)}.get(sides[0], ())  # 'a longer straight at the end'
+        out[0] = replace(out[0], numbers=number, middle=not number, indefinite=False)
     return out or list(before)
+
+
+def _spoken_of(target: Target, before: tuple[Target, ...]) -> tuple[Target, ...]:
+    """What 'that turn' and 'those turns' mean: of those that were named before, the last one, or all."""
+    named = [
+        one
+        for other in before
+        for one in ((other.place.target, other.place.other, other) if other.place else (other,))
+        if one and (one.noun or "turn") == target.noun
+    ]
+    return tuple(named if target.every else named[-1:])
 
 
 def _without_it(target: Target, before: tuple[Target, ...]) -> Target:
@@ -133,7 +132,7 @@ def _added(clause: Clause, before: tuple[Target, ...]) -> Change:
             f"what is to be added in '{clause.words}' is not said; say: add a left turn at the end"
         )
     thing, dims = things[0], Dimensions(clause)
-    place = clause.places[0] if clause.places else _at(clause)
+    place = clause.places[0] if clause.places else thing.place or _at(clause)
     if place.target and place.target.noun == "it" and before:
         place = replace(place, target=before[0])
     amounts = dims.amounts
@@ -143,7 +142,7 @@ def _added(clause: Clause, before: tuple[Target, ...]) -> Change:
     side: Any = thing.side or dims.side()
     if grade is not None and way == "down":
         grade = -abs(grade)
-    length = metres if thing.noun == "straight" else None
+    length = thing.length or metres if thing.noun == "straight" else None
     if thing.noun == "straight" and length is None:
         length = {"long": LONG, "short": SHORT}.get(thing.size or "")
     adjective = thing.sharpness or next((n for n in ADJECTIVES if n in clause.names), None)
@@ -174,7 +173,8 @@ def _at(clause: Clause) -> Place:
 
 def _on(target: Target | None, change: Change, found: Sequence[Change], clause: Clause) -> Change | None:
     """The change for one target; where none was named, for what such changes are usually meant."""
-    if target is not None and target.is_bare and target.side and all(c.what == "side" for c in found):
+    is_side = target is not None and target.is_bare and target.side and not clause.new
+    if target is not None and is_side and all(c.what == "side" for c in found):
         change = replace(change, side=target.side)  # 'the second turn left and the third right'
         target = replace(target, side=None)
     if change.what == "side" and change.side and target is not None and _is_filter(found, clause):

@@ -1,0 +1,44 @@
+"""A clause of a change request, taken apart: what it names, and the words that are left."""
+
+from dataclasses import dataclass, field
+
+from roadgpt.design.edit.lexing import Lexeme
+from roadgpt.design.edit.request import Place, Target
+
+IDLE = {"too", "make", "keep", "with", "of", "at", "as", "to", "by", "a", "the", "on"}
+"""Words that ask for nothing by themselves."""
+
+
+@dataclass
+class Clause:
+    """What was found in one clause."""
+
+    targets: list[Target] = field(default_factory=list)
+    new: list[Target] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)
+    row: list[Lexeme] = field(default_factory=list)
+    """What is left: verbs, comparatives and amounts."""
+    unknown: list[str] = field(default_factory=list)
+    words: str = ""
+
+    @property
+    def names(self) -> set[str]:
+        """Of all meanings that are left."""
+        return {lexeme.name for lexeme in self.row}
+
+    @property
+    def keeps(self) -> bool:
+        """Does it say no more than what is to stay as it is?"""
+        return "keep" in self.names and not self.is_action
+
+    @property
+    def is_amount(self) -> bool:
+        """Is it no more than a number?"""
+        named = self.targets or self.new or self.places or self.unknown
+        return not named and "#" in self.names and self.names <= IDLE | {"#"}
+
+    @property
+    def is_action(self) -> bool:
+        """Does it say what is to be done?"""
+        is_side = "make" in self.names and any(target.is_bare for target in self.targets)
+        return bool(self.new) or is_side or bool(self.names - IDLE)

@@ -1,0 +1,66 @@
+"""Reads places in a row: 'the second', 'first and third', 'turns 2 to 4'."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from roadgpt.design.edit.lexing import Lexeme
+
+
+class Row:
+    """Meanings in a row, and the numbers that are said in it."""
+
+    def __init__(self, row: Sequence[Lexeme]) -> None:
+        self.row = row
+
+    def name(self, at: int) -> str:
+        """Of the meaning that stands there; empty where none does."""
+        return self.row[at].name if 0 <= at < len(self.row) else ""
+
+    def ordinals(self, at: int, found: dict[str, Any]) -> int:
+        """'second', 'first and third', 'last two', 'second to fourth'."""
+        numbers = [int(self.row[at].value)]
+        at += 1
+        if self.name(at) == "#" and not self.row[at].unit and abs(numbers[0]) == 1:
+            count, sign = int(self.row[at].value), numbers[0]
+            found["numbers"] = tuple(sign * i for i in range(1, count + 1))
+            return at + 1
+        while True:
+            step = at + 1
+            if self.name(at) in ("and", "comma", "to") and self.name(step) == "and":
+                step += 1
+            if self.name(step) == "the":
+                step += 1
+            if self.name(at) not in ("and", "comma", "to") or self.name(step) != "ord":
+                break
+            after = int(self.row[step].value)
+            if self.name(at) == "to" and 0 < numbers[-1] < after:
+                numbers += range(numbers[-1] + 1, after)
+            numbers.append(after)
+            at = step + 1
+        found["numbers"] = (*found.get("numbers", ()), *numbers)
+        return at
+
+    def numbers(self, at: int, found: dict[str, Any]) -> int:
+        """'turns 2 to 4', 'turn 3', 'turns 1, 3 and 5'."""
+        numbers: list[int] = []
+        while (
+            self.name(at) == "#" and not self.row[at].unit and self.row[at].value == int(self.row[at].value)
+        ):
+            value = int(self.row[at].value)
+            joined = self.name(at + 1)
+            step = at + 1
+            if numbers and self.name(at - 1) == "to":
+                numbers += range(numbers[-1] + 1, value)
+            numbers.append(value)
+            if joined in ("comma", "and", "to"):
+                step = at + 2
+                if self.name(step) == "and":
+                    step += 1
+                if self.name(step) == "#" and not self.row[step].unit:
+                    at = step
+                    continue
+            at += 1
+            break
+        if numbers:
+            found["numbers"] = (*found.get("numbers", ()), *numbers)
+        return at

@@ -1,0 +1,44 @@
+"""Ways to take turns and straights away; what stands around them keeps every number."""
+
+from collections.abc import Sequence
+from math import sqrt
+
+from roadgpt.design.edit.anatomy import Block, Blocks
+from roadgpt.design.edit.room import HIDDEN, SEPARATE
+from roadgpt.design.edit.steps import Become, Step, Stretch, straight
+from roadgpt.design.edit.ways import Way
+from roadgpt.errors import EditError
+from roadgpt.road import Segment
+
+
+def ways_to_remove(gone: Sequence[Block], blocks: Blocks) -> tuple[Way, ...]:
+    """All ways to take turns or straights away: nothing, or a straight, in their place."""
+    if len(gone) == len([b for b in blocks if b.segments]):
+        raise EditError("then no road would be left; remove fewer")
+    fillers = (0.0, SEPARATE, 1.0, 45.0)
+    out: list[Way] = []
+    for filler in fillers:
+        steps: list[Step] = []
+        for block in gone:
+            steps.append(_without(block, blocks, filler))
+        out.append(tuple(steps))
+    return tuple(out)
+
+
+def _without(block: Block, blocks: Blocks, filler: float) -> Step:
+    at = blocks.index(block)
+    if block.kind == "gap":
+        bends = tuple(s for s in block.segments if s.turn_degrees)
+        sides = [b.side for b in (*blocks[max(at - 1, 0) : at], *blocks[at + 1 : at + 2]) if b.kind == "turn"]
+        if len(sides) == 2 and sides[0] == sides[1]:
+            return Stretch(block, HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), 0.6)
+        return Become(block, bends)
+    length = {0.0: 0.0, 1.0: _chord(block)}.get(filler, filler)
+    kept: tuple[Segment, ...] = (straight(length, block.incline),) if length else ()
+    return Become(block, kept)
+
+
+def _chord(block: Block) -> float:
+    seen = block.seen
+    assert seen is not None
+    return max(0.7 * block.length, sqrt(2) * min(seen.radius, 60.0))
