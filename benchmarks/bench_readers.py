@@ -20,7 +20,7 @@ from roadgpt.brief import read
 from roadgpt.design import draft
 from roadgpt.export import Poses, save
 from roadgpt.export.place import LATITUDE, LONGITUDE
-from roadgpt.road import Road, World, build
+from roadgpt.road import Road, World, build, in_hops
 
 WORDS = (
     "a road",
@@ -60,8 +60,9 @@ def main(count: int = 200, *formats: str) -> None:
 def drawn(count: int) -> list[Road]:
     """Roads of all descriptions in turn, as arcs and as splines in turn."""
     briefs = [read(words) for words in WORDS]
-    shapes = ("arcs", "spline")
-    return [build(draft(briefs[i % len(briefs)], WORLD, seed=i), shapes[i % 2]) for i in range(count)]
+    designs = [draft(briefs[i % len(briefs)], WORLD, seed=i) for i in range(count)]
+    # splines through hops, as `roadgpt run --geometry spline` draws them
+    return [build(in_hops(each), "spline") if i % 2 else build(each) for i, each in enumerate(designs)]
 
 
 def drive(road: Road) -> Poses:
