@@ -269,6 +269,7 @@ def test_nobody_waits_for_an_hour(stub: Stub, waits: list[float]) -> None:
         (answers({"error": {"message": "no such model", "code": 404}}), "knows no such model"),
         (answers(b"<html>Welcome to nginx</html>"), "something else than JSON .*base URL"),
         (answers([1, 2]), "something else than JSON"),
+        (fails(404, "<!DOCTYPE HTML><html><p>File not found"), "it answers with a web page, .*--base-url"),
     ],
 )
 def test_what_will_not_pass_is_told_at_once(stub: Stub, waits: list[float], scene: Any, told: str) -> None:
@@ -303,6 +304,8 @@ def test_the_only_model_of_a_server_need_not_be_named(stub: Stub) -> None:
     stub.models[:] = ["one", "two"]
     with pytest.raises(ChatError, match="has 2 models: one, two; say which with --model"):
         chat_with(stub, model=None)
+    with pytest.raises(ChatError, match=r"no model is named \(say which with --model .*cannot be reached"):
+        open_chat(ChatSettings(base_url="http://127.0.0.1:9/v1", retries=0))
 
 
 def test_a_base_url_may_leave_out_its_path(stub: Stub) -> None:

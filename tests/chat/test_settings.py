@@ -93,6 +93,12 @@ def test_lines_of_dotenv(line: str, value: str | None) -> None:
         ('[chat]\nmodle = "x"', "have no 'modle' under .chat.; did you mean 'model'"),
         ("[chat", "are not TOML"),
         ("chat = 5", "need a table"),
+        ('model = "m"', "'model' in roadgpt.toml stands outside of a table"),
+        ('[chat]\ntimeout = "soon"', "cannot be used: it is no number"),
+        ("[chat]\ntimeout = 0", "cannot be used: give a number above 0"),
+        ("[chat]\nrounds = 2.5", "cannot be used: it is no whole number"),
+        ('[chat]\napi = "assistants"', "cannot be used: say 'chat' or 'responses'"),
+        ("[chat]\nmodel = 5", "cannot be used: it is no text"),
         ('[chat]\nmax_cost = "much"', "the setting 'max_cost' from roadgpt.toml cannot be"),
         ('[chat]\nbase_url = "localhost:11434"', "base URL"),
         ("[chat]\nretries = 99", "'retries' from roadgpt.toml"),
@@ -183,6 +189,8 @@ def test_the_command_shows_origins_and_masks_keys(monkeypatch: pytest.MonkeyPatc
     assert lines["max_cost"].split()[1:] == ["0.5", "--max-cost"]
     assert lines["api_key"].endswith(f"sk-... ({len(KEY)} letters)  environment (OPENAI_API_KEY)")
     assert "ROADGPT_MODLE in the environment is no setting" in result.stderr
+    write(Path(".env"), "ROADGPT_RETRY=1\nOTHER=2")
+    assert "ROADGPT_RETRY in .env is no setting" in invoke("config", "show").stderr
     assert KEY not in result.output
     told = json.loads(invoke("config", "show", "--json").stdout)
     assert told["model"] == "mine"

@@ -87,10 +87,32 @@ def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
     try:
         return ChatSettings.model_validate({name: setting.value for name, setting in found.items()})
     except ValidationError as error:
-        problem = error.errors(include_url=False, include_input=False)[0]
+        problem = error.errors(include_url=False, include_input=False)[0]  # the input may be a key
         name = str(problem["loc"][0])
-        said = problem["msg"].removeprefix("Value error, ")
-        raise UsageError(f"the setting '{name}' from {found[name].origin} cannot be: {said}") from None
+        said = _fault_in(problem)
+        raise UsageError(f"the setting '{name}' from {found[name].origin} cannot be used: {said}") from None
+
+
+def _fault_in(problem: Mapping[str, Any]) -> str:
+    """What is wrong with a value, in our words."""
+    bounds = problem.get("ctx", {})
+    match problem["type"]:
+        case "float_parsing" | "float_type" | "finite_number":
+            return "it is no number"
+        case "int_parsing" | "int_type" | "int_from_float":
+            return "it is no whole number"
+        case "string_type":
+            return "it is no text"
+        case "literal_error":
+            return f"say {bounds['expected']}"
+        case "greater_than":
+            return f"give a number above {bounds['gt']:g}"
+        case "greater_than_equal":
+            return f"give {bounds['ge']:g} or more"
+        case "less_than_equal":
+            return f"give {bounds['le']:g} or less"
+        case _:
+            return str(problem["msg"]).removeprefix("Value error, ")
 
 
 def key_for(base_url: str | None) -> Key | None:
@@ -196,12 +218,18 @@ def _unquoted(text: str) -> str:
 def _toml(path: Path) -> dict[str, Any]:
     text = _read(path)
     try:
-        table = tomllib.loads(text).get("chat", {})
+        whole = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         # the message of the library may show what stands there, and that may be a key
         place = re.search(r"at line \d+", str(error))
         where = place.group() if place else "somewhere"
         raise UsageError(f"the settings in {path} are not TOML ({where}); mend them") from None
+    outside = next((name for name in (*FIELDS, KEY) if name in whole), None)
+    if outside:
+        raise UsageError(
+            f"the setting '{outside}' in {path} stands outside of a table; put it below a line [chat]"
+        )
+    table = whole.get("chat", {})
     if not isinstance(table, dict):
         raise UsageError(f'the settings in {path} need a table [chat], with lines like model = "gpt-5-mini"')
     for name in table:
@@ -213,6 +241,12 @@ def _toml(path: Path) -> dict[str, Any]:
 
 
 def strangers() -> list[str]:
-    """Variables of the environment that look like settings of ours and are none."""
+    """Variables that look like settings of ours and are none, with the place where they stand."""
     known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS}
-    return sorted(name for name in os.environ if name.startswith("ROADGPT_") and name not in known)
+    places = (("the environment", os.environ), (DOTENV, _dotenv(Path(DOTENV))))
+    return [
+        f"{name} in {place}"
+        for place, names in places
+        for name in sorted(names)
+        if name.startswith("ROADGPT_") and name not in known
+    ]

@@ -3,8 +3,9 @@
 from importlib.metadata import PackageNotFoundError, version
 
 from roadgpt.chat.config import DEFAULT, configured, gathered, key_for
+from roadgpt.chat.fault import FaultError
 from roadgpt.chat.strict import plain
-from roadgpt.chat.wire import FaultError, Wire, place_of
+from roadgpt.chat.wire import Wire, place_of
 from roadgpt.errors import ChatError
 
 PATIENCE = 5.0  # s

@@ -136,7 +136,7 @@ class ChatSettings(Frozen):
         except ValueError:
             raise ValueError("the base URL cannot be read; write it like http://localhost:11434/v1") from None
         if parts.scheme not in ("http", "https") or not parts.hostname:
-            raise ValueError("the base URL is none; write it like http://localhost:11434/v1")
+            raise ValueError("that is no base URL; write it like http://localhost:11434/v1")
         if parts.username is not None or parts.query or parts.fragment:
             raise ValueError(
                 "the base URL holds more than a place; put the key into OPENAI_API_KEY and leave "

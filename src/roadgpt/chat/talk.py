@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from roadgpt.chat.answer import Answer, of_responses
+from roadgpt.chat.fault import FaultError
 from roadgpt.chat.habits import Habits
 from roadgpt.chat.model import Message
-from roadgpt.chat.wire import FaultError, Wire
+from roadgpt.chat.wire import Wire
 
 MOST_TURNS = 20  # messages that are sent along where the server keeps none
 FULL = ("context_length", "context window", "too long", "maximum context")

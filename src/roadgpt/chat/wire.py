@@ -8,52 +8,28 @@ first.
 import contextvars
 import json
 import logging
-import random
 import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from email.utils import parsedate_to_datetime
 from typing import Any
 from urllib.parse import urlsplit
 
+from roadgpt.chat.fault import BUSY, SPENT_UP, FaultError, asked_wait, wait_after
 from roadgpt.chat.model import ChatSettings
 from roadgpt.chat.prices import OPENAI, is_sold
 from roadgpt.chat.secret import NOBODY, Key, cleaned
 from roadgpt.chat.strict import NotReadableError, plain
 from roadgpt.errors import ChatError
 
-BUSY = {408, 409, 425, 429, 500, 502, 503, 504, 529}  # statuses after which the same question may be answered
-SPENT_UP = ("insufficient_quota", "billing", "credit")  # what a 429 says that no waiting helps
-FIRST_WAIT, LONGEST_WAIT = 0.5, 8.0  # s, between retries where the server does not say how long
+PAGE = ("<!doctype", "<html")  # how a web page begins, in small letters
 DOORS = ("/chat/completions", "/responses", "/models")  # of a base URL that was copied with its door
-PATIENCE = 120.0  # s, the longest wait that a server may ask for
 CONNECT = 10.0  # s, to reach it
-TALKATIVE = (
-    "openai",
-    "httpx2",
-    "httpcore2",
-)  # their debug logs show headers, and with those what a server echoes
+TALKATIVE = ("openai", "httpx2", "httpcore2")  # debug logs of theirs show headers, and what servers echo
 GRACE = 0.2  # s behind the time limit, in which the request itself may say what is wrong
 BYTES_PER_TOKEN = 24  # generous: JSON that escapes every letter
 ROOM = 200_000  # bytes, for all around a reply
 
 sleep = time.sleep
-
-
-@dataclass
-class FaultError(Exception):
-    """A request that came to nothing."""
-
-    sentence: str
-    status: int | None = None
-    said: str = ""
-    """What the server says about it, in small letters."""
-    parameter: str = ""
-    wait: float | None = None
-    """Seconds that the server asks for."""
-    may_pass: bool = False
-    """Can the same request do better later?"""
 
 
 class Wire:
@@ -118,7 +94,7 @@ class Wire:
             try:
                 return self._once(call, body)
             except FaultError as fault:
-                wait = _wait(fault, attempt)
+                wait = wait_after(fault, attempt)
                 if not fault.may_pass or wait is None:
                     raise
                 if attempt == self.settings.retries:
@@ -219,11 +195,13 @@ class Wire:
         if not message and isinstance(body, dict):
             message = json.dumps(body)
         message = message or plain(cleaned(str(error.message), self._key))
-        return self._fault(status, {**told, "message": message}, _asked_wait(error.response.headers))
+        return self._fault(status, {**told, "message": message}, asked_wait(error.response.headers))
 
     def _fault(self, status: int, told: dict[str, Any], wait: float | None) -> FaultError:
         """What a server says about an error, in a sentence."""
         message = str(told.get("message") or "")
+        if message.lstrip().lower().startswith(PAGE):
+            message = "it answers with a web page, as no server of language models does"
         said = f"{message} {told.get('code') or ''} {told.get('type') or ''}".lower()
         used_up = status == 429 and any(word in said for word in SPENT_UP)
         return FaultError(
@@ -270,32 +248,3 @@ def _within(parts: Iterator[bytes], deadline: float, late: Callable[[], FaultErr
         if time.monotonic() > deadline:
             raise late()
         yield part
-
-
-def _asked_wait(headers: Any) -> float | None:
-    """Seconds of retry-after, however it is said."""
-    for name, unit in (("retry-after-ms", 0.001), ("retry-after", 1.0)):
-        text = headers.get(name)
-        if not text:
-            continue
-        try:
-            seconds = float(text) * unit
-        except ValueError:
-            try:
-                seconds = parsedate_to_datetime(text).timestamp() - time.time()
-            except (ValueError, TypeError, OverflowError):
-                continue
-        if seconds == seconds:
-            return max(0.0, seconds)
-    return None
-
-
-def _wait(fault: FaultError, attempt: int) -> float | None:
-    """Seconds until the next try; None: longer than anyone waits."""
-    if fault.wait is not None:
-        if fault.wait > PATIENCE:
-            fault.sentence += f"; it asks to wait {fault.wait:.0f} s, come back then"
-            return None
-        return fault.wait
-    usual: float = min(FIRST_WAIT * 2.0**attempt, LONGEST_WAIT)
-    return usual * random.uniform(0.75, 1.25)

@@ -60,7 +60,12 @@ def setup_options(*fields: str) -> Decorator:
     return together(*(known[field].option() for field in fields))
 
 
-chat_options = together(*(flag.option() for flag in CHAT))
+def chat_options_but(*fields: str) -> Decorator:
+    """Options that set ChatSettings, but for these fields, which the command does not heed."""
+    return together(*(flag.option() for flag in CHAT if flag.field not in fields))
+
+
+chat_options = chat_options_but()
 
 
 def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":
@@ -81,7 +86,10 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
         return configured(told)
     if told:
         flag = next(flag for flag, value in given.items() if value is not None)
-        raise UsageError(f"{flag.flag} is for language models; say --designer chat or --reader chat as well")
+        advice = " or ".join(
+            f"--{part} chat" for part, name in (("designer", designer), ("reader", reader)) if name
+        )
+        raise UsageError(f"{flag.flag} is for language models; say {advice} as well")
     return None
 
 

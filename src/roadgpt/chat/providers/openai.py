@@ -16,13 +16,14 @@ from pydantic import BaseModel
 
 from roadgpt.chat.answer import Answer, of_chat
 from roadgpt.chat.config import key_for
+from roadgpt.chat.fault import FaultError
 from roadgpt.chat.flat import schema_of
 from roadgpt.chat.habits import Rung, habits_of
 from roadgpt.chat.meter import Account, Meter, tokens_in
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
 from roadgpt.chat.strict import NotReadableError, plain, read_as
 from roadgpt.chat.talk import FULL, Talk
-from roadgpt.chat.wire import FaultError, Wire
+from roadgpt.chat.wire import Wire
 from roadgpt.errors import ChatError, RefusedError, UnparsableError
 
 ABOUT_FORMAT = ("response_format", "json", "schema", "grammar", "format", "structured", "guided")
@@ -55,7 +56,7 @@ class OpenAI:
         try:
             names = [str(one.get("id")) for one in self._wire.models() if one.get("id")]
         except FaultError as fault:
-            raise ChatError(f"no model is named and {fault.sentence}; {advice}") from None
+            raise ChatError(f"no model is named ({advice}), and {fault.sentence}") from None
         if len(names) != 1:
             shown = f": {', '.join(plain(name, 40) for name in names[:8])}" if names else ""
             raise ChatError(f"{self._wire.place} has {len(names)} models{shown}; {advice}")

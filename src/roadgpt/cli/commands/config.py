@@ -19,7 +19,7 @@ def command() -> None:
 @click.option("--json", "as_json", is_flag=True, help="As one JSON object.")
 @chat_options
 def show(with_origin: bool, as_json: bool, **values: Any) -> None:
-    """Show the settings of language models that would hold now; keys are masked.
+    """Show the settings that hold now; keys are masked.
 
     What is given as an option counts most, then the environment (ROADGPT_MODEL and so on, OPENAI_BASE_URL,
     OPENAI_API_KEY), then a file .env in this folder, then roadgpt.toml in this folder, then the user's own
@@ -44,4 +44,4 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
         shown = "-" if value is None else str(value)
         click.echo(f"{name:<{wide}}  {shown:<{far}}  {origin}" if with_origin else f"{name:<{wide}}  {shown}")
     for name in strangers():
-        click.echo(f"roadgpt: {name} in the environment is no setting; there are those above", err=True)
+        click.echo(f"roadgpt: {name} is no setting; there are those above", err=True)

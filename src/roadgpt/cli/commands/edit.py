@@ -7,7 +7,7 @@ import click
 
 from roadgpt.cli.changing import Wish, change
 from roadgpt.cli.dashes import DescribedCommand
-from roadgpt.cli.options import chat_of, chat_options, folder, setup_options, world_of, world_options
+from roadgpt.cli.options import chat_of, chat_options_but, folder, world_of, world_options
 from roadgpt.cli.screen import Screen
 
 
@@ -15,8 +15,13 @@ from roadgpt.cli.screen import Screen
 @click.argument("run", metavar="RUN")
 @click.argument("words", nargs=-1, required=True, metavar="CHANGE")
 @click.option("--out", type=folder, default=None, help="Folder for the changed road. [default: a new one]")
-@setup_options("designer")
-@chat_options
+@click.option(
+    "--designer",
+    default="planner",
+    show_default=True,
+    help="Who changes the road: planner, by rules; chat, a language model.",
+)
+@chat_options_but("repair", "strategy")
 @world_options("map_size")
 @click.option("--no-drive", is_flag=True, help="Change and check only.")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
