@@ -1,5 +1,6 @@
 """Fake BeamNGs for tests; no BeamNG that a test started outlives it."""
 
+import logging
 import socket
 from collections.abc import Iterator
 
@@ -22,6 +23,15 @@ def _environment(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in list(os.environ):
         if name.startswith("ROADGPT_BEAMNG_") or name == "BNG_HOME":
             monkeypatch.delenv(name)
+
+
+@pytest.fixture(autouse=True)
+def _quiet() -> Iterator[None]:
+    """The client logs every message; to have them kept costs more than to exchange them."""
+    logger = logging.getLogger("beamngpy")
+    logger.propagate = False
+    yield
+    logger.propagate = True
 
 
 @pytest.fixture

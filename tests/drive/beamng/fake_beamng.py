@@ -54,6 +54,8 @@ class Settings:
     slow_start: float = 0.0
     levels: tuple = tuple(LEVELS)
     steer_sign: float = -1.0
+    told_sign: float = 1.0
+    """Of the steering input that is told, against that which was commanded."""
     is_blind: bool = False
     """The AI does not see roads of prefabs."""
     tech: bool = True
@@ -377,7 +379,7 @@ class FakeBeamNG:
     def veh_SensorRequest(self, car, message):
         known = {
             "State": lambda: {"state": car.state()},
-            "Electrics": lambda: {"values": car.electrics()},
+            "Electrics": lambda: {"values": car.electrics(self.settings.told_sign)},
             "Damage": lambda: {"damage": 0},
         }
         data = {}

@@ -225,10 +225,10 @@ class Car:
             "time": self.world.time,
         }
 
-    def electrics(self):
+    def electrics(self, told_sign):
         return {
             "steering": math.degrees(self.steer) * 15,
-            "steering_input": self.steer / LOCK * self.steer_sign,
+            "steering_input": self.steer / LOCK * self.steer_sign * told_sign,
             "throttle": self.pedals[0],
             "throttle_input": self.pedals[0],
             "brake": self.pedals[1],

@@ -2,7 +2,10 @@
 
 import json
 import os
+import signal
 import socket
+import subprocess
+import sys
 import threading
 import time
 from contextlib import suppress
@@ -130,6 +133,22 @@ def test_nothing_of_ours_runs_on_after_a_session(tmp_path: Path, port: int) -> N
     sessions.leave_all()
     with pytest.raises(ProcessLookupError):
         os.kill(json.loads(started)["pid"], 0)
+
+
+def test_what_a_killed_worker_left_behind_is_ended(tmp_path: Path, port: int) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS)
+    code = (
+        "import os, signal; from roadgpt.drive.simulators.beamng import Settings; "
+        "from roadgpt.drive.simulators.beamng.session import session_of; "
+        f"session_of(Settings(port={port}, home={str(home)!r})).ready(); os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == -signal.SIGKILL
+    (started,) = (home / "started.jsonl").read_text().splitlines()
+    os.kill(json.loads(started)["pid"], 0)  # it lives on
+    assert drive(Settings(port=port, home=home, rate=20)) == "goal"
+    first, second = map(json.loads, (home / "started.jsonl").read_text().splitlines())
+    assert first["pid"] != second["pid"]
+    assert first["words"] == second["words"]  # on the same port, which was free again
 
 
 def test_the_command_line_is_the_clients(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """The simulator 'beamng' with the unmodified client against the fake: scene, drives, verdicts, faults."""
 
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -163,10 +164,11 @@ def test_who_does_not_move_is_stuck_and_an_ai_that_never_sets_off_is_an_error(fa
         leave_all()
 
 
+@pytest.mark.parametrize("told", [1.0, -1.0])
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_a_driver_steers_to_its_left_whichever_way_the_input_turns(sign: float) -> None:
+def test_a_driver_steers_to_its_left_whichever_way_the_input_turns(sign: float, told: float) -> None:
     spy = Spy()
-    with FakeBeamNG(protocol=OURS, steer_sign=sign) as fake:
+    with FakeBeamNG(protocol=OURS, steer_sign=sign, told_sign=told) as fake:
         drive = simulator(fake).simulate(HILLS, WORLD, spy, 7)
         gain = session_of(Settings(port=fake.port)).gain
         leave_all()
@@ -268,3 +270,12 @@ def test_a_level_without_the_ground_that_we_know_can_be_named(fake: FakeBeamNG) 
         PartError, match="no level atlantis; name another with --beamng-level, there are: small"
     ):
         simulator(fake, level="atlantis").simulate(SHORT, WORLD, Reference(), 7)
+
+
+def test_the_driver_of_the_guide_sees_and_drives(fake: FakeBeamNG) -> None:
+    page = Path(__file__).parents[3] / "docs" / "how-to" / "use-beamng.md"
+    (code,) = re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.M | re.S)
+    made: dict[str, Any] = {}
+    exec(code, made)
+    drive = simulator(fake, rate=20).simulate(SHORT, WORLD, made["Looks"](), 7)
+    assert {*drive["throttle"][1:].tolist()} == {0.0, 0.2}  # the image of the fake grows lighter with time

@@ -124,8 +124,8 @@ class Recorder:
     def _sample(self, now: Moment, command: tuple[float, float, float]) -> Sample:
         s, t, _ = self.track.place(now.x, now.y)
         outside = self.track.outside(now, s)
-        gain = self.stage.session.gain
-        steer = now.steer if gain is None else now.steer * gain
+        told = self.stage.session.told
+        steer = now.steer if told is None else now.steer * told
         pedals = (now.throttle, now.brake) if self.seat is None else command[1:]
         return Sample(now, s, t, outside, steer, pedals[0], pedals[1])
 
@@ -163,10 +163,10 @@ class Recorder:
     def columns(self) -> tuple[Columns, float]:
         """Everything as a Drive has it, and the lock of the front wheels in radians."""
         cars = {name: np.array([getattr(each.car, name) for each in self.samples]) for name in Moment._fields}
-        gain = self.stage.session.gain
-        lock = LOCK if gain is None else abs(gain)
+        told = self.stage.session.told
+        lock = LOCK if told is None else abs(told)
         steer = np.array([each.steer for each in self.samples])
-        if gain is None:  # nobody tried: the way it turned tells what is left
+        if told is None:  # nobody tried: the way it turned tells what is left
             turned = float(np.sum(steer * cars["yaw_rate"]))
             steer = steer * math.copysign(LOCK, turned)
         ours = {

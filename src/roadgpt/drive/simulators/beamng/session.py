@@ -34,8 +34,8 @@ def client() -> Any:
         raise PartError(
             f"the simulator 'beamng' needs beamngpy ({error}); say python -m pip install 'roadgpt[beamng]'"
         ) from error
-    for name in ("beamngpy", "beamngpy.BeamNGpy"):  # it tells of every failed try; we say what came of it
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    # It tells of every failed try, which without a handler would go to the screen; we say what came of it.
+    logging.getLogger("beamngpy").addHandler(logging.NullHandler())
     return package
 
 
@@ -55,6 +55,8 @@ class Session:
         self.body: Body | None = None
         self.gain: float | None = None
         """Radians of the front wheels per unit of steering input; negative where that turns right."""
+        self.told: float | None = None
+        """The same for the input that BeamNG tells of, which need not have the sign of ours."""
         self.vehicle: Any = None
         self.watchdog = Watchdog(self._sockets, self._kill)
         self._slot: slots.Slot | None = None
@@ -87,6 +89,7 @@ class Session:
             if settings.home is not None:
                 words = command_line(binary_of(settings.home), settings, port, self._slot.user)
                 self.game = Game(words, host, port)
+                self._slot.note(self.game.process.pid)
                 self.game.wait(settings.start_timeout)
             self._check_pair(host, port)
             with self.within(settings.start_timeout, "it was starting"):
@@ -160,7 +163,7 @@ class Session:
             self._slot = None
 
     def _forget(self) -> None:
-        self.game = self.bng = self.vehicle = self.body = self.gain = None
+        self.game = self.bng = self.vehicle = self.body = self.gain = self.told = None
         self.watchdog = Watchdog(self._sockets, self._kill)
 
     def _kill(self) -> None:

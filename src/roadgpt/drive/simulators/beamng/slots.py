@@ -3,8 +3,12 @@
 A worker holds a lock file; a process that is killed lets go of it.
 """
 
+import os
 import shutil
+import signal
+import subprocess
 import tempfile
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import IO
@@ -28,8 +32,17 @@ class Slot:
     def __init__(self, number: int, port: int, user: Path | None, lock: IO[str]) -> None:
         self.number, self.port, self.user, self._lock = number, port, user, lock
 
+    def note(self, pid: int) -> None:
+        """Write down which process listens on the port, for whoever comes after a worker that was killed."""
+        self._lock.seek(0)
+        self._lock.truncate()
+        self._lock.write(str(pid))
+        self._lock.flush()
+
     def release(self) -> None:
         """Let others have it."""
+        self._lock.seek(0)
+        self._lock.truncate()
         self._lock.close()
 
 
@@ -48,6 +61,8 @@ def take(settings: Settings) -> Slot:
         lock = _locked(settings.host, port)
         if lock is None:
             continue
+        if settings.launches:
+            _end_orphan(lock, settings.host, port)
         if is_taken(settings.host, port) != settings.launches:
             return Slot(number, port, _user(settings, number), lock)
         lock.close()
@@ -61,7 +76,7 @@ def take(settings: Settings) -> Slot:
 
 def _locked(host: str, port: int) -> IO[str] | None:
     path = Path(tempfile.gettempdir(), f"roadgpt-beamng-{host.replace(':', '_')}-{port}.lock")
-    file = path.open("w")
+    file = path.open("a+")  # what a killed worker wrote stays
     try:
         if fcntl is not None:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -73,6 +88,33 @@ def _locked(host: str, port: int) -> IO[str] | None:
         file.close()
         return None
     return file
+
+
+def _end_orphan(lock: IO[str], host: str, port: int) -> None:
+    """End the BeamNG that a killed worker left behind on its port; its lock is free, so nobody uses it."""
+    lock.seek(0)
+    said = lock.read()
+    if os.name != "posix" or not said.isdecimal() or not is_taken(host, port):
+        return
+    if f"-tport {port} " not in f"{_command_line(int(said))} ":
+        return  # another process that has its number now
+    with suppress(OSError):
+        os.killpg(int(said), signal.SIGKILL)
+        for _ in range(50):
+            if not is_taken(host, port):
+                break
+            time.sleep(0.1)
+
+
+def _command_line(pid: int) -> str:
+    """The words that a process was started with; empty where nobody tells."""
+    with suppress(OSError):
+        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
+    with suppress(OSError, subprocess.SubprocessError):  # macOS
+        words = ["/bin/ps", "-o", "command=", "-p", str(pid)]
+        told = subprocess.run(words, capture_output=True, text=True, timeout=10, check=False)  # noqa: S603
+        return told.stdout.strip()
+    return ""
 
 
 def _user(settings: Settings, number: int) -> Path | None:

@@ -174,12 +174,14 @@ class Stage:
         if self.session.gain is not None:
             return
         found: list[float] = []
+        echoed = 0.0
         with self.session.within(self.settings.poll_timeout, "the steering was measured"):
             self.vehicle.control(steering=TRIAL, throttle=0.4, brake=0.0, parkingbrake=0.0)
             for _ in range(int(TRIAL_TIME * self.settings.rate)):
                 now = self.step()
                 if now.vx > TRIAL_SPEED[0]:
                     found.append(now.yaw_rate / now.vx)
+                    echoed += now.steer
                 if now.vx > TRIAL_SPEED[1]:
                     break
             self.vehicle.teleport(*self._start(), True)
@@ -192,6 +194,7 @@ class Stage:
         wheelbase = WHEELBASE * (self.body.front - self.body.rear)
         lock = np.arctan(wheelbase * abs(bend)) / TRIAL
         self.session.gain = float(np.copysign(np.clip(lock, *LOCKS), bend))
+        self.session.told = float(np.copysign(self.session.gain, bend * echoed))
 
     def open_camera(self, camera: Camera) -> None:
         """Put the driver's camera onto the car."""

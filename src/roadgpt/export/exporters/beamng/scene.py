@@ -13,13 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.export.edges import line, stations
+from roadgpt.errors import ExportError
+from roadgpt.export.edges import line
 from roadgpt.export.ego import goal_of, start_of
 from roadgpt.export.exporters.opendrive.lanes import NO_VERGE
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 
-CHORD = 0.05  # m; nodes 2 m apart in a 14 m bend: denser and sharper ones fold (BeamNGpy issue 240)
+# m between nodes: denser and sharper ones fold (BeamNGpy issue 240), and uneven ones swing BeamNG's spline.
+SPACING = 2.0
 DEPTH = 5.0  # m, of a mesh road (RoadGPT)
 STUB = 5.0  # m of mesh before the start and past the end (RoadGPT), so that no wheel stands on an edge
 SHAKE = 0.01  # m, most that a mesh node is moved aside
@@ -94,10 +96,12 @@ def scene_of(
     """
     rng = np.random.default_rng(seed)
     wide = world.lane_width
-    s = stations(road, wide, CHORD)
+    s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / SPACING)) + 1))
     up = np.array([0.0, 0.0, lift])
     above = np.array([0.0, 0.0, rng.uniform(*ABOVE)])
     middle = line(road, s, 0.0) + up
+    if not np.isfinite(middle).all():
+        raise ExportError("the road has a number that is not finite; check it before it is exported")
     strips = []
     if world.verge >= NO_VERGE:
         broad = 2 * (wide + world.verge)

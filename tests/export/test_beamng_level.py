@@ -1,0 +1,160 @@
+"""BeamNG's level folder: what its files hold, and that the curves through its nodes are the road."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from beamngpy import MeshRoad, Road, angle_to_quat
+from beamngpy.misc.quat import compute_rotation_matrix
+from hypothesis import given
+from hypothesis import strategies as st
+
+from exported import ROADS, WORLD
+from roadgpt.export import save
+from roadgpt.export.exporters.beamng import level_name
+from roadgpt.export.exporters.beamng.files import ground_model, rotation
+from roadgpt.export.exporters.beamng.scene import scene_of
+from roadgpt.road import Design, Segment, World, build
+
+Item = dict[str, Any]
+
+
+def level(tmp_path: Path, name: str = "arcs", world: World = WORLD) -> Path:
+    (folder,) = save(ROADS[name], tmp_path, ["beamng"], world, "My road 7")
+    assert folder.name == "My road 7-beamng"
+    return folder / "levels" / "roadgpt_my_road_7"
+
+
+def objects(folder: Path) -> dict[str, Item]:
+    lines = [line for path in folder.rglob("items.level.json") for line in path.read_text().splitlines()]
+    found = [json.loads(line) for line in lines]
+    assert len({each["name"] for each in found}) == len(found)
+    return {each["name"]: each for each in found}
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_every_file_is_read_and_every_object_has_its_place(tmp_path: Path, name: str) -> None:
+    folder = level(tmp_path, name)
+    info = json.loads((folder / "info.json").read_text())
+    materials = json.loads((folder / "main.materials.json").read_text())
+    found = objects(folder)
+    assert info["defaultSpawnPointName"] in found
+    assert len({each["persistentId"] for each in found.values()}) == len(found)
+    for path in folder.rglob("items.level.json"):
+        for line in path.read_text().splitlines():
+            parent = json.loads(line).get("__parent")
+            assert parent is None or (found[parent]["class"] == "SimGroup" and path.parent.name == parent)
+    used = {
+        value for each in found.values() for key, value in each.items() if key.lower().endswith("material")
+    }
+    assert used <= set(materials)
+    (about,) = json.loads((folder / "scenarios" / "drive" / "drive.json").read_text())
+    prefab = Path(*folder.parts[:-2], about["prefabs"][0])
+    (car, _) = [json.loads(line) for line in prefab.read_text().splitlines()]
+    assert (car["class"], car["name"], car["position"]) == (
+        "BeamNGVehicle",
+        "ego",
+        found["spawn"]["position"],
+    )
+    assert about["lapConfig"] == ["goal"]
+
+
+def test_the_nodes_are_such_as_beamngs_own_client_takes(tmp_path: Path) -> None:
+    found = objects(level(tmp_path))
+    meshes = [each for each in found.values() if each["class"] == "MeshRoad"]
+    decals = [each for each in found.values() if each["class"] == "DecalRoad"]
+    for each in meshes:
+        MeshRoad("m").add_nodes(*(node[:5] for node in each["nodes"]))
+        assert all(node[5:] == [0, 0, 1] for node in each["nodes"])
+        assert each["position"] == each["nodes"][0][:3]
+    for each in decals:
+        Road("m").add_nodes(*each["nodes"])
+    assert [each["drivability"] for each in decals] == [1, -1, -1, -1]
+    assert [each["renderPriority"] for each in decals] == sorted(each["renderPriority"] for each in decals)
+    assert {each["name"]: each["nodes"][0][3] for each in meshes} == {
+        "verge": 2 * (WORLD.lane_width + WORLD.verge),
+        "road": WORLD.road_width,
+    }
+
+
+def test_without_a_verge_the_road_floats_alone(tmp_path: Path) -> None:
+    found = objects(level(tmp_path, world=World(verge=0)))
+    assert [each["name"] for each in found.values() if each["class"] == "MeshRoad"] == ["road"]
+
+
+def catmull_rom(nodes: np.ndarray, parts: int = 8) -> np.ndarray:
+    """The curve that BeamNG lays through nodes; the ends are held."""
+    held = np.vstack([nodes[0], nodes, nodes[-1]])
+    u = np.linspace(0, 1, parts, endpoint=False)[:, None]
+    a, b, c, d = (held[i : i + len(nodes) - 1, None] for i in range(4))
+    curve = 0.5 * (2 * b + (c - a) * u + (2 * a - 5 * b + 4 * c - d) * u**2 + (3 * b - a - 3 * c + d) * u**3)
+    return curve.reshape(-1, nodes.shape[1])
+
+
+@given(
+    radius=st.floats(14.4, 80),
+    degrees=st.floats(20, 170),
+    incline=st.floats(-15, 15),
+    hand=st.sampled_from([-1, 1]),
+)
+def test_the_curve_through_the_nodes_is_the_road(
+    radius: float, degrees: float, incline: float, hand: int
+) -> None:
+    side: Any = "left" if hand > 0 else "right"
+    bend = Segment(
+        distance=np.radians(degrees) * radius + 8,
+        direction=side,
+        turn_degrees=hand * degrees,
+        radius=radius,
+        incline=incline,
+    )
+    straight = Segment(distance=40, direction="straight", incline=-incline)
+    road = build(Design(starting_point=(0, 0, 0), theta=10, segments=(straight, bend, straight)))
+    scene = scene_of(road, World(), 3)
+    decal = next(strip for strip in scene.strips if strip.name == "lanes").nodes
+    curve = catmull_rom(decal[:, :3])
+    s, t = road.locate(curve[:, 0], curve[:, 1])
+    above = curve[:, 2] - road.at(s)[:, 2]
+    assert np.abs(t).max() < 0.03
+    assert above.min() > 0
+    assert above.max() < 0.05
+    steps = np.hypot(*np.diff(decal[:, :2], axis=0).T)
+    assert steps.min() > 0.5  # nodes too near to one another fold
+
+
+def test_the_road_shakes_with_the_seed_and_the_decal_lies_above_the_mesh() -> None:
+    one, same, other = (scene_of(ROADS["arcs"], WORLD, seed) for seed in (1, 1, 2))
+    for a, b in zip(one.strips, same.strips, strict=True):
+        assert (a.nodes == b.nodes).all()
+    verge, mesh, decal = one.strips[:3]
+    assert (mesh.nodes != other.strips[1].nodes).any()
+    assert np.abs(mesh.nodes[1:-1, :2] - decal.nodes[:, :2]).max() < 0.02
+    gap = decal.nodes[:, 2] - mesh.nodes[1:-1, 2]
+    assert gap.min() > 0.009
+    assert gap.max() < 0.021
+    assert (verge.nodes[:, 2] < mesh.nodes[:, 2]).all()
+
+
+@given(st.floats(-np.pi, np.pi), st.floats(-0.15, 0.15))
+def test_cars_look_along_the_road(heading: float, grade: float) -> None:
+    turned = rotation(heading, grade)
+    assert turned @ turned.T == pytest.approx(np.eye(3), abs=1e-12)
+    assert np.linalg.det(turned) == pytest.approx(1.0)
+    assert -turned[1, 2] / np.hypot(*turned[1, :2]) == pytest.approx(grade)
+    level_car = compute_rotation_matrix(angle_to_quat((0, 0, -(np.degrees(heading) + 90))))
+    assert rotation(heading, 0.0) == pytest.approx(level_car, abs=1e-9)
+
+
+def test_start_and_goal_lie_in_the_right_lane() -> None:
+    road = ROADS["arcs"]
+    scene = scene_of(road, WORLD, 0, lift=28.0)
+    for point, s in ((scene.start, 2.5), (scene.goal, road.length - 4.0)):
+        assert point == pytest.approx(road.at(s, -WORLD.lane_width / 2) + [0, 0, 28.0], abs=1e-6)
+
+
+def test_names_and_surfaces() -> None:
+    assert level_name("A Road, 15%!") == "roadgpt_a_road_15"
+    assert level_name("…") == "roadgpt_road"
+    assert [ground_model(mu) for mu in (1.0, 0.6, 0.35, 0.1)] == ["ASPHALT", "ASPHALT_WET", "SNOW", "ICE"]
