@@ -19,6 +19,8 @@ class Clause:
     row: list[Lexeme] = field(default_factory=list)
     """What is left: verbs, comparatives and amounts."""
     unknown: list[str] = field(default_factory=list)
+    begins_unknown: bool = False
+    """Is its first word, where verbs stand, not understood?"""
     words: str = ""
 
     @property

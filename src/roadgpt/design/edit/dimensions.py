@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from roadgpt.brief.model import Sharpness, Side
 from roadgpt.design.edit.clause import Clause
 from roadgpt.design.edit.request import Change, Way
+from roadgpt.errors import EditError
 
 PREPOSITIONS = {"by", "to", "at", "of", "with"}
 LONG, SHORT = 70.0, 22.0  # m: what a straight is made that is to be long, or short
@@ -17,6 +18,7 @@ OF_LENGTHS = ("longer", "shorter", "long", "short", "length_noun")
 OF_ANGLES = ("radius", "tighter", "wider", "sharper", "gentler", "angle_noun")
 STEEPLY, GENTLY = 10.0, 3.5  # percent: inside what brief.words promises
 SLIGHTLY, MUCH = 0.5, 1.8
+HEIGHTS = {"raise", "lower"}  # metres of it are not of length
 NEAR = 3  # words between a number and the noun that it belongs to
 
 
@@ -85,6 +87,8 @@ class Dimensions:
         return next((side for side in SIDES if side in self.names), None)
 
     def _more(self, up: tuple[str, ...], down: tuple[str, ...], noun: str) -> int:
+        if self.has(*up) and self.has(*down):
+            raise EditError(f"'{self.clause.words}' asks for more and less at once; put a comma between them")
         if self.has(*up):
             return 1
         if self.has(*down):
@@ -162,6 +166,9 @@ class Dimensions:
         amount = self._take(units if is_said else ("m", "times") if not others else (), "length")
         if not is_said and amount is None:
             return None
+        words = {x.text.lower() for x in self.row}
+        if amount and amount.unit == "m" and not is_said and (self.has("up", "down") or words & HEIGHTS):
+            raise EditError(f"'{self.clause.words}' asks for metres of height; ask for a slope in percent")
         if amount is None and not more:
             if self.has("length_noun"):
                 return None

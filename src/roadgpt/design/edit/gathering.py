@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from roadgpt.design.edit.clause import Clause
 from roadgpt.design.edit.request import Change, Target
-from roadgpt.design.edit.wording import wanted
+from roadgpt.design.edit.wording import VERBS, wanted
 from roadgpt.errors import EditError
 
 ADVICE = "say what is to be different where, for example: make the second turn sharper, and the end downhill"
@@ -44,6 +44,12 @@ class _Gathering:
 
     def act(self, clause: Clause) -> None:
         """A clause that says what is to be done."""
+        if clause.begins_unknown and not clause.names & {
+            *VERBS,
+            "make",
+            "add",
+        }:  # 'rotate the road by 90 degrees'
+            _not_understood(clause)
         targets = [target for other in self.waiting for target in other.targets] + clause.targets
         places = [place for other in self.waiting for place in other.places] + clause.places
         self.waiting = []

@@ -74,7 +74,7 @@ def _parts(row: Sequence[Lexeme]) -> list[list[Lexeme]]:
 
 
 def _clause(row: Sequence[Lexeme]) -> Clause:
-    out = Clause(words=" ".join(x.text for x in row if x.text))
+    out = Clause(words=" ".join(x.text for x in row if x.text), begins_unknown=row[0].name == UNKNOWN)
     at = 0
     while at < len(row):
         lexeme = row[at]

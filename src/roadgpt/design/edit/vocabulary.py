@@ -128,7 +128,8 @@ WORDS: dict[str, str] = {
     "straighten": "straighten | straighten out | begradige | begradigen | redresse | endereza | raddrizza",
     "too": "too trop demasiado troppo",
     "not": "not don't dont never no nicht kein keine keinen ne pas jamais nunca non if unless wenn falls si"
-    " cannot doesn't shouldn't or oder ou either without ohne sans sin senza",
+    " cannot doesn't shouldn't or oder ou either without ohne sans sin senza"
+    " than",
     # how
     "sharper": "sharper sharpen harder scharfer | more sharp | more acute | plus prononce | plus prononcee"
     " | mas pronunciada | more pronounced | sharper angle | plus fort | piu accentuata | more severe",

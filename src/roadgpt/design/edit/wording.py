@@ -10,6 +10,7 @@ from roadgpt.design.edit.request import Change, Place, Target
 from roadgpt.errors import EditError
 
 ABROAD = {"gauche", "droite", "izquierda", "derecha", "sinistra", "destra"}  # sides stand behind their noun
+EXCHANGES = {"swap", "switch", "vertausche"}
 VERBS = {"remove", "swap", "mirror", "straighten", "sharper", "gentler", "tighter", "wider", "longer",
          "shorter", "steeper", "flatter", "more", "less"}  # fmt: skip
 """Of what is there already."""
@@ -25,6 +26,7 @@ def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
     Raises:
         EditError: something is left open that cannot be guessed.
     """
+    _is_of_this_road(clause)
     names = clause.names
     if "mirror" in names and not any(t.noun in ("turn", "straight") for t in clause.targets):
         return [Change("mirror", words=clause.words)]
@@ -41,7 +43,8 @@ def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
         return _removed(clause, targets)
     if "straighten" in names or _into_a_straight(clause):
         return [Change("straighten", target, words=clause.words) for target in targets]
-    if "as" in names and not any(x.name == "#" for x in clause.row):
+    is_compared = [x.name for x in clause.row].count("as") > 1 and len(clause.targets) > 1
+    if is_compared or ("as" in names and not any(x.name == "#" for x in clause.row)):
         raise EditError(f"'as ... as' in '{clause.words}' is not understood; say a number")
     found = Dimensions(clause).changes()
     if not found and "make" in names:  # 'make the third left'
@@ -83,6 +86,24 @@ def _targets(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
         number = {"start": (1,), "end": (-1,)}.get(sides[0], ())  # 'a longer straight at the end'
         out[0] = replace(out[0], numbers=number, middle=not number, indefinite=False)
     return out or list(before)
+
+
+def _is_of_this_road(clause: Clause) -> None:
+    """EditError for what no change of a design is, though its words are known."""
+    words = {x.text.lower() for x in clause.row}
+    if any(target.noun == "road" for target in clause.new):
+        raise EditError(
+            f"'{clause.words}' describes a new road, and not what is to be different about this one"
+        )
+    places = {number for target in clause.targets for number in (target.numbers or (target.words,))}
+    if words & EXCHANGES and len(places) == 2 and [x.name for x in clause.row].count("swap") == 1:
+        raise EditError(
+            "turns cannot change places; for the other side say: flip the first and the last turn"
+        )
+    if words & {"wider", "narrower", "widen"} and [target.noun for target in clause.targets] == ["road"]:
+        raise EditError(
+            "how wide a road is, is no part of its design; for its turns say: make all turns wider"
+        )
 
 
 def _spoken_of(target: Target, before: tuple[Target, ...]) -> tuple[Target, ...]:
