@@ -7,6 +7,7 @@ results/MODULE_CLASS_STAMP/
 
 import csv
 import io
+import os
 import time
 from pathlib import Path
 from typing import Any
@@ -119,11 +120,12 @@ def test_of(run: Run) -> dict[str, Any]:
 def described(experiment: Experiment, request: Request) -> dict[str, Any]:
     """The columns of experiment_description.csv: theirs in their order, then ours."""
     setup, world = request.setup, request.world
+    is_beamng = setup.simulator == "beamng"
     theirs = {
         "executor": setup.simulator,
         "dave2_model": "",
-        "beamng_home": "",
-        "beamng_user": "",
+        "beamng_home": os.environ.get("ROADGPT_BEAMNG_HOME", "") if is_beamng else "",
+        "beamng_user": os.environ.get("ROADGPT_BEAMNG_USER", "") if is_beamng else "",
         "time_budget": experiment.time_budget,
         "map_size": world.map_size,
         "oob_tolerance": world.oob_tolerance,

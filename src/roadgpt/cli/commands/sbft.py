@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.flags import measure
 from roadgpt.cli.options import SEED, axes_option, folder, screen_options, setup_options, whole
@@ -58,6 +59,7 @@ KMH = 3.6
     help="For the driver, km/h.",
 )
 @setup_options("driver", "simulator")
+@beamng_options
 @click.option("--seed", type=SEED, default=0, show_default=True, help="Handed to the driver.")
 @click.option(
     "--patience",
