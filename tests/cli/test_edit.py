@@ -1,11 +1,13 @@
 """`roadgpt edit`: a changed road goes into a new folder, and the old one stays as it was."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
+from chat.stub_server import Stub, says, serving
 from edit_truth import roads
 from fake_chat import FakeChat
 from roadgpt.cli import app
@@ -19,6 +21,12 @@ WORDS = "make the second turn sharper and the end downhill"
 def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("design.json").write_text(json.dumps(roads()["h01"].to_json()))
+
+
+@pytest.fixture
+def stub() -> Iterator[Stub]:
+    with serving() as found:
+        yield found
 
 
 def invoke(*words: str) -> Result:
@@ -124,6 +132,23 @@ def test_what_cannot_be_done_is_told_and_nothing_is_written(words: list[str], ad
 def test_words_that_are_not_understood_are_told() -> None:
     result = invoke("edit", "design.json", "make the second turn sharper pronto", "--no-drive", "--no-plot")
     assert "not understood: 'pronto'" in result.stdout
+
+
+def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: Stub) -> None:
+    stub.play(says("Sure, done!"))
+    more = ("--designer", "chat", "--base-url", stub.url, "--model", "m", "--out", "new")
+    result = invoke("edit", "design.json", "make the second turn sharper", *more)
+    assert result.exit_code == 4
+    assert "language model: " in result.stdout
+    assert "tokens" in result.stdout
+    assert not Path("new").exists()
+
+
+def test_options_that_an_edit_does_not_heed_are_refused() -> None:
+    for option, advice in (("--repair", "No such option"), ("--model", "say --designer chat as well")):
+        result = invoke("edit", "design.json", WORDS, option, "none")
+        assert result.exit_code == 2
+        assert advice in result.stderr
 
 
 def test_the_chat_designer_changes_roads_too(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -248,7 +248,7 @@ def test_five_languages_say_the_same(words: str) -> None:
         ("swap the first and the last turn", "cannot change places"),
         ("make the third straight twice as long as the second", "say a number"),
         ("make the road wider", "make all turns wider"),
-        ("alternate the turns: left, right, left", "left and right"),
+        ("make the turns left, right, left", "left and right"),
         ("merge the last two turns, make the first one sharper", "'merge'"),
         ("x" * 3000, "too long"),
     ],

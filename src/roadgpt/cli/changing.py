@@ -13,7 +13,9 @@ from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.chat import ChatSettings
+    from roadgpt.design.edit import Edited
     from roadgpt.road import World
+    from roadgpt.run.editing import Original
     from roadgpt.run.folder import Draw
 
 
@@ -39,8 +41,6 @@ def change(wish: Wish, screen: Screen) -> Path:
     Raises:
         RoadGPTError: the words or the road cannot be used; then nothing is written.
     """
-    from roadgpt.chat import Meter, counting
-    from roadgpt.design.edit import edit
     from roadgpt.run import Setup, prove
     from roadgpt.run.editing import folder_for, original, write_edit
     from roadgpt.run.sbft_json import test_name
@@ -50,9 +50,7 @@ def change(wish: Wish, screen: Screen) -> Path:
     before = original(wish.road, wish.world, Setup())
     for remark in before.remarks:
         screen.say(f"{wish.road}: {remark}")
-    meter = Meter.of(wish.chat)
-    with counting(meter, "edit"):
-        made = edit(before.design, wish.words, before.world, before.setup.geometry, wish.designer, wish.chat)
+    made = _edited(before, wish, screen)
     drives = wish.drives and before.setup.drives
     setup = before.setup.model_copy(update={"designer": wish.designer, "chat": wish.chat, "drives": drives})
     old = prove(before.design, before.seed, before.world, setup.model_copy(update={"drives": False}))
@@ -69,14 +67,28 @@ def change(wish: Wish, screen: Screen) -> Path:
         screen.say(sentence)
     if made.unused:
         screen.say("not understood: " + ", ".join(f"'{word}'" for word in made.unused))
-    if meter.spent.calls:
-        screen.say(f"language model: {spending(meter.spent)}")
     with screen:
         screen.row(row)
     screen.say(f"changed road: {place}")
     if wish.has_pictures:
         screen.say(f"pictures: {place}/*.png, and of the road as it was: {place}/before/*.png")
     return place
+
+
+def _edited(before: "Original", wish: Wish, screen: Screen) -> "Edited":
+    """The changed design; what a language model has cost is told, also where nothing came of it."""
+    from roadgpt.chat import Meter, counting
+    from roadgpt.design.edit import edit
+
+    meter = Meter.of(wish.chat)
+    try:
+        with counting(meter, "edit"):
+            return edit(
+                before.design, wish.words, before.world, before.setup.geometry, wish.designer, wish.chat
+            )
+    finally:
+        if meter.spent.calls:
+            screen.say(f"language model: {spending(meter.spent)}")
 
 
 def _drawing(wish: Wish) -> "Draw | None":

@@ -92,18 +92,12 @@ def _is_of_this_road(clause: Clause) -> None:
     """EditError for what no change of a design is, though its words are known."""
     words = {x.text.lower() for x in clause.row}
     if any(target.noun == "road" for target in clause.new):
-        raise EditError(
-            f"'{clause.words}' describes a new road, and not what is to be different about this one"
-        )
+        raise EditError(f"'{clause.words}' describes a new road, and no change of this one")
     places = {number for target in clause.targets for number in (target.numbers or (target.words,))}
     if words & EXCHANGES and len(places) == 2 and [x.name for x in clause.row].count("swap") == 1:
-        raise EditError(
-            "turns cannot change places; for the other side say: flip the first and the last turn"
-        )
+        raise EditError("turns cannot change places; for the other side say: flip the second turn")
     if words & {"wider", "narrower", "widen"} and [target.noun for target in clause.targets] == ["road"]:
-        raise EditError(
-            "how wide a road is, is no part of its design; for its turns say: make all turns wider"
-        )
+        raise EditError("a design has no width; for larger radii say: make all turns wider")
 
 
 def _spoken_of(target: Target, before: tuple[Target, ...]) -> tuple[Target, ...]:
