@@ -41,7 +41,7 @@ def test_a_hundred_roads_and_ten_faults_lose_nothing(
     home = fake_home(tmp_path / "home", protocol=OURS, faults=FAULTS)
     settings(monkeypatch, home, port, recycle=40)
     setup = Setup(reader="grammar", simulator="beamng")
-    work = campaign("a straight road of 50 m", ROADS, 5, World(), setup, tmp_path / "out")
+    work = campaign("a straight road of 30 m", ROADS, 5, World(), setup, tmp_path / "out")
     outcomes = [run.outcome for run in work]
     assert outcomes == ["PASS"] * ROADS
     assert json.loads((home / "state.json").read_text())["fired"] == list(range(len(FAULTS)))
@@ -56,7 +56,7 @@ def test_a_road_that_fails_twice_is_one_error_and_the_campaign_goes_on(
     faults = [Fault("die", "Step", 2, 9), Fault("drop", "SensorRequest", 3, 9)]
     settings(monkeypatch, fake_home(tmp_path / "home", protocol=OURS, faults=faults), port)
     setup = Setup(reader="grammar", simulator="beamng")
-    runs = list(campaign("a straight road of 50 m", 4, 5, World(), setup, tmp_path / "out"))
+    runs = list(campaign("a straight road of 30 m", 4, 5, World(), setup, tmp_path / "out"))
     assert [run.outcome for run in runs] == ["PASS", "ERROR", "PASS", "PASS"]
     assert "BeamNG failed 2 times on this road" in runs[1].description
     assert runs[0].versions["beamngpy"]

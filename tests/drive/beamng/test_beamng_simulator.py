@@ -123,7 +123,7 @@ def test_a_road_on_the_floor_lies_on_the_levels_ground(fake: FakeBeamNG) -> None
 
 def test_too_fast_into_a_bend_is_out_of_the_lane_at_the_very_moment(fake: FakeBeamNG) -> None:
     road, times = hairpin(), []
-    for rate in (20, 50, 200):
+    for rate in (20, 50, 100):
         drive = simulator(fake, aggression=1.0, rate=rate).simulate(road, WORLD, BeamngLike(), 7)
         verdict = judge(road, drive, WORLD)
         assert (drive.ended, verdict.outcome, verdict.side) == ("out_of_lane", "FAIL", "right")
