@@ -98,7 +98,7 @@ def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
 
 def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.brief.readers.grammar import MOST_CHARACTERS
-    from roadgpt.chat import strict, talk, wire
+    from roadgpt.chat import fault, strict, talk
     from roadgpt.chat.providers.openai import MOST_REQUESTS
     from roadgpt.drive import seat
     from roadgpt.errors import ChatError
@@ -114,7 +114,7 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     seconds = [seat.BEFORE_START, seat.BEFORE_START, seat.ONE_ANSWER, seat.WHOLE_DRIVE]
     said = "; ".join(f"{limit:g}" for limit in seconds)
     counts = [MOST_CHARACTERS, LARGEST, MAX_SEGMENTS, MOST_ROUNDS, GIVE_UP, MOST_PAGES * PER_PAGE]
-    asked = [wire.PATIENCE, wire.LONGEST_WAIT, strict.MOST_CHARACTERS, strict.MOST_DEPTH, MOST_REQUESTS]
+    asked = [fault.PATIENCE, fault.LONGEST_WAIT, strict.MOST_CHARACTERS, strict.MOST_DEPTH, MOST_REQUESTS]
     assert found == [*map(str, counts), said, *(f"{limit:.0f}" for limit in [*asked, talk.MOST_TURNS])]
     guide = (ROOT / "docs" / "how-to" / "own-driver.md").read_text(encoding="utf-8")
     assert re.findall(r"\| (\d+) \|$", guide, re.MULTILINE) == said.split("; ")
