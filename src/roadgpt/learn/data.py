@@ -6,15 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.slots import SLOTS, Slot, slot_name, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.brief.sentence import sentence
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.variation import varied
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
+SAID_BACK = 0.06
+"""Share of hand-written pairs whose text is our own sentence instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,12 +64,20 @@ def examples(seed: int, hand: Sequence[Pair], hand_share: float, pieces: WordPie
         by_language.setdefault(pair.lang, []).append(pair)
     while True:
         if hand and rng.random() < hand_share:
-            pair = varied(hand[int(rng.integers(len(hand)))], by_language, rng)
+            pair = hand[int(rng.integers(len(hand)))]
+            pair = _said_back(pair) if rng.random() < SAID_BACK else varied(pair, by_language, rng)
         else:
             pair = next(generated)
         made = None if is_held_out(pair.text) else example(pair, pieces, rng)
         if made:
             yield made
+
+
+def _said_back(pair: Pair) -> Pair:
+    """What RoadGPT itself says of a Brief is read as that Brief."""
+    if pair.plan.startswith("!"):
+        return pair
+    return Pair(sentence(read_plan(pair.plan)), pair.plan, pair.family, "en")
 
 
 def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Iterator[tuple[Numbers, Numbers]]:
