@@ -50,7 +50,7 @@ for seed in range(100):
 
 def main(seed: int = 7) -> None:
     """Print every figure beside its target."""
-    referee = _referee()
+    referee = the_referee()
     radii: list[float] = []
     for words, truth in EVALUATION.items():
         radii += _campaign(words, truth, referee, seed)
@@ -73,7 +73,7 @@ def _campaign(words: str, truth: dict[str, Any], referee: ModuleType | None, see
         seconds.append(time.process_time() - begun)
     roads = [build(design) for design in designs]
     valid = sum(_is_valid(road, brief) for road in roads)
-    kept = "-" if referee is None else sum(_is_kept(road, truth, referee) for road in roads)
+    kept = "-" if referee is None else sum(is_kept(road, truth, referee) for road in roads)
     octants = np.bincount([int(design.theta // 45) for design in designs], minlength=8)
     took = 1000 * np.array(seconds)
     print(f"'{words}', {ROADS} roads:")
@@ -88,7 +88,7 @@ def _is_valid(road: Road, brief: Brief) -> bool:
     return fine and not check.inspect(road, brief, WORLD)
 
 
-def _is_kept(road: Road, truth: dict[str, Any], referee: ModuleType) -> bool:
+def is_kept(road: Road, truth: dict[str, Any], referee: ModuleType) -> bool:
     return all(referee.check(road.centreline().round(4), truth)[0].values())
 
 
@@ -118,14 +118,14 @@ def _prompts(referee: ModuleType | None, seed: int, roads: int = 10) -> None:
         brief, earlier, right = read(prompt["prompt"]), list[Design](), 0
         for number in range(roads):
             earlier.append(draft(brief, WORLD, earlier=earlier, seed=seed + number))
-            right += _is_kept(build(earlier[-1]), prompt["truth"], referee)
+            right += is_kept(build(earlier[-1]), prompt["truth"], referee)
         perfect += right == roads
         if right < roads:
             print(f"    {right}/{roads} right: '{prompt['prompt']}'")
     print(f"development prompts with {roads}/{roads} roads right: {perfect} of {len(prompts)} (target 20)")
 
 
-def _referee() -> ModuleType | None:
+def the_referee() -> ModuleType | None:
     file = SHARED / "referee.py"
     if not file.exists():
         return None
