@@ -40,7 +40,9 @@ from code_pipeline.validation import TestValidator
 from code_pipeline.executors import AbstractTestExecutor, MockExecutor, Budget
 from code_pipeline.beamng_executor import BeamngExecutor
 from code_pipeline.visualization import RoadTestVisualizer
-from code_pipeline.test_analysis import compute_all_features, max_curvature, direction_coverage
+from code_pipeline.test_analysis import (
+    compute_all_features, direction_coverage, direction_coverage_klk, max_curvature, max_lateral_position)
+from types import SimpleNamespace
 points = [(40.0 + 60 * math.sin(a / 10), 120 - 60 * math.cos(a / 10)) for a in range(12)]
 one, two = (RoadTestFactory.create_road_test(points) for _ in range(2))
 assert (one.id, two.id) == (1, 2)
@@ -48,13 +50,23 @@ assert one.is_valid is None
 assert type(one) is RoadTestFactory.RoadTest
 assert all(len(node) == 4 and node[2:] == (-28.0, 8.0) for node in one.interpolated_points)
 assert abs(one.get_road_length() - 66) < 1
+assert abs(one.get_road_length(interpolate_road_points=True) - one.get_road_length()) < 0.5
 assert list(json.loads(one.to_json())) == [
     "is_valid", "validation_message", "road_points", "interpolated_points", "id"]
 assert TestValidator(200).validate_test(one) == (True, "")
+class Own(RoadTestFactory.RoadTest):
+    pass
+assert TestValidator(200).validate_test(Own(points)) == (False, "Wrong type")
 assert TestValidator(75).validate_test(one)[0] is False
 assert TestValidator(map_size=200, min_road_length=5).validate_test([]) == (False, "Wrong type")
-assert abs(1 / max_curvature(one) - 60) < 2
-assert 0 < direction_coverage(one) < 0.5
+name, bend = max_curvature(one)
+assert name == "MAX_CURV" and abs(1 / bend - 60) < 2
+(name, share), (other, wider) = direction_coverage(one), direction_coverage_klk(one)
+assert name == other == "DIR_COV" and 0 < share < 0.5 and 0 < wider < 0.5
+ring = [(math.cos(a / 30), math.sin(a / 30)) for a in range(189)]
+assert direction_coverage(ring)[1] == 13 / 26 and direction_coverage_klk(ring)[1] == 35 / 36
+assert direction_coverage(ring, n_bins=36)[1] == 18 / 37
+assert max_lateral_position([SimpleNamespace(oob_distance=d) for d in (0.5, 1.5)]) == ("MAX_LP", 1.5)
 assert set(compute_all_features(one, [])) == {"MAX_CURV", "DIR_COV"}
 RoadTestVisualizer(map_size=200).visualize_road_test(one)
 stats = TestGenerationStatistic()

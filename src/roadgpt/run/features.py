@@ -43,11 +43,11 @@ def max_curvature(plan: NDArray[np.float64]) -> float:
     return float((1 / radii(plan)).max(initial=0.0))
 
 
-def direction_coverage(plan: NDArray[np.float64]) -> float:
-    """Share of the 26 edges that bin the directions of points ``(n, 2)``."""
+def direction_coverage(plan: NDArray[np.float64], bins: int = BINS) -> float:
+    """Share of the edges (26 of 25 bins) that bin the directions of points ``(n, 2)``."""
     step = np.diff(plan, axis=0)
     length = np.sqrt((step**2).sum(axis=1))
     moves = length > 0
     angle = np.degrees(np.arccos(np.clip(step[moves, 1] / length[moves], -1, 1)))
-    edges = np.linspace(0.0, 360.0, BINS + 1)
+    edges = np.linspace(0.0, 360.0, bins + 1)
     return len(np.unique(np.digitize(angle, edges))) / len(edges)

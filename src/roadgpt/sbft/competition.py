@@ -16,6 +16,7 @@ from roadgpt.sbft.results import LOG, Results, new_folder
 from roadgpt.sbft.trial import tried
 
 USUAL = World(map_size=200.0)
+GROUND = 0.0  # m: the competition's roads lie on the level, and points without heights are at this one
 PLAIN = Setup(rules="sbft")
 WARM = [[60.0, 100.0], [100.0, 100.0], [140.0, 100.0]]  # a road to compile the simulator on
 LARGEST_ID = 999_999_999
@@ -43,7 +44,7 @@ class Competition:
         Raises:
             UsageError: the generator cannot be loaded.
             PartError: a part is not installed.
-            RoadGPTError: a file cannot be written.
+            RoadGPTError: a file cannot be written, or the simulator or the driver fails on a first road.
         """
         host = Host(self.folder / LOG)
         try:
@@ -69,7 +70,9 @@ class Competition:
         map_size = self.request.world.map_size
         whole = int(map_size) if map_size.is_integer() else map_size
         host.tell({**task, "map_size": whole, "folder": str(self.folder.resolve())})
-        prove(Road.through(WARM), 0, self.request.world, self.request.setup)
+        first = prove(Road.through(WARM), 0, self.request.world, self.request.setup)
+        if first.outcome == "ERROR":
+            raise RoadGPTError(f"not even a straight road can be driven: {first.description}")
         heard = host.hear(LOADING)
         if heard is None:
             self.ending = Ending(how="hung", sentence=f"it was not loaded within {LOADING:g} s")
@@ -160,7 +163,7 @@ def compete(
 
     Args:
         experiment: which generator, and its budget.
-        world: map, speed limit, tolerance.
+        world: map, speed limit, tolerance; the roads lie on its ground.
         setup: who drives in what; the rules are the competition's.
         seed: the driver's.
         out: an empty folder, or one to be made; None: the competition's name for it, under ``results``.
@@ -172,6 +175,7 @@ def compete(
     if experiment.time_budget is None and experiment.test_budget is None:
         raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")
     setup = setup.model_copy(update={"rules": "sbft"})
+    world = world.model_copy(update={"z_floor": GROUND})
     roll_call(setup)
     request = Request(seed=seed, world=world, setup=setup)
     folder = new_folder(experiment, out)

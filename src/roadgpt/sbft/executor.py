@@ -142,7 +142,7 @@ class AbstractTestExecutor:
 
 def _question(the_test: Any, generating: float) -> Message:
     """What is sent of a test; of something that is none, nothing."""
-    is_test = isinstance(the_test, RoadTestFactory.RoadTest)
+    is_test = type(the_test) is RoadTestFactory.RoadTest
     return {
         "op": "test",
         "is_test": is_test,

@@ -59,9 +59,12 @@ class RoadTestFactory:
             """The area of the road."""
             return self.road_polygon
 
-        def get_road_length(self) -> float:
-            """Metres along the interpolated points."""
+        def get_road_length(self, interpolate_road_points: bool = False) -> float:
+            """Metres along the interpolated points; or along those, interpolated once more, as the validator
+            measures."""
             nodes = np.asarray(self.interpolated_points)[:, :2]
+            if interpolate_road_points:
+                nodes = interpolate(nodes)
             return float(np.hypot(*np.diff(nodes, axis=0).T).sum())
 
         def set_validity(self, is_valid: bool, validation_message: str) -> None:
@@ -121,7 +124,7 @@ class TestValidator:
 
     def validate_test(self, the_test: Any) -> tuple[bool, str]:
         """(is it valid, and the first complaint): never raises."""
-        if not isinstance(the_test, RoadTestFactory.RoadTest):
+        if type(the_test) is not RoadTestFactory.RoadTest:
             return False, WRONG_TYPE
         points = the_test.road_points
         if len(points) < 2:

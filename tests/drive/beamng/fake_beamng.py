@@ -58,6 +58,8 @@ class Settings:
     """Of the steering input that is told, against that which was commanded."""
     is_blind: bool = False
     """The AI does not see roads of prefabs."""
+    tells_time: bool = True
+    """The state of a car has a time."""
     tech: bool = True
     state: str = ""
     """A file that survives restarts: scenarios so far, and faults that have been."""
@@ -378,7 +380,7 @@ class FakeBeamNG:
 
     def veh_SensorRequest(self, car, message):
         known = {
-            "State": lambda: {"state": car.state()},
+            "State": lambda: {"state": car.state(self.settings.tells_time)},
             "Electrics": lambda: {"values": car.electrics(self.settings.told_sign)},
             "Damage": lambda: {"damage": 0},
         }

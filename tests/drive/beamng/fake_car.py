@@ -213,7 +213,7 @@ class Car:
         at = (self.x, self.y, self.z)
         return [at[k] + ahead * f[k] + left * side[k] + up * u[k] for k in range(3)]
 
-    def state(self):
+    def state(self, tells_time):
         flat = [self.v * each for each in self.ahead]
         flat[2] += self.vz
         return {
@@ -222,7 +222,7 @@ class Car:
             "up": self.up,
             "vel": flat,
             "rotation": [0.0, 0.0, 0.0, 1.0],
-            "time": self.world.time,
+            "time": self.world.time if tells_time else None,
         }
 
     def electrics(self, told_sign):

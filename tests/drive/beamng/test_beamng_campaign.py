@@ -8,22 +8,27 @@ from pathlib import Path
 import pytest
 from beamngpy.connection import Connection
 
-from drive.beamng.fake_beamng import Fault, fake_home
+from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
+from misbehaving import write
+from roadgpt.drive.simulators.beamng.session import leave_all
+from roadgpt.errors import RoadGPTError
 from roadgpt.road import World
 from roadgpt.run import Setup, campaign
+from roadgpt.sbft import Experiment, compete
 
 OURS = Connection.PROTOCOL_VERSION
 ROADS = 100
+SHORTEST = "a straight road of 22 m"  # messages are what such a test costs: 90 or so for this road
 # Every kind, in the middle of driving and while a road is laid; what is made anew counts as a scenario too.
 FAULTS = [
-    Fault("hang", "SensorRequest", 6, 30),
-    Fault("drop", "Step", 14, 25),
-    Fault("die", "SensorRequest", 23, 40),
+    Fault("hang", "SensorRequest", 6, 20),
+    Fault("drop", "Step", 14, 15),
+    Fault("die", "SensorRequest", 23, 28),
     Fault("error", "LoadScenario", 32, 1),
     Fault("half", "SensorRequest", 45, 20),
     Fault("garbage", "Step", 51, 12),
     Fault("die", "CreateScenario", 63, 1),
-    Fault("wrong_ack", "Step", 75, 33),
+    Fault("wrong_ack", "Step", 75, 22),
     Fault("hang", "LoadScenario", 88, 1),
     Fault("value_error", "SetAiWaypoint", 97, 1),
 ]
@@ -41,7 +46,7 @@ def test_a_hundred_roads_and_ten_faults_lose_nothing(
     home = fake_home(tmp_path / "home", protocol=OURS, faults=FAULTS)
     settings(monkeypatch, home, port, recycle=40)
     setup = Setup(reader="grammar", simulator="beamng")
-    work = campaign("a straight road of 30 m", ROADS, 5, World(), setup, tmp_path / "out")
+    work = campaign(SHORTEST, ROADS, 5, World(), setup, tmp_path / "out")
     outcomes = [run.outcome for run in work]
     assert outcomes == ["PASS"] * ROADS
     assert json.loads((home / "state.json").read_text())["fired"] == list(range(len(FAULTS)))
@@ -56,7 +61,7 @@ def test_a_road_that_fails_twice_is_one_error_and_the_campaign_goes_on(
     faults = [Fault("die", "Step", 2, 9), Fault("drop", "SensorRequest", 3, 9)]
     settings(monkeypatch, fake_home(tmp_path / "home", protocol=OURS, faults=faults), port)
     setup = Setup(reader="grammar", simulator="beamng")
-    runs = list(campaign("a straight road of 30 m", 4, 5, World(), setup, tmp_path / "out"))
+    runs = list(campaign(SHORTEST, 4, 5, World(), setup, tmp_path / "out"))
     assert [run.outcome for run in runs] == ["PASS", "ERROR", "PASS", "PASS"]
     assert "BeamNG failed 2 times on this road" in runs[1].description
     assert runs[0].versions["beamngpy"]
@@ -80,3 +85,37 @@ def test_each_worker_has_its_own_port_and_user_folder(
     assert done[0]["port"] != done[1]["port"]
     assert [Path(each["user"]).name for each in done] == ["user", "user-2"]
     assert (tmp_path / "user-2" / "0.39" / "tech.key").read_text() == "key"
+
+
+class Surveyed(FakeBeamNG):
+    """Keeps how high above the level's ground each road lay."""
+
+    heights: list[float]
+
+    def ge_LoadScenario(self, message: object) -> object:  # noqa: N802
+        answer = super().ge_LoadScenario(message)
+        self.heights.append(max(node[2] for mesh in self.world.meshes for node in mesh.nodes))
+        return answer
+
+
+def test_a_generator_of_the_competition_is_driven_on_the_levels_ground(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, "pass")
+    experiment = Experiment(
+        module_name="misbehaves", class_name="Generator", module_path=str(tmp_path), test_budget=5
+    )
+    setup = Setup(simulator="beamng")
+    monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
+    monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
+    with pytest.raises(RoadGPTError, match="not even a straight road can be driven: nobody listens on"):
+        list(compete(experiment, setup=setup, out=tmp_path / "alone"))
+    with Surveyed(port, protocol=OURS) as fake:
+        fake.heights = []
+        runs = list(compete(experiment, setup=setup, out=tmp_path / "out"))
+        leave_all()
+    assert [run.outcome for run in runs] == ["PASS", "PASS"]
+    assert fake.heights == pytest.approx([0.0] * 3)
+    test = json.loads((tmp_path / "out" / "test.0002.json").read_text())
+    assert test["execution_data"][0][1][2] == pytest.approx(-28 + 0.56, abs=0.02)
+    assert test["execution_data"][-1][0] == pytest.approx(runs[1].drive.duration, abs=0.001)

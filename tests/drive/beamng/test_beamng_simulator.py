@@ -109,6 +109,17 @@ def test_the_same_road_is_driven_the_same_way_and_in_one_session(fake: FakeBeamN
     assert fake.world is None
 
 
+def test_a_car_that_tells_no_time_is_timed_by_the_steps() -> None:
+    with FakeBeamNG(protocol=OURS, tells_time=False) as fake:
+        drive = simulator(fake, rate=20).simulate(SHORT, WORLD, Reference(), 7)
+        leave_all()
+    assert drive.ended == "goal"
+    assert np.diff(drive["time"])[:-1] == pytest.approx(0.05)
+    assert drive["x"][-1] - drive["x"][0] == pytest.approx(
+        float(np.trapezoid(drive["vx"], drive["time"])), rel=0.02
+    )
+
+
 def test_the_goal_is_eight_metres_before_the_end(fake: FakeBeamNG) -> None:
     drive = simulator(fake, rate=20).simulate(SHORT, WORLD, Reference(), 7)
     end = SHORT.at(SHORT.length)[:2]

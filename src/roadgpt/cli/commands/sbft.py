@@ -80,24 +80,20 @@ KMH = 3.6
 @click.option("--debug", is_flag=True, help="Let the generator's log hold more.")
 @screen_options
 def command(
-    module_name: str,
-    class_name: str,
-    module_path: str | None,
-    time_budget: float | None,
-    test_budget: int | None,
     map_size: int,
     oob_tolerance: float,
     speed_limit: float,
     driver: str,
     simulator: str,
     seed: int,
-    patience: float,
     out: Path | None,
     has_pictures: bool,
     no_plot: bool,
     axes: "Scale",
-    debug: bool,
-    **screens: Any,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **experiment: Any,
 ) -> int:
     """Let a generator of the SBFT tool competition loose on the simulator.
 
@@ -113,15 +109,6 @@ def command(
     from roadgpt.run import Setup
     from roadgpt.sbft import Experiment, compete
 
-    experiment = Experiment(
-        module_name=module_name,
-        class_name=class_name,
-        module_path=module_path,
-        time_budget=time_budget,
-        test_budget=test_budget,
-        patience=patience,
-        debug=debug,
-    )
     world = World(map_size=map_size, oob_tolerance=oob_tolerance, speed_limit=speed_limit / KMH)
     setup = Setup(driver=driver, simulator=simulator, rules="sbft")
     draw = None
@@ -129,10 +116,10 @@ def command(
         from roadgpt.report import drawing
 
         draw = drawing(axes)
-    work = compete(experiment, world, setup, seed, out, draw)
+    work = compete(Experiment(**experiment), world, setup, seed, out, draw)
     crashes_go_to(work.folder)
-    screen = Screen(test_budget or 0, screens["as_json"], screens["quiet"], screens["verbose"])
-    screen.say(f"{class_name} of {module_name}, into {work.folder}")
+    screen = Screen(work.experiment.test_budget or 0, as_json, quiet, verbose)
+    screen.say(f"{work.experiment.class_name} of {work.experiment.module_name}, into {work.folder}")
     return _watched(work, screen, has_overview=not no_plot)
 
 

@@ -95,40 +95,54 @@ def scene_of(
         ExportError: the road has a number that is not finite.
     """
     rng = np.random.default_rng(seed)
-    wide = world.lane_width
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / SPACING)) + 1))
     up = np.array([0.0, 0.0, lift])
     above = np.array([0.0, 0.0, rng.uniform(*ABOVE)])
     middle = line(road, s, 0.0) + up
     if not np.isfinite(middle).all():
         raise ExportError("the road has a number that is not finite; check it before it is exported")
-    strips = []
-    if world.verge >= NO_VERGE:
-        broad = 2 * (wide + world.verge)
-        ground = _lengthened(middle) - np.array([0.0, 0.0, UNDER])
-        strips.append(_mesh(f"{prefix}verge", materials.verge, ground, broad))
-    shaken = _lengthened(middle)
-    shaken[:, :2] += rng.uniform(-SHAKE, SHAKE, (len(shaken), 2))
-    strips.append(_mesh(f"{prefix}road", materials.road, shaken, world.road_width))
-    decals = (
-        ("lanes", materials.surface, 0.0, world.road_width, DRIVABLE),
-        ("left", materials.edge, wide - LINE / 2, LINE, NOT_DRIVABLE),
-        ("right", materials.edge, LINE / 2 - wide, LINE, NOT_DRIVABLE),
-        ("middle", materials.middle, 0.0, LINE, NOT_DRIVABLE),
-    )
-    for name, material, t, width, drivability in decals:
-        points = line(road, s, t) + up + above
-        nodes = np.column_stack([points, np.full(len(points), width)])
-        strips.append(Strip(prefix + name, material, nodes, drivability))
+    meshes = _meshes(middle, world, rng, materials, prefix)
+    decals = _decals(road, world, s, up + above, materials, prefix)
     first, last = start_of(road), goal_of(road)
-    right = -wide / 2
+    right = -world.lane_width / 2
     return Scene(
-        tuple(strips),
+        (*meshes, *decals),
         road.at(first, right) + up,
         float(road.heading(first)),
         float(road.grade(first)),
         road.at((last + road.length) / 2, right) + up,
     )
+
+
+def _meshes(
+    middle: Array, world: World, rng: np.random.Generator, materials: Materials, prefix: str
+) -> list[Strip]:
+    """The verge, where there is one, and the road."""
+    strips = []
+    if world.verge >= NO_VERGE:
+        broad = 2 * (world.lane_width + world.verge)
+        ground = _lengthened(middle) - np.array([0.0, 0.0, UNDER])
+        strips.append(_mesh(f"{prefix}verge", materials.verge, ground, broad))
+    shaken = _lengthened(middle)
+    shaken[:, :2] += rng.uniform(-SHAKE, SHAKE, (len(shaken), 2))
+    return [*strips, _mesh(f"{prefix}road", materials.road, shaken, world.road_width)]
+
+
+def _decals(road: Road, world: World, s: Array, up: Array, materials: Materials, prefix: str) -> list[Strip]:
+    """What the AI finds its way by, and the painted lines."""
+    wide = world.lane_width
+    wanted = (
+        ("lanes", materials.surface, 0.0, world.road_width, DRIVABLE),
+        ("left", materials.edge, wide - LINE / 2, LINE, NOT_DRIVABLE),
+        ("right", materials.edge, LINE / 2 - wide, LINE, NOT_DRIVABLE),
+        ("middle", materials.middle, 0.0, LINE, NOT_DRIVABLE),
+    )
+    strips = []
+    for name, material, t, width, drivability in wanted:
+        points = line(road, s, t) + up
+        nodes = np.column_stack([points, np.full(len(points), width)])
+        strips.append(Strip(prefix + name, material, nodes, drivability))
+    return strips
 
 
 def _mesh(name: str, material: str, points: Array, width: float) -> Strip:

@@ -1,4 +1,4 @@
-"""Features of tests."""
+"""Features of tests; each by itself comes with its name, as the competition's functions give it."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,29 +15,37 @@ def compute_all_features(the_test: Any, execution_data: Sequence[Any] | None) ->
     return features_of([node[:2] for node in the_test.interpolated_points], execution_data or ())
 
 
-def max_curvature(the_test: Any, w: int = 5) -> float:
+def max_curvature(the_test: Any, w: int = 5) -> tuple[str, float]:
     """1/m, of interpolated points i, i+2, i+4: the competition's own window."""
-    return _curvature(_plan(the_test))
+    return "MAX_CURV", _curvature(_plan(the_test))
 
 
-def direction_coverage(the_test: Any, n_bins: int = 25) -> float:
-    """Share of the edges of bins of directions, always 25 bins."""
-    return _coverage(_plan(the_test))
+def direction_coverage(the_test: Any, n_bins: int = 25) -> tuple[str, float]:
+    """Share of the edges of bins of directions, as angles to north from 0 to 180 degrees."""
+    return "DIR_COV", _coverage(_plan(the_test), n_bins)
 
 
-def sd_steering(execution_data: Sequence[Any]) -> float:
+def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> tuple[str, float]:
+    """The same of the whole circle, from -180 to 180 degrees to the x-axis."""
+    step = np.diff(_plan(the_test), axis=0)
+    edges = np.linspace(-np.pi, np.pi, n_bins)
+    covered = np.unique(np.digitize(np.arctan2(step[:, 1], step[:, 0]), edges))
+    return "DIR_COV", len(covered) / len(edges)
+
+
+def sd_steering(execution_data: Sequence[Any]) -> tuple[str, float]:
     """Degrees at the steering wheel."""
-    return float(np.std([record.steering for record in execution_data]))
+    return "STD_SA", float(np.std([record.steering for record in execution_data]))
 
 
-def mean_lateral_position(execution_data: Sequence[Any]) -> float:
+def mean_lateral_position(execution_data: Sequence[Any]) -> tuple[str, float]:
     """Metres."""
-    return float(np.mean([record.oob_distance for record in execution_data]))
+    return "MEAN_LP", float(np.mean([record.oob_distance for record in execution_data]))
 
 
-def max_lateral_position(execution_data: Sequence[Any]) -> float:
+def max_lateral_position(execution_data: Sequence[Any]) -> tuple[str, float]:
     """Metres."""
-    return float(np.max([record.oob_distance for record in execution_data]))
+    return "MAX_LP", float(np.max([record.oob_distance for record in execution_data]))
 
 
 def _plan(the_test: Any) -> Any:
