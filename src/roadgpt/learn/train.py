@@ -28,15 +28,15 @@ FROZEN = ("pieces", "places", "kind", "norm")
 class Plan:
     """How to train."""
 
-    steps: int = 6000
+    steps: int = 14_000
     size: int = 48
     """Pairs in a batch."""
-    encoder_rate: float = 1.2e-4
-    decoder_rate: float = 6e-4
+    encoder_rate: float = 1.5e-4
+    decoder_rate: float = 7e-4
     warm_up: int = 150
     cool_down: float = 0.3
     """Share of the steps at the end in which the rate falls to nothing."""
-    hand_share: float = 0.3
+    hand_share: float = 0.6
     seed: int = 1
     save_every: int = 100
     workers: int = 1

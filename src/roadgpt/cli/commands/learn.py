@@ -74,7 +74,7 @@ def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
 @click.argument("out", type=folder)
 @hand_option
 @click.option("--weights", type=folder, help="Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.")
-@click.option("--steps", type=COUNT, default=8000, show_default=True, help="Batches of each process.")
+@click.option("--steps", type=COUNT, default=14_000, show_default=True, help="Batches of each process.")
 @click.option("--size", type=COUNT, default=48, show_default=True, help="Pairs in a batch.")
 @click.option("--workers", type=whole(1, 64, "processes"), default=2, show_default=True, help="One per core.")
 @click.option("--own", type=folder, help="Folder with pairs of your own, trained on too.")
