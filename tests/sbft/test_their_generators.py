@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from misbehaving import write
+from misbehaving import SEARCHER, write
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 from roadgpt.sbft import Competition, Experiment, compete
@@ -192,6 +192,18 @@ def test_one_of_2021_is_told_its_budget_as_a_number(tmp_path: Path) -> None:
     assert work.ending is not None
     assert work.ending.how == "done", work.ending.sentence
     assert len(runs) == 1
+
+
+def test_a_search_as_others_write_it_runs_unchanged(tmp_path: Path) -> None:
+    (tmp_path / "searches.py").write_text(SEARCHER)
+    work, runs = let_loose(tmp_path, 12, module_name="searches", class_name="Searcher")
+    assert work.ending is not None
+    assert work.ending.how == "done", work.ending.sentence
+    outcomes = {run.outcome for run in runs}
+    assert len(runs) == 12
+    assert "INVALID" in outcomes
+    assert outcomes & {"PASS", "FAIL"}
+    assert (tmp_path / "out" / "generator.log").read_text().count(" MAX_CURV ") == 12
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from roadgpt.cli import options
 from roadgpt.cli.flags import measure, whole
 from roadgpt.cli.options import Decorator, together
 
@@ -29,16 +30,14 @@ def _option(flag: str, name: str, help_: str, kind: Any = None) -> Decorator:
     return click.option(flag, expose_value=False, callback=_into(name), help=help_, **rest)
 
 
-def _folder(value: str) -> Path:
+def folder(value: str) -> Path:
     """The type of an option that takes a folder; kept whole, since workers may stand elsewhere."""
-    if not str(value).strip():
-        raise click.BadParameter("a folder without a name; give its name")
-    return Path(value).expanduser().absolute()
+    return options.folder(value).expanduser().absolute()
 
 
 beamng_options = together(
-    _option("--beamng-home", "HOME", "BeamNG.tech's folder: start it. For --simulator beamng.", _folder),
-    _option("--beamng-user", "USER", "Its user folder; further workers get folders beside it.", _folder),
+    _option("--beamng-home", "HOME", "BeamNG.tech's folder: start it. For --simulator beamng.", folder),
+    _option("--beamng-user", "USER", "Its user folder; further workers get folders beside it.", folder),
     _option("--beamng-host", "HOST", "Where a BeamNG runs that is not to be started.", str),
     _option("--beamng-port", "PORT", "Of BeamNG. [default: 25252]", whole(1, 65535, "a port")),
     _option("--beamng-level", "LEVEL", "Where roads are laid. [default: tig, or a flat one]", str),

@@ -9,6 +9,8 @@ import math
 import re
 from dataclasses import dataclass, field
 
+from drive.beamng.fake_server import RefusedError
+
 G = 9.81
 GRIP = 0.9  # g, sideways
 WHEELBASE = 2.83
@@ -18,10 +20,6 @@ REF_AHEAD, REF_UP = 0.35, -0.15  # m, of the reference node from the centre of g
 CG_HEIGHT = 0.56
 LENGTH, WIDTH, HEIGHT, MIDDLE = 4.70, 1.86, 1.44, -0.10
 PHYSICS = 0.01  # s
-
-
-class RefusedError(Exception):
-    """What the simulator would not take; its text is the error that the client is told."""
 
 
 def objects_of(prefab):

@@ -165,6 +165,8 @@ def test_who_does_not_greet_is_not_talked_to(fake: FakeBeamNG) -> None:
 
 def test_starting_needs_a_scenario_and_a_waypoint_must_exist(fake: FakeBeamNG) -> None:
     bng = opened(fake)
+    with pytest.raises(BNGError, match=r"scenario (is )?loaded"):
+        bng.scenario.start()
     car = loaded(bng)
     with pytest.raises(BNGError, match="no waypoint nowhere"):
         car.ai.set_waypoint("nowhere")

@@ -29,8 +29,8 @@ KEY = "tech.key"  # of BeamNG.tech, in the user folder or that of a version
 class Slot:
     """A port and a user folder that no other process of ours uses."""
 
-    def __init__(self, number: int, port: int, user: Path | None, lock: IO[str]) -> None:
-        self.number, self.port, self.user, self._lock = number, port, user, lock
+    def __init__(self, port: int, user: Path | None, lock: IO[str]) -> None:
+        self.port, self.user, self._lock = port, user, lock
 
     def note(self, pid: int) -> None:
         """Write down which process listens on the port, for whoever comes after a worker that was killed."""
@@ -64,7 +64,7 @@ def take(settings: Settings) -> Slot:
         if settings.launches:
             _end_orphan(lock, settings.host, port)
         if is_taken(settings.host, port) != settings.launches:
-            return Slot(number, port, _user(settings, number), lock)
+            return Slot(port, _user(settings, number), lock)
         lock.close()
         if not settings.launches:
             raise SimulationError(
