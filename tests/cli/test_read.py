@@ -62,3 +62,9 @@ def test_what_is_no_road_is_told() -> None:
     done = _read("what time is it in Paris")
     assert done.exception is not None
     assert "road" in str(done.exception)
+
+
+def test_options_of_designers_are_none_of_reading() -> None:
+    for option in ("--repair", "--strategy"):
+        done = CliRunner().invoke(app, ["read", WORDS, option, "full"])
+        assert done.exit_code == 2

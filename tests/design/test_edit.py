@@ -217,3 +217,35 @@ def test_a_segment_without_a_radius_keeps_what_its_writer_left_open() -> None:
 def test_blocks_are_named_for_what_they_were() -> None:
     blocks, _ = blocks_of(ROADS["h01"])
     assert [block.name for block in blocks] == ["gap 0", "turn 1", "gap 1", "turn 2", "gap 2"]
+
+
+def test_turns_are_made_to_alternate_as_the_first_one_begins() -> None:
+    assert [turn.side for turn in seen(changed("h13", "alternate the turns")).turns] == ["left", "right"]
+    with pytest.raises(EditError, match="so already"):
+        changed("h01", "alternate the turns")
+
+
+def test_a_bound_changes_only_what_is_beyond_it() -> None:
+    old, new = ROADS["h08"], changed("h08", "cap the slope at 3 %")
+    for one, other in zip(old.segments, new.segments, strict=True):
+        assert other.incline == pytest.approx(min(max(one.incline, -3.0), 3.0))
+    with pytest.raises(EditError, match="so already"):
+        changed("h08", "no slope over 14 %")
+
+
+def test_a_road_ends_with_one_straight_of_the_length_that_was_said() -> None:
+    new = seen(changed("r14", "end with a 60 m straight"))
+    assert new.features[-1].kind == "straight"
+    assert new.features[-1].length == pytest.approx(60, abs=2)
+
+
+def test_turns_that_are_to_lie_apart_have_a_straight_between_them() -> None:
+    new = seen(changed("h06", "separate the two turns by 40 m"))
+    assert [feature.kind for feature in new.features] == ["straight", "turn", "straight", "turn", "straight"]
+    assert new.features[2].length == pytest.approx(40, abs=3)
+
+
+def test_the_two_tightest_are_two() -> None:
+    old, new = seen(ROADS["r12"]).turns, seen(changed("r12", "widen the two tightest turns a bit")).turns
+    wider = {i for i, (a, b) in enumerate(zip(old, new, strict=True)) if b.radius > 1.05 * a.radius}
+    assert wider == set(sorted(range(len(old)), key=lambda i: old[i].radius)[:2])

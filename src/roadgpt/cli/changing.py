@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from roadgpt.cli.rows import row_of, spending
 from roadgpt.cli.screen import Screen
-from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.chat import ChatSettings
@@ -42,11 +41,11 @@ def change(wish: Wish, screen: Screen) -> Path:
         RoadGPTError: the words or the road cannot be used; then nothing is written.
     """
     from roadgpt.run import Setup, prove
-    from roadgpt.run.editing import folder_for, original, write_edit
+    from roadgpt.run.editing import folder_for, original, reject_used, write_edit
     from roadgpt.run.sbft_json import test_name
 
-    if wish.out is not None and wish.out.is_dir() and any(wish.out.iterdir()):
-        raise UsageError(f"{wish.out} is not empty; a changed road goes into a new folder: name another one")
+    if wish.out is not None:
+        reject_used(wish.out)
     before = original(wish.road, wish.world, Setup())
     for remark in before.remarks:
         screen.say(f"{wish.road}: {remark}")

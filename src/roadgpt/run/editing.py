@@ -56,6 +56,12 @@ def original(path: Path | str, world: World, setup: Setup) -> Original:
     return Original(blueprint, world, setup, 0, str(path), remarks)
 
 
+def reject_used(out: Path) -> None:
+    """UsageError where something lies in a folder already."""
+    if out.is_dir() and any(out.iterdir()):
+        raise UsageError(f"{out} is not empty; a changed road goes into a new folder: name another one")
+
+
 def folder_for(words: str, seed: int, out: Path | None) -> Path:
     """A folder for the changed road that holds nothing yet.
 
@@ -66,8 +72,7 @@ def folder_for(words: str, seed: int, out: Path | None) -> Path:
         return new_folder(words, seed)
     try:
         out.mkdir(parents=True, exist_ok=True)
-        if any(out.iterdir()):
-            raise UsageError(f"{out} is not empty; a changed road goes into a new folder: name another one")
+        reject_used(out)
     except OSError as error:
         raise UsageError(f"cannot use {out}: {error.strerror}; name another folder") from error
     return out
@@ -117,4 +122,4 @@ def write_edit(
     return write_run(replace(run, index=1), folder, beside)
 
 
-__all__ = ["Original", "folder_for", "original", "write_edit"]
+__all__ = ["Original", "folder_for", "original", "reject_used", "write_edit"]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli.dashes import DescribedCommand
-from roadgpt.cli.options import chat_of, chat_options, setup_options, whole, world_of, world_options
+from roadgpt.cli.options import chat_of, chat_options_but, setup_options, whole, world_of, world_options
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -23,7 +23,7 @@ TEMPERATURE = 1.3  # of readings beside the likeliest one
 @click.option("--table", "as_table", is_flag=True, help="One row for each thing along the road.")
 @click.option("--json", "as_json", is_flag=True, help="The Brief as JSON, with its sentence and its plan.")
 @click.option("--alternatives", "number", type=FEW, default=1, help="Show up to so many different readings.")
-@chat_options
+@chat_options_but("repair", "strategy")
 def command(
     words: tuple[str, ...],
     reader: str,

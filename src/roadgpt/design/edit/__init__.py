@@ -24,7 +24,7 @@ from roadgpt.design.edit.request import Change, Request, What
 from roadgpt.design.edit.steps import Bend, FlipAll, Step
 from roadgpt.design.edit.telling import sentences
 from roadgpt.design.edit.trying import tried
-from roadgpt.design.edit.ways import Way, ways_to_change
+from roadgpt.design.edit.ways import Way, ways_to_alternate, ways_to_change
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World
 
@@ -127,6 +127,8 @@ def _ways(change: Change, blocks: Blocks, found: Measures, world: World, number:
         return ways_to_add(change, blocks, world, number)
     assert change.target is not None
     meant = pointed(change.target, blocks, change.what)
+    if change.what == "alternate":
+        return ways_to_alternate(meant, world)
     if change.what == "remove":
         return ways_to_remove(meant, blocks)
     return ways_to_change(change, meant, found, world)

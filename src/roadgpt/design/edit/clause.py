@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from roadgpt.design.edit.lexing import Lexeme
 from roadgpt.design.edit.request import Place, Target
 
-IDLE = {"too", "make", "keep", "with", "of", "at", "as", "to", "by", "a", "the", "on"}
+IDLE = {"too", "make", "keep", "with", "of", "at", "as", "to", "by", "a", "the", "on", "much", "slightly"}
 """Words that ask for nothing by themselves."""
 
 

@@ -53,6 +53,8 @@ class Dimensions:
         around = [*reversed(self.row[max(at - NEAR, 0) : at]), *behind[:1]]
         nouns = {"radius": "radius", "angle_noun": "angle", "length_noun": "length", "slope_noun": "slope"}
         noun = next((nouns[x.name] for x in around if x.name in nouns), "")
+        if next_to is not None and next_to.name in nouns and not before and not self.has("more", "less"):
+            before = "to"  # 'tighter, radius 18 m'
         after = self.row[at + 1].name if at + 1 < len(self.row) else ""
         comparatives = (
             "sharper",
@@ -76,7 +78,19 @@ class Dimensions:
         """All of them."""
         out = [self._angle(), self._radius(), self._length(), self._slope(), self._side(), self._shape()]
         words = self.clause.words
+        if not any(out):
+            out = [self._plain()]
         return [replace(change, words=words, dose=self.dose) for change in out if change is not None]
+
+    def _plain(self) -> Change | None:
+        """'Make it 60': metres of a straight, degrees of a turn."""
+        nouns = {target.noun for target in self.clause.targets}
+        if len(self.amounts) != 1 or self.amounts[0].unit or len(nouns) != 1:
+            return None
+        noun = nouns.pop()
+        if noun not in ("turn", "straight"):
+            return None
+        return Change("angle" if noun == "turn" else "length", to=self.amounts[0].value)
 
     def way(self) -> Way | None:
         """Up, down or flat, where one of these words is there."""
@@ -104,12 +118,16 @@ class Dimensions:
         """With the amount as 'by', 'to' or 'times'."""
         if amount is None:
             return change
+        if self.has("at_most", "at_least") and amount.unit != "times":
+            return replace(change, to=amount.value, more=0, bound=-1 if self.has("at_most") else 1)
         if amount.unit == "times":
             times = amount.value
             if change.more < 0 and times > 1:
                 times = 1 / times
             if change.more > 0 and times < 1 and amount.preposition == "by":
                 times += 1  # 'longer by half'
+            if change.more < 0 and amount.value < 1 and amount.preposition == "by":
+                times = 1 - amount.value  # 'shorter by a quarter'
             return replace(change, times=times, more=0)
         if amount.unit == "%" and change.what != "slope":
             sign = -1 if change.more < 0 else 1
@@ -123,7 +141,7 @@ class Dimensions:
         more = self._more(("sharper",), ("gentler",), "angle_noun")
         if not more and any(a.unit == "deg" for a in self.amounts):
             more = self.has("more") - self.has("less")  # '30 degrees more'
-        tight = self.has("tighter") - self.has("wider")
+        tight = self.has("tighter", "longer") - self.has("wider", "shorter")
         amount = self._take(("deg",), "angle")
         is_angular = self.has("sharper", "gentler", "angle_noun")
         if amount is None and is_angular and not self._take(("m",), "radius"):
@@ -161,6 +179,8 @@ class Dimensions:
         is_said = more or self.has("long", "short", "length_noun")
         others = self.has(*OF_ANGLES, "sharp", "gentle", "steep", "steeper", "flatter", "slope_noun")
         units = ("m",) if self._is_slope() else ("m", "times", "%", "")
+        if self._take(("deg",), "angle") and not self._take(("m",), "length"):
+            return None  # 'shrink the second turn to 25 degrees'
         if not more and any(a.unit == "m" and a.noun in ("", "length") for a in self.amounts):
             more = 0 if others else self.has("more") - self.has("less")  # 'reduce the straight by 10 m'
         amount = self._take(units if is_said else ("m", "times") if not others else (), "length")
@@ -193,6 +213,8 @@ class Dimensions:
         if amount and amount.value < 0:
             way, amount = "down", replace(amount, value=-amount.value)
         change = Change("slope", more=more, way=way)
+        if amount is None and self.has("swap", "mirror") and self.has("slope_noun"):
+            return Change("slope", times=-1.0)
         if amount is None:
             if way in ("up", "down") and not more and self.has("steep", "gently"):
                 return replace(change, to=STEEPLY if self.has("steep") else GENTLY)
@@ -202,6 +224,8 @@ class Dimensions:
         return self._valued(change, amount)
 
     def _side(self) -> Change | None:
+        if self.has("slope_noun") and self.has("swap", "mirror"):
+            return None  # 'reverse the slope'
         if self.has("swap", "mirror", "side_noun") and not self.has("left", "right"):
             is_asked = self.has("swap", "mirror", "make")  # 'change the direction of turn 2'
             return Change("side") if is_asked else None

@@ -20,6 +20,8 @@ def gathered(clauses: Sequence[Clause]) -> list[Change]:
     work = _Gathering()
     for number, clause in enumerate(clauses):
         rest = clauses[number + 1 :]
+        if _complains_of_it(clause) and work.last is not None:
+            continue  # 'flatten the second straight, it's too steep'
         if clause.keeps or (_complains(clause) and _is_settled(rest)):
             work.before = tuple(clause.targets) or work.before
         elif clause.is_action:
@@ -55,7 +57,8 @@ class _Gathering:
         self.waiting = []
         targets = [_like(target, self.before) for target in targets]
         found = wanted(replace(clause, targets=targets, places=places), self.before)
-        if not found and clause.unknown:
+        is_lost = not (targets or places or clause.new)  # then it would be done to the whole road
+        if clause.unknown and (not found or is_lost):
             _not_understood(clause)
         self.changes += found
         self.last = clause
@@ -95,6 +98,14 @@ class _Gathering:
 def _is_settled(rest: Sequence[Clause]) -> bool:
     """'The second turn is too gentle, make it sharper': does the clause behind a complaint say what to do?"""
     return bool(rest) and rest[0].is_action and all(t.noun == "it" or t.is_that for t in rest[0].targets)
+
+
+def _complains_of_it(clause: Clause) -> bool:
+    return (
+        "too" in clause.names
+        and bool(clause.names & TOO.keys())
+        and all(t.noun == "it" for t in clause.targets)
+    )
 
 
 def short(words: str) -> str:

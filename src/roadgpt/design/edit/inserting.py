@@ -9,7 +9,7 @@ from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.room import SEPARATE, gap
-from roadgpt.design.edit.steps import OTHER, Goal, Insert, Step, turn_segments
+from roadgpt.design.edit.steps import OTHER, Goal, Insert, Step, Stretch, turn_segments
 from roadgpt.design.edit.ways import Way
 from roadgpt.errors import EditError
 from roadgpt.road import World
@@ -95,6 +95,10 @@ def _place(change: Change, blocks: Blocks) -> tuple[str, list[tuple[str, int]]]:
                 )
             if stop == at:
                 raise EditError("between a turn and itself is no place; name two turns")
+            if place.other.words == place.target.words and any(
+                b.kind == "turn" for b in blocks[at + 1 : stop]
+            ):
+                raise EditError(f"between '{place.other.words}' are several places; name two turns")
         gap = blocks[at + 1] if at + 1 < len(blocks) else blocks[at]
         for index in range(1, len(gap.segments)):
             left = sum(s.distance for s in gap.segments[:index])
@@ -261,6 +265,8 @@ def _straight_ways(
     elif change.way:
         incline = {"up": 5.0, "down": -5.0, "flat": 0.0}[change.way]
     beside = blocks[at] if before and blocks[at].kind == "gap" else blocks[at - 1]
+    if change.is_whole and change.length is not None and beside.kind == "gap" and beside.seen is not None:
+        return ((Stretch(beside, change.length),),)
     stands_alone = beside.kind == "gap" and beside.seen is None
     name = f"new {number} straight"
     out = []

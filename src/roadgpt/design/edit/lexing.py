@@ -13,8 +13,10 @@ UNKNOWN = "?"
 ALIKE = 0.84  # share of letters in common from which a word may be another one mistyped
 LEAST_LETTERS = 5  # of a word that may be mistyped
 _ELIDED = re.compile(r"\b(l|d|un|dell|all|nell|dall|sull|qu)['’](?=\w)", re.I)
+_OWNER = re.compile(r"\b(turn|bend|curve|corner|straight|road|hairpin|end|start|\d+)['’]s\b", re.I)
 _ENDINGS = frozenset({"st", "nd", "rd", "th", "er", "ere", "eme", "re", "a", "o", "ª", "º", "e"})
-SIGNS = {",": "comma", ";": "then", ".": "stop", "!": "stop", "\n": "then", "%": "%", "°": "deg", "&": "and"}
+SIGNS = {",": "comma", ";": "then", ".": "stop", "!": "stop", "\n": "then", "%": "%", "°": "deg",
+         "&": "and", "+": "plus", "(": "open", ")": "close"}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +61,7 @@ def _longest() -> int:
 
 def lexemes(words: str) -> list[Lexeme]:
     """The meanings of a request in order; words without a meaning are UNKNOWN, noise is left out."""
-    found = tokens(_ELIDED.sub(r"\1 ", words))
+    found = tokens(_OWNER.sub(r"\1", _ELIDED.sub(r"\1 ", words)))
     out: list[Lexeme] = []
     at = 0
     while at < len(found):
@@ -72,6 +74,8 @@ def lexemes(words: str) -> list[Lexeme]:
             name, value = _sign_or_slip(token)
         text = " ".join(t.raw for t in found[at : at + size])
         at += size
+        if name == "-" and text.lower() == "one" and out and out[-1].name in ("turn", "straight"):
+            name, value = "#", 1.0  # 'turn one'
         if name != "-":
             first, *rest = name.split() or [name]
             out += [Lexeme(first, text, value), *(Lexeme(part, "", value) for part in rest)]
@@ -115,12 +119,36 @@ def _sign_or_slip(token: Token) -> tuple[str, float]:
         if token.text == "-":
             return "dash", 0.0
         return SIGNS.get(token.text, "-"), 0.0
+    if stem := _stem(token.text):
+        return _phrases()[(stem,)]
+    if len(token.text) == LEAST_LETTERS - 1:  # 'raod': two letters changed places
+        near = [
+            w for (w, *more) in _phrases() if not more and w[0] == token.text[0] and _has_letters(w, token)
+        ]
+        if near:
+            return _phrases()[(near[0],)]
     if len(token.text) >= LEAST_LETTERS:
         known = [words[0] for words in _phrases() if len(words) == 1]
         near = get_close_matches(token.text, known, n=1, cutoff=ALIKE)
         if near and near[0][0] == token.text[0]:
             return _phrases()[(near[0],)]
     return UNKNOWN, 0.0
+
+
+def _stem(word: str) -> str:
+    """The verb of 'widened', 'flipped' and 'removing'; empty where it is none that is known."""
+    for ending in ("ed", "d", "ing"):
+        stem = word.removesuffix(ending)
+        if stem != word and len(stem) >= 3:
+            doubled = stem[:-1] if stem[-1] == stem[-2] else stem
+            for known in (stem, f"{stem}e", doubled):
+                if _phrases().get((known,), ("",))[0] not in ("", "-", "not", "#", "ord"):
+                    return known
+    return ""
+
+
+def _has_letters(word: str, token: Token) -> bool:
+    return sorted(word) == sorted(token.text)
 
 
 UNITS = {"deg": ("deg", 1.0), "m": ("m", 1.0), "km": ("m", 1000.0), "ft": ("m", 0.3048), "%": ("%", 1.0)}
@@ -143,8 +171,8 @@ def _with_units(given: Sequence[Lexeme]) -> list[Lexeme]:
             if lexeme.name == "dash":
                 out.append(lexeme)
                 continue
-        if lexeme.name in ("twice", "thrice", "half"):
-            value = {"twice": 2.0, "thrice": 3.0, "half": 0.5}[lexeme.name]
+        if lexeme.name in ("twice", "thrice", "half", "quarter"):
+            value = {"twice": 2.0, "thrice": 3.0, "half": 0.5, "quarter": 0.25}[lexeme.name]
             out.append(Lexeme("#", lexeme.text, value, "times"))
             continue
         if lexeme.name == "dash":

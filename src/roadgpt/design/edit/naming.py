@@ -239,6 +239,8 @@ class _Reader(Row):
         if name not in PLACES:
             return at, None
         first = self.read(at + 1)
+        if first is None and name == "between":  # 'the straight in between'
+            return at + 1, Place("between", Target("turn", numbers=(1,)), Target("turn", numbers=(-1,)))
         if first is None or (name == "on" and first.target.noun not in ("turn", "straight", None)):
             return at, None
         if name != "between":
@@ -251,6 +253,9 @@ class _Reader(Row):
                 if one.noun is None:
                     one = replace(one, noun=second.target.noun)
                 return second.stop, Place("between", one, second.target)
+        if first.target.every and not first.target.numbers:  # 'between the two lefts', 'between the turns'
+            one, last = (replace(first.target, numbers=(n,), every=False, count=None) for n in (1, -1))
+            return first.stop, Place("between", one, last)
         if len(first.target.numbers) == 2:
             low, high = (replace(first.target, numbers=(n,), every=False) for n in first.target.numbers)
             return first.stop, Place("between", low, high)

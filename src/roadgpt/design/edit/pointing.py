@@ -171,7 +171,8 @@ def _chosen(target: Target, found: Sequence[Block], noun: str) -> list[Block]:
         raise EditError(f"there is no {told} on this road")
     if target.most:
         measure, sign = target.most
-        return [max(found, key=lambda block: sign * _measure(block, measure))]
+        ranked = sorted(found, key=lambda block: -sign * _measure(block, measure))[: target.count or 1]
+        return [block for block in found if block in ranked]
     if target.middle:
         if len(found) % 2 == 0:
             n = len(found)

@@ -14,6 +14,7 @@ from roadgpt.design.edit.gathering import ADVICE, gathered, short
 from roadgpt.design.edit.lexing import UNKNOWN, Lexeme, lexemes
 from roadgpt.design.edit.naming import NOUNS, PLACES, SIDED, named, place_at
 from roadgpt.design.edit.request import Change, Place, Request, Target
+from roadgpt.design.edit.rewording import reworded
 from roadgpt.errors import EditError
 
 MOST_CHARACTERS = 2000
@@ -33,13 +34,13 @@ def read_request(words: str) -> Request:
         raise EditError(
             f"a change request of {len(words)} characters is too long; use {MOST_CHARACTERS} or less"
         )
-    row = lexemes(words)
+    row = reworded(lexemes(words))
     refused = next((x.text for x in row if x.name == "not"), None)
     if refused:
         raise EditError(f"'{refused}' is not understood in a change request; {ADVICE}")
     clauses = _with_amounts([clause for part in _parts(row) if (clause := _clause(part)).words])
     kept = [target for clause in clauses if clause.keeps for target in clause.targets]
-    changes = [_sparing(change, kept) for change in gathered(clauses)]
+    changes = _settled([_sparing(change, kept) for change in gathered(clauses)])
     sides = {(change.target, change.side): change for change in changes if change.what == "side"}
     if len(sides) > len({target for target, _ in sides}):
         raise EditError("the same turns are to go left and right; say which turn is to go where")
@@ -48,6 +49,19 @@ def read_request(words: str) -> Request:
         told = f"'{short(words)}' is no change of a road that I know"
         raise EditError(f"{told}; {ADVICE}")
     return Request(words, tuple(changes), unused)
+
+
+def _settled(changes: Sequence[Change]) -> list[Change]:
+    """'Make turn 2 tighter, with a radius of 20 m': what a number is said of as well is settled by it."""
+    bends = {"angle", "radius"}
+    said = [c for c in changes if c.to is not None or c.by is not None or c.times is not None]
+
+    def is_said(change: Change) -> bool:
+        is_vague = change.more != 0 and change not in said
+        alike = [c for c in said if c.target == change.target]
+        return is_vague and any(c.what == change.what or {c.what, change.what} <= bends for c in alike)
+
+    return [change for change in changes if not is_said(change)]
 
 
 def _parts(row: Sequence[Lexeme]) -> list[list[Lexeme]]:
@@ -85,7 +99,7 @@ def _clause(row: Sequence[Lexeme]) -> Clause:
         if lexeme.name in AT:
             how: Any = AT[lexeme.name]
             out.places.append(Place(how))
-            at += 1
+            at = _behind_road(row, at + 1)
             continue
         if lexeme.name == "turn" and at == 0 and len(row) > 1 and _is_verb(row):
             at += 1
@@ -112,6 +126,12 @@ def _clause(row: Sequence[Lexeme]) -> Clause:
         out.row.append(lexeme)
         at += 1
     return out
+
+
+def _behind_road(row: Sequence[Lexeme], at: int) -> int:
+    """'In the middle of the road' is a place, and speaks of no road."""
+    found = named(row, at + 1) if at < len(row) and row[at].name in ("of", "on") else None
+    return found.stop if found and found.target.noun == "road" and not found.target.half else at
 
 
 def _is_verb(row: Sequence[Lexeme]) -> bool:

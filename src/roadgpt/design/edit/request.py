@@ -17,6 +17,7 @@ What = Literal[
     "add",
     "remove",
     "mirror",
+    "alternate",
 ]
 Way = Literal["up", "down", "flat"]
 Measure = Literal["sharp", "long", "steep"]
@@ -66,7 +67,7 @@ class Target:
     @property
     def is_new(self) -> bool:
         """Does it speak of something that is not on the road yet?"""
-        return self.indefinite or (self.count is not None and not self.numbers)
+        return self.indefinite or (self.count is not None and not (self.numbers or self.most))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +91,8 @@ class Change:
     by: float | None = None
     to: float | None = None
     times: float | None = None
+    bound: Literal[-1, 0, 1] = 0
+    """-1: ``to`` is the most that it may be, 1: the least."""
     dose: float = 1.0
     """How much is meant where no number was said: 'slightly' is less than 1, 'much' more."""
     way: Way | None = None
@@ -104,6 +107,8 @@ class Change:
     radius: float | None = None
     length: float | None = None
     grade: float | None = None
+    is_whole: bool = False
+    """Of a straight at an end of the road: with what is there already ('end with a 60 m straight')."""
     words: str = ""
 
 

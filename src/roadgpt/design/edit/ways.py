@@ -10,10 +10,11 @@ from math import radians
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.anatomy import Block, is_turn
+from roadgpt.design.edit.bounding import is_beyond, within
 from roadgpt.design.edit.grading import ways_to_slope, ways_to_slope_all
 from roadgpt.design.edit.growing import ways_to_stretch_the_road
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import Become, Bend, Flip, Step, Stretch, straight
+from roadgpt.design.edit.steps import OTHER, Become, Bend, Flip, Step, Stretch, straight
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -66,6 +67,10 @@ def ways_to_change(change: Change, blocks: Sequence[Block], found: Measures, wor
     Raises:
         EditError: no road can be like that.
     """
+    if change.bound:
+        blocks = [block for block in blocks if is_beyond(change, block, found)]
+        if change.what == "slope" and blocks:
+            return within(change, blocks)
     match change.what:
         case "angle" | "radius" | "shape":
             return _each(blocks, lambda block: _bends(change, block, world))
@@ -84,6 +89,15 @@ def ways_to_change(change: Change, blocks: Sequence[Block], found: Measures, wor
             return _flipped(wrong, world) if wrong else ()
         case _:
             return _each(blocks, _straightened)
+
+
+def ways_to_alternate(blocks: Sequence[Block], world: World) -> tuple[Way, ...]:
+    """Turns to the one and to the other side by turns, as the first one begins; empty where they are so."""
+    side, wrong = blocks[0].side, list[Block]()
+    for block in blocks:
+        wrong += [block] if block.side != side else []
+        side = OTHER[side]
+    return _flipped(wrong, world) if wrong else ()
 
 
 def _each(blocks: Sequence[Block], ways: Callable[[Block], Sequence[Step]]) -> tuple[Way, ...]:

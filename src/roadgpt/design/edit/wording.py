@@ -14,6 +14,21 @@ EXCHANGES = {"swap", "switch", "vertausche"}
 VERBS = {"remove", "swap", "mirror", "straighten", "sharper", "gentler", "tighter", "wider", "longer",
          "shorter", "steeper", "flatter", "more", "less"}  # fmt: skip
 """Of what is there already."""
+ROAD = Target("road")
+ENDINGS = {
+    "end",
+    "ends",
+    "ending",
+    "finish",
+    "finishes",
+    "terminate",
+    "start",
+    "starts",
+    "begin",
+    "begins",
+    "apart",
+}
+"""First words of 'end with' and its like; the last one is of turns that are to lie apart."""
 
 
 def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
@@ -28,14 +43,25 @@ def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
     """
     _is_of_this_road(clause)
     names = clause.names
+    if "alternate" in names:
+        return [Change("alternate", target, words=clause.words) for target in _of_turns(clause, before)]
+    if names & {"at_most", "at_least"} and clause.new:
+        raise EditError(f"'{clause.words}' leaves open which are to go or to come; name them with numbers")
     if "mirror" in names and not any(t.noun in ("turn", "straight") for t in clause.targets):
         return [Change("mirror", words=clause.words)]
     is_new = bool(clause.new) and not clause.targets and not _speaks_of_it(clause, before)
+    is_had = bool(clause.new and clause.places) and all(
+        t == replace(ROAD, words=t.words) for t in clause.targets
+    )
+    is_new |= is_had and not _speaks_of_it(clause, before)  # 'the road should have a turn at the end'
     if "add" in names or (is_new and not names & VERBS):
         return [_added(clause, before)]
     if is_new and "remove" not in names:
         raise EditError(f"which one is meant in '{clause.words}' is not said; say: the second turn")
     targets = _targets(clause, before)
+    if _is_new_shape(clause):  # 'swap the second turn for a hairpin'
+        clause.row = [replace(x, name="make") if x.name == "swap" else x for x in clause.row]
+        names = clause.names
     if "remove" in names and any(x.name == "#" and x.unit for x in clause.row):
         clause.row = [replace(x, name="shorter") if x.name == "remove" else x for x in clause.row]
         names = clause.names  # 'cut the last straight in half'
@@ -46,6 +72,7 @@ def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
     is_compared = [x.name for x in clause.row].count("as") > 1 and len(clause.targets) > 1
     if is_compared or ("as" in names and not any(x.name == "#" for x in clause.row)):
         raise EditError(f"'as ... as' in '{clause.words}' is not understood; say a number")
+    clause.targets = targets or clause.targets
     found = Dimensions(clause).changes()
     if not found and "make" in names:  # 'make the third left'
         found = [Change("side", side=t.side, words=clause.words) for t in targets if t.is_bare][:1]
@@ -54,6 +81,20 @@ def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
     for target in some or [None]:
         out += [_on(target, change, found, clause) for change in found]
     return [change for change in out if change is not None]
+
+
+def _is_new_shape(clause: Clause) -> bool:
+    """Is something new to stand in the place of what is there?"""
+    described = any(t.kind or t.side or t.sharpness or t.degrees for t in clause.new)
+    return "swap" in clause.names and described
+
+
+def _of_turns(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
+    """All turns, where none were named."""
+    named = [t for t in _targets(clause, before) if t.noun in ("turn", None) and not t.is_bare]
+    return [replace(target, every=True) for target in named] or [
+        Target("turn", every=True, words="all turns")
+    ]
 
 
 def _speaks_of_it(clause: Clause, before: tuple[Target, ...]) -> bool:
@@ -70,6 +111,8 @@ def _targets(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
             out += _spoken_of(target, before) or (target,)
         else:
             out.append(_without_it(target, before))
+    if len(out) > 1 and out[0].noun == "road" and out[1].noun in ("end", "start"):
+        out = out[1:]  # 'the road should end flat'
     if len(out) > 1 and out[-1].noun == "road":  # 'the turns of the road', 'the turns in its second half'
         half = out[-1].half
         out = [replace(target, half=half) for target in out if target.noun != "road"]
@@ -174,6 +217,7 @@ def _added(clause: Clause, before: tuple[Target, ...]) -> Change:
         radius=next((a.value for a in amounts if a.unit in ("m", "") and a.noun == "radius"), None),
         length=length,
         grade=grade,
+        is_whole=any(bool({*x.text.lower().split()[:1]} & ENDINGS) for x in clause.row if x.name == "add"),
         words=clause.words,
     )
 

@@ -1,0 +1,35 @@
+"""Bounds: 'no steeper than 6 %' changes only what is steeper."""
+
+from collections.abc import Sequence
+
+from roadgpt.check.measures import Measures
+from roadgpt.design.edit.anatomy import Block
+from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.sloping import SlopeOfAll
+from roadgpt.design.edit.steps import Step
+
+
+def is_beyond(change: Change, block: Block, found: Measures) -> bool:
+    """Is a block on the wrong side of what a change bounds?"""
+    assert change.to is not None
+    seen = block.seen
+    if change.what == "slope":
+        slopes = [abs(segment.incline) for segment in block.segments]
+        return any((now - change.to) * change.bound < 0 for now in slopes)
+    if seen is None:
+        return False
+    if change.target is not None and change.target.noun == "road" and change.what == "length":
+        now = found.length
+    else:
+        now = {"angle": seen.degrees, "radius": seen.radius, "length": seen.length}[change.what]
+    return (now - change.to) * change.bound < 0
+
+
+def within(change: Change, blocks: Sequence[Block]) -> tuple[tuple[Step, ...], ...]:
+    """Slopes of blocks that keep the bound: what is beyond is as steep as it says."""
+    assert change.to is not None
+    names = frozenset(block.name for block in blocks)
+    if change.bound < 0:
+        return ((SlopeOfAll(names, low=-change.to, high=change.to),),)
+    up = sum(block.incline * block.length for block in blocks) >= 0
+    return ((SlopeOfAll(names, way=1 if up else -1, low=change.to),),)
