@@ -1,4 +1,4 @@
-"""Descriptions of measured roads: their facts are those of the road, and the same seed gives the same ones."""
+"""Descriptions of measured roads: their facts are those of the road; the same seed gives the same ones."""
 
 import re
 from itertools import islice

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from roadgpt.brief.readers.model.mirror import mirrored
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.labels import REFUSALS
-from roadgpt.brief.readers.model.mirror import mirrored
 from roadgpt.learn.refusing import contradicted, overdone
 from roadgpt.learn.variation import joined, recounted
 

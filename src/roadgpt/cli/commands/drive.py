@@ -43,9 +43,9 @@ def command(
 ) -> int:
     """Drive roads that exist.
 
-    ROAD.json is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table
-    of points (.csv) or OpenDRIVE (.xodr). A road that the rules object to is INVALID and is not driven. The exit
-    status is 0 when all roads could be read.
+    ROAD.json is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a
+    table of points (.csv) or OpenDRIVE (.xodr). A road that the rules object to is INVALID and is not
+    driven. The exit status is 0 when all roads could be read.
     """
     from roadgpt.run import Setup, roll_call
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from roadgpt.learn.evaluate import Reading
     from roadgpt.learn.generator import Pair
 
-SPLITS = ("train", "validation", "test")
+SPLITS = ("train", "validation", "test", "exam")
 COUNT = whole(1, 10_000_000, "a number")
 MEASURED = 600  # descriptions of measured roads among the pairs that are trained on
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
@@ -43,7 +43,7 @@ def data(out: Path, hand: Path, number: int, seed: int) -> None:
     """Check the hand-written pairs, and write generated ones into the folder OUT."""
     from roadgpt.learn.originality import report
 
-    splits = {name: _pairs_of(hand / name) for name in SPLITS}
+    splits = {name: _pairs_of(hand / name) for name in SPLITS if (hand / name).is_dir()}
     for line in report({name: [pair.text for pair in its] for name, its in splits.items()}):
         click.echo(line)
     for name, its in splits.items():
@@ -195,7 +195,9 @@ def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]") -> No
     from roadgpt.brief.readers.model import WEIGHTS
     from roadgpt.learn.card import card
 
-    counts = {f"hand-written, {name}": len(_pairs_of(hand / name)) for name in SPLITS}
+    counts = {
+        f"hand-written, {name}": len(_pairs_of(hand / name)) for name in SPLITS if (hand / name).is_dir()
+    }
     first, *others = found
     told = (WEIGHTS / "training.txt").read_text(encoding="utf-8").strip()
     text = card(WEIGHTS, counts, found[first], {name: found[name] for name in others}, told)
