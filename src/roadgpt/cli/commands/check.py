@@ -32,6 +32,12 @@ def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **
     ROAD.json is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a
     table of points (.csv) or OpenDRIVE (.xodr). The exit status is 0 when all roads are valid, 1 when one is
     not, 2 when one cannot be read.
+    """
+    world = world_of(rest)
+    screen = Screen(len(files), rest["as_json"], rest["quiet"], verbose)
+    each_road(files, screen, lambda file: _checked(screen, file, rules, geometry, world))
+    outcomes = {row.test_outcome for row in screen.rows}
+    return UNREADABLE if "ERROR" in outcomes else INVALID if "INVALID" in outcomes else 0
 
 
 def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> Row:
