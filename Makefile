@@ -1,7 +1,7 @@
 # make demo    words to driven roads and pictures, from nothing but Python, pip and make
 # make test    format, types and every test; ends with the seconds it took
 # make bench   the figures of benchmarks/        make docs    the site in site/
-# make judges  ASAM's checker of OpenDRIVE, which wants an environment of its own; then make test asks it
+# make judges  ASAM's checker of OpenDRIVE, which wants an environment of its own; make test asks it
 # make format  mend the format                   make clean   remove what make made
 #
 # Another Python: make test PYTHON=python3.12
@@ -50,7 +50,7 @@ demo: $(VENV)/.installed
 	$(BIN)/roadgpt run "an uphill road with 3 turns" -n 3
 	@echo "make demo: $(SECONDS_SO_FAR) s"
 
-test: $(VENV)/.installed-test
+test: $(VENV)/.installed-test judges/.installed
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m mypy
@@ -66,15 +66,23 @@ docs: $(VENV)/.installed-docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 	@echo "make docs: site/index.html, $(SECONDS_SO_FAR) s"
 
-judges:
-	$(PYTHON) -m venv judges/venv-qc
-	judges/venv-qc/bin/python -m pip --disable-pip-version-check install --quiet asam-qc-opendrive==1.0.0
-	@echo "make judges: judges/venv-qc, $(SECONDS_SO_FAR) s"
+judges: judges/.installed
+
+# It wants a numpy below 2, so it has an environment of its own; for Python 3.13 there is no such numpy.
+judges/.installed: $(VENV)/.python-$(WANTED)
+	@mkdir -p judges
+	@if $(PYTHON) -c 'import sys; sys.exit(sys.version_info >= (3, 13))'; then \
+	  echo "adding ASAM's checker of OpenDRIVE in judges/venv-qc"; \
+	  { $(PYTHON) -m venv --clear judges/venv-qc >/dev/null 2>&1 \
+	  || { $(PYTHON) -m venv --clear --without-pip judges/venv-qc && $(PYTHON) -m pip --python judges/venv-qc/bin/python install -q pip; }; } \
+	  && judges/venv-qc/bin/python -m pip --disable-pip-version-check install --quiet asam-qc-opendrive==1.0.0; \
+	else echo "ASAM's checker of OpenDRIVE does not run on this Python; its tests are skipped"; fi
+	@touch $@
 
 format: $(VENV)/.installed-test
 	$(BIN)/python -m ruff check --fix .
 	$(BIN)/python -m ruff format .
 
 clean:
-	rm -rf $(VENV) build dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) judges build dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find src tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +

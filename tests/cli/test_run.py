@@ -262,7 +262,7 @@ def test_show_of_a_campaign_tells_the_cause_of_a_failure() -> None:
     assert "FAIL (out of lane)" in shown
 
 
-@pytest.mark.parametrize("command", ["drive", "check", "plot"])
+@pytest.mark.parametrize("command", ["drive", "check"])
 def test_the_folder_of_a_campaign_is_answered_with_its_roads(command: str) -> None:
     invoke(WORDS, "--seed", "7", "--no-drive", "--no-plot", "--out", "here")
     result = CliRunner().invoke(app, [command, "here"])
@@ -273,6 +273,19 @@ def test_the_folder_of_a_campaign_is_answered_with_its_roads(command: str) -> No
     )
     assert result.stdout == ""
     assert CliRunner().invoke(app, [command, "here/runs/0001"]).exit_code == 0
+
+
+def test_pictures_of_a_campaign_of_one_road_are_of_that_road_and_of_more_are_refused() -> None:
+    invoke(WORDS, "--seed", "7", "--no-drive", "--no-plot", "--out", "one")
+    assert CliRunner().invoke(app, ["plot", "one"]).exit_code == 0
+    assert CliRunner().invoke(app, ["view", "one"]).exit_code == 0
+    invoke(WORDS, "-n", "2", "--seed", "7", "--no-drive", "--no-plot", "--out", "two")
+    for command in ("plot", "view"):
+        result = CliRunner().invoke(app, [command, "two"])
+        assert result.exit_code == 2
+        assert (
+            result.stderr == f"roadgpt: two holds 2 roads; give one of the folders in {Path('two', 'runs')}\n"
+        )
 
 
 def test_show_of_a_file_that_is_no_test_names_it() -> None:
