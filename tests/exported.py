@@ -46,7 +46,7 @@ def python_with(module: str, venv: str) -> str:
     """A Python that has this module: ours, or that of an environment in the folder JUDGE_HOME; or skip."""
     if find_spec(module) is not None:
         return sys.executable
-    for folder in filter(None, [os.environ.get("JUDGE_HOME"), Path(__file__).parents[2] / "judges"]):
+    for folder in filter(None, [os.environ.get("JUDGE_HOME"), Path(__file__).parents[1] / "judges"]):
         python = Path(folder, venv, "bin", "python")
         if python.exists():
             return str(python)
@@ -56,7 +56,7 @@ def python_with(module: str, venv: str) -> str:
 def program(name: str, venv: str = "tools") -> str:
     """A program: on the path, or in a folder of JUDGE_HOME; or skip."""
     places = [
-        Path(os.environ.get("JUDGE_HOME") or Path(__file__).parents[2] / "judges") / venv / part
+        Path(os.environ.get("JUDGE_HOME") or Path(__file__).parents[1] / "judges") / venv / part
         for part in ("bin", "")
     ]
     found = shutil.which(name) or next(

@@ -231,7 +231,6 @@ def test_the_command_writes_one_page_of_a_file_and_a_run(
         ([], "road file or the folder of a run"),
         (["road.json"] * 3, "one road or two"),
         (["none.json"], "none.json"),
-        (["campaign"], "road.json"),
         (["road.json", "--out", "campaign"], "is a folder"),
         (["road.json", "--out", "road.json"], "ends in .html"),
         (["road.json", "--out", "no/such/page.html"], "--out"),
