@@ -1,6 +1,7 @@
 """Fake BeamNGs for tests; no BeamNG that a test started outlives it."""
 
 import logging
+import os
 import socket
 from collections.abc import Iterator
 
@@ -18,8 +19,6 @@ def _left() -> Iterator[None]:
 @pytest.fixture(autouse=True)
 def _environment(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing of the user's own settings."""
-    import os
-
     for name in list(os.environ):
         if name.startswith("ROADGPT_BEAMNG_") or name == "BNG_HOME":
             monkeypatch.delenv(name)
@@ -36,8 +35,11 @@ def _quiet() -> Iterator[None]:
 
 @pytest.fixture
 def port() -> int:
-    """One that nobody listens on; of a range in which the system itself hands out none."""
-    for number in range(21000, 32000, 7):
+    """One that nobody listens on; of a range in which the system hands out none, and other processes of these
+    tests look at none."""
+    process = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")) % 5
+    first = 21000 + 2100 * process
+    for number in range(first, first + 2100, 7):
         with socket.socket() as probe:
             try:
                 probe.bind(("127.0.0.1", number))
