@@ -9,7 +9,7 @@ from typing import Any
 
 from roadgpt.errors import PartError
 
-SHELVES = ("providers", "readers", "designers", "rules", "exporters", "simulators", "drivers")
+SHELVES = ("providers", "readers", "designers", "rules", "exporters", "simulators", "drivers", "generators", "executors")
 
 
 @cache
