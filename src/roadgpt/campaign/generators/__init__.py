@@ -1,0 +1,1 @@
+"""Generators: what thinks out the tests of a cell, one per file; see ``campaign.model.Generator``."""
