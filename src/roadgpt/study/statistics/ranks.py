@@ -1,0 +1,171 @@
+"""Do ratings or measures differ, by their ranks: paired, unpaired, and of many columns at once."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import stats
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Friedman:
+    """Do columns differ that the same people rated?"""
+
+    statistic: float
+    freedom: int
+    p: float
+    kendalls_w: float
+    """0: everyone orders the columns otherwise; 1: all alike."""
+    people: int
+    """With all columns rated."""
+
+
+@dataclass(frozen=True)
+class Paired:
+    """Do two columns differ that the same people rated?"""
+
+    statistic: float
+    """The smaller sum of signed ranks."""
+    p: float
+    effect: float
+    """Matched-pairs rank-biserial correlation, above 0 where the first is larger."""
+    pairs: int
+    """Of which none is missing, equal ones included."""
+
+
+@dataclass(frozen=True)
+class Unpaired:
+    """Do two groups differ?"""
+
+    statistic: float
+    """U of the first."""
+    p: float
+    a12: float
+    """Vargha and Delaney: how often the first is larger, ties half; 0.5: no difference."""
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """Do two columns rise together?"""
+
+    rho: float
+    p: float
+    pairs: int
+
+
+def friedman(ratings: ArrayLike) -> Friedman:
+    """Friedman's test of ratings ``(people, columns)``, corrected for ties; rows with a gap are left out."""
+    x = _complete(ratings)
+    people, columns = x.shape
+    if people < 2 or columns < 2:
+        return Friedman(0.0, max(columns - 1, 0), 1.0, 0.0, people)
+    ranks = stats.rankdata(x, axis=1)
+    spread = _spread(ranks)
+    if spread <= 0:  # everyone rated all columns alike
+        return Friedman(0.0, columns - 1, 1.0, 0.0, people)
+    apart = float(((ranks.sum(axis=0) - people * (columns + 1) / 2) ** 2).sum())
+    statistic = apart * (columns - 1) / spread
+    p = float(stats.chi2.sf(statistic, columns - 1))
+    return Friedman(statistic, columns - 1, p, statistic / (people * (columns - 1)), people)
+
+
+def conover(ratings: ArrayLike, adjust: Literal["holm", "none"] = "holm") -> Array:
+    """p ``(k, k)`` of every pair of columns, after Friedman's test of ratings ``(people, k)``.
+
+    Args:
+        ratings: rows with a gap are left out.
+        adjust: "holm" for all pairs together, or "none".
+
+    Source: Conover, Practical nonparametric statistics, 3rd edition (1999), 5.8.
+    """
+    x = _complete(ratings)
+    people, columns = x.shape
+    out = np.ones((columns, columns))
+    if people < 2 or columns < 2:
+        return out
+    ranks = stats.rankdata(x, axis=1)
+    sums, spread = ranks.sum(axis=0), _spread(ranks)
+    if spread <= 0:
+        return out
+    apart = ((sums - people * (columns + 1) / 2) ** 2).sum() / people
+    freedom = (people - 1) * (columns - 1)
+    error = 2 * people * (spread - apart) / freedom
+    one, other = np.triu_indices(columns, 1)
+    difference = np.abs(sums[one] - sums[other])
+    if error <= 1e-12 * spread:  # all ordered the columns alike: any difference is beyond doubt
+        p = np.where(difference > 0, 0.0, 1.0)
+    else:
+        p = 2 * stats.t.sf(difference / np.sqrt(error), freedom)
+    out[one, other] = out[other, one] = _holm(p) if adjust == "holm" else p
+    return out
+
+
+def _spread(ranks: Array) -> float:
+    """Of ranks around their middle, over all people."""
+    people, columns = ranks.shape
+    return float((ranks**2).sum() - people * columns * (columns + 1) ** 2 / 4)
+
+
+def _holm(p: Array) -> Array:
+    order = np.argsort(p, kind="stable")
+    scaled = p[order] * np.arange(len(p), 0, -1)
+    out = np.empty_like(p)
+    out[order] = np.minimum(np.maximum.accumulate(scaled), 1.0)
+    return out
+
+
+def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
+    """Wilcoxon's signed-rank test of two columns ``(people,)``, two-sided.
+
+    Exact for few pairs without ties, else normal. Equal pairs are left out of the ranks.
+    """
+    x, y = _both(one, other)
+    difference = x - y
+    moved = difference[difference != 0]
+    if not len(moved):
+        return Paired(0.0, 1.0, 0.0, len(x))
+    ranks = stats.rankdata(np.abs(moved))
+    up, down = float(ranks[moved > 0].sum()), float(ranks[moved < 0].sum())
+    has_ties = len(np.unique(np.abs(moved))) < len(moved)
+    method: Literal["exact", "approx"] = "exact" if len(moved) <= 50 and not has_ties else "approx"
+    found = stats.wilcoxon(moved, method=method)
+    return Paired(min(up, down), float(found.pvalue), (up - down) / (up + down), len(x))
+
+
+def mann_whitney(one: ArrayLike, other: ArrayLike) -> Unpaired:
+    """Mann and Whitney's U test of two groups, two-sided; NaN is left out."""
+    x, y = _told(one), _told(other)
+    if not len(x) or not len(y):
+        return Unpaired(0.0, 1.0, 0.5)
+    if len(np.unique(np.r_[x, y])) == 1:
+        return Unpaired(len(x) * len(y) / 2, 1.0, 0.5)
+    found = stats.mannwhitneyu(x, y)
+    return Unpaired(float(found.statistic), float(found.pvalue), float(found.statistic) / (len(x) * len(y)))
+
+
+def spearman(one: ArrayLike, other: ArrayLike) -> Correlation:
+    """Spearman's rank correlation of two columns; NaN where one of them does not vary."""
+    x, y = _both(one, other)
+    if len(x) < 3 or len(np.unique(x)) < 2 or len(np.unique(y)) < 2:
+        return Correlation(float("nan"), 1.0, len(x))
+    found = stats.spearmanr(x, y)
+    return Correlation(float(found.statistic), float(found.pvalue), len(x))
+
+
+def _complete(ratings: ArrayLike) -> Array:
+    x = np.atleast_2d(np.asarray(ratings, float))
+    return np.asarray(x[np.isfinite(x).all(axis=1)])
+
+
+def _told(values: ArrayLike) -> Array:
+    x = np.asarray(values, float).ravel()
+    return np.asarray(x[np.isfinite(x)])
+
+
+def _both(one: ArrayLike, other: ArrayLike) -> tuple[Array, Array]:
+    x, y = np.asarray(one, float).ravel(), np.asarray(other, float).ravel()
+    told = np.isfinite(x) & np.isfinite(y)
+    return x[told], y[told]
