@@ -1,4 +1,4 @@
-"""The values of a campaign: what a generator asks for, what comes of it, and what all tests of a cell share."""
+"""The values of a campaign: what is asked for, what comes of it, and what all tests of a cell share."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -33,14 +33,18 @@ class Budget(Frozen):
         return self.tests or MOST_TESTS
 
 
+UNLIMITED = Budget()
+
+
 @dataclass(frozen=True)
 class Proposal:
     """A test that a generator asks for."""
 
     design: Design | None
-    """None: the worker drafts it from the cell's Brief with ``seed``."""
+    """None: a worker drafts it from the cell's Brief, as road ``number`` of a campaign with this seed; it is
+    to differ from the designs of batches that were told."""
     seed: int
-    """Of the draft and of the driver."""
+    """Of the draft; where a design is given, the driver's own."""
     origin: str
     """Where it comes from, as tables show it: 'draft', 'vary 17', 'cross 3+9', 'walk'."""
 
@@ -92,7 +96,7 @@ class Cell:
     goal: Goal | None
     settings: Mapping[str, Any] = field(default_factory=dict)
     """Of the generator, as its own documentation has them."""
-    budget: Budget = Budget()
+    budget: Budget = UNLIMITED
 
 
 class Pool(Protocol):
