@@ -24,12 +24,13 @@ were rounded to 8 bits. pieces.txt is a part of the vocabulary of BERT (Google, 
 """What goes along with the weights."""
 
 
-def begin(out: Path, weights: Path | None) -> Sequence[str]:
+def begin(out: Path, weights: Path | None, exported: Path | None = None) -> Sequence[str]:
     """The word pieces of the training in the folder, which is prepared where it is new.
 
     Args:
         out: the training's folder.
         weights: folder with ``model.safetensors`` and ``vocab.txt``; not needed to go on.
+        exported: folder of an exported reader, which a new training may start from instead.
 
     Raises:
         LearnError: a new training without weights, files missing, or weights that are not the public ones.
@@ -37,8 +38,17 @@ def begin(out: Path, weights: Path | None) -> Sequence[str]:
     kept = out / PIECES
     if kept.exists():
         return read_vocabulary(kept)
+    if exported is not None:
+        if not (exported / PIECES).is_file():
+            raise LearnError(f"there is no {PIECES} in {exported}; give the folder of an exported reader")
+        out.mkdir(parents=True, exist_ok=True)
+        kept.write_bytes((exported / PIECES).read_bytes())
+        return read_vocabulary(kept)
     if weights is None:
-        raise LearnError("a new training needs --weights, the folder of all-MiniLM-L6-v2")
+        raise LearnError(
+            "a new training needs --weights, the folder of all-MiniLM-L6-v2, or --installed, "
+            "which goes on from the reader that is installed"
+        )
     for name in ("model.safetensors", "vocab.txt"):
         if not (weights / name).is_file():
             raise LearnError(f"there is no {name} in {weights}; give the folder of all-MiniLM-L6-v2")

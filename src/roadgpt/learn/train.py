@@ -15,6 +15,7 @@ from torch.nn import functional
 from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.learn.data import Numbers, batches, examples
+from roadgpt.learn.exported import exported_weights
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.network import Reader, Shape, load_minilm
 
@@ -60,7 +61,8 @@ def train(
     Args:
         folder: holds ``checkpoint.pt`` and ``losses.jsonl``.
         pieces: the vocabulary of word pieces.
-        weights: ``model.safetensors`` of all-MiniLM-L6-v2; None starts from chance.
+        weights: ``model.safetensors`` of all-MiniLM-L6-v2, or the folder of an exported reader to go on from;
+            None starts from chance.
         hand: pairs written by hand, for training.
         plan: how long, how fast.
         report: is given a line from time to time.
@@ -75,6 +77,10 @@ def train(
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location="cpu", weights_only=True)
         reader.load_state_dict(state["reader"])
+    elif weights and weights.is_dir():
+        reader.load_state_dict(
+            {name: torch.from_numpy(array) for name, array in exported_weights(weights).items()}
+        )
     elif weights:
         load_minilm(reader, weights, pieces)
     reader.to(device)

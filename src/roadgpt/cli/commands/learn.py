@@ -74,6 +74,7 @@ def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
 @click.argument("out", type=folder)
 @hand_option
 @click.option("--weights", type=folder, help="Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.")
+@click.option("--installed", is_flag=True, help="Start from the reader that is installed instead.")
 @click.option("--steps", type=COUNT, default=14_000, show_default=True, help="Batches of each process.")
 @click.option("--size", type=COUNT, default=48, show_default=True, help="Pairs in a batch.")
 @click.option("--workers", type=whole(1, 64, "processes"), default=2, show_default=True, help="One per core.")
@@ -83,6 +84,7 @@ def train(
     out: Path,
     hand: Path,
     weights: Path | None,
+    installed: bool,
     steps: int,
     size: int,
     workers: int,
@@ -95,20 +97,23 @@ def train(
 
     \b
     roadgpt learn train runs/reader --weights MINILM
-    roadgpt learn train runs/reader --steps 12000 --own my-pairs
+    roadgpt learn train runs/reader --installed --steps 2000 --own my-pairs
     """
     try:
         from roadgpt.learn.team import train_together
         from roadgpt.learn.train import Plan
     except ImportError as error:
         raise LearnError(EXTRA) from error
+    from roadgpt.brief.readers.model import WEIGHTS
     from roadgpt.learn.back import measured_pairs
     from roadgpt.learn.origin import begin
 
+    if weights and installed:
+        raise LearnError("a training starts from --weights or from what is --installed; name one of them")
     pairs = [*_pairs_of(hand / "train"), *(_pairs_of(own) if own else [])]
     pairs += islice(measured_pairs(seed), MEASURED)
-    pieces = begin(out, weights)
-    start = weights / "model.safetensors" if weights else None
+    pieces = begin(out, weights, WEIGHTS if installed else None)
+    start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
     train_together(
         out, pieces, start, pairs, Plan(steps=steps, size=size, seed=seed, workers=workers), click.echo
     )

@@ -1,0 +1,68 @@
+"""The weights of an exported reader as numbers again, so that a training can go on from what is installed."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from roadgpt.errors import LearnError
+
+Floats = npt.NDArray[np.float32]
+OURS = "reader."
+"""In front of the names of our network in the graphs."""
+
+
+def exported_weights(folder: Path) -> dict[str, Floats]:
+    """Parameters by their name in ``roadgpt.learn.network.Reader``, as the int8 graphs round them.
+
+    Raises:
+        LearnError: the folder holds no exported reader.
+    """
+    from onnx import load
+
+    found: dict[str, Floats] = {}
+    for name in ("encoder", "decoder"):
+        path = folder / f"{name}.onnx"
+        if not path.is_file():
+            raise LearnError(f"there is no {path.name} in {folder}; give the folder of an exported reader")
+        found |= _weights_of(load(str(path)).graph)
+    return found
+
+
+def _weights_of(graph: Any) -> dict[str, Floats]:
+    from onnx.numpy_helper import to_array
+
+    arrays = {tensor.name: np.asarray(to_array(tensor)) for tensor in graph.initializer}
+    found = {
+        name.removeprefix(OURS): array.astype(np.float32)
+        for name, array in arrays.items()
+        if name.startswith(OURS) and array.dtype == np.float32 and not name.endswith("_scale")
+    }
+    for name in arrays:
+        if name.startswith(OURS) and name.endswith("_quantized"):  # an embedding
+            own = name.removesuffix("_quantized")
+            found[own.removeprefix(OURS)] = _rounded(arrays, own)
+    followers = {source: node for node in graph.node for source in node.input}
+    for node in graph.node:
+        if node.op_type == "MatMulInteger":
+            bias = _bias_behind(node, followers)
+            if bias.endswith(".bias") and bias != f"{OURS}bias":  # scores are made with the tokens' embedding
+                weight = _rounded(arrays, node.input[1].removesuffix("_quantized"))
+                found[bias.removeprefix(OURS).removesuffix("bias") + "weight"] = weight.T.copy()
+    return found
+
+
+def _rounded(arrays: dict[str, npt.NDArray[Any]], name: str) -> Floats:
+    """What the whole numbers of a weight stand for, one scale for all or one per column."""
+    whole = arrays[f"{name}_quantized"].astype(np.float32)
+    zero = arrays[f"{name}_zero_point"].astype(np.float32)
+    out: Floats = (whole - zero) * arrays[f"{name}_scale"].astype(np.float32)
+    return out
+
+
+def _bias_behind(node: Any, followers: dict[str, Any]) -> str:
+    """The bias that is added to what a product gives, the first on its way."""
+    while node.op_type != "Add":
+        node = followers[node.output[0]]
+    return next((str(name) for name in node.input if name.startswith(OURS)), "")
