@@ -7,7 +7,6 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.labels import REFUSALS
-from roadgpt.learn.refusing import contradicted, overdone
 from roadgpt.learn.variation import joined, recounted
 
 
@@ -54,12 +53,3 @@ def test_two_descriptions_are_joined_in_order() -> None:
     assert both[1] == "turn left; hairpin"
     assert both[0].startswith("a left")
     assert both[0].endswith("a hairpin")
-
-
-def test_what_spoils_a_wish_fits_it() -> None:
-    rng = np.random.default_rng(2)
-    assert contradicted("a road", "| turns=1..", "en", rng) is None
-    spoiled = contradicted("three left turns", "turn x3 left", "en", rng)
-    assert spoiled is not None
-    assert "three left turns" in spoiled.lower()
-    assert overdone("three left turns", "!nonsense", "en", rng) is None
