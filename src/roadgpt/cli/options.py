@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.flags import CHAT, SETUP, WORLD
+from roadgpt.cli.flags import CHAT, SETUP, WORLD, measure
 from roadgpt.cli.flags import whole as whole
 from roadgpt.errors import UsageError
 
@@ -52,6 +52,26 @@ def world_of(values: dict[str, Any]) -> "World":
     from roadgpt.road import World
 
     return World(**{f.field: f.read(values.pop(f.field)) for f in WORLD if f.field in values})
+
+
+def competition_options(oob_tolerance: float, speed_limit_kmh: float) -> Decorator:
+    """The two options that all competitions of the field set, each to its own default."""
+    return together(
+        click.option(
+            "--oob-tolerance",
+            type=measure(0, 1, above=True),
+            default=oob_tolerance,
+            show_default=True,
+            help="Share of the car that may be outside its lane.",
+        ),
+        click.option(
+            "--speed-limit",
+            type=measure(10, 300, "km/h"),
+            default=speed_limit_kmh,
+            show_default=True,
+            help="For the driver, km/h.",
+        ),
+    )
 
 
 def setup_options(*fields: str) -> Decorator:

@@ -8,7 +8,15 @@ import click
 from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.flags import measure
-from roadgpt.cli.options import SEED, axes_option, folder, screen_options, setup_options, whole
+from roadgpt.cli.options import (
+    SEED,
+    axes_option,
+    competition_options,
+    folder,
+    screen_options,
+    setup_options,
+    whole,
+)
 from roadgpt.cli.rows import row_of
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
@@ -44,20 +52,7 @@ KMH = 3.6
     show_default=True,
     help="Side of the square map, metres.",
 )
-@click.option(
-    "--oob-tolerance",
-    type=measure(0, 1, above=True),
-    default=0.95,
-    show_default=True,
-    help="Share of the car that may be outside its lane.",
-)
-@click.option(
-    "--speed-limit",
-    type=measure(10, 300, "km/h"),
-    default=70,
-    show_default=True,
-    help="For the driver, km/h.",
-)
+@competition_options(oob_tolerance=0.95, speed_limit_kmh=70)
 @setup_options("driver", "simulator")
 @beamng_options
 @click.option("--seed", type=SEED, default=0, show_default=True, help="Handed to the driver.")

@@ -4,8 +4,7 @@ import logging
 
 import click
 
-from roadgpt.cli.flags import measure
-from roadgpt.cli.options import whole
+from roadgpt.cli.options import competition_options, whole
 from roadgpt.errors import UsageError
 
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
@@ -27,20 +26,7 @@ def command() -> None:
     show_default=True,
     help="Who may ask: 127.0.0.1, this machine; 0.0.0.0, all (in a container).",
 )
-@click.option(
-    "--speed-limit",
-    type=measure(10, 300, "km/h"),
-    default=120,
-    show_default=True,
-    help="For the driver, km/h.",
-)
-@click.option(
-    "--oob-tolerance",
-    type=measure(0, 1, above=True),
-    default=0.5,
-    show_default=True,
-    help="Share of the car that may be outside its lane.",
-)
+@competition_options(oob_tolerance=0.5, speed_limit_kmh=120)
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
 def serve(port: int, host: str, speed_limit: float, oob_tolerance: float, quiet: bool) -> None:
     """Select or prioritise roads by how likely the car is to leave its lane, over gRPC.
