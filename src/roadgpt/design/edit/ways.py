@@ -140,16 +140,19 @@ def _bends(change: Change, block: Block, world: World) -> list[Step]:
     return out
 
 
+def _aim(change: Change, now: float) -> float | None:
+    """The number that was asked for, where one was: said itself, as a difference or as a multiple."""
+    if change.to is not None:
+        return change.to
+    if change.by is not None:
+        return now + change.more * change.by
+    return None if change.times is None else now * change.times
+
+
 def _angles(change: Change, block: Block) -> list[tuple[float, float]]:
     seen = block.seen
     assert seen is not None
-    aim = None
-    if change.to is not None:
-        aim = change.to
-    elif change.by is not None:
-        aim = seen.degrees + change.more * change.by
-    elif change.times is not None:
-        aim = seen.degrees * change.times
+    aim = _aim(change, seen.degrees)
     if aim is not None:
         if not LEAST_ANGLE - 1.5 <= aim <= MOST_ANGLE:
             raise EditError(
@@ -173,13 +176,7 @@ def _angles(change: Change, block: Block) -> list[tuple[float, float]]:
 def _radii(change: Change, block: Block, world: World) -> list[tuple[float, float]]:
     seen = block.seen
     assert seen is not None
-    aim = None
-    if change.to is not None:
-        aim = change.to
-    elif change.by is not None:
-        aim = seen.radius + change.more * change.by
-    elif change.times is not None:
-        aim = seen.radius * change.times
+    aim = _aim(change, seen.radius)
     if aim is not None:
         if aim < world.min_radius:
             raise EditError(
