@@ -1,12 +1,16 @@
 """Before and after the network: numbers taken out of text, plans cut into tokens, the grammar of plans."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roadgpt.brief import model
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model import vocabulary
 from roadgpt.brief.readers.model.numerals import LANGUAGES, spell, words
 from roadgpt.brief.readers.model.slots import Slot, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
@@ -118,3 +122,17 @@ def test_whatever_the_grammar_allows_is_a_brief(seed: int, values: list[float]) 
 def test_word_pieces_are_the_longest_that_fit() -> None:
     pieces = WordPieces(["[PAD]", "[UNK]", "[CLS]", "[SEP]", "hair", "##pin", "##p", "##in", "road"])
     assert pieces.encode(["hairpin", "road", "xyz"]) == ([2, 4, 5, 8, 1, 3], [-1, 0, 0, 1, 2, -1])
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (vocabulary.KINDS, model.Kind),
+        (vocabulary.SIDES, model.Side),
+        (vocabulary.SHARPNESS, model.Sharpness),
+        (vocabulary.SIZES, model.Size),
+        (vocabulary.SLOPES, model.Slope),
+    ],
+)
+def test_the_network_has_a_word_for_whatever_a_brief_can_say(words: list[str], meant: object) -> None:
+    assert sorted(words) == sorted(get_args(meant))

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, Slot
 
 REFUSALS = ("!nonsense", "!contradiction", "!impossible")
+# The weights know these words by their places in the lists; so they stand here, and not in the Brief's order.
 KINDS = [
     "straight",
     "crest",
