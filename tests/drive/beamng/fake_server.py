@@ -10,6 +10,7 @@ import os
 import socket
 import struct
 import threading
+from abc import ABC, abstractmethod
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,7 +55,7 @@ class Settings:
     """A file that survives restarts: scenarios so far, and faults that have been."""
 
 
-class FakeServer:
+class FakeServer(ABC):
     """Answers a message by its method ``ge_TYPE`` or, of a vehicle, ``veh_TYPE``.
 
     ``transcript`` lists (vehicle or "", type) of all messages, ``unknown`` those not known, ``broken`` faults
@@ -71,8 +72,9 @@ class FakeServer:
         self._remember(read=True)
         self.port = self._serve("", port)
 
+    @abstractmethod
     def _car(self, name):
-        raise NotImplementedError
+        """The car of that name."""
 
     def __enter__(self):
         return self
