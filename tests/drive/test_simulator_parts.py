@@ -13,6 +13,7 @@ from roadgpt.drive.ribbon import place_on, ribbon_of
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, tables
 from roadgpt.drive.simulators.mujoco.systems import stability, valve
 from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
+from roadgpt.export.ego import CAR
 from roadgpt.road import Design, Road, Segment, World, build
 
 TYRE = ETK_LIKE.front.tyre
@@ -191,3 +192,20 @@ def test_the_lane_ends_with_the_road():
     lane = Lane.along(road, World())
     box = np.array([[-2.35, -0.93], [2.35, -0.93], [2.35, 0.93], [-2.35, 0.93]]) + [110.0, 48.0]
     assert lane.outside(box, 60.0) == pytest.approx(0.5, abs=1e-9)
+
+
+def test_files_speak_of_the_car_that_drives() -> None:
+    told, driven = CAR, ETK_LIKE
+    assert (told.length, told.width, told.height) == (driven.length, driven.width, driven.roof)
+    assert (told.front_axle, told.rear_axle, told.middle) == (
+        driven.front.place,
+        driven.rear.place,
+        driven.box_ahead,
+    )
+    assert (told.mass, told.gravity_height, told.track, told.lock) == (
+        driven.mass,
+        driven.height,
+        driven.front.track,
+        driven.steer_limit,
+    )
+    assert told.wheel == 2 * driven.wheel_radius
