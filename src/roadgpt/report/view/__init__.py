@@ -8,16 +8,17 @@ anything. Parts of the page lie in ``page/`` and are put together in the order o
 import html
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.report.view.scene import scene
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 
-__all__ = ["page", "scene", "write"]
+__all__ = ["page", "page_of", "scene", "write"]
 
 MOST = 2  # roads on one page
 HERE = Path(__file__).parent
@@ -46,7 +47,15 @@ def page(runs: Sequence[Run]) -> str:
     """
     if not 1 <= len(runs) <= MOST:
         raise UsageError(f"a page shows one road or two side by side; {len(runs)} are given")
-    scenes = [scene(run) for run in runs]
+    return page_of([scene(run) for run in runs])
+
+
+def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
+    """The page of one or two scenes, as ``scene`` makes them; what is empty in them is not shown.
+
+    Raises:
+        UsageError: a number is not finite.
+    """
     title = " and ".join(dict.fromkeys(each["title"] for each in scenes))
     parts = {
         "TITLE": html.escape(title.encode("ascii", "xmlcharrefreplace").decode()).replace("&amp;#", "&#"),

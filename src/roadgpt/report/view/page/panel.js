@@ -63,7 +63,8 @@ function drawsSolids() {
 function write(find, scene, trip, fastest) {
   find(".title").textContent = scene.title;
   find(".badge").textContent = scene.outcome;
-  find(".badge").classList.add(scene.outcome);
+  find(".verdict").hidden = !scene.outcome;
+  if (scene.outcome) find(".badge").classList.add(scene.outcome);
   find(".said").textContent = scene.description;
   find(".origin").textContent = scene.about;
   find(".told p").textContent = scene.told;
