@@ -1,0 +1,108 @@
+"""A Page as one HTML file that needs nothing else."""
+
+from functools import cache
+from html import escape
+from pathlib import Path
+
+from roadgpt.report.page.model import Block, Cell, Details, Figure, Line, Page, Section, Table, pieces_of
+
+STYLE = Path(__file__).parent / "style.css"
+# The page forbids itself to run or to fetch anything.
+TOTAL = ' class="total"'
+POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+
+
+def html_of(page: Page) -> str:
+    """The whole page, to be written as UTF-8; the same Page gives the same text."""
+    lead = f'<p class="lead">{escape(page.lead)}</p>' if page.lead else ""
+    summary = "".join(f"<li>{_line(line)}</li>" for line in page.summary)
+    nav = "".join(f'<a href="#{_anchor(n)}">{escape(s.title)}</a>' for n, s in enumerate(page.sections))
+    sections = "\n".join(_section(number, section) for number, section in enumerate(page.sections))
+    return (
+        "<!doctype html>\n"
+        '<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
+        '<meta name="color-scheme" content="light dark">'
+        f"<title>{escape(page.title)}</title><style>\n{_style()}</style></head>\n"
+        f"<body><main>\n<header><h1>{escape(page.title)}</h1>{lead}</header>\n"
+        f'<ul class="summary">{summary}</ul>\n<nav>{nav}</nav>\n{sections}\n{_card(page)}'
+        "</main></body></html>\n"
+    )
+
+
+@cache
+def _style() -> str:
+    return STYLE.read_text(encoding="utf-8")
+
+
+def _anchor(number: int) -> str:
+    return f"s{number + 1}"
+
+
+def _section(number: int, section: Section) -> str:
+    blocks = "\n".join(_block(block) for block in section.blocks)
+    return f'<section id="{_anchor(number)}"><h2>{escape(section.title)}</h2>\n{blocks}\n</section>'
+
+
+def _block(block: Block) -> str:
+    if isinstance(block, Table):
+        return _table(block)
+    if isinstance(block, Figure):
+        return (
+            f'<figure><div class="wide">{block.svg}</div>'
+            f"<figcaption>{escape(block.caption)}</figcaption></figure>"
+        )
+    if isinstance(block, Details):
+        inside = "\n".join(_block(each) for each in block.blocks)
+        return f"<details><summary>{escape(block.title)}</summary>\n{inside}\n</details>"
+    return f"<p>{_line(block)}</p>"
+
+
+def _line(line: Line) -> str:
+    return "".join(escape(piece) if isinstance(piece, str) else _anchored(piece) for piece in pieces_of(line))
+
+
+def _anchored(cell: Cell) -> str:
+    text = escape(cell.text)
+    return f'<a href="{escape(cell.href)}">{text}</a>' if cell.href else text
+
+
+def _table(table: Table) -> str:
+    numeric = [
+        any(isinstance(row[n].value, (int, float)) for row in table.rows) for n in range(len(table.heads))
+    ]
+    heads = "".join(
+        f'<th scope="col"{_class(is_number)}>{escape(head)}</th>'
+        for head, is_number in zip(table.heads, numeric, strict=True)
+    )
+    rows = []
+    for number, row in enumerate(table.rows, 1):
+        cells = "".join(
+            f"<td{_class(is_number)}>{_anchored(each)}</td>"
+            for each, is_number in zip(row, numeric, strict=True)
+        )
+        is_total = table.has_total and number == len(table.rows)
+        rows.append(f"<tr{TOTAL if is_total else ''}>{cells}</tr>")
+    note = f'<p class="note">{escape(table.note)}</p>' if table.note else ""
+    return (
+        f'<div class="table"><div class="wide"><table><caption>{escape(table.caption)}</caption>'
+        f"<thead><tr>{heads}</tr></thead><tbody>\n{chr(10).join(rows)}\n</tbody></table></div>{note}</div>"
+    )
+
+
+def _class(is_number: bool) -> str:
+    return ' class="n"' if is_number else ""
+
+
+def _card(page: Page) -> str:
+    if not page.card:
+        return ""
+    rows = "".join(
+        f"<dt>{escape(name)}</dt><dd>{_value(name, value)}</dd>" for name, value in page.card.items()
+    )
+    return f'<section class="card"><h2>How this was made</h2><dl>{rows}</dl></section>\n'
+
+
+def _value(name: str, value: str) -> str:
+    return f"<code>{escape(value)}</code>" if name.startswith("command") else escape(value)

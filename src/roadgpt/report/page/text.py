@@ -1,0 +1,112 @@
+"""A Page as Markdown, and its tables as CSV and LaTeX."""
+
+import csv
+import io
+from collections.abc import Sequence
+
+from roadgpt.report.page.model import Block, Cell, Details, Figure, Line, Page, Table, pieces_of
+
+LATEX = {
+    "\\": r"\textbackslash{}",
+    "&": r"\&",
+    "%": r"\%",
+    "$": r"\$",
+    "#": r"\#",
+    "_": r"\_",
+    "{": r"\{",
+    "}": r"\}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "²": r"\textsuperscript{2}",
+    "χ": r"$\chi$",
+    "–": "--",
+    "−": "$-$",
+    "×": r"$\times$",
+}
+
+
+def markdown_of(page: Page) -> str:
+    """The words and tables of a page; figures as their captions."""
+    parts = [f"# {page.title}", *([page.lead] if page.lead else [])]
+    parts.append("\n".join(f"- {_line(line)}" for line in page.summary))
+    for section in page.sections:
+        parts += [f"## {section.title}", *_blocks(section.blocks)]
+    if page.card:
+        parts += ["## How this was made", "\n".join(f"- {k}: {_code(k, v)}" for k, v in page.card.items())]
+    return "\n\n".join(parts) + "\n"
+
+
+def _code(name: str, value: str) -> str:
+    return f"`{value}`" if name.startswith("command") else value
+
+
+def _blocks(blocks: Sequence[Block]) -> list[str]:
+    out = []
+    for block in blocks:
+        if isinstance(block, Table):
+            out.append(_table(block))
+        elif isinstance(block, Figure):
+            out.append(f"*{block.caption}* (figure: see report.html)")
+        elif isinstance(block, Details):
+            out += [f"**{block.title}**", *_blocks(block.blocks)]
+        else:
+            out.append(_line(block))
+    return out
+
+
+def _line(line: Line) -> str:
+    return "".join(piece if isinstance(piece, str) else _linked(piece) for piece in pieces_of(line))
+
+
+def _linked(cell: Cell) -> str:
+    text = cell.text.replace("|", "\\|").replace("\n", " ")
+    return f"[{text}]({cell.href.replace(' ', '%20')})" if cell.href else text
+
+
+def _table(table: Table) -> str:
+    heads = " | ".join(head.replace("|", "\\|") for head in table.heads)
+    rows = [f"| {heads} |", f"|{'---|' * len(table.heads)}"]
+    rows += [f"| {' | '.join(_linked(each) for each in row)} |" for row in table.rows]
+    note = f"\n\n{table.note}" if table.note else ""
+    return f"**{table.caption}**\n\n" + "\n".join(rows) + note
+
+
+def csv_of(table: Table) -> str:
+    """Heads and raw values; what is not there is empty."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(table.heads)
+    for row in table.rows:
+        writer.writerow(["" if each.value is None else each.value for each in row])
+    return text.getvalue()
+
+
+def latex_of(table: Table) -> str:
+    """A floating table in booktabs' style; numbers stand right."""
+    places = "".join(
+        "r" if any(isinstance(row[n].value, (int, float)) for row in table.rows) else "l"
+        for n in range(len(table.heads))
+    )
+    body = [" & ".join(_latex(each.text) for each in row) + r" \\" for row in table.rows]
+    if table.has_total and body:
+        body.insert(-1, r"\midrule")
+    lines = [
+        r"% needs \usepackage{booktabs}",
+        r"\begin{table}",
+        r"\centering",
+        rf"\caption{{{_latex(table.caption)}}}",
+        rf"\label{{tab:{table.name}}}",
+        rf"\begin{{tabular}}{{{places}}}",
+        r"\toprule",
+        " & ".join(_latex(head) for head in table.heads) + r" \\",
+        r"\midrule",
+        *body,
+        r"\bottomrule",
+        r"\end{tabular}",
+        r"\end{table}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _latex(text: str) -> str:
+    return "".join(LATEX.get(letter, letter) for letter in text)
