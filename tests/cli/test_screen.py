@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from roadgpt.cli.rows import Row, summary
+from roadgpt.cli.rows import Row, metres, summary
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
 
@@ -114,3 +114,11 @@ def test_an_error_while_a_step_is_made_leaves_standard_output_where_it_was() -> 
     with pytest.raises(KeyboardInterrupt):
         list(apart(steps()))
     assert sys.stdout is before
+
+
+@pytest.mark.parametrize(
+    ("margin", "told"),
+    [(-1e-9, "below 0 m"), (-0.0006, "-0.001 m"), (0.0, "+0.000 m"), (0.25, "+0.250 m")],
+)
+def test_a_margin_that_is_hardly_negative_is_not_minus_nothing(margin: float, told: str) -> None:
+    assert metres(margin) == told

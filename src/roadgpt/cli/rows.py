@@ -76,7 +76,8 @@ class Row:
 
 def metres(margin: float) -> str:
     """A margin, to the millimetre: those that decide are small."""
-    return f"{margin:+.3f} m"
+    told = f"{margin:+.3f} m"
+    return "below 0 m" if told.startswith("-0.000") else told
 
 
 def spending(spent: "Spent") -> str:
