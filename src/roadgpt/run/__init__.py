@@ -124,9 +124,16 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
 
 
 def prove(
-    blueprint: Design | Road, seed: int = 0, world: World = USUAL, setup: Setup = PLAIN, index: int = 1
+    blueprint: Design | Road,
+    seed: int = 0,
+    world: World = USUAL,
+    setup: Setup = PLAIN,
+    index: int = 1,
+    brief: Brief | None = None,
 ) -> Run:
     """From a Design or a Road to a Run: check, drive, judge. The seed is handed on as it is.
+
+    Where there is a Brief, the road is to keep its promises.
 
     Raises:
         UsageError: a part is not installed, or the driver's file makes no driver.
@@ -135,10 +142,10 @@ def prove(
     begun = time.perf_counter()
     design = blueprint if isinstance(blueprint, Design) else None
     road = build(blueprint, setup.geometry) if isinstance(blueprint, Design) else blueprint
-    findings = inspect(road, None, world, setup.rules)
-    request = Request(seed=seed, world=world, setup=setup)
+    findings = inspect(road, brief, world, setup.rules)
+    request = Request(words=brief.words if brief else "", seed=seed, world=world, setup=setup)
     checking = time.perf_counter() - begun
-    run = Run(request, index, seed, design=design, road=road, findings=findings)
+    run = Run(request, index, seed, brief=brief, design=design, road=road, findings=findings)
     return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(checking)))
 
 

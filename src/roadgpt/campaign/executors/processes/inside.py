@@ -1,0 +1,105 @@
+"""A worker process: does one job after another, gives a sign of life every second, ends with its parent.
+
+Down the wire come the paths of modules, what prepares a worker, and then jobs: the call (function, item,
+names of values), values by name that are new here, names that are needed no more. Up go kinds of messages
+with what belongs to them. Calls and values travel frozen, so that one that cannot be read costs one job.
+"""
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import IO, Any, NamedTuple
+
+from roadgpt.campaign.executors.processes.wire import frozen, receive, send, thawed
+
+BEAT = 1.0  # s between signs of life
+ALIVE, READY, VALUE, ERROR = range(4)  # kinds of messages that go up
+
+
+class Order(NamedTuple):
+    """A job as it goes down."""
+
+    call: bytes
+    new: dict[str, bytes]
+    old: tuple[str, ...]
+
+
+def each(work: tuple[Callable[[Any], Any], Sequence[Any]]) -> list[Any]:
+    """A function of each of some items."""
+    function, items = work
+    return [function(item) for item in items]
+
+
+class _Mouth:
+    """Sends messages, one at a time; when nobody listens any more the process ends."""
+
+    def __init__(self, stream: IO[bytes]) -> None:
+        self._stream = stream
+        self._lock = threading.Lock()
+
+    def say(self, kind: int, what: bytes = b"") -> None:
+        try:
+            with self._lock:
+                send(self._stream, (kind, what))
+        except OSError:
+            os._exit(1)
+
+    def beat(self) -> None:
+        while True:
+            time.sleep(BEAT)
+            self.say(ALIVE)
+
+
+def _private_streams() -> tuple[IO[bytes], IO[bytes]]:
+    """The wire, out of the way of drivers that print or read."""
+    heard, said = os.dup(0), os.dup(1)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.dup2(2, 1)
+    return os.fdopen(heard, "rb"), os.fdopen(said, "wb")
+
+
+def main() -> None:
+    """Work until the parent goes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears of Ctrl-C, and ends us
+    heard, said = _private_streams()
+    mouth = _Mouth(said)
+    threading.Thread(target=mouth.beat, daemon=True).start()
+    try:
+        sys.path[:] = receive(heard)
+        try:
+            thawed(receive(heard))()
+        except Exception as error:  # whatever it is, the parent has to hear of it
+            mouth.say(ERROR, _portable(error))
+            return
+        mouth.say(READY)
+        shared: dict[str, Any] = {}
+        while True:
+            mouth.say(*_answer(receive(heard), shared))
+    except EOFError:
+        return
+
+
+def _answer(order: Order, shared: dict[str, Any]) -> tuple[int, bytes]:
+    try:
+        for name in order.old:
+            shared.pop(name, None)
+        for name, value in order.new.items():
+            shared[name] = thawed(value)
+        function, item, needs = thawed(order.call)
+        return VALUE, frozen(function(item, *(shared[name] for name in needs)))
+    except Exception as error:
+        return ERROR, _portable(error)
+
+
+def _portable(error: Exception) -> bytes:
+    """The error, or where it cannot travel, one that says the same."""
+    try:
+        data = frozen(error)
+        thawed(data)
+    except Exception:  # pickling may fail in any way
+        return frozen(RuntimeError(f"{type(error).__name__}: {error}"))
+    return data

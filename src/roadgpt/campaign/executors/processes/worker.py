@@ -1,0 +1,118 @@
+"""Our end of one worker process: starts it, hands it jobs, hears it, ends it."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Any
+
+from roadgpt.campaign.executors.processes.inside import ALIVE, Order
+from roadgpt.campaign.executors.processes.wire import receive, send
+
+ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+FAREWELL = 10.0  # s for a process that was killed to be gone
+
+
+class Worker:
+    """One process and the thread that hears it; its fields are guarded by the lock of whoever made it."""
+
+    def __init__(self, name: str, log: Path, hear: "Callable[[Worker, int | None, bytes], None]") -> None:
+        """Starts it.
+
+        Args:
+            name: shown to people.
+            log: takes what it prints.
+            hear: told of every message but signs of life, as (worker, kind, what); of its end as kind None.
+        """
+        self.name = name
+        self.is_ready = False
+        self.job: Any = None
+        """What it does now; None: nothing."""
+        self.begun = self.heard = time.monotonic()
+        self.has: set[str] = set()
+        """Names of the shared values that it was sent."""
+        self.fault = ""
+        """Why it was ended; empty for one that ended by itself."""
+        self._hear = hear
+        # every worker has a core of its own, so that libraries need no threads in it
+        alone = {name: "1" for name in ONE_THREAD if name not in os.environ}
+        with log.open("ab") as file:
+            self._process = subprocess.Popen(
+                [
+                    sys.executable,
+                    "-P",  # a module that lies where the user stands is not taken for one of ours
+                    "-c",
+                    "from roadgpt.campaign.executors.processes.inside import main; main()",
+                ],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=file,
+                env={**os.environ, **alone, "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"},
+                start_new_session=True,  # Ctrl-C on the terminal is the parent's alone
+            )
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._down: IO[bytes] = self._process.stdin
+        self._thread = threading.Thread(
+            target=self._listen, args=(self._process.stdout,), name=name, daemon=True
+        )
+
+    @property
+    def pid(self) -> int:
+        """Of the process."""
+        return self._process.pid
+
+    def begin(self, prepare: bytes) -> None:
+        """Send what it needs to become ready, and hear it from now on."""
+        self._thread.start()
+        self._say([*sys.path])
+        self._say(prepare)
+
+    def give(self, order: Order) -> None:
+        """A job for it."""
+        self._say(order)
+
+    def _say(self, message: Any) -> None:
+        with suppress(OSError, ValueError):  # it is gone; whoever hears it will tell
+            send(self._down, message)
+
+    def _listen(self, stream: IO[bytes]) -> None:
+        with suppress(EOFError, OSError, ValueError):
+            while True:
+                kind, what = receive(stream)
+                self.heard = time.monotonic()
+                if kind != ALIVE:
+                    self._hear(self, kind, what)
+        self._hear(self, None, b"")
+
+    def kill(self, fault: str = "") -> None:
+        """End it at once, and what it has started."""
+        self.fault = self.fault or fault
+        if hasattr(os, "killpg"):
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+        with suppress(ProcessLookupError):
+            self._process.kill()
+
+    def bury(self) -> str:
+        """See it off, and say how it ended; called by the thread that hears it, at the very end."""
+        self.kill()
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(FAREWELL)
+        for stream in (self._down, self._process.stdout):
+            with suppress(OSError):
+                if stream is not None:
+                    stream.close()
+        status = self._process.returncode
+        return self.fault or (
+            f"ended by signal {-status}" if status and status < 0 else f"ended with {status}"
+        )
+
+    def join(self) -> None:
+        """Wait until its end was heard."""
+        self._thread.join(FAREWELL)
