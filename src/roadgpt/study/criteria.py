@@ -1,0 +1,151 @@
+"""Alignment, criterion by criterion, as the thesis' survey asked people: turns, incline, order, and general.
+
+    turns     how many, and how many to each side
+    incline   of the whole road, and of each turn and straight
+    order     sides of the turns and where the straights lie, first and last thing
+    extent    degrees, radii and lengths
+    general   all of the description at once
+
+A criterion that a description says nothing of is left out. Order and incline of single turns can only be kept
+by a road with the right number of turns.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Literal
+
+from roadgpt.brief.outline import Feature, Group, Outline
+from roadgpt.brief.words import Range
+from roadgpt.check.measures import Measures
+from roadgpt.check.rules.promises import complaints
+from roadgpt.study.truth import SHORTEST, Truth, feature_of, groups_of, holds, sequence_holds
+
+Criterion = Literal["turns", "incline", "order", "extent", "general"]
+CRITERIA: tuple[Criterion, ...] = ("turns", "incline", "order", "extent", "general")
+ASKED = {
+    "turns": "number of turns",
+    "incline": "incline",
+    "order": "order of turns and straights",
+    "extent": "angles, radii, lengths",
+    "general": "in general: all at once",
+}
+"""What each is called in reports."""
+
+KEYS: Mapping[str, Criterion] = {
+    "turns": "turns",
+    "left": "turns",
+    "right": "turns",
+    "grade": "incline",
+    "max_grade": "incline",
+    "climb": "incline",
+    "hilly": "incline",
+    "alternating": "order",
+    "length": "extent",
+    "min_radius": "extent",
+    "turning": "extent",
+}
+"""Of a Truth; its sequence and its ends are told apart feature by feature."""
+
+Part = Callable[[Feature], Feature]
+
+
+def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
+    """Which criteria a measured road keeps of a truth that people wrote down."""
+    kept = holds(found, truth)
+    out: dict[Criterion, bool] = {}
+    for key, criterion in KEYS.items():
+        if key in kept:
+            out[criterion] = out.get(criterion, True) and kept[key]
+    groups = groups_of(truth)
+    if groups and truth.turns is None:
+        turns = sum(group.feature.kind == "turn" for group in groups)
+        out["turns"] = out.get("turns", True) and len(found.turns) == turns
+    of_features = _of_features(found, groups, feature_of(truth.starts), feature_of(truth.ends))
+    for criterion, good in of_features.items():
+        out[criterion] = out.get(criterion, True) and good and found.length >= SHORTEST
+    out["general"] = all(kept.values())
+    return out
+
+
+def criteria_of_outline(found: Measures, asked: Outline) -> dict[Criterion, bool]:
+    """Which criteria a measured road keeps of what a reader read, where nobody wrote down a truth."""
+    out: dict[Criterion, bool] = {
+        "turns": not complaints(
+            found, Outline(groups=(), turns=asked.turns, left=asked.left, right=asked.right)
+        )
+    }
+    slopes = Outline(
+        groups=(),
+        turns=Range(),
+        grade=asked.grade,
+        grade_range=asked.grade_range,
+        steepest=asked.steepest,
+        climb=asked.climb,
+        hills=asked.hills,
+    )
+    if any((asked.grade, asked.grade_range, asked.steepest, asked.climb, asked.hills)):
+        out["incline"] = not complaints(found, slopes)
+    if asked.alternating:
+        out["order"] = not complaints(found, Outline(groups=(), turns=Range(), alternating=True))
+    sizes = Outline(groups=(), turns=Range(), each_turn=asked.each_turn, length=asked.length)
+    if asked.length or asked.each_turn.degrees or asked.each_turn.radius:
+        out["extent"] = not complaints(found, sizes)
+    for criterion, good in _of_features(found, asked.groups, asked.starts, asked.ends).items():
+        out[criterion] = out.get(criterion, True) and good
+    out["general"] = not complaints(found, asked)
+    return out
+
+
+def _of_features(
+    found: Measures, groups: tuple[Group, ...], starts: Feature | None, ends: Feature | None
+) -> dict[Criterion, bool]:
+    """Criteria of single turns and straights: each is asked for with all else left open."""
+    parts: dict[Criterion, Part] = {"incline": _incline, "order": _order, "extent": _extent}
+    out: dict[Criterion, bool] = {}
+    for criterion, part in parts.items():
+        wanted = _merged(tuple(replace(group, feature=part(group.feature)) for group in groups))
+        if criterion != "order":
+            wanted = tuple(replace(group, alternating=False) for group in wanted)
+        first, last = (each and part(each) for each in (starts, ends))
+        asked = Outline(groups=(), turns=Range(), starts=first, ends=last)
+        says = [_says(criterion, group) for group in wanted]
+        ends_say = [each for each in (first, last) if each and (criterion == "order" or _told(each))]
+        if any(says) or ends_say:
+            good = not any(says) or sequence_holds(found, wanted)
+            out[criterion] = good and (not ends_say or not complaints(found, asked))
+    return out
+
+
+def _incline(feature: Feature) -> Feature:
+    return Feature(feature.kind, feature.name, grade=feature.grade)
+
+
+def _order(feature: Feature) -> Feature:
+    return Feature(feature.kind, feature.name, side=feature.side)
+
+
+def _extent(feature: Feature) -> Feature:
+    length = feature.length if feature.kind == "turn" or feature.length != Range(10.0) else None
+    degrees = feature.degrees if feature.kind == "turn" else None
+    return Feature(feature.kind, feature.name, degrees=degrees, radius=feature.radius, length=length)
+
+
+def _told(feature: Feature) -> bool:
+    return any((feature.side, feature.degrees, feature.radius, feature.length, feature.grade))
+
+
+def _says(criterion: Criterion, group: Group) -> bool:
+    """Does a group ask for anything in this criterion? Of order, any straight does."""
+    if criterion == "order" and (group.alternating or group.feature.kind == "straight"):
+        return True
+    return _told(group.feature)
+
+
+def _merged(groups: tuple[Group, ...]) -> tuple[Group, ...]:
+    """Straights in a row that now ask for the same are one."""
+    out: list[Group] = []
+    for group in groups:
+        if group.feature.kind == "straight" and out and out[-1].feature == group.feature:
+            continue
+        out.append(group)
+    return tuple(out)

@@ -1,0 +1,75 @@
+"""Files of descriptions with the truth about each: JSON lines of ``id``, ``prompt`` and ``truth``."""
+
+import json
+from importlib.resources import files
+from pathlib import Path
+
+from pydantic import Field, ValidationError
+
+from roadgpt.brief.model import Frozen
+from roadgpt.errors import UsageError
+from roadgpt.study.truth import Truth
+
+MOST = 10_000  # prompts of a file
+
+
+class Prompt(Frozen):
+    """A description, and what it asks for where somebody wrote that down."""
+
+    id: str = Field(min_length=1, max_length=80)
+    prompt: str = Field(min_length=1, max_length=10_000)
+    truth: Truth | None = None
+    """None: what the reader reads is what roads are held against."""
+
+
+def read_prompts(path: Path) -> tuple[Prompt, ...]:
+    """The prompts of a file, in their order.
+
+    Raises:
+        UsageError: it cannot be read; the sentence names the line and what is wrong with it.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}; give a file of JSON lines") from error
+    except UnicodeDecodeError as error:
+        raise UsageError(f"{path} is no text in UTF-8; give a file of JSON lines") from error
+    return _prompts([(number, text) for number, text in enumerate(lines, 1) if text.strip()], str(path))
+
+
+def thesis_prompts() -> tuple[Prompt, ...]:
+    """The three descriptions of the thesis' table of validity, then the two others of its survey."""
+    text = files("roadgpt.study").joinpath("data/thesis.jsonl").read_text(encoding="utf-8")
+    return _prompts(list(enumerate(text.splitlines(), 1)), "thesis.jsonl")
+
+
+def _prompts(lines: list[tuple[int, str]], name: str) -> tuple[Prompt, ...]:
+    found: dict[str, Prompt] = {}
+    for number, text in lines:
+        prompt = _prompt(number, text, f"{name}, line {number}")
+        if prompt.id in found:
+            raise UsageError(f"{name}, line {number}: the id '{prompt.id}' stands there twice")
+        found[prompt.id] = prompt
+    if not found:
+        raise UsageError(f'{name} holds no prompt; give lines such as {{"id": "1", "prompt": "a road"}}')
+    if len(found) > MOST:
+        raise UsageError(f"{name} holds {len(found)} prompts; give {MOST:,} at most")
+    return tuple(found.values())
+
+
+def _prompt(number: int, text: str, where: str) -> Prompt:
+    try:
+        data = json.loads(text)
+    except ValueError as error:
+        raise UsageError(f"{where} is no JSON ({error})") from error
+    if not isinstance(data, dict):
+        raise UsageError(f'{where} is no object; give lines such as {{"id": "1", "prompt": "a road"}}')
+    data.setdefault("id", str(number))
+    if isinstance(data["id"], int):
+        data["id"] = str(data["id"])
+    try:
+        return Prompt.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise UsageError(f"{where}, {place}: {first['msg'].removeprefix('Value error, ')}") from error

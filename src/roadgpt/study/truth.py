@@ -1,0 +1,171 @@
+"""What a description asks for, written down by people: the truth that roads are held against.
+
+Its keys are those of the project's referee, an outside judge of roads, and mean the same: ``holds`` says of
+every key what the referee says (tests/authorities). Docs: how-to/study.md.
+"""
+
+from dataclasses import replace
+from math import inf, nextafter
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
+
+from roadgpt.brief.model import Frozen
+from roadgpt.brief.outline import Feature, Group, Outline
+from roadgpt.brief.words import Range
+from roadgpt.check.measures import Measures
+from roadgpt.check.rules.promises import complaints
+
+SLACK = 1e-9  # of every bound, as the referee has it
+SHORTEST = 20.0  # m; a shorter road keeps nothing
+SPANS = ("turns", "left", "right", "max_grade", "climb", "length", "hilly", "min_radius", "turning")
+SLOPES = {
+    "up": Range(1.0, inf),
+    "down": Range(-inf, -1.0),
+    "flat": Range(nextafter(-1.0, 0.0), nextafter(1.0, 0.0)),
+}
+
+
+def _pair(value: Any) -> Any:
+    """A number alone stands for both bounds."""
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return (value, value)
+    return value
+
+
+def _at_least(value: Any) -> Any:
+    return (value, None) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def _ordered(value: "Span") -> "Span":
+    low, high = value
+    if low is None and high is None:
+        raise ValueError("one of the two bounds must be a number")
+    if low is not None and high is not None and low > high:
+        raise ValueError(f"the bounds {low:g} and {high:g} are swapped")
+    return value
+
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Span = tuple[Number | None, Number | None]
+Bounds = Annotated[Span, BeforeValidator(_pair), AfterValidator(_ordered)]
+Slope = Literal["up", "down", "flat"]
+
+
+class Wish(Frozen):
+    """One turn or one straight."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
+
+    kind: Literal["turn", "straight"]
+    side: Annotated[Literal["left", "right"] | None, Field(alias="dir")] = None
+    grade: Slope | None = None
+    degrees: Annotated[Bounds | None, Field(alias="deg")] = None
+    length: Annotated[Bounds | None, Field(alias="len")] = None
+    radius: Bounds | None = None
+
+
+class Truth(Frozen):
+    """What must hold; every key that is given is held against the road on its own."""
+
+    turns: Bounds | None = None
+    left: Bounds | None = None
+    right: Bounds | None = None
+    grade: Slope | None = None
+    sequence: tuple[Wish, ...] | None = None
+    """All turns in their order, with the straights that were asked for between them."""
+    ends: Wish | None = None
+    starts: Wish | None = None
+    alternating: Literal[True] | None = None
+    max_grade: Bounds | None = None
+    """Percent, the steepest 10 m, whichever way."""
+    climb: Bounds | None = None
+    length: Bounds | None = None
+    hilly: Annotated[Bounds | None, BeforeValidator(_at_least)] = None
+    """A number: at least so many changes between climbing and falling."""
+    min_radius: Bounds | None = None
+    """Metres, the tightest place of the road."""
+    turning: Bounds | None = None
+    """Degrees, all changes of heading added up."""
+
+    def given(self) -> tuple[str, ...]:
+        """Those that are given."""
+        return tuple(name for name in type(self).model_fields if getattr(self, name) is not None)
+
+
+def feature_of(wish: Wish | None) -> Feature | None:
+    """A wish as an Outline has it."""
+    if wish is None:
+        return None
+    return Feature(
+        wish.kind,
+        wish.kind,
+        side=wish.side,
+        degrees=_range(wish.degrees),
+        radius=_range(wish.radius),
+        length=_range(wish.length),
+        grade=SLOPES[wish.grade] if wish.grade else None,
+    )
+
+
+def groups_of(truth: Truth) -> tuple[Group, ...]:
+    """The sequence as an Outline has it; empty where none is given."""
+    return tuple(Group(feature) for wish in truth.sequence or () if (feature := feature_of(wish)))
+
+
+def holds(found: Measures, truth: Truth) -> dict[str, bool]:
+    """Which keys of the truth a measured road keeps."""
+    return {key: found.length >= SHORTEST and _holds(found, truth, key) for key in truth.given()}
+
+
+def _holds(found: Measures, truth: Truth, key: str) -> bool:
+    if key in ("min_radius", "turning"):
+        span = _range(getattr(truth, key))
+        return span is None or (found.radius if key == "min_radius" else found.turning) in span
+    if key == "sequence":
+        return sequence_holds(found, groups_of(truth))
+    return not complaints(found, _outline(truth, key))
+
+
+def _outline(truth: Truth, key: str) -> Outline:
+    """An Outline that promises this key and nothing else."""
+    free, span = Outline(groups=(), turns=Range()), _range(getattr(truth, key)) if key in SPANS else None
+    match key:
+        case "turns" if span:
+            # just above 0 so that "no turn" says nothing of how much a straight may bend: 'turning' does
+            return replace(free, turns=Range(span.lo, span.hi + SLACK))
+        case "left" if span:
+            return replace(free, left=span)
+        case "right" if span:
+            return replace(free, right=span)
+        case "max_grade":
+            return replace(free, steepest=span)
+        case "climb":
+            return replace(free, climb=span)
+        case "length":
+            return replace(free, length=span)
+        case "hilly":
+            return replace(free, hills=span)
+        case "grade":
+            return replace(free, grade=truth.grade)
+        case "ends":
+            return replace(free, ends=feature_of(truth.ends))
+        case "starts":
+            return replace(free, starts=feature_of(truth.starts))
+    return replace(free, alternating=True)
+
+
+def sequence_holds(found: Measures, groups: tuple[Group, ...]) -> bool:
+    """Are these all turns, in their order, with the straights among them?"""
+    turns = sum(group.feature.kind == "turn" for group in groups)
+    exact = all(group.lo == group.hi == 1 for group in groups)
+    if exact and len(found.turns) != turns:
+        return False
+    return not complaints(found, Outline(groups=groups, turns=Range()))
+
+
+def _range(span: Span | None) -> Range | None:
+    if span is None:
+        return None
+    low, high = span
+    return Range(-inf if low is None else low - SLACK, inf if high is None else high + SLACK)
