@@ -1,0 +1,122 @@
+"""The land around a road: it follows the road and never covers it; beyond it lie gentle hills."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+from roadgpt.scene.light import daylight
+from roadgpt.scene.mesh import GRASS, Patch, attributes, grid
+
+MARGIN = 130.0  # m around the road
+FINEST, CELLS = 4.0, 160  # m; along the longer side, at most
+FAR = (300.0, 900.0, 2500.0, 7000.0)  # m beyond the margin, so that the land reaches the horizon
+BELOW = 0.35  # m that the land stays below the road, at least
+LEAST = 40.0  # m across
+BLOCK = 16  # cells along a side of a patch
+LONGEST_STEP = 2.0  # m along the road
+
+
+@dataclass(frozen=True, eq=False)
+class Land:
+    """Heights over a net of columns ``x`` and rows ``y``, whose spacing is ``cell`` but for the far ones."""
+
+    x: Array
+    y: Array
+    heights: Array
+    """(rows, columns), metres."""
+    away: Array
+    """(rows, columns), metres from where the road fixes the height."""
+    cell: float
+
+    @classmethod
+    def around(cls, road: Road, world: World) -> "Land":
+        """The land of a road."""
+        line = road.centreline(LONGEST_STEP)
+        low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
+        low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
+        span = float((high - low).max()) + 2 * MARGIN
+        cell = max(FINEST, span / CELLS)
+        x, y = (np.arange(low[i] - MARGIN, high[i] + MARGIN + cell, cell) for i in (0, 1))
+        if world.verge == 0:
+            level = min(world.z_floor, float(line[:, 2].min()) - 1.0)
+            away = np.full((len(y), len(x)), np.inf)
+            return cls(*_widened(x, y, np.full((len(y), len(x)), level), away), cell)
+        heights, away = _relief(line, x, y, cell, world.lane_width + world.verge + 1.45 * cell)
+        return cls(*_widened(x, y, heights, away), cell)
+
+    def height(self, x: Array, y: Array) -> Array:
+        """Metres, between the rows and columns."""
+        i = np.clip(np.searchsorted(self.x, x) - 1, 0, len(self.x) - 2)
+        j = np.clip(np.searchsorted(self.y, y) - 1, 0, len(self.y) - 2)
+        u = np.clip((x - self.x[i]) / (self.x[i + 1] - self.x[i]), 0.0, 1.0)
+        v = np.clip((y - self.y[j]) / (self.y[j + 1] - self.y[j]), 0.0, 1.0)
+        h = self.heights
+        low = h[j, i] * (1 - u) + h[j, i + 1] * u
+        return np.asarray(low * (1 - v) + (h[j + 1, i] * (1 - u) + h[j + 1, i + 1] * u) * v)
+
+    def patches(self) -> list[Patch]:
+        """Its surface."""
+        slope_y, slope_x = np.gradient(self.heights, self.y, self.x)
+        normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
+        light = daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
+        x, y = np.meshgrid(self.x, self.y)
+        points, values = np.stack([x, y, self.heights], axis=-1), attributes(0.0, 0.0, light)
+        rows, columns = self.heights.shape
+        return [
+            grid(part.swapaxes(0, 1), value.swapaxes(0, 1), GRASS)
+            for j in range(0, rows - 1, BLOCK)
+            for i in range(0, columns - 1, BLOCK)
+            for part, value in [
+                (points[j : j + BLOCK + 1, i : i + BLOCK + 1], values[j : j + BLOCK + 1, i : i + BLOCK + 1])
+            ]
+        ]
+
+
+def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple[Array, Array]:
+    """Near the road a little below its lowest point in reach; from there on smooth, with hills."""
+    lowest = np.full((len(y), len(x)), np.inf)
+    i = np.rint((line[:, 0] - x[0]) / cell).astype(int)
+    j = np.rint((line[:, 1] - y[0]) / cell).astype(int)
+    np.minimum.at(lowest, (j, i), line[:, 2])
+    cells = int(np.ceil(reach / cell + 0.71))
+    around = np.hypot(*np.mgrid[-cells : cells + 1, -cells : cells + 1]) * cell <= reach + 0.71 * cell
+    lowest = ndimage.minimum_filter(lowest, footprint=around, mode="constant", cval=np.inf)
+    fixed = np.isfinite(lowest)
+    away, nearest = ndimage.distance_transform_edt(~fixed, return_indices=True)
+    heights = np.asarray(lowest[tuple(nearest)] - BELOW)
+    kept = heights.copy()
+    for _ in range(80):
+        padded = np.pad(heights, 1, mode="edge")
+        mean = (padded[:-2, 1:-1] + padded[2:, 1:-1] + padded[1:-1, :-2] + padded[1:-1, 2:]) / 4
+        heights = np.where(fixed, kept, mean)
+    away = away * cell
+    return heights + _hills(*np.meshgrid(x, y)) * np.clip((away - 4) / 90, 0.0, 1.0), away
+
+
+def _hills(x: Array, y: Array) -> Array:
+    swell = np.sin(x / 37 + 1.3) * np.sin(y / 43 + 0.4) + 0.5 * np.sin(x / 17 - y / 21)
+    return np.asarray(3.4 * (swell - 0.3) + 5.5 * np.sin(x / 71 + 2.0) * np.sin(y / 83 + 0.9))
+
+
+def _widened(x: Array, y: Array, heights: Array, away: Array) -> tuple[Array, Array, Array, Array]:
+    """With far rows and columns on all sides, which sink to the mean."""
+    far = np.array(FAR)
+    pad = len(far)
+    mean = float(heights.mean())
+    wide, wide_away = np.pad(heights, pad, mode="edge"), np.pad(away, pad, mode="edge")
+    ring = np.full(wide.shape, 0)
+    for k in range(pad):
+        inner = slice(pad - k, wide.shape[0] - pad + k), slice(pad - k, wide.shape[1] - pad + k)
+        is_out = np.ones(wide.shape, bool)
+        is_out[inner] = False
+        ring[is_out] = k + 1
+    share = np.array([0.0, 0.5, 0.9, 1.0, 1.0])[ring]
+    wide = wide * (1 - share) + (mean - 4.0) * share
+    return _stretched(x, far), _stretched(y, far), wide, wide_away
+
+
+def _stretched(v: Array, far: Array) -> Array:
+    return np.concatenate([v[0] - far[::-1], v, v[-1] + far])

@@ -1,0 +1,75 @@
+"""Triangles in patches: what can be skipped as a whole where the camera does not look."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from roadgpt.geometry.curve import Array
+
+ROAD, GRASS, POST, PLAIN = 0, 1, 2, 3
+"""Kinds of surface; PLAIN and all above are colours of a palette."""
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """Triangles that lie together."""
+
+    points: Array
+    """(n, 3), metres."""
+    attributes: Array
+    """(n, 3): two coordinates on the surface, and how light it is."""
+    triangles: NDArray[np.int64]
+    """(m, 3), counter-clockwise seen from where they can be seen."""
+    kinds: NDArray[np.int64]
+    """(m,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Patches in flat arrays, as compiled code reads them."""
+
+    points: Array
+    attributes: Array
+    triangles: NDArray[np.int64]
+    kinds: NDArray[np.int64]
+    ranges: NDArray[np.int64]
+    """(p, 4): first point, end of points, first triangle, end of triangles."""
+    spheres: Array
+    """(p, 4): centre and radius."""
+
+    @classmethod
+    def of(cls, patches: list[Patch]) -> "Mesh":
+        """All patches, which are one at least, in their order."""
+        ends = np.cumsum([(len(p.points), len(p.triangles)) for p in patches], axis=0)
+        starts = np.concatenate([np.zeros((1, 2), np.int64), ends[:-1]])
+        ranges = np.stack([starts[:, 0], ends[:, 0], starts[:, 1], ends[:, 1]], axis=1)
+        spheres = []
+        for patch in patches:
+            centre = (patch.points.min(axis=0) + patch.points.max(axis=0)) / 2
+            spheres.append([*centre, np.linalg.norm(patch.points - centre, axis=1).max()])
+        return cls(
+            np.concatenate([p.points for p in patches]),
+            np.concatenate([p.attributes for p in patches]),
+            np.concatenate([p.triangles + start for p, start in zip(patches, starts[:, 0], strict=True)]),
+            np.concatenate([p.kinds for p in patches]),
+            ranges,
+            np.array(spheres),
+        )
+
+
+def grid(points: Array, attributes: Array, kind: int) -> Patch:
+    """The surface over a net of points ``(rows, columns, 3)``, seen from where columns run counter-clockwise
+    of rows."""
+    rows, columns = points.shape[:2]
+    at = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]
+    triangles = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    return Patch(
+        points.reshape(-1, 3), attributes.reshape(-1, 3), triangles, np.full(len(triangles), kind, np.int64)
+    )
+
+
+def attributes(u: ArrayLike, v: ArrayLike, light: ArrayLike) -> Array:
+    """Three columns as one array ``(..., 3)``."""
+    return np.stack(np.broadcast_arrays(*(np.asarray(a, float) for a in (u, v, light))), axis=-1)

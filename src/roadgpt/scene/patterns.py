@@ -1,0 +1,63 @@
+"""Noise at the fineness that a pixel has, and how much of a pixel a marking covers: for compiled code."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.scene.compiled import inlined
+from roadgpt.scene.textures import SIDE
+
+Tiles = NDArray[np.float32]
+
+COARSEST = 6.0  # halvings after which nothing is left of a tile
+
+
+@inlined
+def plain_noise(tiles: Tiles, tile: int, start: int, side: int, u: float, v: float) -> float:
+    """One version of a tile at (u, v) in its texels, between four of them."""
+    fu, fv = math.floor(u), math.floor(v)
+    du, dv = u - fu, v - fv
+    mask = side - 1
+    i, j = fu & mask, fv & mask
+    i1, j1 = (i + 1) & mask, (j + 1) & mask
+    a, b = tiles[tile, start + j * side + i], tiles[tile, start + j * side + i1]
+    c, d = tiles[tile, start + j1 * side + i], tiles[tile, start + j1 * side + i1]
+    return float((a + (b - a) * du) * (1.0 - dv) + (c + (d - c) * du) * dv)
+
+
+@inlined
+def fine_noise(tiles: Tiles, tile: int, u: float, v: float, level: float) -> float:
+    """A tile at (u, v) in texels, where a pixel is 2**level of them wide."""
+    if level <= 0.0:
+        return plain_noise(tiles, tile, 0, SIDE, u, v)
+    if level >= COARSEST:
+        return 0.0
+    k = int(level)
+    side = SIDE >> k
+    start = (SIDE * SIDE - side * side) * 4 // 3
+    scale = 1.0 / (1 << k)
+    fine = plain_noise(tiles, tile, start, side, u * scale - 0.5, v * scale - 0.5)
+    scale *= 0.5
+    coarse = plain_noise(tiles, tile, start + side * side, side >> 1, u * scale - 0.5, v * scale - 0.5)
+    return fine + (coarse - fine) * (level - k)
+
+
+@inlined
+def share(x: float, low: float, high: float, wide: float) -> float:
+    """How much of the window of width ``wide`` around x lies between low and high."""
+    return max(min(x + wide / 2, high) - max(x - wide / 2, low), 0.0) / wide
+
+
+@inlined
+def dashed(x: float, dash: float, period: float) -> float:
+    """Length of all dashes from 0 to x; the first begins at 0."""
+    whole = math.floor(x / period)
+    return whole * dash + min(x - whole * period, dash)
+
+
+@inlined
+def smooth(low: float, high: float, x: float) -> float:
+    """From 0 at low to 1 at high, without a kink."""
+    part = min(max((x - low) / (high - low), 0.0), 1.0)
+    return part * part * (3.0 - 2.0 * part)

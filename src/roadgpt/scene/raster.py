@@ -1,0 +1,163 @@
+"""Which triangle is seen where: four samples for each pixel, the nearest wins.
+
+A triangle whose corners are P0, P1, P2 as the camera sees them (right, down, forward) gives every quantity a
+that is linear on it as a / w = g . ray, where P_i . g = a_i, w is the depth, and ray = (x, y, 1) belongs to a
+pixel. That holds for corners behind the camera too, so only the outline is ever clipped.
+Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.geometry.curve import Array
+from roadgpt.scene.compiled import compiled, inlined
+
+NEAR = 0.12  # m; what is nearer than this is not drawn
+SAMPLES = 4
+# Of a pixel's width, in its four rows: a rotated grid, so that upright and level edges get four steps each.
+OFFSETS = 0.375, 0.875, 0.125, 0.625
+PLANE = 12  # numbers of a triangle: depth, two coordinates and light, three of each
+
+Depth = NDArray[np.float32]
+Numbers = NDArray[np.int32]
+
+
+@inlined
+def _fill(
+    x: Array, y: Array, corners: int, a: float, b: float, c: float, number: int, depth: Depth, ids: Numbers
+) -> None:
+    """Mark the samples inside a convex outline where the triangle, depth 1 / (a x + b y + c), is nearer."""
+    rows, columns = depth.shape
+    top, bottom = y[0], y[0]
+    for k in range(1, corners):
+        top, bottom = min(top, y[k]), max(bottom, y[k])
+    first = max(0, int(np.ceil(4.0 * max(top, -1.0) - 0.5)))
+    last = min(rows - 1, int(np.floor(4.0 * min(bottom, rows / 4.0) - 0.5)))
+    for row in range(first, last + 1):
+        level = (row + 0.5) / 4.0
+        left, right = 1e30, -1e30
+        for k in range(corners):
+            n = k + 1 if k + 1 < corners else 0
+            x0, y0, x1, y1 = x[k], y[k], x[n], y[n]
+            if y0 > y1:  # both triangles of an edge walk it downwards, and come to the same place
+                x0, y0, x1, y1 = x1, y1, x0, y0
+            if y0 <= level < y1:
+                place = x0 + (level - y0) * ((x1 - x0) / (y1 - y0))
+                left, right = min(left, place), max(right, place)
+        if left > right:
+            continue
+        offset = OFFSETS[row & 3]
+        begin = max(0, int(np.ceil(max(left, -8.0) - offset)))
+        end = min(columns, int(np.ceil(min(right, columns + 8.0) - offset)))
+        start = b * level + c + a * offset
+        for i in range(begin, end):
+            near = np.float32(start + a * i)
+            if near > depth[row, i]:
+                depth[row, i] = near
+                ids[row, i] = number
+
+
+@inlined
+def _is_outside(sphere: Array, eye: Array, reach_x: float, reach_y: float) -> bool:
+    """Does a ball lie wholly outside of the picture?"""
+    dx, dy, dz = sphere[0] - eye[0], sphere[1] - eye[1], sphere[2] - eye[2]
+    right = dx * eye[3] + dy * eye[4] + dz * eye[5]
+    down = dx * eye[6] + dy * eye[7] + dz * eye[8]
+    ahead = dx * eye[9] + dy * eye[10] + dz * eye[11]
+    radius = sphere[3]
+    return bool(
+        ahead + radius < NEAR
+        or abs(right) - reach_x * ahead > radius * np.sqrt(1.0 + reach_x * reach_x)
+        or abs(down) - reach_y * ahead > radius * np.sqrt(1.0 + reach_y * reach_y)
+    )
+
+
+@inlined
+def _misses(a: Array, b: Array, c: Array, axis: int, reach: float) -> bool:
+    """Do all corners lie beyond the same border of the picture?"""
+    high = a[axis] > reach * a[2] and b[axis] > reach * b[2] and c[axis] > reach * c[2]
+    return bool(high or (-a[axis] > reach * a[2] and -b[axis] > reach * b[2] and -c[axis] > reach * c[2]))
+
+
+@inlined
+def _outline(three: Array, focal: float, middle_x: float, middle_y: float, x: Array, y: Array) -> int:
+    """Where the corners lie in the picture, as far as they are before the camera; how many there are."""
+    corners = 0
+    for k in range(3):
+        p, q = three[k], three[(k + 1) % 3]
+        is_before, next_is = p[2] >= NEAR, q[2] >= NEAR
+        if is_before:
+            x[corners] = middle_x + focal * p[0] / p[2]
+            y[corners] = middle_y + focal * p[1] / p[2]
+            corners += 1
+        if is_before != next_is:
+            if next_is:
+                p, q = q, p
+            part = (p[2] - NEAR) / (p[2] - q[2])
+            x[corners] = middle_x + focal * (p[0] + part * (q[0] - p[0])) / NEAR
+            y[corners] = middle_y + focal * (p[1] + part * (q[1] - p[1])) / NEAR
+            corners += 1
+    return corners
+
+
+@compiled
+def draw(
+    points: Array, attributes: Array, triangles: NDArray[np.int64], kinds: NDArray[np.int64],
+    ranges: NDArray[np.int64], spheres: Array, eye: Array, depth: Depth, ids: Numbers, planes: Array,
+    seen: Array, seen_kinds: NDArray[np.int64], count: int,
+) -> int:  # fmt: skip
+    """Draw the patches of a `Mesh` into the samples; how many triangles have been seen up to now.
+
+    Args:
+        points, attributes, triangles, kinds, ranges, spheres: the mesh.
+        eye: position, axes to the right, downwards and forward, focal length in pixels: (13,).
+        depth: 1 / m, ``(4 * height, width)``, written where a triangle is nearer than what was there.
+        ids: numbers of what is seen there, likewise.
+        planes: (n, PLANE), how the triangles of these numbers lie, written.
+        seen: room for the corners of a patch, (n, 3).
+        seen_kinds: (n,), written like ``planes``.
+        count: how many triangles have been seen before.
+    """
+    rows, columns = depth.shape
+    focal, middle_x, middle_y = eye[12], columns / 2.0, rows / 8.0
+    reach_x, reach_y = middle_x / focal, middle_y / focal
+    px, py, three, across = np.empty(4), np.empty(4), np.empty((3, 3)), np.empty((3, 3))
+    for patch in range(ranges.shape[0]):
+        if _is_outside(spheres[patch], eye, reach_x, reach_y):
+            continue
+        first = ranges[patch, 0]
+        for n in range(first, ranges[patch, 1]):
+            dx, dy, dz = points[n, 0] - eye[0], points[n, 1] - eye[1], points[n, 2] - eye[2]
+            for k in range(3):
+                seen[n - first, k] = dx * eye[3 + 3 * k] + dy * eye[4 + 3 * k] + dz * eye[5 + 3 * k]
+        for t in range(ranges[patch, 2], ranges[patch, 3]):
+            for k in range(3):
+                for j in range(3):
+                    three[k, j] = seen[triangles[t, k] - first, j]
+            a, b, c = three[0], three[1], three[2]
+            if max(a[2], b[2], c[2]) < NEAR or _misses(a, b, c, 0, reach_x) or _misses(a, b, c, 1, reach_y):
+                continue
+            for k in range(3):  # products across of the corners, two and two
+                j, m = (k + 1) % 3, (k + 2) % 3
+                across[0, k] = b[j] * c[m] - b[m] * c[j]
+                across[1, k] = c[j] * a[m] - c[m] * a[j]
+                across[2, k] = a[j] * b[m] - a[m] * b[j]
+            volume = a[0] * across[0, 0] + a[1] * across[0, 1] + a[2] * across[0, 2]
+            if volume > -1e-9:  # seen from behind, or edge on
+                continue
+            for k in range(4):
+                for j in range(3):
+                    g = 0.0
+                    for m in range(3):
+                        g += (1.0 if k == 0 else attributes[triangles[t, m], k - 1]) * across[m, j]
+                    planes[count, 3 * k + j] = g / volume
+                planes[count, 3 * k] /= focal
+                planes[count, 3 * k + 1] /= focal
+                planes[count, 3 * k + 2] -= (
+                    planes[count, 3 * k] * middle_x + planes[count, 3 * k + 1] * middle_y
+                )
+            seen_kinds[count] = kinds[t]
+            corners = _outline(three, focal, middle_x, middle_y, px, py)
+            _fill(px, py, corners, planes[count, 0], planes[count, 1], planes[count, 2], count, depth, ids)
+            count += 1
+    return count

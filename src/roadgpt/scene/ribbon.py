@@ -1,0 +1,150 @@
+"""The road itself: carriageway and verges as one surface, its banks, and the posts beside it."""
+
+import numpy as np
+
+from roadgpt.export.edges import line, stations
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+from roadgpt.scene.land import Land
+from roadgpt.scene.light import daylight
+from roadgpt.scene.mesh import GRASS, PLAIN, POST, ROAD, Patch, attributes, grid
+
+CHORD = 0.004  # m
+LONGEST = 4.0  # m between stations: light and texture follow crests
+BLOCK = 24  # stations of a patch
+THICK = 0.5  # m of a road that floats
+BANK = 1.7  # run over fall of an embankment
+FOOT = 0.4  # m that an embankment ends below the land
+CONCRETE = PLAIN
+POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
+"""m; half of what German rules ask for on straights, so that speed is seen."""
+POST_FROM_RIM = 0.6  # m
+
+
+def road_patches(road: Road, world: World, land: Land) -> list[Patch]:
+    """Everything that belongs to the road."""
+    rim = world.lane_width + world.verge
+    s = _stations(road, rim)
+    if world.verge == 0:
+        return [*_surface(road, world, s), *_slab(road, world, s)]
+    return [*_surface(road, world, s), *_banks(road, rim, s, land), *_posts(road, world)]
+
+
+def _stations(road: Road, rim: float) -> Array:
+    s = stations(road, rim, CHORD)
+    parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)
+    steps = np.repeat(np.diff(s) / parts, parts)
+    return np.asarray(np.minimum(np.r_[0.0, np.cumsum(steps)], road.length))
+
+
+def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
+    """Rows of points across the road, in patches along it."""
+    return [
+        grid(rows[i : i + BLOCK + 1], values[i : i + BLOCK + 1], kind) for i in range(0, len(rows) - 1, BLOCK)
+    ]
+
+
+def _surface(road: Road, world: World, s: Array) -> list[Patch]:
+    """From the right rim to the left one; its coordinates are s and t."""
+    half, verge = world.lane_width, world.verge
+    offsets = [-half, -half / 2, 0.0, half / 2, half]
+    if verge:
+        offsets = [-half - verge, *offsets, half + verge]
+    rows = np.stack([line(road, s, t) for t in offsets], axis=1)
+    light = daylight(_upwards(road, s))
+    t = np.sign(offsets) * np.linalg.norm((rows - road.at(s)[:, None])[..., :2], axis=-1)
+    return _blocks(rows, attributes(s[:, None], t, light[:, None]), ROAD)
+
+
+def _upwards(road: Road, s: Array) -> Array:
+    heading, grade = road.heading(s), road.grade(s)
+    up = np.stack([-grade * np.cos(heading), -grade * np.sin(heading), np.ones_like(grade)], axis=-1)
+    return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
+
+
+def _banks(road: Road, rim: float, s: Array, land: Land) -> list[Patch]:
+    """From both rims and both ends down into the land."""
+    out = []
+    for side in (-1.0, 1.0):
+        edge = line(road, s, side * rim)
+        foot = line(road, s, side * (rim + 2.0))
+        drop = edge[:, 2] - np.minimum(land.height(foot[:, 0], foot[:, 1]), edge[:, 2]) + FOOT
+        heading = road.heading(s)
+        outward = side * np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
+        out += _slope(edge, outward, drop, is_left=side > 0)
+    for end, sign in ((0.0, -1.0), (road.length, 1.0)):
+        across = np.linspace(rim, -rim, 7) * sign
+        edge = np.stack([line(road, np.array([end]), t)[0] for t in across])
+        to = float(road.heading(end))
+        way = sign * np.array([np.cos(to), np.sin(to)])
+        drop = edge[:, 2] - np.minimum(land.height(*(edge[:, :2] + 2 * way).T), edge[:, 2]) + FOOT
+        out += _slope(edge, np.repeat(way[None], len(edge), axis=0), drop, is_left=True)
+    return out
+
+
+def _slope(edge: Array, outward: Array, drop: Array, is_left: bool) -> list[Patch]:
+    """A slope from an edge outward and down; the edge runs with its slope to the left or to the right."""
+    foot = np.column_stack([edge[:, :2] + BANK * drop[:, None] * outward, edge[:, 2] - drop])
+    rows = np.stack([edge, foot] if is_left else [foot, edge], axis=1)
+    along = np.gradient(edge, axis=0)
+    down = foot - edge
+    normals = np.cross(along, down) if is_left else np.cross(down, along)
+    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-9)
+    return _blocks(rows, attributes(0.0, 0.0, np.repeat(daylight(normals)[:, None], 2, axis=1)), GRASS)
+
+
+def _slab(road: Road, world: World, s: Array) -> list[Patch]:
+    """Flanks, underside and ends of a road that floats."""
+    half = world.lane_width
+    left, right = line(road, s, half), line(road, s, -half)
+    down = np.array([0.0, 0.0, -THICK])
+    out = []
+    for a, b, light in (
+        (left, left + down, 0.62),
+        (right + down, right, 0.62),
+        (left + down, right + down, 0.4),
+    ):
+        out += _blocks(np.stack([a, b], axis=1), attributes(0.0, 0.0, np.full((len(s), 2), light)), CONCRETE)
+    for at, turn in ((0, True), (-1, False)):
+        corners = np.array([[left[at], left[at] + down], [right[at], right[at] + down]])
+        net = corners[::-1] if turn else corners
+        out.append(grid(net, attributes(0.0, 0.0, np.full((2, 2), 0.62)), CONCRETE))
+    return out
+
+
+def _posts(road: Road, world: World) -> list[Patch]:
+    """Upright boxes; their second coordinate is the height."""
+    if world.verge < POST_FROM_RIM + 0.2:
+        return []
+    count = max(1, int(road.length / POST_EVERY))
+    s = np.asarray((np.arange(count) + 0.5) * (road.length / count), np.float64)
+    t = world.lane_width + world.verge - POST_FROM_RIM
+    out = []
+    for side in (-t, t):
+        for place, heading in zip(line(road, s, side), road.heading(s), strict=True):
+            out.append(_post(place, float(heading)))
+    return out
+
+
+def _post(place: Array, heading: float) -> Patch:
+    half = POST_WIDE / 2
+    turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
+    ring = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * [half, half * 0.8] @ turn
+    outward = np.array([[0, -1], [1, 0], [0, 1], [-1, 0]]) @ turn
+    parts = []
+    for k in range(4):
+        foot = np.column_stack([ring[k : k + 2] + place[:2], np.full(2, place[2] - 0.1)])
+        net = np.stack([foot + [0, 0, h] for h in (0.0, POST_HIGH + 0.1)])
+        light = float(daylight(np.array([*outward[k], 0.0])))
+        heights = np.array([[-0.1], [POST_HIGH]])
+        parts.append(grid(net[:, ::-1], attributes(k, heights, np.full((2, 2), light)), POST))
+    top = np.column_stack([ring[:4] + place[:2], np.full(4, place[2] + POST_HIGH)])
+    lid = top[[0, 3, 1, 2]].reshape(2, 2, 3)
+    parts.append(grid(lid.swapaxes(0, 1), attributes(0.0, POST_HIGH, np.full((2, 2), 1.0)), POST))
+    starts = np.cumsum([0, *(len(p.points) for p in parts)])
+    return Patch(
+        np.concatenate([p.points for p in parts]),
+        np.concatenate([p.attributes for p in parts]),
+        np.concatenate([p.triangles + n for p, n in zip(parts, starts, strict=False)]),
+        np.concatenate([p.kinds for p in parts]),
+    )

@@ -1,0 +1,120 @@
+"""The Scene: a road as cameras see it."""
+
+import threading
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.errors import UsageError
+from roadgpt.export.ego import CAR
+from roadgpt.road import Road, World
+from roadgpt.scene.camera import Camera, Pose, axes_of
+from roadgpt.scene.land import Land
+from roadgpt.scene.mesh import Mesh
+from roadgpt.scene.raster import PLANE, SAMPLES, draw
+from roadgpt.scene.ribbon import road_patches
+from roadgpt.scene.shade import shade, to_screen
+from roadgpt.scene.textures import noise, screen_table
+
+Image = NDArray[np.uint8]
+
+
+@dataclass(eq=False)
+class Sheet:
+    """Room for one picture; each thread has its own, so that pictures can be drawn side by side."""
+
+    depth: NDArray[np.float32]
+    ids: NDArray[np.int32]
+    picture: NDArray[np.float32]
+    planes: NDArray[np.float64]
+    kinds: NDArray[np.int64]
+    seen: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Built once for a road; draws any number of pictures of it, from several threads if need be."""
+
+    road: Road
+    world: World
+    land: Land
+    ground: Mesh
+    palette: NDArray[np.float64]
+    _own: threading.local = field(default_factory=threading.local, repr=False)
+
+    @classmethod
+    def of(cls, road: Road, world: World) -> "Scene":
+        """The scene of a road; the same road and world always give the same pictures.
+
+        Raises:
+            ExportError: the road has a number that is not finite.
+        """
+        land = Land.around(road, world)
+        ground = Mesh.of([*road_patches(road, world, land), *land.patches()])
+        palette = np.array([[0.36, 0.35, 0.33, 0.0, 0.0, 0.0]])
+        return cls(road, world, land, ground, palette)
+
+    def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
+        """A picture ``(height, width, 3)`` of bytes, red first, from a camera on a car at ``pose``.
+
+        Args:
+            camera: which one.
+            pose: of the car that carries it.
+            out: where the picture goes, contiguous; a new array if there is none.
+            car: of the car that is seen, and its shadow; None draws none.
+
+        Raises:
+            UsageError: a number of a pose is not finite, or ``out`` has another shape.
+        """
+        if not np.isfinite(pose).all() or (car is not None and not np.isfinite(car).all()):
+            raise UsageError("a pose has a number that is not finite; a camera cannot be there")
+        shape = (camera.height, camera.width, 3)
+        if out is None:
+            out = np.empty(shape, np.uint8)
+        if out.shape != shape or out.dtype != np.uint8:
+            raise UsageError(f"the picture is bytes of the shape {shape}; give such an array")
+        sheet = self._sheet(camera)
+        eye = camera.eye(pose)
+        numbers = np.r_[eye.position, eye.axes.ravel(), eye.focal]
+        sheet.depth.fill(0.0)
+        sheet.ids.fill(-1)
+        for mesh in (self.ground,):
+            draw(
+                mesh.points, mesh.attributes, mesh.triangles, mesh.kinds, mesh.ranges, mesh.spheres,
+                numbers, sheet.depth, sheet.ids, sheet.planes, sheet.seen, sheet.kinds, 0,
+            )  # fmt: skip
+        shade(
+            sheet.ids, sheet.planes, sheet.kinds, self.palette, noise(), numbers,
+            np.r_[self.world.lane_width, self.road.length, _shade_of(car)], sheet.picture,
+        )  # fmt: skip
+        to_screen(sheet.picture, screen_table(), out)
+        return out
+
+    def _sheet(self, camera: Camera) -> Sheet:
+        """This thread's room for a picture of this size."""
+        key = (camera.width, camera.height)
+        kept: dict[tuple[int, int], Sheet] = self._own.__dict__.setdefault("sheets", {})
+        if key not in kept:
+            high, wide = camera.height, camera.width
+            count = len(self.ground.triangles)
+            kept[key] = Sheet(
+                np.empty((SAMPLES * high, wide), np.float32),
+                np.empty((SAMPLES * high, wide), np.int32),
+                np.empty((high, wide, 3), np.float32),
+                np.empty((count, PLANE)),
+                np.empty(count, np.int64),
+                np.empty((max(np.ptp(self.ground.ranges[:, :2], axis=1)), 3)),
+            )
+        return kept[key]
+
+
+def _shade_of(car: Pose | None) -> NDArray[np.float64]:
+    """The car as its shadow needs it."""
+    out = np.zeros(9)
+    if car is not None:
+        forward, _, up = axes_of(car.heading, car.pitch, car.roll)
+        out[:3] = np.array([car.x, car.y, car.z]) - CAR.gravity_height * up
+        out[3:5] = forward[:2] / max(np.hypot(*forward[:2]), 1e-9)
+        out[5:] = CAR.length, CAR.width, CAR.middle, 1.0
+    return out

@@ -1,0 +1,131 @@
+"""Colours of sky, meadow and road, linear, before the sun's light falls on them: for compiled code."""
+
+import math
+
+from roadgpt.scene.compiled import inlined
+from roadgpt.scene.light import SUN_X, SUN_Y, SUN_Z
+from roadgpt.scene.patterns import Tiles, dashed, fine_noise, plain_noise, share, smooth
+from roadgpt.scene.textures import CLOUD, GRAIN, MEADOW, SIDE
+
+Colour = tuple[float, float, float]
+
+LINE, DASH, PERIOD = 0.15, 4.0, 12.0  # m: width and length of dashes, and from one to the next (RMS-1)
+INSET = 0.10  # m of asphalt outside of an edge line
+WHEEL, TRACK = 0.79, 0.30  # m from the middle of a lane to its wheel tracks; their spread
+GRAVEL = 0.45  # m between asphalt and grass
+STONE = 90.0  # texels of asphalt's grain to a metre
+RIDGES = SIDE / (2.0 * math.pi)  # texels of the far hills to a radian
+
+
+@inlined
+def sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
+    """In a unit direction: blue above, bright and hazy at the horizon and around the sun, thin clouds."""
+    h = max(dz, 0.0)
+    pale = 1.0 / (1.0 + 5.5 * h)
+    r, g, b = 0.115 + 0.505 * pale, 0.29 + 0.445 * pale, 0.62 + 0.21 * pale
+    if h > 0.015:
+        reach = 1.0 / (h + 0.09)
+        cover = fine_noise(tiles, CLOUD, 33.0 * dx * reach, 33.0 * dy * reach, 0.35 * reach - 1.0)
+        thick = smooth(0.1, 2.2, cover) * smooth(0.015, 0.16, h) * 0.85
+        r, g, b = r + (0.93 - r) * thick, g + (0.945 - g) * thick, b + (0.96 - b) * thick
+    glow = max(dx * SUN_X + dy * SUN_Y + dz * SUN_Z, 0.0) ** 4
+    haze = 0.16 * glow + 0.6 * glow**16
+    r, g, b = r + haze, g + 0.92 * haze, b + 0.74 * haze
+    if -0.01 < dz < 0.075:  # hills far away
+        turn = math.atan2(dy, dx) * RIDGES
+        for ridge in range(2):
+            top = 0.034 - 0.017 * ridge
+            top += (0.0105 - 0.003 * ridge) * plain_noise(tiles, CLOUD, 0, SIDE, turn, 40.0 + 90.0 * ridge)
+            top += 0.0011 * plain_noise(tiles, CLOUD, 0, SIDE, turn * 9.0, 10.0 + 50.0 * ridge)
+            inside = smooth(-0.0011, 0.0011, top - dz) * (0.42 + 0.28 * ridge)
+            r, g, b = r + (0.25 - r) * inside, g + (0.37 - g) * inside, b + (0.43 - b) * inside
+    return r, g, b
+
+
+@inlined
+def grass(tiles: Tiles, x: float, y: float, level: float) -> Colour:
+    """At (x, y); ``level`` is the logarithm to base 2 of a pixel's width in metres."""
+    wide = plain_noise(tiles, CLOUD, 0, SIDE, x * 0.83, y * 0.83)
+    blades = fine_noise(tiles, MEADOW, x * 31.0, y * 31.0, level + 4.95)
+    dry = min(max(0.42 + 0.27 * wide + 0.06 * blades, 0.0), 1.0)
+    tone = max(1.0 + 0.12 * wide + 0.20 * blades, 0.25)
+    return (0.078 + 0.115 * dry) * tone, (0.150 + 0.075 * dry) * tone, (0.026 + 0.024 * dry) * tone
+
+
+@inlined
+def asphalt(tiles: Tiles, s: float, t: float, half: float, level: float) -> float:
+    """Grain and patches, darker in the wheel tracks and where oil drips; red, green and blue alike."""
+    grain = fine_noise(tiles, GRAIN, s * STONE, t * STONE, level + 6.5)
+    patches = plain_noise(tiles, CLOUD, 0, SIDE, s * 1.3, t * 5.1)
+    lane = abs(t) - half / 2
+    left, right = (lane - WHEEL) / TRACK, (lane + WHEEL) / TRACK
+    left, right, oil = left * left, right * right, lane * lane / 0.12
+    worn = 1.0 / (1.0 + left * left) + 1.0 / (1.0 + right * right)
+    tone = 1.0 + 0.20 * grain + 0.06 * patches - (0.17 + 0.04 * patches) * worn - 0.10 / (1.0 + oil * oil)
+    return 0.142 * max(tone, 0.2)
+
+
+@inlined
+def paved(
+    tiles: Tiles, s: float, t: float, wide_s: float, wide_t: float, level: float, half: float, length: float
+) -> Colour:
+    """Of the carriageway with its markings at (s, t); a pixel is ``wide_s`` by ``wide_t`` metres."""
+    tone = asphalt(tiles, s, t, half, level)
+    r, g, b = tone, tone * 1.005, tone * 1.03
+    line, outer = min(LINE, half / 4), half - min(INSET, half / 8)
+    paint = share(abs(t), outer - line, outer, wide_t)
+    middle = share(t, -line / 2, line / 2, wide_t)
+    if middle > 0.0:
+        last, first = min(s + wide_s / 2, length), s - wide_s / 2
+        paint += middle * max(dashed(last, DASH, PERIOD) - dashed(first, DASH, PERIOD), 0.0) / wide_s
+    if paint > 0.0:
+        worn = 0.93 + 0.06 * fine_noise(tiles, GRAIN, s * 40.0, t * 40.0, level + 5.3)
+        paint = min(paint, 1.0) * min(max(worn, 0.0), 1.0)
+        r, g, b = r + (0.80 - r) * paint, g + (0.80 - g) * paint, b + (0.77 - b) * paint
+    if 1.5 < s < length - 1.5:
+        return r, g, b
+    # a white line where the driven lane begins, a chequered band where it ends
+    inside = share(t, 0.25 - half, -0.08, wide_t)
+    white = inside * share(s, 0.25, 0.75, wide_s)
+    goal = inside * share(s, length - 1.0, length, wide_s)
+    square = (math.floor(t * 8.0 / half) + math.floor((length - s) * 2.0)) & 1
+    shade = 0.78 * square + 0.02
+    r, g, b = r + (0.8 - r) * white, g + (0.8 - g) * white, b + (0.8 - b) * white
+    return r + (shade - r) * goal, g + (shade - g) * goal, b + (shade - b) * goal
+
+
+@inlined
+def verge(tiles: Tiles, x: float, y: float, beside: float, ragged: float, level: float) -> Colour:
+    """Gravel that gives way to grass, ``beside`` metres from the carriageway."""
+    r, g, b = grass(tiles, x, y, level)
+    bare = 1.0 - smooth(0.1, 0.9, beside / GRAVEL + 3.5 * ragged)
+    if bare > 0.0:
+        tone = 1.0 + 0.22 * fine_noise(tiles, GRAIN, x * 26.0, y * 26.0, level + 4.7)
+        r, g, b = r + (0.235 * tone - r) * bare, g + (0.215 * tone - g) * bare, b + (0.175 * tone - b) * bare
+    return r, g, b
+
+
+@inlined
+def road(
+    tiles: Tiles,
+    s: float,
+    t: float,
+    wide_s: float,
+    wide_t: float,
+    x: float,
+    y: float,
+    level: float,
+    half: float,
+    length: float,
+) -> Colour:
+    """Of carriageway and verge at (s, t), which is (x, y)."""
+    beside = abs(t) - half
+    if beside < -0.3 - wide_t:
+        return paved(tiles, s, t, wide_s, wide_t, level, half, length)
+    ragged = 0.05 * fine_noise(tiles, CLOUD, s * 7.0, t * 7.0 + 90.0, level + 2.8)
+    part = min(max((ragged * 0.5 - beside) / wide_t + 0.5, 0.0), 1.0)
+    r, g, b = verge(tiles, x, y, beside, ragged, level)
+    if part > 0.0:
+        pr, pg, pb = paved(tiles, s, t, wide_s, wide_t, level, half, length)
+        r, g, b = r + (pr - r) * part, g + (pg - g) * part, b + (pb - b) * part
+    return r, g, b
