@@ -100,7 +100,7 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
         data,
         compression="zstd",
         use_dictionary=["cell"],
-        column_encoding={name: "DELTA_BINARY_PACKED" for name in ("number", *COLUMNS)},
+        column_encoding=dict.fromkeys(("number", *COLUMNS), "DELTA_BINARY_PACKED"),
         write_statistics=["number"],
         store_schema=False,
     )

@@ -25,6 +25,10 @@ class Allowance(NamedTuple):
     cost: float | None = None
 
 
+BOUNDLESS = Allowance()
+NO_TIME = Seconds()
+
+
 @dataclass(frozen=True)
 class Task:
     """A test to be done."""
@@ -32,7 +36,7 @@ class Task:
     number: int
     batch: int
     proposal: Proposal
-    allowance: Allowance = Allowance()
+    allowance: Allowance = BOUNDLESS
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ class Ended:
 
     result: Result
     trace: Trace | None = None
-    seconds: Seconds = Seconds()
+    seconds: Seconds = NO_TIME
     spent: Spent | None = None
     error: str = ""
     """Of a test that failed: where in which file."""
@@ -74,17 +78,13 @@ def do(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended:
     Raises:
         PartError, UsageError, ChatError: what no other test could do either.
     """
+    meter = Meter(task.allowance.tokens, task.allowance.cost)
     try:
-        run = run_of(cell, task.number, task.proposal, earlier, task.allowance)
-        return Ended(
-            result_of(run, cell, task),
-            trace_of(run.drive) if run.drive is not None else None,
-            run.seconds,
-            run.spent,
-            run.trace,
-        )
+        run = run_of(cell, task.number, task.proposal, earlier, meter)
+        trace = trace_of(run.drive) if run.drive is not None else None
+        return Ended(result_of(run, cell, task), trace, run.seconds, run.spent, run.trace)
     except (DesignError, ReplyError) as error:
-        return Ended(_failed(task, str(error)))
+        return Ended(_failed(task, str(error)), spent=meter.spent if meter.spent.calls else None)
     except CONCERNS_ALL:
         raise
     except Exception as error:  # whatever a part raises costs this test, not the campaign
@@ -101,7 +101,7 @@ def run_of(
     number: int,
     proposal: Proposal,
     earlier: tuple[tuple[Design, ...], ...] = (),
-    allowance: Allowance = Allowance(),
+    meter: Meter | None = None,
 ) -> Run:
     """The Run of a test; raises what ``run.perform`` and ``run.prove`` raise."""
     request = cell.request
@@ -109,7 +109,6 @@ def run_of(
         return prove(proposal.design, proposal.seed, request.world, request.setup, number, cell.brief)
     assert cell.brief is not None, "only a cell with words lets its tests be drafted"
     known = [design for block in earlier for design in block]
-    meter = Meter(allowance.tokens, allowance.cost)
     return perform(cell.brief, proposal.seed, request.world, request.setup, number, known, meter)
 
 

@@ -1,0 +1,119 @@
+"""The Plan of a campaign: every combination of prompts, designers, drivers, simulators, generators and seeds.
+
+Each combination is a cell, with a budget of its own; all else is the same for all cells.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from itertools import product
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from roadgpt import plugins
+from roadgpt.brief.model import Brief, Frozen
+from roadgpt.campaign.model import UNLIMITED, Budget, Cell, Goal
+from roadgpt.chat import ChatSettings
+from roadgpt.errors import UsageError
+from roadgpt.road import Geometry, World
+from roadgpt.run.model import Request, Setup
+
+WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"
+"""Generators, where none is named."""
+PATIENCE = 900.0  # s for one test: longer than a drive may take, which ends by itself
+MOST_CELLS = 100_000
+
+Names = Annotated[tuple[str, ...], Field(min_length=1)]
+Seed = Annotated[int, Field(ge=0, lt=2**63)]
+
+
+class Plan(Frozen):
+    """What a campaign is asked for."""
+
+    prompts: Names = ("",)
+    """Descriptions; an empty one where the generator needs none."""
+    designers: Names = ("planner",)
+    drivers: Names = ("beamng_like",)
+    """Names, or FILE.py:CLASS."""
+    simulators: Names = ("mujoco",)
+    generators: Names = (WITHOUT_GOAL,)
+    seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (0,)
+    goal: Goal | None = None
+    settings: Mapping[str, Any] = Field(default_factory=dict)
+    """Of the generators."""
+    budget: Budget = UNLIMITED
+    """Of each cell."""
+    reader: str = "model"
+    rules: Literal["strict", "sbft"] = "strict"
+    geometry: Geometry = "arcs"
+    keep_driving: bool = False
+    drives: bool = True
+    world: World = World()
+    chat: ChatSettings | None = None
+    patience: Annotated[float, Field(gt=0, allow_inf_nan=False)] = PATIENCE
+    """Seconds for one test; who takes longer is taken to hang."""
+
+    def essence(self) -> "Plan":
+        """Without what may be another when the campaign goes on."""
+        chat = self.chat and self.chat.essence()
+        return self.model_copy(update={"chat": chat, "patience": PATIENCE})
+
+    def requests(self) -> Iterator[tuple[Request, str]]:
+        """Of each cell its request and generator, in order."""
+        every = product(
+            self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds
+        )
+        for words, designer, driver, simulator, generator, seed in every:
+            setup = Setup(
+                reader=self.reader,
+                designer=designer,
+                rules=self.rules,
+                driver=driver,
+                simulator=simulator,
+                # some designers mean their segments in one way only, and so must those who change them
+                geometry=getattr(plugins.find("designers", designer), "geometry", None) or self.geometry,
+                keep_driving=self.keep_driving,
+                drives=self.drives,
+                chat=self.chat,
+            )
+            yield Request(words=words, seed=seed, world=self.world, setup=setup), generator
+
+    def check(self) -> None:
+        """Look at what need not be tried out.
+
+        Raises:
+            UsageError: a part is not installed, cells are too many, or nothing says when to stop.
+        """
+        lists = (self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds)
+        cells = math.prod(map(len, lists))
+        if cells > MOST_CELLS:
+            raise UsageError(
+                f"the plan has {cells:,} cells, more than {MOST_CELLS:,}; make several plans of it"
+            )
+        if self.budget == UNLIMITED:
+            raise UsageError("nothing says when to stop; give a number of tests (-n 200) or --seconds")
+        for name in self.generators:
+            plugins.find("generators", name)
+            if name == WITHOUT_GOAL and not all(words.strip() for words in self.prompts):
+                raise UsageError("the generator 'words' needs a description; give one, or another generator")
+        for shelf, names in (("designers", self.designers), ("simulators", self.simulators)):
+            for name in names:
+                plugins.find(shelf, name)
+        plugins.find("readers", self.reader.partition(":")[0])
+
+    def cells(self, briefs: Mapping[str, Brief]) -> list[Cell]:
+        """All cells; briefs are those of the prompts."""
+        made = [*self.requests()]
+        wide = max(2, len(str(len(made))))
+        return [
+            Cell(
+                name=f"c{number:0{wide}d}",
+                request=request,
+                brief=briefs.get(request.words),
+                generator=generator,
+                goal=self.goal,
+                settings=self.settings,
+                budget=self.budget,
+            )
+            for number, (request, generator) in enumerate(made, 1)
+        ]

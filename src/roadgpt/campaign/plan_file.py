@@ -1,0 +1,170 @@
+"""Plans as files: TOML whose every key is known; a mistake is told with its key and what to do."""
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+
+from roadgpt.campaign.model import MOST_TESTS, Budget, Goal
+from roadgpt.campaign.plan import PATIENCE, WITH_GOAL, WITHOUT_GOAL, Plan, Seed
+from roadgpt.chat import ChatSettings
+from roadgpt.errors import UsageError
+from roadgpt.road import Geometry, World
+from roadgpt.road.world import NotNegative, Positive
+
+LARGEST = 4_000_000  # bytes of a file
+
+ADVICE = {
+    "greater_than_equal": "give {ge:g} or more",
+    "greater_than": "give more than {gt:g}",
+    "less_than_equal": "give {le:g} or less",
+    "less_than": "give less than {lt:g}",
+    "literal_error": "give {expected}",
+    "int_type": "give a whole number",
+    "float_type": "give a number",
+    "string_type": "give a text in quotes",
+    "string_too_short": "give a text that is not empty",
+    "bool_type": "give true or false",
+    "too_short": "give at least one",
+    "model_type": "give a table",
+    "dict_type": "give a table",
+}
+"""What to do about mistakes, by pydantic's names for them."""
+
+
+def _listed(value: Any) -> Any:
+    """One value stands for a list of one."""
+    return tuple(value) if isinstance(value, list) else (value,)
+
+
+Words = Annotated[str, Field(min_length=1)]
+Texts = Annotated[tuple[Words, ...], BeforeValidator(_listed), Field(min_length=1)]
+Seeds = Annotated[tuple[Seed, ...], BeforeValidator(_listed), Field(min_length=1)]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class WorldTable(_Strict):
+    """The table ``[world]``: numbers with the units that people speak in."""
+
+    map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
+    lane_width: Annotated[float, Field(ge=2, le=10)] = 4.0
+    verge: NotNegative = 3.0
+    friction: Annotated[float, Field(gt=0, le=2)] = 1.0
+    speed_limit_kmh: Annotated[float, Field(ge=5, le=300)] = 70.0
+    oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
+    min_radius: Positive = 14.326
+    max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
+
+    def world(self) -> World:
+        """The same, as a value."""
+        told = self.model_dump()
+        return World(speed_limit=told.pop("speed_limit_kmh") / 3.6, **told)
+
+
+class PlanTable(_Strict):
+    """A whole file."""
+
+    prompts: Texts = ()
+    designers: Texts = ("planner",)
+    drivers: Texts = ("beamng_like",)
+    simulators: Texts = ("mujoco",)
+    generators: Texts = ()
+    seeds: Seeds = (0,)
+    goal: Goal | None = None
+    tests: Annotated[int, Field(ge=1, le=MOST_TESTS)] | None = None
+    seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
+    test_seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] = PATIENCE
+    reader: Words = "model"
+    rules: Literal["strict", "sbft"] = "strict"
+    geometry: Geometry = "arcs"
+    keep_driving: bool = False
+    drive: bool = True
+    world: WorldTable = WorldTable()
+    chat: dict[str, Any] = {}
+    settings: dict[str, Any] = {}
+
+
+class Written(BaseModel):
+    """What a file says: the plan, and which settings of language models it names."""
+
+    plan: Plan
+    chat: dict[str, Any]
+
+
+def read_plan(path: Path) -> Written:
+    """The plan in a file.
+
+    Raises:
+        UsageError: it is no TOML, or a key or a value of it cannot be used.
+    """
+    try:
+        if path.stat().st_size > LARGEST:
+            raise UsageError(f"{path} is larger than {LARGEST:,} bytes; that is no plan of a campaign")
+        told = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"{path} cannot be read: {error.strerror}; check the path") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise UsageError(f"{path} is no TOML: {error}; correct it") from error
+    try:
+        table = PlanTable.model_validate(told)
+        ChatSettings.model_validate(table.chat)
+    except ValidationError as error:
+        within = ("chat",) if error.title == ChatSettings.__name__ else ()
+        raise UsageError(f"{path}: {_sentence(error, within)}") from error
+    return Written(plan=_plan(table), chat=table.chat)
+
+
+def _plan(table: PlanTable) -> Plan:
+    return Plan(
+        prompts=table.prompts or ("",),
+        designers=table.designers,
+        drivers=table.drivers,
+        simulators=table.simulators,
+        generators=table.generators or (WITH_GOAL if table.goal else WITHOUT_GOAL,),
+        seeds=table.seeds,
+        goal=table.goal,
+        settings=table.settings,
+        budget=Budget(tests=table.tests, seconds=table.seconds),
+        reader=table.reader,
+        rules=table.rules,
+        geometry=table.geometry,
+        keep_driving=table.keep_driving,
+        drives=table.drive,
+        world=table.world.world(),
+        patience=table.test_seconds,
+    )
+
+
+def _sentence(error: ValidationError, within: tuple[str, ...]) -> str:
+    """The first mistake: where, what, and what to do."""
+    mistake = error.errors()[0]
+    place = (*within, *mistake["loc"])
+    key = ".".join(str(part + 1 if isinstance(part, int) else part) for part in place)
+    if mistake["type"] == "extra_forbidden":
+        return _unknown(key, str(place[-1]), _keys(place[:-1]))
+    advice = ADVICE.get(mistake["type"], "").format(**mistake.get("ctx", {}))
+    said = str(mistake["msg"]).removeprefix("Value error, ")
+    return f"{key}: {_short(mistake['input'])} is not possible; {advice or said[:1].lower() + said[1:]}"
+
+
+def _unknown(key: str, name: str, known: Sequence[str]) -> str:
+    near = get_close_matches(name.lower(), known, 1, 0.5)
+    advice = f"did you mean '{near[0]}'?" if near else f"keys are {', '.join(known)}"
+    return f"'{key}' is no key of a campaign; {advice}"
+
+
+def _keys(place: tuple[Any, ...]) -> list[str]:
+    models: Mapping[str, type[BaseModel]] = {"world": WorldTable, "chat": ChatSettings}
+    model = models.get(str(place[0]), PlanTable) if place else PlanTable
+    return [*model.model_fields]
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return f"{text[:40]}..." if len(text) > 43 else text

@@ -1,0 +1,168 @@
+"""The record of a campaign: what its store tells whoever asks, also while somebody works on it."""
+
+import sqlite3
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from roadgpt.campaign.model import Cell, Proposal, Result
+from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
+from roadgpt.errors import UsageError
+
+STORE = "campaign.sqlite"
+FORMAT = 1
+PATIENCE = 30.0  # s for another process
+
+
+@dataclass
+class Batch:
+    """One batch of a cell, and how many of its tests have not ended."""
+
+    number: int
+    first: int
+    n: int
+    left: int
+
+
+class Record:
+    """A campaign's file, to be read; ``tests`` and its other tables are told in ``campaign.store``."""
+
+    def __init__(self, path: Path, db: sqlite3.Connection) -> None:
+        self.path = path
+        self._db = db
+
+    @classmethod
+    def opened(cls, folder: Path) -> Self:
+        """The record of the campaign in a folder.
+
+        Raises:
+            UsageError: there is none, or it is damaged or of another version.
+        """
+        return cls._opened(folder, "ro")
+
+    @classmethod
+    def _opened(cls, folder: Path, mode: str) -> Self:
+        path = folder / STORE
+        if not path.is_file():
+            raise UsageError(f"there is no campaign in {folder}; give the folder of one")
+        try:
+            db = sqlite3.connect(
+                f"{path.resolve().as_uri()}?mode={mode}", PATIENCE, isolation_level=None, uri=True
+            )
+            try:
+                version = db.execute("PRAGMA user_version").fetchone()[0]
+                db.execute("SELECT count(*) FROM meta").fetchone()
+            except sqlite3.Error:
+                db.close()
+                raise
+        except sqlite3.Error as error:
+            raise UsageError(f"{path} cannot be read ({error}); name another folder") from error
+        if version != FORMAT:
+            db.close()
+            raise UsageError(f"{path} was written by another version of roadgpt; start the campaign anew")
+        return cls(path, db)
+
+    @property
+    def folder(self) -> Path:
+        """Of the campaign."""
+        return self.path.parent
+
+    def close(self) -> None:
+        """Let go of the file; what was committed is in it."""
+        self._db.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def query(self, sql: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+        """All rows that a SELECT gives; for counts and groups, not for a million rows."""
+        return self._db.execute(sql, values).fetchall()
+
+    def stream(self, sql: str, values: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
+        """The rows that a SELECT gives, one by one."""
+        yield from self._db.execute(sql, values)
+
+    def meta(self, name: str) -> str:
+        """One of ``plan``, ``versions``, ``finished``."""
+        return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
+
+    def cells(self) -> list[Cell]:
+        """In the order of the plan."""
+        return [cell_of_text(text) for (text,) in self.query("SELECT cell FROM cells ORDER BY name")]
+
+    def cell(self, name: str) -> Cell:
+        """One cell.
+
+        Raises:
+            UsageError: there is none of that name.
+        """
+        found = self.query("SELECT cell FROM cells WHERE name = ?", (name,))
+        if not found:
+            names = [name for (name,) in self.query("SELECT name FROM cells ORDER BY name LIMIT 10")]
+            raise UsageError(f"there is no cell '{name}' in {self.path.parent}; cells are {', '.join(names)}")
+        return cell_of_text(found[0][0])
+
+    def results(
+        self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
+    ) -> Iterator[Result]:
+        """Results of tests that have ended, of one cell or of all, in order, one by one.
+
+        Args:
+            cell: its name.
+            where: a condition in SQL on the columns of ``tests`` and ``details``, with its values.
+        """
+        for _, result in self.results_by_cell(cell, where, values):
+            yield result
+
+    def results_by_cell(
+        self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
+    ) -> Iterator[tuple[str, Result]]:
+        """The same, each with the name of its cell."""
+        chosen, names = ("tests.cell = ? AND", [cell]) if cell is not None else ("", [])
+        sql = (
+            f"SELECT {RESULT} FROM tests JOIN details USING (cell, number) "  # noqa: S608 - our own words
+            f"WHERE {chosen} outcome IS NOT NULL AND ({where}) ORDER BY tests.cell, tests.number"
+        )
+        return map(result_of_row, self.stream(sql, (*names, *values)))
+
+    def result(self, cell: str, number: int) -> Result:
+        """One result.
+
+        Raises:
+            UsageError: there is no such test, or it has not ended.
+        """
+        for result in self.results(cell, "tests.number = ?", (number,)):
+            return result
+        raise UsageError(f"{self.path.parent} holds no result of test {number} of {cell}")
+
+    def batches(self, cell: str) -> list[Batch]:
+        """All that were asked for, in order."""
+        rows = self.query("SELECT batch, first, n, left FROM batches WHERE cell = ? ORDER BY batch", (cell,))
+        return [Batch(*row) for row in rows]
+
+    def waiting(self, cell: str) -> list[tuple[int, int, Proposal]]:
+        """Tests of a cell that were asked for and have not ended: number, batch, proposal."""
+        rows = self.query(
+            "SELECT tests.number, batch, seed, origin, design FROM tests JOIN details USING (cell, number) "
+            "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",
+            (cell,),
+        )
+        return [
+            (number, batch, Proposal(design_of(text), seed, origin))
+            for number, batch, seed, origin, text in rows
+        ]
+
+    def trace_file(self, cell: str, number: int) -> str | None:
+        """Name of the file that holds the drive of a test; None where nobody drove."""
+        rows = self.query(
+            "SELECT file FROM tests JOIN traces USING (trace) WHERE cell = ? AND number = ?", (cell, number)
+        )
+        return str(rows[0][0]) if rows else None
+
+    def feature_names(self) -> list[str]:
+        """Of all features that any result has, sorted."""
+        return [name for (name,) in self.query("SELECT name FROM features ORDER BY name")]

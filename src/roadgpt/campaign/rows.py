@@ -1,0 +1,109 @@
+"""Results and cells as they stand in the store: exactly, so that whoever goes on knows what was known."""
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from roadgpt.brief.model import Brief
+from roadgpt.campaign.model import Budget, Cell, Proposal, Result
+from roadgpt.campaign.worker import Ended
+from roadgpt.road import Design
+from roadgpt.run.model import Request
+
+RESULT = (
+    "tests.cell, tests.number, batch, seed, given, outcome, cause, side, length, margin, max_oob, at_s, "
+    "origin, design, description, features"
+)
+"""Columns of a result, of the tables ``tests`` and ``details`` together."""
+
+
+def design_text(design: Design | None) -> str | None:
+    """A design as JSON that gives the very same design again."""
+    return None if design is None else design.model_dump_json(exclude_none=True)
+
+
+def design_of(text: str | None) -> Design | None:
+    """The design again."""
+    return None if text is None else Design.model_validate_json(text)
+
+
+def proposal_rows(
+    cell: str, batch: int, number: int, proposal: Proposal
+) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """A test that was asked for: its rows in ``tests`` and in ``details``."""
+    given = proposal.design is not None
+    return (
+        (cell, number, batch, proposal.seed, given),
+        (cell, number, proposal.origin, design_text(proposal.design)),
+    )
+
+
+def result_values(result: Result) -> tuple[Any, ...]:
+    """What is set in ``tests`` when a test has ended."""
+    numbers = (result.length, result.margin, result.max_oob, result.at_s)
+    return (result.outcome, result.cause, result.side, *map(_number, numbers))
+
+
+def detail_values(ended: Ended) -> tuple[Any, ...]:
+    """What is set in ``details`` when a test has ended."""
+    result = ended.result
+    features = {name: float(value) for name, value in sorted(result.features.items()) if math.isfinite(value)}
+    return (design_text(result.design), result.description, json.dumps(features), ended.error or None)
+
+
+def _number(value: float | None) -> float | None:
+    """SQLite has no NaN."""
+    return None if value is None or math.isnan(value) else float(value)
+
+
+def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
+    """Cell and result, of a row with the columns ``RESULT``."""
+    cell, number, batch, seed, given, outcome, cause, side, length, margin, max_oob, at_s = row[:12]
+    origin, text, description, features = row[12:]
+    design = design_of(text)
+    proposal = Proposal(design if given else None, seed, origin)
+    return cell, Result(
+        number=number,
+        batch=batch,
+        proposal=proposal,
+        outcome=outcome,
+        description=description,
+        design=design,
+        length=length,
+        margin=margin,
+        max_oob=max_oob,
+        at_s=at_s,
+        side=side,
+        cause=cause,
+        features=json.loads(features),
+    )
+
+
+def cell_text(cell: Cell) -> str:
+    """A cell as JSON."""
+    return json.dumps(
+        {
+            "name": cell.name,
+            "request": cell.request.model_dump(mode="json"),
+            "brief": cell.brief and cell.brief.model_dump(mode="json", exclude_defaults=True),
+            "generator": cell.generator,
+            "goal": cell.goal,
+            "settings": dict(cell.settings),
+            "budget": cell.budget.model_dump(mode="json"),
+        }
+    )
+
+
+def cell_of_text(text: str) -> Cell:
+    """The cell again."""
+    data: Mapping[str, Any] = json.loads(text)
+    return Cell(
+        name=data["name"],
+        request=Request.model_validate(data["request"]),
+        brief=None if data["brief"] is None else Brief.model_validate(data["brief"]),
+        generator=data["generator"],
+        goal=data["goal"],
+        settings=data["settings"],
+        budget=Budget.model_validate(data["budget"]),
+    )

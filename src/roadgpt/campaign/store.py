@@ -1,0 +1,241 @@
+"""The store: one SQLite file that holds the truth about a campaign. One process writes it, anyone may read.
+
+    meta      format, plan, versions, and whether it is finished
+    cells     what their tests share; how long each has taken; why one was closed before its time
+    batches   which tests were asked for together; in one transaction with them, so that none is asked twice
+    tests     one row each, narrow, so that a million are counted in a second; no outcome: not done yet
+    details   the long parts of the same tests: designs, sentences, features
+    traces    files of drives
+    leases    who is at which test now; they end with the sitting, for nobody else can be at work
+    sittings  from when to when somebody worked on it
+    features  names of all features there are
+
+Deterministic columns of tests and details make the tables; ``ended`` and all after it are the clock's.
+
+WAL and synchronous=NORMAL: what was committed survives the death of the process. A power cut may take the
+last transactions, each of them whole: the tests in them are then not done, and are done again, with the same
+results, since a batch depends on nothing but the results of batches that came before.
+"""
+
+import json
+import sqlite3
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Self
+
+from roadgpt.campaign.executors import Doing
+from roadgpt.campaign.model import Cell, Proposal
+from roadgpt.campaign.record import FORMAT, STORE, Record
+from roadgpt.campaign.rows import cell_text, detail_values, proposal_rows, result_values
+from roadgpt.campaign.worker import Ended
+from roadgpt.errors import RoadGPTError, UsageError
+
+SCHEMA = """
+CREATE TABLE meta(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE cells(name TEXT PRIMARY KEY, cell TEXT NOT NULL, seconds REAL NOT NULL DEFAULT 0, closed TEXT)
+  WITHOUT ROWID;
+CREATE TABLE batches(cell TEXT, batch INTEGER, first INTEGER NOT NULL, n INTEGER NOT NULL,
+  left INTEGER NOT NULL, PRIMARY KEY(cell, batch)) WITHOUT ROWID;
+CREATE TABLE tests(cell TEXT, number INTEGER, batch INTEGER NOT NULL, seed INTEGER NOT NULL,
+  given INTEGER NOT NULL, outcome TEXT, cause TEXT, side TEXT, length REAL, margin REAL, max_oob REAL,
+  at_s REAL, ended REAL, design_s REAL, drive_s REAL, tokens INTEGER, cost REAL, trace INTEGER,
+  PRIMARY KEY(cell, number)) WITHOUT ROWID;
+CREATE TABLE details(cell TEXT, number INTEGER, origin TEXT NOT NULL, design TEXT, description TEXT,
+  features TEXT, error TEXT, PRIMARY KEY(cell, number));
+CREATE TABLE traces(trace INTEGER PRIMARY KEY, file TEXT NOT NULL);
+CREATE TABLE leases(cell TEXT, number INTEGER, worker TEXT NOT NULL, until REAL NOT NULL,
+  PRIMARY KEY(cell, number)) WITHOUT ROWID;
+CREATE TABLE sittings(begun REAL NOT NULL, seen REAL NOT NULL, workers INTEGER NOT NULL);
+CREATE TABLE features(name TEXT PRIMARY KEY) WITHOUT ROWID;
+CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
+"""
+
+
+class Store(Record):
+    """A campaign's file, to be written; see the head of this module."""
+
+    def __init__(self, path: Path, db: sqlite3.Connection) -> None:
+        super().__init__(path, db)
+        self._features: set[str] = set()
+        self._sitting = 0
+
+    @classmethod
+    def new(cls, folder: Path, plan: str, cells: Sequence[Cell], versions: Mapping[str, str]) -> Self:
+        """A store that holds a plan and no tests.
+
+        Raises:
+            RoadGPTError: it cannot be written.
+        """
+        path = folder / STORE
+        draft = path.with_name(f"{path.name}.part")
+        with _refusals(folder):
+            draft.unlink(missing_ok=True)
+            db = sqlite3.connect(draft, isolation_level=None)
+            db.executescript(SCHEMA)
+            meta = {"plan": plan, "versions": json.dumps(dict(versions)), "finished": ""}
+            db.execute("BEGIN")
+            db.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
+            db.executemany(
+                "INSERT INTO cells(name, cell) VALUES (?, ?)", [(c.name, cell_text(c)) for c in cells]
+            )
+            db.execute(f"PRAGMA user_version = {FORMAT}")
+            db.execute("COMMIT")
+            db.close()
+            draft.replace(path)  # there whole or not at all
+        return cls.opened(folder)
+
+    @classmethod
+    def opened(cls, folder: Path) -> Self:
+        """The store in a folder, to be written.
+
+        Raises:
+            UsageError: there is none, or it is damaged or of another version.
+        """
+        store = cls._opened(folder, "rw")
+        try:
+            store._db.execute("PRAGMA journal_mode = WAL")
+            store._db.execute("PRAGMA synchronous = NORMAL")
+        except sqlite3.Error as error:
+            store.close()
+            raise UsageError(f"{store.path} cannot be written ({error}); name another folder") from error
+        store._features = {*store.feature_names()}
+        return store
+
+    @contextmanager
+    def _whole(self) -> Iterator[sqlite3.Connection]:
+        """One transaction."""
+        with _refusals(self.folder):
+            self._db.execute("BEGIN IMMEDIATE")
+            try:
+                yield self._db
+                self._db.execute("COMMIT")
+            except BaseException:
+                if self._db.in_transaction:
+                    self._db.execute("ROLLBACK")
+                raise
+
+    def begin_sitting(self, workers: int) -> None:
+        """Somebody begins to work; leases of earlier sittings are over."""
+        now = time.time()
+        with self._whole() as db:
+            db.execute("DELETE FROM leases")
+            done = db.execute("INSERT INTO sittings VALUES (?, ?, ?)", (now, now, workers))
+            self._sitting = done.lastrowid or 0
+
+    def add_batch(self, cell: str, batch: int, first: int, proposals: Sequence[Proposal]) -> None:
+        """A batch with all its tests."""
+        rows = [proposal_rows(cell, batch, first + at, made) for at, made in enumerate(proposals)]
+        n = len(proposals)
+        with self._whole() as db:
+            db.execute("INSERT INTO batches VALUES (?, ?, ?, ?, ?)", (cell, batch, first, n, n))
+            db.executemany(
+                "INSERT INTO tests(cell, number, batch, seed, given) VALUES (?, ?, ?, ?, ?)",
+                [test for test, _ in rows],
+            )
+            db.executemany(
+                "INSERT INTO details(cell, number, origin, design) VALUES (?, ?, ?, ?)",
+                [detail for _, detail in rows],
+            )
+
+    def close_cell(self, cell: str, why: str) -> None:
+        """No further batch is asked of it."""
+        with self._whole() as db:
+            db.execute("UPDATE cells SET closed = ? WHERE name = ?", (why, cell))
+
+    def finish(self, value: str = "yes") -> None:
+        """Everything is done."""
+        with self._whole() as db:
+            db.execute("UPDATE meta SET value = ? WHERE name = 'finished'", (value,))
+
+    def set_plan(self, plan: str) -> None:
+        """Another plan, which differs in limits only."""
+        with self._whole() as db:
+            db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))
+
+    def next_trace(self) -> int:
+        """Number of the next file of drives."""
+        return int(self.query("SELECT coalesce(max(trace), 0) + 1 FROM traces")[0][0])
+
+    def keep(
+        self,
+        ended: Sequence[tuple[str, Ended]],
+        trace: tuple[int, str] | None,
+        leases: Sequence[tuple[str, int, Doing, float]],
+        seconds: Mapping[str, float],
+    ) -> None:
+        """A group of results, in one transaction.
+
+        Args:
+            ended: cells, and what came of their tests.
+            trace: number and name of the file that holds their drives.
+            leases: cell and number of tests that are under way, by whom, and until when at most.
+            seconds: that cells have taken since the last group.
+        """
+        now = time.time()
+        left = Counter((cell, one.result.batch) for cell, one in ended)
+        names = {name for _, one in ended for name in one.result.features} - self._features
+        with self._whole() as db:
+            if trace is not None:
+                db.execute("INSERT INTO traces VALUES (?, ?)", trace)
+            db.executemany(
+                "UPDATE tests SET outcome = ?, cause = ?, side = ?, length = ?, margin = ?, max_oob = ?, "
+                "at_s = ?, ended = ?, design_s = ?, drive_s = ?, tokens = ?, cost = ?, trace = ? "
+                "WHERE cell = ? AND number = ?",
+                [_test_values(cell, one, now, trace) for cell, one in ended],
+            )
+            db.executemany(
+                "UPDATE details SET design = ?, description = ?, features = ?, error = ? "
+                "WHERE cell = ? AND number = ?",
+                [(*detail_values(one), cell, one.result.number) for cell, one in ended],
+            )
+            db.executemany(
+                "UPDATE batches SET left = left - ? WHERE cell = ? AND batch = ?",
+                [(count, cell, batch) for (cell, batch), count in left.items()],
+            )
+            db.executemany("INSERT OR IGNORE INTO features VALUES (?)", [(name,) for name in sorted(names)])
+            db.execute("DELETE FROM leases")
+            db.executemany(
+                "INSERT OR REPLACE INTO leases VALUES (?, ?, ?, ?)",
+                [(cell, number, one.worker, until) for cell, number, one, until in leases],
+            )
+            db.executemany(
+                "UPDATE cells SET seconds = seconds + ? WHERE name = ?",
+                [(taken, cell) for cell, taken in seconds.items()],
+            )
+            db.execute("UPDATE sittings SET seen = ? WHERE rowid = ?", (now, self._sitting))
+        self._features |= names
+
+
+@contextmanager
+def _refusals(folder: Path) -> Iterator[None]:
+    """Around all that is written: what the system refuses becomes a sentence."""
+    try:
+        yield
+    except (sqlite3.Error, OSError) as error:
+        raise refused(folder, error) from error
+
+
+def refused(folder: Path, error: sqlite3.Error | OSError) -> RoadGPTError:
+    """What to say when the system does not take what is written."""
+    said = (error.strerror if isinstance(error, OSError) else None) or error
+    return RoadGPTError(
+        f"cannot write into {folder}: {said}; make room there, then say: roadgpt resume {folder}"
+    )
+
+
+def _test_values(cell: str, one: Ended, now: float, trace: tuple[int, str] | None) -> tuple[Any, ...]:
+    spent = one.spent
+    return (
+        *result_values(one.result),
+        now,
+        round(one.seconds.design, 4),
+        round(one.seconds.drive, 4),
+        spent.usage.total if spent else None,
+        spent.cost if spent else None,
+        trace[0] if trace is not None and one.trace is not None else None,
+        cell,
+        one.result.number,
+    )
