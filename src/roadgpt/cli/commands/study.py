@@ -1,0 +1,16 @@
+"""``roadgpt study``: the thesis' evaluation, and people's."""
+
+import click
+
+from roadgpt.cli import studying
+from roadgpt.cli.commands import survey_
+
+
+@click.group()
+def command() -> None:
+    """Studies of many roads, and of people who rate them."""
+
+
+command.add_command(studying.thesis)
+command.add_command(studying.alignment)
+command.add_command(survey_.command)

@@ -1,0 +1,107 @@
+"""``roadgpt study survey``: asks people how well roads match their descriptions, and tells what they said."""
+
+from pathlib import Path
+
+import click
+
+from roadgpt.cli.flags import measure
+from roadgpt.cli.options import SEED, folder, whole
+from roadgpt.errors import UsageError
+
+PORT = 8765
+FILE = "SURVEY.toml"
+ASK = "say who asks, which raters are told first: --asks 'Jane Roe, University of X' --contact jane@x.example"
+survey_folder = click.argument("directory", metavar="DIR", type=folder)
+
+
+@click.group("survey")
+def command() -> None:
+    """Ask people how well roads match their descriptions, as RoadGPT's thesis did."""
+
+
+@command.command()
+@click.argument("file", metavar="[SURVEY.toml]", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--from", "study", type=folder, metavar="STUDY_DIR", help="Draw roads out of campaigns instead."
+)
+@click.option("--out", type=folder, required=True, metavar="DIR", help="The survey's folder.")
+@click.option("--asks", default="", help="With --from: who asks; raters are told first.")
+@click.option("--contact", default="", help="With --from: where raters may ask back.")
+@click.option("--pairs", type=whole(0, 20, "a number"), default=2, show_default=True, help="With --from.")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="With --from: which roads are drawn.")
+def new(
+    file: Path | None, study: Path | None, out: Path, asks: str, contact: str, pairs: int, seed: int
+) -> None:
+    """Make a survey out of runs: plots, films and 3-D views of every road, and the questions.
+
+    SURVEY.toml names the runs; --from draws one valid road of each campaign in a folder, and pairs of roads
+    of one description, and writes a SURVEY.toml to be edited beside the survey.
+
+    \b
+    roadgpt study survey new SURVEY.toml --out my-survey
+    roadgpt study survey new --from roadgpt-runs --out my-survey --asks "Jane Roe" --contact j@x.example
+    """
+    if (file is None) == (study is None):
+        raise UsageError(f"a survey is made of a {FILE} or --from a folder of campaigns; give one of them")
+    if study is not None and not (asks.strip() and contact.strip()):
+        raise UsageError(ASK)
+    from roadgpt.study.survey.making import make
+    from roadgpt.study.survey.picking import picked
+    from roadgpt.study.survey.plan import plan_text, read_plan
+
+    plan = read_plan(file) if file else picked(study or Path(), asks, contact, seed, pairs)
+    survey = make(plan, file.parent if file else Path(), out, click.echo)
+    if study is not None:
+        (out / FILE).write_text(plan_text(plan), encoding="utf-8")
+        click.echo(f"{out / FILE} says what was drawn; edit it and make the survey of it anew")
+    if survey.lacks:
+        click.echo(f"roadgpt: {survey.lacks}", err=True)
+    click.echo(
+        f"{len(survey.items)} pages of roads in {out}; next: roadgpt study survey serve {out} --raters 10"
+    )
+
+
+@command.command()
+@survey_folder
+@click.option(
+    "--raters", type=whole(0, 10_000, "people"), default=0, help="How many get a link of their own."
+)
+@click.option("--open", "is_open", is_flag=True, help="Let everyone join who has the one shared link.")
+@click.option(
+    "--port", type=whole(0, 65_535, "a port"), default=PORT, show_default=True, help="0: a free one."
+)
+@click.option("--host", default="127.0.0.1", show_default=True, help="127.0.0.1: this machine; 0.0.0.0: all.")
+@click.option("--url", default="", help="Where raters reach the server, if it stands behind another one.")
+def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url: str) -> None:
+    """Serve a survey to people until Ctrl-C; every answer is on the disk before it is confirmed.
+
+    The same command goes on after a stop: links and answers stay.
+
+    \b
+    roadgpt study survey serve my-survey --raters 10
+    roadgpt study survey serve my-survey --open --host 0.0.0.0 --url https://survey.x.example
+    """
+    from roadgpt.study.survey.serving import serve as serve_until_stopped
+
+    serve_until_stopped(directory, click.echo, host, port, raters, is_open, url)
+
+
+@command.command()
+@survey_folder
+@click.option(
+    "--out", type=folder, metavar="DIR", help="Where the report goes; else into the survey's folder."
+)
+@click.option("--synthetic", type=whole(1, 10_000, "a number"), help="Analyse made-up raters instead.")
+@click.option("--agreement", type=measure(0, 1), default=0.8, show_default=True, help="Of made-up raters.")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="Of made-up raters.")
+def analyse(directory: Path, out: Path | None, synthetic: int | None, agreement: float, seed: int) -> None:
+    """Tell what people said: figures, medians, tests, agreement, and how the machine's measures compare.
+
+    Writes report.html, report.md, answers.csv, tables and figures. May be called while the survey is served.
+    """
+    from roadgpt.study.survey.analysis import analyse as analyse_into
+    from roadgpt.study.survey.analysis import collected
+
+    answers = collected(directory, synthetic, seed, agreement)
+    target = out or directory / ("analysis-synthetic" if synthetic else "analysis")
+    click.echo(str(analyse_into(answers, target)))

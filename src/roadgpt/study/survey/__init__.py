@@ -1,0 +1,13 @@
+"""The survey of people: RoadGPT's questionnaire, its server, and what comes of it.
+
+    SURVEY.toml or a study --make--> a folder --serve--> answers.sqlite --analyse--> report, tables, figures
+
+plan, picking     which roads; ``read_plan`` of a file, ``picked`` out of a study
+making            ``make``: plots, films, 3-D views, survey.json
+serving           ``serve``: links, server (``server``: HTTP; ``desk``: what is answered; ``pages``: as HTML)
+store, answers    the answers on the disk, and as rows
+synthetic         made-up raters, to try out the analysis
+analysis          ``analyse``: statistics, figures, report
+
+Each verb is imported from its own module, so that serving need not wait for what draws.
+"""

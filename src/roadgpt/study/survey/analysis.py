@@ -1,0 +1,125 @@
+"""What a survey brought: figures, tables and a report, out of people's answers or of made-up ones."""
+
+from pathlib import Path
+
+from roadgpt import __version__
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.report.page import Block, Page, Section, write
+from roadgpt.run.atomic import write_whole
+from roadgpt.study.survey import sections
+from roadgpt.study.survey.answers import Answers, answers_in, csv_of
+from roadgpt.study.survey.bars import about_bars, rating_bars
+from roadgpt.study.survey.store import ANSWERS, Store
+from roadgpt.study.survey.survey import read_survey
+from roadgpt.study.survey.synthetic import synthetic
+from roadgpt.study.survey.tally import Tally, about_counts, tally
+
+FIGURES = "figures"
+TABLES = {"people": "answers.csv", "synthetic": "answers-synthetic.csv"}
+MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this is a trial of the analysis and no data."
+
+
+def collected(
+    folder: Path | str, number: int | None = None, seed: int = 0, agreement: float = 0.8
+) -> Answers:
+    """The answers of a survey's folder, or of made-up raters; for those the file of answers is not opened.
+
+    Args:
+        folder: of the survey.
+        number: of made-up raters; None: people's answers.
+        seed, agreement: of made-up raters.
+
+    Raises:
+        UsageError: there is no survey, or nobody has answered yet.
+    """
+    folder = Path(folder)
+    survey = read_survey(folder)
+    if number is not None:
+        return synthetic(survey, number, seed, agreement)
+    if not (folder / ANSWERS).is_file():
+        raise UsageError(f"nobody was invited yet; say: roadgpt study survey serve {folder} --raters 10")
+    store = Store(folder / ANSWERS)
+    try:
+        answers = answers_in(store, survey)
+    finally:
+        store.close()
+    if not answers.rows:
+        raise UsageError(
+            f"nobody has answered yet ({answers.agreed} of {answers.invited} agreed to take part); "
+            "--synthetic 30 tries out the analysis with made-up raters"
+        )
+    return answers
+
+
+def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
+    """Write ``report.html`` and ``.md``, ``answers.csv``, ``tables/`` and ``figures/`` into a folder.
+
+    Returns:
+        Where the HTML page lies.
+
+    Raises:
+        UsageError: the folder holds the other kind of answers: people's and made-up ones are never mixed.
+        RoadGPTError: a file cannot be written.
+    """
+    out = Path(out)
+    other = TABLES["people" if answers.source == "synthetic" else "synthetic"]
+    if (out / other).exists():
+        raise UsageError(
+            f"{out} holds an analysis of {'people' if answers.source == 'synthetic' else 'made-up raters'}; "
+            "the two are kept apart, so name another folder with --out"
+        )
+    try:
+        (out / FIGURES).mkdir(parents=True, exist_ok=True)
+        write_whole(out / TABLES[answers.source], csv_of(answers.rows))
+        page = page_of(answers, out / FIGURES, command)
+    except OSError as error:
+        raise RoadGPTError(
+            f"cannot write into {out}: {error.strerror or error}; name another folder with --out"
+        ) from error
+    return write(page, out)
+
+
+def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
+    """The report; its figures are drawn into a folder that exists."""
+    is_synthetic = answers.source == "synthetic"
+    match, alike = tally(answers, "alignment"), tally(answers, "similarity")
+    told = sections.Told(is_synthetic)
+    about = about_counts(answers)
+    who: list[Block] = [told.numbers(answers)]
+    if about:
+        drawn = about_bars(about, figures, is_synthetic)
+        who += [told.figure(drawn, "Who answered: how many gave each answer."), told.about(about)]
+    parts = [Section("Who answered", who)]
+    for title, found in (
+        ("Do roads match their descriptions?", match),
+        ("How similar are two roads?", alike),
+    ):
+        if found.units:
+            parts.append(Section(title, _part(told, found, figures, is_synthetic)))
+    parts.append(Section("Do raters agree?", [told.agreement([match, alike])]))
+    parts.append(Section("People and the machine", told.machine([match, alike])))
+    parts.append(Section("Remarks", [told.remarks(answers)]))
+    return Page(
+        title=f"{'SYNTHETIC: ' if is_synthetic else ''}{answers.survey.title}",
+        lead=MADE_UP if is_synthetic else "What people said.",
+        summary=[*([MADE_UP] if is_synthetic else []), *sections.summary(answers, match, alike)],
+        sections=parts,
+        card=_card(answers, command),
+    )
+
+
+def _part(told: sections.Told, found: Tally, figures: Path, is_synthetic: bool) -> list[Block]:
+    drawn = rating_bars(found, figures, is_synthetic)
+    caption = "Every answer; the middle answer is centred on zero, and the numbers are raters."
+    return [told.figure(drawn, caption), told.ratings(found), *told.differences(found)]
+
+
+def _card(answers: Answers, command: str) -> dict[str, str]:
+    return {
+        "asked by": answers.survey.asks,
+        "answers of": "made-up raters" if answers.source == "synthetic" else "people",
+        "tests": "Friedman with Conover's post-hoc test (Holm), Wilcoxon, Spearman; Krippendorff's alpha, "
+        "ordinal; intervals of shares: Wilson, 95 %",
+        "RoadGPT": __version__,
+        **({"command": command} if command else {}),
+    }

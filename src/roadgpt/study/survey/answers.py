@@ -1,0 +1,138 @@
+"""The answers of a survey as rows, one per answer; what is exported and analysed."""
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from roadgpt.study.survey.order import pages_for
+from roadgpt.study.survey.questions import CHECK, MATCHES, Part
+from roadgpt.study.survey.store import Store
+from roadgpt.study.survey.survey import Survey
+
+Source = Literal["people", "synthetic"]
+Attention = Literal["passed", "failed", "not asked", "not answered"]
+HEADS = (
+    "source", "rater", "attention", "part", "item", "prompt", "criterion", "question", "answer", "score",
+    "page_of_rater",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Row:
+    """One answer of one rater."""
+
+    source: Source
+    rater: str
+    attention: Attention
+    part: Part
+    item: str
+    prompt: str
+    criterion: str
+    """"overall" or what else a rating is about; empty for all that is no rating."""
+    question: str
+    answer: str
+    score: int | None
+    """Of a rating, 1 to 5."""
+    page_of_rater: int
+    """Number of the page on which this rater was asked."""
+
+
+@dataclass(frozen=True)
+class Answers:
+    """All that a survey brought."""
+
+    survey: Survey
+    source: Source
+    rows: tuple[Row, ...]
+    invited: int
+    agreed: int
+    withdrawn: int
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Raters who failed the attention check, whose answers are left out of the analysis."""
+        return tuple(sorted({row.rater for row in self.rows if row.attention == "failed"}))
+
+    @property
+    def used(self) -> tuple[Row, ...]:
+        """What is analysed."""
+        return tuple(row for row in self.rows if row.attention != "failed")
+
+    @property
+    def unchecked(self) -> tuple[str, ...]:
+        """Raters with answers who left the attention check out; they are analysed."""
+        return tuple(sorted({row.rater for row in self.rows if row.attention == "not answered"}))
+
+    @property
+    def finished(self) -> int:
+        """Raters who rated every road, of those who are analysed."""
+        asked = {
+            question.id for item in self.survey.items for question in item.questions if question.is_rating
+        }
+        by_rater: dict[str, set[str]] = {}
+        for row in self.used:
+            by_rater.setdefault(row.rater, set()).add(row.question)
+        return sum(asked <= given for given in by_rater.values())
+
+
+def answers_in(store: Store, survey: Survey) -> Answers:
+    """Everything that people answered and did not withdraw."""
+    raters = store.raters()
+    given = {rater.digest: store.answers_of(rater) for rater in raters if rater.state == "agreed"}
+    states = [rater.state for rater in raters]
+    return gathered(survey, given, "people", len(raters), states.count("withdrawn"))
+
+
+def gathered(
+    survey: Survey, given: Mapping[str, Mapping[str, str]], source: Source, invited: int, withdrawn: int = 0
+) -> Answers:
+    """Answers out of what each rater (by digest) said to each question."""
+    rows = [row for digest in sorted(given) for row in _rows(survey, digest, given[digest], source)]
+    return Answers(survey, source, tuple(rows), invited, len(given), withdrawn)
+
+
+def _rows(survey: Survey, digest: str, given: Mapping[str, str], source: Source) -> list[Row]:
+    attention = _attention(survey, given)
+    return [
+        Row(
+            source=source,
+            rater=digest[:8],
+            attention=attention,
+            part=page.part,
+            item=page.item.id if page.item else "",
+            prompt=page.item.prompt if page.item else "",
+            criterion=question.criterion,
+            question=question.id,
+            answer=given[question.id],
+            score=question.score(given[question.id]) if question.is_rating else None,
+            page_of_rater=number,
+        )
+        for number, page in enumerate(pages_for(survey, digest), 1)
+        for question in page.questions
+        if question.id in given
+    ]
+
+
+def _attention(survey: Survey, given: Mapping[str, str]) -> Attention:
+    if not survey.has_check:
+        return "not asked"
+    if "check" not in given:
+        return "not answered"
+    return "passed" if given["check"] == MATCHES[CHECK] else "failed"
+
+
+def csv_of(rows: Sequence[Row]) -> str:
+    """All rows as CSV. Cells that a spreadsheet would take for a formula begin with an apostrophe."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(HEADS)
+    for row in rows:
+        writer.writerow([safe(getattr(row, head)) for head in HEADS])
+    return text.getvalue()
+
+
+def safe(value: str | int | None) -> str | int | None:
+    """What no spreadsheet takes for a formula."""
+    return f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t") else value

@@ -1,0 +1,172 @@
+"""Diverging stacked bars of ratings, and bars of who answered: for the report, and for papers.
+
+Each bar is all answers about one road in one criterion, its middle answer centred on zero: what lies to the
+right speaks for the road.
+"""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from roadgpt.report.canvas import BLUE, FAINT, INK, SOFT, VERMILLION, dress, in_our_style, new_figure, save
+from roadgpt.report.lettering import fitted
+from roadgpt.run.atomic import write_whole
+from roadgpt.study.survey.tally import Tally, Unit
+
+# from orange to blue, told apart by colour-blind people too; every piece has its number in it
+SHADES = ("#c2510a", "#efb184", "#c9ccd1", "#8fc1e3", "#0a69a8")
+ON_SHADES = ("white", "#1b1e23", "#1b1e23", "#1b1e23", "white")
+WIDE, LEFT, RIGHT = 9.6, 3.1, 0.75  # inches
+ROW, GAP, HEAD = 0.33, 0.22, 0.34  # inches: of a bar, before an item, of its description
+TOP, BOTTOM = 0.95, 0.62  # inches
+SMALLEST = 4.0  # percent of a bar that has room for its number
+PAPER = {INK: "var(--ink)", SOFT: "var(--soft)", FAINT: "var(--line)"}
+MADE_UP = "SYNTHETIC: made-up raters, no data of people"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A figure, as it stands in the page."""
+
+    name: str
+    svg: str
+
+
+@in_our_style
+def rating_bars(found: Tally, folder: Path, is_synthetic: bool) -> Drawn:
+    """Draw all ratings of one part, item by item."""
+    items = list(dict.fromkeys(unit.item.id for unit in found.units))
+    high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW
+    figure = new_figure(WIDE, high)
+    figure.patch.set_alpha(0)
+    axes: Axes = figure.add_axes(
+        (LEFT / WIDE, BOTTOM / high, (WIDE - LEFT - RIGHT) / WIDE, (high - TOP - BOTTOM) / high)
+    )
+    dress(axes)
+    axes.patch.set_alpha(0)
+    axes.set(xlim=(-100, 100), ylim=(high - TOP - BOTTOM, 0))
+    axes.set_yticks([])
+    ticks = range(-100, 101, 50)
+    axes.set_xticks(ticks, [f"{abs(tick)} %" for tick in ticks])
+    axes.grid(axis="x", color=FAINT, lw=0.8)
+    axes.axvline(0, color=SOFT, lw=0.9)
+    axes.set_axisbelow(True)
+    for side in ("left", "right", "top"):
+        axes.spines[side].set_visible(False)
+    says = ("does not match", "matches") if found.part == "alignment" else ("different", "similar")
+    axes.set_xlabel(f"← {says[0]}     share of raters     {says[1]} →")
+    y = 0.0
+    for item in items:
+        own = [unit for unit in found.units if unit.item.id == item]
+        y += GAP
+        title = fitted(f"“{own[0].item.prompt}”", WIDE - LEFT - 0.1 + LEFT - 0.2, 10, True)
+        axes.text(
+            (0.12 - LEFT) / (WIDE - LEFT - RIGHT), y + HEAD / 2, title, size=10, weight="bold", color=INK,
+            va="center", transform=axes.get_yaxis_transform(), parse_math=False,
+        )  # fmt: skip
+        y += HEAD
+        for unit in own:
+            _bar(axes, unit, y + ROW / 2)
+            y += ROW
+    _legend(figure, found.units[0].question.answers, high)
+    return _finished(figure, found.part, folder, is_synthetic)
+
+
+def _bar(axes: Axes, unit: Unit, y: float) -> None:
+    counts = unit.counts
+    label = "in general" if unit.criterion == "overall" else unit.criterion
+    across = axes.get_yaxis_transform()
+    style: dict[str, Any] = {"size": 9.5, "va": "center", "transform": across, "parse_math": False}
+    axes.text(-0.015, y, fitted(label, LEFT - 0.3, 9.5), color=INK, ha="right", **style)
+    axes.text(1.015, y, f"n = {unit.number}", color=SOFT, ha="left", **style)
+    if not unit.number:
+        return
+    shares = [100 * count / unit.number for count in counts]
+    at = -(shares[0] + shares[1] + shares[2] / 2)
+    for share, count, shade, on in zip(shares, counts, SHADES, ON_SHADES, strict=True):
+        axes.barh(y, share, ROW * 0.78, left=at, color=shade, lw=0)
+        if share >= SMALLEST:
+            axes.text(at + share / 2, y, str(count), size=9, color=on, ha="center", va="center")
+        at += share
+
+
+def _legend(figure: Figure, answers: Sequence[str], high: float) -> None:
+    patches = [Patch(fc=shade, label=answer) for shade, answer in zip(SHADES, answers, strict=True)]
+    legend = figure.legend(
+        handles=patches, loc="upper left", bbox_to_anchor=(0.005, 1 - 0.28 / high), ncols=3, fontsize=8.5,
+        frameon=False, handlelength=1.1, handleheight=1.1, columnspacing=1.4, labelcolor=INK,
+    )  # fmt: skip
+    legend.set_in_layout(False)
+
+
+@in_our_style
+def about_bars(
+    counts: Sequence[tuple[str, Sequence[tuple[str, int]]]], folder: Path, is_synthetic: bool
+) -> Drawn:
+    """Draw who answered: for every question the number of each answer."""
+    rows = -(-len(counts) // 2)
+    heights = [
+        max(len(each[1]) for each in counts[2 * row : 2 * row + 2]) * 0.25 + 0.62 for row in range(rows)
+    ]
+    high = sum(heights) + 0.4
+    figure = new_figure(WIDE, high)
+    figure.patch.set_alpha(0)
+    most = max((count for _, answers in counts for _, count in answers), default=1)
+    top = high - 0.35
+    for number, (text, answers) in enumerate(counts):
+        row, column = divmod(number, 2)
+        tall = len(answers) * 0.25
+        left = 1.75 + column * WIDE / 2
+        upper = top - sum(heights[:row]) - 0.38
+        axes: Axes = figure.add_axes((left / WIDE, (upper - tall) / high, 2.6 / WIDE, tall / high))
+        axes.patch.set_alpha(0)
+        axes.set(xlim=(0, most * 1.12), ylim=(len(answers) - 0.5, -0.5))
+        axes.axis("off")
+        style: dict[str, Any] = {"size": 9.5, "va": "center", "color": INK, "parse_math": False}
+        for y, (answer, count) in enumerate(answers):
+            axes.barh(y, count, 0.7, color=BLUE if count else "none", lw=0)
+            axes.text(-0.02 * most, y, fitted(answer, 1.6, 9.5), ha="right", **style)
+            axes.text(count + 0.02 * most, y, str(count), ha="left", **style)
+        title = fitted(text, WIDE / 2 - 0.3, 10, True)
+        figure.text((left - 1.6) / WIDE, (upper + 0.16) / high, title, size=10, weight="bold", color=INK)
+    return _finished(figure, "raters", folder, is_synthetic)
+
+
+def _finished(figure: Figure, name: str, folder: Path, is_synthetic: bool) -> Drawn:
+    """Write it as PNG, PDF and SVG; in the page its ink is the page's."""
+    if is_synthetic:
+        figure.text(0.995, 0.995, MADE_UP, size=10, weight="bold", color=VERMILLION, ha="right", va="top")
+        figure.text(
+            0.62, 0.5, "SYNTHETIC", size=54, weight="bold", color=VERMILLION, alpha=0.16, ha="center",
+            va="center", rotation=18, zorder=50,
+        )  # fmt: skip
+    svg = _text(figure)
+    write_whole(folder / f"{name}.svg", svg)
+    figure.patch.set_alpha(1)
+    _written(figure, folder / f"{name}.pdf")
+    save(figure, folder / f"{name}.png")
+    inside = svg[svg.index("<svg") :]
+    for colour, variable in PAPER.items():
+        inside = inside.replace(colour, variable)
+    # on a phone it is scrolled and not shrunk
+    return Drawn(name, inside.replace("<svg ", '<svg style="min-width: 38rem" ', 1))
+
+
+def _text(figure: Figure) -> str:
+    data = io.StringIO()
+    with rc_context({"svg.hashsalt": "roadgpt", "svg.fonttype": "path"}):
+        figure.savefig(data, format="svg", metadata={"Date": None, "Creator": None})
+    return data.getvalue()
+
+
+def _written(figure: Figure, path: Path) -> None:
+    data = io.BytesIO()
+    figure.savefig(data, format="pdf", metadata={"CreationDate": None, "Creator": None, "Producer": None})
+    write_whole(path, data.getvalue())

@@ -1,0 +1,53 @@
+"""What the machine measures on the same roads, criterion by criterion, to be held against what people say.
+
+Of a road and its description: 1 where it keeps what is asked for, else 0, by ``study.criteria``. Of two
+roads: how alike they are from 0 to 1, by ``study.similarity``. Criteria of a survey's own are not measured.
+"""
+
+from roadgpt.check.measures import measure
+from roadgpt.check.rules.promises import promises_of
+from roadgpt.errors import UsageError
+from roadgpt.run import Run
+from roadgpt.study.criteria import criteria_of_outline
+from roadgpt.study.similarity import likeness, similarity
+from roadgpt.study.survey.questions import CRITERIA, OVERALL
+
+MATCH = {
+    OVERALL: "general",
+    CRITERIA["turns"]: "turns",
+    CRITERIA["incline"]: "incline",
+    CRITERIA["order"]: "order",
+}
+ALIKE = {
+    OVERALL: "general",
+    CRITERIA["turns"]: "turns",
+    CRITERIA["incline"]: "incline",
+    CRITERIA["order"]: "sequence",
+    CRITERIA["length"]: "length",
+}
+
+
+def match(run: Run, prompt: str) -> dict[str, float]:
+    """Which criteria a road keeps; nothing for a description that is not the one it was made from."""
+    if run.road is None or run.brief is None or prompt != run.words.strip():
+        return {}
+    try:
+        found = measure(run.road.centreline())
+    except UsageError:
+        return {}
+    kept = {
+        str(name): good
+        for name, good in criteria_of_outline(found, promises_of(run.brief, run.world)).items()
+    }
+    return {ours: float(kept[theirs]) for ours, theirs in MATCH.items() if theirs in kept}
+
+
+def alike(one: Run, other: Run) -> dict[str, float]:
+    """How alike two roads are, criterion by criterion."""
+    if one.road is None or other.road is None:
+        return {}
+    try:
+        found = similarity(likeness(one.road), likeness(other.road))
+    except UsageError:
+        return {}
+    return {ours: float(getattr(found, theirs)) for ours, theirs in ALIKE.items()}

@@ -1,0 +1,183 @@
+"""Makes a survey's folder out of runs: plots, films and 3-D views of every road, and ``survey.json`` last.
+
+DIR/
+  survey.json       what is shown and asked
+  media/            plots (PNG), films (MP4) and 3-D views (HTML)
+  answers.sqlite    comes with the first rater
+"""
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.run import Run, read_run
+from roadgpt.run.atomic import json_text, sweep, write_whole
+from roadgpt.study.survey.films import WHY_NONE, are_possible, make_film
+from roadgpt.study.survey.machine import alike, match
+from roadgpt.study.survey.plan import PairPlan, Plan, RoadPlan, named
+from roadgpt.study.survey.plots import Axes, draw_plots
+from roadgpt.study.survey.questions import ABOUT
+from roadgpt.study.survey.spoken import criteria_of
+from roadgpt.study.survey.store import ANSWERS
+from roadgpt.study.survey.survey import CARD, MEDIA, Item, Medium, Survey
+from roadgpt.study.survey.views import write_view
+
+Tell = Callable[[str], None]
+PLACES = ("top", "bottom")
+CAMERAS = {"third": "film from behind the car", "bonnet": "film over the bonnet"}
+
+
+def make(plan: Plan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
+    """Make the folder of a survey; films that are there already are kept, so it goes on where it was stopped.
+
+    Args:
+        plan: what a SURVEY.toml says.
+        base: the folder from which its runs are named.
+        out: the survey's folder; another survey in it is replaced if nobody was invited to it yet.
+        tell: is told of every step.
+
+    Raises:
+        UsageError: a run cannot be used, or the folder holds answers or something else.
+        RoadGPTError: a file cannot be written.
+    """
+    out = Path(out)
+    _must_be_free(out)
+    alignment = [(road, _run(base, road.run)) for road in plan.alignment]
+    similarity = [(pair, [_run(base, name) for name in pair.runs]) for pair in plan.similarity]
+    runs = [run for _, run in alignment] + [run for _, both in similarity for run in both]
+    axes = Axes.of([run.road for run in runs if run.road is not None])
+    films = plan.films and are_possible()
+    work = _Work(out / MEDIA, axes, films, plan.views, tell)
+    try:
+        (out / MEDIA).mkdir(parents=True, exist_ok=True)
+        sweep(out / MEDIA)
+        items = [work.road(f"a{n}", road, run) for n, (road, run) in enumerate(alignment, 1)]
+        items += [work.pair(f"s{n}", pair, both) for n, (pair, both) in enumerate(similarity, 1)]
+        survey = Survey(
+            title=plan.title,
+            asks=plan.asks,
+            contact=plan.contact,
+            purpose=plan.said_purpose,
+            keeps=plan.keeps,
+            has_check=plan.attention_check,
+            about=plan.questions(ABOUT),
+            items=tuple(items),
+            lacks=WHY_NONE if plan.films and not films else "",
+        )
+        for path in (out / MEDIA).iterdir():
+            if path.name not in survey.media:
+                path.unlink()
+        write_whole(out / CARD, json_text(survey.model_dump(mode="json")))
+    except OSError as error:
+        raise RoadGPTError(
+            f"cannot write into {out}: {error.strerror or error}; make room there or name another folder"
+        ) from error
+    return survey
+
+
+def _must_be_free(out: Path) -> None:
+    if (out / ANSWERS).exists():
+        raise UsageError(f"people were invited to the survey in {out}; make the new one in another folder")
+    if out.exists() and not out.is_dir():
+        raise UsageError(f"{out} is a file; name a folder")
+    if out.is_dir() and any(path.name not in {CARD, MEDIA, "SURVEY.toml"} for path in out.iterdir()):
+        raise UsageError(f"{out} holds something else; name another folder")
+
+
+def _run(base: Path, name: str) -> Run:
+    run = read_run(base / name)
+    if run.road is None:
+        raise UsageError(f"{name} has no road ({run.description}); name another run")
+    return run
+
+
+class _Work:
+    """Makes items, and tells of it."""
+
+    def __init__(self, folder: Path, axes: Axes, has_films: bool, has_views: bool, tell: Tell) -> None:
+        self.folder, self.axes, self.tell = folder, axes, tell
+        self.has_films, self.has_views = has_films, has_views
+
+    def road(self, name: str, plan: RoadPlan, run: Run) -> Item:
+        """A road and its description."""
+        prompt = _prompt(plan.prompt or run.words, plan.run)
+        self.tell(f"{name}: {prompt}")
+        criteria = criteria_of(run.brief) if plan.criteria is None else plan.criteria
+        return Item(
+            id=name,
+            part="alignment",
+            prompt=prompt,
+            criteria=tuple(map(named, criteria)),
+            media=(*self._plots(name, run, ""), *self._films(name, [run]), *self._view(name, prompt, [run])),
+            roads=(plan.run,),
+            machine=match(run, prompt),
+        )
+
+    def pair(self, name: str, plan: PairPlan, runs: list[Run]) -> Item:
+        """Two roads of one description, one above the other."""
+        prompt = _prompt(plan.prompt or runs[0].words, plan.runs[0])
+        self.tell(f"{name}: {prompt} (two roads)")
+        plots: list[Medium] = []
+        for number, (run, place) in enumerate(zip(runs, PLACES, strict=True), 1):
+            plots += self._plots(f"{name}-{number}", run, f"Road {number} ({place}): ")
+        return Item(
+            id=name,
+            part="similarity",
+            prompt=prompt,
+            criteria=tuple(map(named, plan.criteria)),
+            media=(*plots, *self._films(name, runs), *self._view(name, prompt, runs)),
+            roads=plan.runs,
+            machine=alike(*runs),
+        )
+
+    def _plots(self, name: str, run: Run, lead: str) -> list[Medium]:
+        assert run.road is not None
+        above, height = draw_plots(run.road, run.world, self.axes, self.folder, name)
+        titles = (
+            f"{lead}bird's-eye view of the road",
+            f"{lead}height of the road over the distance along it",
+        )
+        return [
+            Medium(name=file, kind="picture", title=title[0].upper() + title[1:])
+            for file, title in zip((above, height), titles, strict=True)
+        ]
+
+    def _films(self, name: str, runs: list[Run]) -> list[Medium]:
+        if not self.has_films or any(run.drive is None for run in runs):
+            return []
+        made = []
+        for camera, said in CAMERAS.items():
+            title = said[0].upper() + said[1:] + (", road 1 and road 2 side by side" if len(runs) > 1 else "")
+            path = self.folder / f"{name}-{camera}-{_mark(runs)}.mp4"
+            if not path.is_file():
+                self.tell(f"{name}: {said}")
+                make_film(runs, path, camera)
+            made.append(Medium(name=path.name, kind="film", title=title))
+        return made
+
+    def _view(self, name: str, prompt: str, runs: list[Run]) -> list[Medium]:
+        if not self.has_views:
+            return []
+        file = f"{name}-view.html"
+        titles = [prompt] if len(runs) == 1 else [f"Road {n} ({place})" for n, place in enumerate(PLACES, 1)]
+        write_view(runs, titles, self.folder / file)
+        what = "both roads" if len(runs) > 1 else "the road"
+        return [Medium(name=file, kind="view", title=f"Look at {what} in 3-D")]
+
+
+def _prompt(words: str, name: str) -> str:
+    if not words.strip():
+        raise UsageError(
+            f'{name} was not made from a description; add prompt = "..." to it in the survey\'s file'
+        )
+    return words.strip()
+
+
+def _mark(runs: list[Run]) -> str:
+    """Another for other drives, so that a film is made again where the run is another."""
+    drives = b"".join(run.drive.to_bytes() for run in runs if run.drive is not None)
+    return hashlib.sha256(drives).hexdigest()[:10]
+
+
+__all__ = ["Tell", "make"]

@@ -1,0 +1,67 @@
+"""Picks roads for a survey out of the folder of a study: one of each description, and pairs of one."""
+
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.errors import UsageError
+from roadgpt.run import Run, read_run
+from roadgpt.run.campaign import finished
+from roadgpt.run.card import CARD
+from roadgpt.run.folder import run_folder
+from roadgpt.run.seeds import seed_of
+from roadgpt.study.survey.plan import PairPlan, Plan, RoadPlan
+from roadgpt.study.survey.spoken import criteria_of
+
+DEEPEST = 4  # folders below the study's in which campaigns are looked for
+
+
+def picked(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int = 2) -> Plan:
+    """A plan of valid roads, drawn at random out of every campaign in a folder.
+
+    Args:
+        study: a campaign's folder, or one that holds several.
+        asks: who asks.
+        contact: where raters may ask back.
+        seed: the same seed draws the same roads.
+        pairs: campaigns of which two more roads are drawn to be compared.
+
+    Raises:
+        UsageError: there is no campaign with a valid road.
+    """
+    study = Path(study).resolve()
+    alignment, similarity = list[RoadPlan](), list[PairPlan]()
+    for number, campaign in enumerate(_campaigns(study), 1):
+        drawn = _drawn(campaign, seed_of(seed, number), 3 if len(similarity) < pairs else 1)
+        if not drawn:
+            continue
+        (first, run), *others = drawn
+        alignment.append(RoadPlan(run=first, prompt=run.words, criteria=criteria_of(run.brief)))
+        two = others if len(others) == 2 else drawn
+        if len(similarity) < pairs and len(two) == 2:
+            similarity.append(PairPlan(runs=(two[0][0], two[1][0]), prompt=run.words))
+    if not alignment:
+        raise UsageError(
+            f"{study} holds no campaign with a valid road; make one: roadgpt run DESCRIPTION --out DIR"
+        )
+    return Plan(asks=asks, contact=contact, alignment=tuple(alignment), similarity=tuple(similarity))
+
+
+def _campaigns(study: Path) -> list[Path]:
+    """Folders of campaigns, in the order of their names."""
+    found = {card.parent for depth in range(DEEPEST) for card in study.glob(f"{'*/' * depth}{CARD}")}
+    return sorted(found)
+
+
+def _drawn(campaign: Path, seed: int, most: int) -> list[tuple[str, Run]]:
+    """Runs of valid roads that were made from words, drawn without repeats; driven ones first."""
+    indices = np.random.default_rng(seed).permutation(finished(campaign))
+    valid, driven = list[tuple[str, Run]](), list[tuple[str, Run]]()
+    for index in indices:
+        folder = run_folder(campaign, int(index))
+        run = read_run(folder)
+        if run.is_valid and run.words:
+            (valid if run.drive is None else driven).append((str(folder), run))
+        if len(driven) == most:
+            break
+    return (driven + valid)[:most]

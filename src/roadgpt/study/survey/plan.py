@@ -1,0 +1,141 @@
+"""SURVEY.toml: which roads people are to rate, and what they are told. Read and written here."""
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError
+
+from roadgpt.brief.model import Frozen
+from roadgpt.errors import UsageError
+from roadgpt.study.survey.questions import CRITERIA, PAIR_CRITERIA, Question
+
+Words = Annotated[str, Field(min_length=1, max_length=4000)]
+PURPOSE = (
+    "A program made roads from descriptions, for tests of self-driving cars. We want to know whether people "
+    "find that the roads match their descriptions, and how different two roads of one description are. "
+    "It takes about {minutes} minutes."
+)
+KEEPS = (
+    "Answers are kept on the computer of those who ask. They are analysed and published only in sums over "
+    "all raters and in single remarks without names."
+)
+PER_PAGE = 1.5  # minutes that a page takes, roughly: plots, films, a handful of questions
+
+
+class RoadPlan(Frozen):
+    """A road to be held against its description."""
+
+    run: Words
+    """Folder of a run, or its test.NNNN.json, from where the file lies."""
+    prompt: str = ""
+    """Empty: the words that the road was made from."""
+    criteria: tuple[Words, ...] | None = None
+    """None: those that the description speaks of."""
+
+
+class PairPlan(Frozen):
+    """Two roads of one description, to be compared."""
+
+    runs: tuple[Words, Words]
+    prompt: str = ""
+    criteria: tuple[Words, ...] = PAIR_CRITERIA
+
+
+class AboutPlan(Frozen):
+    """A question about the rater, instead of the usual ones."""
+
+    text: Words
+    answers: Annotated[tuple[Words, ...], Field(min_length=2, max_length=20)]
+
+
+class Plan(Frozen):
+    """All of a SURVEY.toml."""
+
+    title: Words = "Roads from words"
+    asks: Words
+    contact: Words
+    purpose: str = ""
+    keeps: Words = KEEPS
+    attention_check: bool = True
+    films: bool = True
+    views: bool = True
+    about: Annotated[tuple[AboutPlan, ...], Field(max_length=30)] | None = None
+    """None: the thesis' six; an empty list: none."""
+    alignment: Annotated[tuple[RoadPlan, ...], Field(max_length=200)] = ()
+    similarity: Annotated[tuple[PairPlan, ...], Field(max_length=200)] = ()
+
+    @property
+    def said_purpose(self) -> str:
+        """What raters are told of the purpose."""
+        if self.purpose:
+            return self.purpose
+        minutes = round(PER_PAGE * (len(self.alignment) + len(self.similarity)) + 2)
+        return PURPOSE.format(minutes=minutes)
+
+    def questions(self, usual: tuple[Question, ...]) -> tuple[Question, ...]:
+        """What raters are asked about themselves."""
+        if self.about is None:
+            return usual
+        return tuple(
+            Question(id=f"about.{number}", text=each.text, answers=each.answers)
+            for number, each in enumerate(self.about, 1)
+        )
+
+
+def read_plan(path: Path | str) -> Plan:
+    """What a SURVEY.toml says.
+
+    Raises:
+        UsageError: it is not there, no TOML, or says something that a survey cannot have.
+    """
+    path = Path(path)
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(
+            f"{path} cannot be read ({error.strerror or error}); name the file of a survey"
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"{path} is no TOML ({error}); mend it") from error
+    try:
+        plan = Plan.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part + 1 if isinstance(part, int) else part) for part in first["loc"])
+        raise UsageError(f"{path}: {where}: {first['msg'].lower()}; mend the file") from error
+    if not plan.alignment and not plan.similarity:
+        raise UsageError(f'{path} names no road; add [[alignment]] with run = "DIR/runs/0001"')
+    return plan
+
+
+def named(criterion: str) -> str:
+    """A criterion as raters read it: ``turns`` is short for the number of turns."""
+    return CRITERIA.get(criterion, criterion)
+
+
+def plan_text(plan: Plan) -> str:
+    """A SURVEY.toml that says the same, to be edited."""
+    own: dict[str, Any] = plan.model_dump(mode="json", exclude={"about", "alignment", "similarity"})
+    own["purpose"] = plan.said_purpose
+    lines = ["# The survey. Change it and say: roadgpt study survey new SURVEY.toml --out DIR"]
+    lines += [f"{name} = {_toml(value)}" for name, value in own.items()]
+    for name, items in (
+        ("about", plan.about or ()),
+        ("alignment", plan.alignment),
+        ("similarity", plan.similarity),
+    ):
+        for item in items:
+            lines += ["", f"[[{name}]]"]
+            lines += [
+                f"{key} = {_toml(value)}"
+                for key, value in item.model_dump(mode="json").items()
+                if value is not None
+            ]
+    return "\n".join(lines) + "\n"
+
+
+def _toml(value: Any) -> str:
+    """Texts, truth and lists of texts are written in JSON as in TOML, but for one control character."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

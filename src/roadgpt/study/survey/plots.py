@@ -1,0 +1,101 @@
+"""The two plots of a road as raters see them: all roads of a survey on the same axes, and no verdict on them.
+
+As in RoadGPT's thesis the axes are neutral: no road fills its plot more than another. Roads that fit are
+shown on the thesis' own (x and y from 0 to 220 m, 200 m along the road, 20 m of height).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+from roadgpt.report.birds_eye import THESIS
+from roadgpt.report.canvas import FAINT, INK, SOFT, add_axes, in_our_style, new_figure, save
+from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
+from roadgpt.report.labels import Labels
+from roadgpt.report.scenery import GROUND, Array, Frame, draw_ends, draw_road, stations_of
+from roadgpt.road import Road, World
+
+SIDE = 4.2  # inches of both plots, so that they can be read on a phone
+LEFT, BOTTOM, RIGHT, TOP = 0.72, 0.58, 0.2, 0.16  # inches
+MARGIN = 12.0  # m around the roads, where they do not fit on the thesis' axes
+STEPS = (10, 20, 25, 50, 100, 200, 500, 1000, 2000, 5000)  # m between lines of the grid
+
+
+@dataclass(frozen=True)
+class Axes:
+    """What all plots of a survey show, metres."""
+
+    frame: Frame
+    along: float
+    height: float
+
+    @classmethod
+    def of(cls, roads: Sequence[Road]) -> "Axes":
+        """The thesis' axes if every road fits, else the smallest square and the longest road."""
+        lines = [road.at(stations_of(road)) for road in roads]
+        points = np.concatenate(lines)[:, :2]
+        frame = THESIS
+        if not all(frame.holds(*point) for point in points[::5]):
+            low, high = points.min(axis=0) - MARGIN, points.max(axis=0) + MARGIN
+            x, y = (low + high) / 2
+            half = float(np.max(high - low)) / 2
+            frame = Frame(x - half, x + half, y - half, y + half)
+        along = max(THESIS_X, *(road.length * 1.02 for road in roads))
+        return cls(frame, along, max(THESIS_Z, *(float(np.ptp(line[:, 2])) * 1.05 for line in lines)))
+
+
+@in_our_style
+def draw_plots(road: Road, world: World, axes: Axes, folder: Path, name: str) -> tuple[str, str]:
+    """Write ``NAME-above.png`` and ``NAME-height.png``; gives their names."""
+    above, height = f"{name}-above.png", f"{name}-height.png"
+    save(_above(road, world, axes.frame), folder / above)
+    save(_heights(road, axes), folder / height)
+    return above, height
+
+
+def _above(road: Road, world: World, frame: Frame) -> Figure:
+    figure = new_figure(LEFT + SIDE + RIGHT, BOTTOM + SIDE + TOP)
+    axes = add_axes(figure, LEFT, BOTTOM, RIGHT, TOP)
+    axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
+    axes.set_xlabel("x, metres east")
+    axes.set_ylabel("y, metres north")
+    axes.set_facecolor(GROUND)
+    step = next((step for step in STEPS if frame.width / step <= 8), STEPS[-1])
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MultipleLocator(step))
+    axes.grid(color="white", lw=0.8, zorder=0.5)
+    axes.set_axisbelow(True)
+    draw_road(axes, road, world, frame.width / SIDE)
+    draw_ends(axes, road, world)
+    centre = road.at(stations_of(road))[:, :2]
+    labels = Labels(axes, frame, frame.width / SIDE, centre, world.lane_width + 1.0)
+    for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
+        heading = float(road.heading(s))
+        x, y, _ = road.at(s)
+        labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
+    return figure
+
+
+def _heights(road: Road, shown: Axes) -> Figure:
+    """Height above the lowest point over the distance along the road."""
+    s = stations_of(road)
+    z: Array = road.at(s)[:, 2]
+    z = z - z.min()
+    figure = new_figure(LEFT + SIDE + RIGHT, BOTTOM + SIDE + TOP)
+    axes = add_axes(figure, LEFT, BOTTOM, RIGHT, TOP)
+    axes.set(xlim=(0, shown.along), ylim=(0, shown.height))
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
+    axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    axes.set_xlabel("distance along the road, m")
+    axes.set_ylabel("height above the lowest point, m")
+    axes.grid(color=FAINT, lw=0.8)
+    axes.set_axisbelow(True)
+    axes.fill_between(s, z, 0, color=EARTH, lw=0)
+    (surface,) = axes.plot(s, z, color=SURFACE, lw=2.6, solid_capstyle="round", zorder=4)
+    surface.set_clip_box(axes.bbox.padded(4))
+    axes.plot([road.length, road.length], [0, z[-1]], color=SOFT, lw=1, ls=(0, (3, 3)), zorder=3)
+    return figure

@@ -1,0 +1,113 @@
+"""Opens a survey to its raters: links, the server, and an end that loses nothing."""
+
+import ipaddress
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.run.atomic import write_whole
+from roadgpt.study.survey.desk import Desk
+from roadgpt.study.survey.server import Server
+from roadgpt.study.survey.store import ANSWERS, MOST_RATERS, Store
+from roadgpt.study.survey.survey import read_survey
+
+LINKS = "links.txt"
+OPEN_DOOR = (
+    "everyone who can reach this machine can reach the survey, and what they send can be read on its way; "
+    "put a server that speaks HTTPS in front of it, and name its address with --url"
+)
+Tell = Callable[[str], None]
+
+
+def opened(folder: Path | str, host: str, port: int, is_open: bool = False) -> Server:
+    """A server of the survey in a folder, which listens already; ``serve_forever`` makes it answer.
+
+    Raises:
+        UsageError: there is no survey, or nobody can listen there.
+        RoadGPTError: its answers cannot be opened.
+    """
+    folder = Path(folder).resolve()
+    survey = read_survey(folder)
+    store = Store(folder / ANSWERS)
+    try:
+        return Server(Desk(folder, survey, store, store.shared() if is_open else ""), host, port)
+    except BaseException:
+        store.close()
+        raise
+
+
+def serve(
+    folder: Path | str,
+    tell: Tell,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    raters: int = 0,
+    is_open: bool = False,
+    url: str = "",
+) -> None:
+    """Serve until Ctrl-C; links of raters are told, and written into ``links.txt``.
+
+    Args:
+        folder: of the survey.
+        tell: is told links and counts.
+        host: the address to listen on.
+        port: 0: one that is free.
+        raters: how many are to have a link of their own, those from earlier included.
+        is_open: may anyone join by one shared link?
+        url: where raters reach the server, if not at host and port.
+
+    Raises:
+        UsageError, RoadGPTError: as for ``opened``.
+    """
+    server = opened(folder, host, port, is_open)
+    store = server.desk.store
+    try:
+        base = url.rstrip("/") or f"http://{_shown(host)}:{server.server_address[1]}"
+        if not _is_own(host):
+            tell(f"roadgpt: {OPEN_DOOR}")
+        for line in _invited(Path(folder), store, raters, base):
+            tell(line)
+        if is_open:
+            tell(f"for everyone: {base}/join/{server.desk.shared}")
+        if not store.links() and not is_open:
+            tell("nobody is invited yet; say --raters N for links, or --open for one link for all")
+        tell(f"serving {server.desk.survey.title!r} at {base}; end it with Ctrl-C")
+        server.serve_forever()
+    finally:
+        server.server_close()
+        states = [rater.state for rater in store.raters()]
+        store.close()
+        tell(f"{states.count('agreed')} of {len(states)} raters agreed so far; all answers are in {folder}")
+
+
+def _invited(folder: Path, store: Store, wanted: int, base: str) -> list[str]:
+    """Links of all raters, new ones among them, written and told."""
+    path = folder / LINKS
+    tokens = re.findall(r"/r/([\w-]+)\s*$", path.read_text("utf-8"), re.M) if path.is_file() else []
+    tokens = [token for token in tokens if store.rater_of(token) is not None]
+    there = store.links()
+    if wanted > MOST_RATERS:
+        raise UsageError(f"{wanted} raters are too many; a survey takes {MOST_RATERS:,}")
+    tokens += [store.add_rater() for _ in range(wanted - there)]
+    if not tokens:
+        return [f"{there} links were made earlier; {path}, which held them, is gone"] if there else []
+    links = [f"{base}/r/{token}" for token in tokens]
+    try:
+        write_whole(path, "\n".join(links) + "\n")
+        path.chmod(0o600)
+    except OSError as error:
+        raise RoadGPTError(f"cannot write {path}: {error.strerror or error}; make room there") from error
+    return [*links, f"one link for each rater; they stand in {path}, too"]
+
+
+def _is_own(host: str) -> bool:
+    """Is it an address that only this machine reaches?"""
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _shown(host: str) -> str:
+    return f"[{host}]" if ":" in host else host

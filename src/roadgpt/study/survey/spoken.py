@@ -1,0 +1,30 @@
+"""What a description speaks of, and therefore what raters are asked about: turns, incline, order."""
+
+from roadgpt.brief.model import Brief, Clause
+
+STRAIGHTS = frozenset({"straight", "crest", "dip"})
+HAVE_NO_NUMBER = frozenset({"serpentine", "zigzag", "slalom", "winding"})
+RISES = frozenset({"crest", "dip"})
+
+
+def criteria_of(brief: Brief | None) -> tuple[str, ...]:
+    """Criteria of a description; none of a general one, which is rated as a whole only, as in the thesis."""
+    if brief is None:
+        return ()
+    clauses = [*brief.clauses, *filter(None, (brief.starts, brief.ends))]
+    counts = bool(brief.turns or brief.left or brief.right) or any(map(_has_a_number, clauses))
+    rises = bool(brief.slope or brief.incline or brief.steepest or brief.climb or brief.hills) or any(
+        clause.slope or clause.incline or clause.kind in RISES for clause in clauses
+    )
+    return (
+        *(["turns"] if counts else []),
+        *(["incline"] if rises else []),
+        *(["order"] if len(clauses) > 1 else []),
+    )
+
+
+def _has_a_number(clause: Clause) -> bool:
+    """Does it say how many turns there are?"""
+    if clause.kind in STRAIGHTS:
+        return False
+    return clause.kind not in HAVE_NO_NUMBER or clause.count.lo != 1 or clause.count.hi != 1

@@ -1,0 +1,176 @@
+"""The answers of a survey in one SQLite file: what was confirmed is on the disk, whatever happens to us.
+
+raters   digest (SHA-256 of the token: the token itself is not kept here), state, day on which they agreed,
+         whether they joined by the shared link
+doors    the token of the shared link, where the survey is open
+answers  rater, question, value
+"""
+
+import hashlib
+import hmac
+import secrets
+import sqlite3
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Literal
+
+from roadgpt.errors import RoadGPTError
+
+ANSWERS = "answers.sqlite"
+TOKEN_BYTES = 24
+MOST_RATERS = 10_000
+State = Literal["invited", "agreed", "withdrawn"]
+TABLES = """
+CREATE TABLE IF NOT EXISTS raters (
+    digest TEXT PRIMARY KEY, state TEXT NOT NULL DEFAULT 'invited', agreed_on TEXT, joined INTEGER NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS doors (token TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS answers (
+    rater TEXT NOT NULL REFERENCES raters (digest), question TEXT NOT NULL, value TEXT NOT NULL,
+    PRIMARY KEY (rater, question)
+) WITHOUT ROWID;
+"""
+
+
+@dataclass(frozen=True)
+class Rater:
+    """Someone who was invited; nothing but the digest of their token tells who."""
+
+    digest: str
+    state: State
+    agreed_on: str | None = None
+    """Day, as 2026-01-31."""
+
+    @property
+    def code(self) -> str:
+        """What they are called in tables."""
+        return self.digest[:8]
+
+
+NOBODY = Rater("0" * 64, "invited")
+
+
+class Store:
+    """The file of answers; may be used by many threads, and by several processes at once."""
+
+    def __init__(self, path: Path | str) -> None:
+        self._lock = threading.Lock()
+        try:
+            self._file = sqlite3.connect(path, timeout=30, isolation_level=None, check_same_thread=False)
+            # FULL waits for the disk at every commit; deleted answers are overwritten and not only let go
+            for pragma in ("journal_mode=WAL", "synchronous=FULL", "secure_delete=ON", "foreign_keys=ON"):
+                self._file.execute(f"PRAGMA {pragma}")
+            self._file.executescript(TABLES)
+        except sqlite3.Error as error:
+            raise RoadGPTError(
+                f"the answers in {path} cannot be opened ({error}); look at the file"
+            ) from error
+
+    def close(self) -> None:
+        """Close the file."""
+        with self._lock:
+            self._file.close()
+
+    def add_rater(self, joined: bool = False) -> str:
+        """Invite somebody, or let somebody join; gives their token, which is kept nowhere here."""
+        token = secrets.token_urlsafe(TOKEN_BYTES)
+        with self._writing() as file:
+            file.execute("INSERT INTO raters (digest, joined) VALUES (?, ?)", (digest_of(token), joined))
+        return token
+
+    def rater_of(self, token: str) -> Rater | None:
+        """Whose token it is; None where it is nobody's. Takes as long for every token that is nobody's."""
+        digest = digest_of(token)
+        with self._lock:
+            row = self._file.execute(
+                "SELECT digest, state, agreed_on FROM raters WHERE digest = ?", (digest,)
+            ).fetchone()
+        rater = Rater(*row) if row else NOBODY
+        return rater if hmac.compare_digest(rater.digest, digest) else None
+
+    def shared(self) -> str:
+        """The token of the shared link; the same whenever it is asked for."""
+        with self._writing() as file:
+            row = file.execute("SELECT token FROM doors").fetchone()
+            token = str(row[0]) if row else secrets.token_urlsafe(TOKEN_BYTES)
+            if not row:
+                file.execute("INSERT INTO doors VALUES (?)", (token,))
+        return token
+
+    def links(self) -> int:
+        """How many were given a link of their own."""
+        with self._lock:
+            return int(self._file.execute("SELECT count(*) FROM raters WHERE NOT joined").fetchone()[0])
+
+    def raters(self) -> list[Rater]:
+        """All who were invited."""
+        with self._lock:
+            rows = self._file.execute(
+                "SELECT digest, state, agreed_on FROM raters ORDER BY digest"
+            ).fetchall()
+        return [Rater(*row) for row in rows]
+
+    def agree(self, rater: Rater) -> None:
+        """The rater agreed to take part, today; no effect for one who withdrew."""
+        with self._writing() as file:
+            file.execute(
+                "UPDATE raters SET state = 'agreed', agreed_on = ? WHERE digest = ? AND state = 'invited'",
+                (datetime.now(UTC).date().isoformat(), rater.digest),
+            )
+
+    def save(self, rater: Rater, answers: Mapping[str, str]) -> bool:
+        """Keep answers, all or none; an empty one takes an earlier one back. On the disk when this returns.
+
+        Returns:
+            Whether they were kept: answers of someone who has not agreed, or who withdrew, are not.
+        """
+        with self._writing() as file:
+            state = file.execute("SELECT state FROM raters WHERE digest = ?", (rater.digest,)).fetchone()
+            if state != ("agreed",):
+                return False
+            file.executemany(
+                "INSERT INTO answers VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value",
+                [(rater.digest, question, value) for question, value in answers.items() if value],
+            )
+            file.executemany(
+                "DELETE FROM answers WHERE rater = ? AND question = ?",
+                [(rater.digest, question) for question, value in answers.items() if not value],
+            )
+        return True
+
+    def answers_of(self, rater: Rater) -> dict[str, str]:
+        """What a rater answered, by question."""
+        with self._lock:
+            rows = self._file.execute("SELECT question, value FROM answers WHERE rater = ?", (rater.digest,))
+            return dict(rows.fetchall())
+
+    def withdraw(self, rater: Rater) -> None:
+        """Delete all answers of a rater for good: their bytes are overwritten in file and journal."""
+        with self._writing() as file:
+            file.execute("DELETE FROM answers WHERE rater = ?", (rater.digest,))
+            file.execute(
+                "UPDATE raters SET state = 'withdrawn', agreed_on = NULL WHERE digest = ?", (rater.digest,)
+            )
+        with self._lock:
+            self._file.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+
+    @contextmanager
+    def _writing(self) -> Iterator[sqlite3.Connection]:
+        with self._lock:
+            self._file.execute("BEGIN IMMEDIATE")
+            try:
+                yield self._file
+                self._file.execute("COMMIT")
+            except BaseException:
+                if self._file.in_transaction:
+                    self._file.execute("ROLLBACK")
+                raise
+
+
+def digest_of(token: str) -> str:
+    """SHA-256, hexadecimal."""
+    return hashlib.sha256(token.encode("utf-8", "surrogatepass")).hexdigest()

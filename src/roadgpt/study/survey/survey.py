@@ -1,0 +1,124 @@
+"""The Survey as it is served: its texts, its roads, its questions. Kept as ``survey.json`` in its folder."""
+
+import json
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+from pydantic import ValidationError
+
+from roadgpt.brief.model import Frozen
+from roadgpt.errors import UsageError
+from roadgpt.study.survey.questions import (
+    ABOUT,
+    END,
+    Part,
+    Question,
+    alignment_questions,
+    check_question,
+    similarity_questions,
+)
+
+CARD = "survey.json"
+MEDIA = "media"
+
+
+class Medium(Frozen):
+    """A picture, a film or a 3-D view that raters are shown."""
+
+    name: str
+    """Of its file in the folder of media."""
+    kind: Literal["picture", "film", "view"]
+    title: str
+
+
+class Item(Frozen):
+    """A road and its description, or two roads of one description."""
+
+    id: str
+    part: Literal["alignment", "similarity"]
+    prompt: str
+    criteria: tuple[str, ...] = ()
+    media: tuple[Medium, ...] = ()
+    roads: tuple[str, ...] = ()
+    """Where the roads came from; not shown to raters."""
+    machine: Mapping[str, float] = {}
+    """What was measured, 0..1, by criterion; not shown to raters."""
+
+    @property
+    def questions(self) -> tuple[Question, ...]:
+        """What is asked about it."""
+        ask = alignment_questions if self.part == "alignment" else similarity_questions
+        return ask(self.id, self.criteria)
+
+
+class Page(Frozen):
+    """One page of the questionnaire."""
+
+    part: Part
+    questions: tuple[Question, ...]
+    item: Item | None = None
+
+
+class Survey(Frozen):
+    """All that is shown and asked."""
+
+    format: Literal[1] = 1
+    title: str
+    asks: str
+    """Who asks: names, institute."""
+    contact: str
+    purpose: str
+    keeps: str
+    """What is done with the answers, and for how long they are kept."""
+    has_check: bool = True
+    about: tuple[Question, ...] = ABOUT
+    items: tuple[Item, ...]
+    lacks: str = ""
+    """What the media lack, in a sentence."""
+
+    def of_part(self, part: Part) -> tuple[Item, ...]:
+        """The items of one part, in the order of the file."""
+        return tuple(item for item in self.items if item.part == part)
+
+    @cached_property
+    def pages(self) -> tuple[Page, ...]:
+        """Every page once, in the order of the file; raters are shown them in an order of their own."""
+        pages = [Page(part="about", questions=self.about)] if self.about else []
+        for part in ("alignment", "similarity"):
+            pages += [
+                Page(part=item.part, questions=item.questions, item=item) for item in self.of_part(part)
+            ]
+        if self.has_check:
+            pages.append(Page(part="check", questions=(check_question(),)))
+        return (*pages, Page(part="end", questions=(END,)))
+
+    @cached_property
+    def questions(self) -> Mapping[str, Question]:
+        """Every question by its id."""
+        return {question.id: question for page in self.pages for question in page.questions}
+
+    @cached_property
+    def media(self) -> Mapping[str, Medium]:
+        """Every file that may be sent, by its name."""
+        return {medium.name: medium for item in self.items for medium in item.media}
+
+
+def read_survey(folder: Path | str) -> Survey:
+    """The survey in a folder.
+
+    Raises:
+        UsageError: there is none, or it cannot be read.
+    """
+    path = Path(folder) / CARD
+    try:
+        return Survey.model_validate(json.loads(path.read_text(encoding="utf-8")))
+    except FileNotFoundError as error:
+        raise UsageError(
+            f"{folder} holds no survey; make one: roadgpt study survey new SURVEY.toml --out {folder}"
+        ) from error
+    except (OSError, ValueError, RecursionError, ValidationError) as error:
+        raise UsageError(
+            f"{path} is damaged or of another version of roadgpt; make the survey again"
+        ) from error

@@ -1,0 +1,65 @@
+"""Made-up raters, to try out the analysis before people answer. Never mixed with answers of people."""
+
+import hashlib
+from collections.abc import Mapping
+
+import numpy as np
+
+from roadgpt.errors import UsageError
+from roadgpt.study.survey.answers import Answers, gathered
+from roadgpt.study.survey.questions import CHECK, MATCHES, Question
+from roadgpt.study.survey.survey import Survey
+
+MOST = 10_000
+FAILING = 0.05  # share that fails the attention check
+REMARK = "synthetic remark of a made-up rater"
+
+
+def synthetic(
+    survey: Survey, number: int, seed: int = 0, agreement: float = 0.8, failing: float = FAILING
+) -> Answers:
+    """Answers of raters who do not exist.
+
+    Every rating has a hidden truth. With the probability ``agreement`` a rater says it, else any answer of
+    the scale: 1 gives an alpha of 1, and 0 one near 0.
+
+    Args:
+        survey: what is asked.
+        number: of raters.
+        seed: the same seed gives the same answers.
+        agreement: 0..1.
+        failing: share of raters who fail the attention check, and answer at random.
+
+    Raises:
+        UsageError: the number or a share is out of range.
+    """
+    if not 1 <= number <= MOST or not 0 <= agreement <= 1 or not 0 <= failing <= 1:
+        raise UsageError(f"made-up raters are 1 to {MOST:,}, and shares lie between 0 and 1")
+    rng = np.random.default_rng(seed)
+    truth = {
+        id_: int(rng.integers(len(question.answers)))
+        for id_, question in survey.questions.items()
+        if question.answers
+    }
+    given = {}
+    for rater in range(number):
+        digest = hashlib.sha256(f"synthetic {seed} {rater}".encode()).hexdigest()
+        is_awake = bool(rng.random() >= failing)
+        given[digest] = _answers(survey, truth, agreement if is_awake else 0.0, is_awake, rng)
+    return gathered(survey, given, "synthetic", number)
+
+
+def _answers(
+    survey: Survey, truth: Mapping[str, int], agreement: float, is_awake: bool, rng: np.random.Generator
+) -> dict[str, str]:
+    said = {id_: _answer(question, truth, agreement, rng) for id_, question in survey.questions.items()}
+    if "check" in said:
+        said["check"] = MATCHES[CHECK] if is_awake else MATCHES[0]
+    return {id_: value for id_, value in said.items() if value}
+
+
+def _answer(question: Question, truth: Mapping[str, int], agreement: float, rng: np.random.Generator) -> str:
+    if not question.answers:
+        return REMARK if rng.random() < 0.1 else ""
+    says_truth = question.is_rating and rng.random() < agreement
+    return question.answers[truth[question.id] if says_truth else int(rng.integers(len(question.answers)))]

@@ -1,0 +1,127 @@
+"""Ratings as numbers: what was said of each road in each criterion, and who said what."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.study.statistics import Interval, krippendorff, wilson
+from roadgpt.study.survey.answers import Answers
+from roadgpt.study.survey.questions import OVERALL, Question
+from roadgpt.study.survey.survey import Item
+
+Array = NDArray[np.float64]
+Rated = Literal["alignment", "similarity"]
+FAVOURABLE = 4  # a score from which an answer speaks for the road, or for likeness
+
+
+@dataclass(frozen=True, eq=False)
+class Unit:
+    """One road, or pair, in one criterion, as all raters rated it."""
+
+    item: Item
+    question: Question
+    scores: Array
+    """1 to 5, of every rater; NaN where there is none."""
+
+    @property
+    def criterion(self) -> str:
+        """What was rated."""
+        return self.question.criterion
+
+    @property
+    def given(self) -> Array:
+        """Scores without gaps."""
+        return self.scores[np.isfinite(self.scores)]
+
+    @property
+    def number(self) -> int:
+        """Raters."""
+        return len(self.given)
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """How often each answer of the scale was given."""
+        return tuple(int((self.given == score).sum()) for score in range(1, len(self.question.answers) + 1))
+
+    @property
+    def quartiles(self) -> tuple[float, float, float]:
+        """Lower quartile, median and upper quartile; NaN where nobody rated."""
+        if not self.number:
+            return (float("nan"),) * 3
+        low, middle, high = np.quantile(self.given, [0.25, 0.5, 0.75])
+        return float(low), float(middle), float(high)
+
+    @property
+    def favourable(self) -> tuple[int, Interval]:
+        """How many answers were 4 or 5, with Wilson's interval of their share."""
+        count = int((self.given >= FAVOURABLE).sum())
+        return count, wilson(count, self.number) if self.number else Interval(float("nan"), float("nan"))
+
+    @property
+    def measured(self) -> float | None:
+        """What the machine says, 0..1."""
+        return self.item.machine.get(self.criterion)
+
+
+@dataclass(frozen=True, eq=False)
+class Tally:
+    """All ratings of one part."""
+
+    part: Rated
+    raters: tuple[str, ...]
+    units: tuple[Unit, ...]
+
+    @property
+    def overall(self) -> tuple[Unit, ...]:
+        """The general question about each item."""
+        return self.of(OVERALL)
+
+    @property
+    def criteria(self) -> tuple[str, ...]:
+        """All that were rated, the general one first."""
+        return tuple(dict.fromkeys(unit.criterion for unit in self.units))
+
+    def of(self, criterion: str) -> tuple[Unit, ...]:
+        """The units of one criterion."""
+        return tuple(unit for unit in self.units if unit.criterion == criterion)
+
+
+def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
+    """Of every question about raters: its text, and how often each answer was given."""
+    given = Counter((row.question, row.answer) for row in answers.used if row.part == "about")
+    return [
+        (question.text, [(answer, given[question.id, answer]) for answer in question.answers])
+        for question in answers.survey.about
+        if question.answers
+    ]
+
+
+def tally(answers: Answers, part: Rated) -> Tally:
+    """The ratings of one part by all raters who are analysed."""
+    scores = {
+        (row.rater, row.question): row.score
+        for row in answers.used
+        if row.part == part and row.score is not None
+    }
+    raters = tuple(sorted({rater for rater, _ in scores}))
+    units = [
+        Unit(item, question, np.array([scores.get((rater, question.id), np.nan) for rater in raters], float))
+        for item in answers.survey.of_part(part)
+        for question in item.questions
+        if question.is_rating
+    ]
+    return Tally(part, raters, tuple(units))
+
+
+def matrix(units: Sequence[Unit]) -> Array:
+    """Scores ``(people, units)``."""
+    return np.stack([unit.scores for unit in units], axis=1)
+
+
+def agreement(units: Sequence[Unit]) -> float:
+    """Krippendorff's alpha of ordinal ratings; NaN where it cannot be told."""
+    return krippendorff(matrix(units), "ordinal") if units and len(units[0].scores) else float("nan")

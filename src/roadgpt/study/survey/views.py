@@ -1,0 +1,18 @@
+"""The 3-D view for raters: without verdict, measures or marks, which would tell them what to answer."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from roadgpt.report.view import page_of, scene
+from roadgpt.run import Run
+from roadgpt.run.atomic import write_whole
+
+UNTOLD = {"outcome": "", "description": "", "about": "", "told": "", "places": []}
+
+
+def write_view(runs: Sequence[Run], titles: Sequence[str], path: Path) -> None:
+    """Write the page of one road or of two."""
+    write_whole(
+        path,
+        page_of([scene(run) | {"title": title} | UNTOLD for run, title in zip(runs, titles, strict=True)]),
+    )
