@@ -13,11 +13,12 @@ hundred, each a link).
 """
 
 from roadgpt.report.page.html import html_of
-from roadgpt.report.page.model import Cell, Details, Figure, Page, Section, Table, cell, linked
+from roadgpt.report.page.model import Block, Cell, Details, Figure, Page, Section, Table, cell, linked
 from roadgpt.report.page.text import csv_of, latex_of, markdown_of
 from roadgpt.report.page.writing import write
 
 __all__ = [
+    "Block",
     "Cell",
     "Details",
     "Figure",

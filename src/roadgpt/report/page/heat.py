@@ -1,6 +1,5 @@
 """A matrix or a map of cells: the stronger the colour the larger the number."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +7,7 @@ from numpy.typing import NDArray
 
 from roadgpt.report.page.svg import chart, line, number, tag, tick_text, ticks, words
 
+SHADES = 16
 SIDE, LEFT, BOTTOM, TOP, BAR = 380.0, 74.0, 46.0, 12.0, 96.0
 
 
@@ -26,9 +26,8 @@ def heat(
     meaning: str,
     label: str,
     downwards: bool = False,
-    links: Sequence[tuple[int, int, str]] = (),
 ) -> str:
-    """A picture of a matrix ``(rows, columns)``; NaN is left empty.
+    """A picture of a matrix ``(rows, columns)``; what is NaN or 0 is left empty.
 
     Args:
         values: row 0 is the lowest, or the topmost where ``downwards``.
@@ -36,29 +35,38 @@ def heat(
         meaning: of the colour.
         label: for those who cannot see it.
         downwards: rows are counted from the top, as of a distance matrix.
-        links: row, column and address of cells that lead somewhere.
     """
     rows, columns = values.shape
     known = values[np.isfinite(values)]
-    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    low = min(low, 0.0)
-    wide, tall = SIDE / columns, SIDE / rows
-    where = {(row, column): href for row, column, href in links}
-    out = [tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE, fill="var(--wash)")]
-    for row in range(rows):
-        y = TOP + (row if downwards else rows - 1 - row) * tall
-        for column, value in enumerate(values[row]):
-            if not np.isfinite(value) or value <= low:
-                continue
-            shade = round(0.12 + 0.88 * (value - low) / max(high - low, 1e-12), 2)
-            box = tag(
-                "rect", x=LEFT + column * wide, y=y, width=wide + 0.15, height=tall + 0.15,
-                fill="var(--heat)", fill_opacity=shade,
-            )  # fmt: skip
-            href = where.get((row, column))
-            out.append(tag("a", box, href=href) if href else box)
-    out += [_across(across), _upwards(upwards, downwards), _bar(low, high, meaning)]
+    high = max(float(known.max(initial=0.0)), 1e-12)
+    with np.errstate(invalid="ignore"):
+        shade = np.ceil(np.where(np.isfinite(values) & (values > 0), values / high, 0) * SHADES).astype(int)
+    shown = shade if downwards else shade[::-1]
+    scale = f"translate({number(LEFT)} {number(TOP)}) scale({SIDE / columns:.6g} {SIDE / rows:.6g})"
+    cells = "".join(_cells(shown, level) for level in range(1, SHADES + 1))
+    out = [
+        tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE, fill="var(--wash)"),
+        tag("g", cells, transform=scale, fill="var(--heat)"),
+        _across(across),
+        _upwards(upwards, downwards),
+        _bar(0.0, high, meaning),
+    ]
     return chart(LEFT + SIDE + BAR, TOP + SIDE + BOTTOM, "".join(out), label)
+
+
+def _cells(shades: NDArray[np.intp], level: int) -> str:
+    """All cells of one shade as one path in units of cells; neighbours in a row are one piece."""
+    pieces = []
+    for row, line_ in enumerate(shades == level):
+        edges = np.flatnonzero(np.diff(np.r_[False, line_, False]))
+        for first, last in edges.reshape(-1, 2):
+            wide = last - first
+            pieces.append(f"M{first} {row}h{wide}v1h-{wide}z")
+    return tag("path", d="".join(pieces), fill_opacity=_opacity(level / SHADES)) if pieces else ""
+
+
+def _opacity(share: float) -> float:
+    return round(0.1 + 0.9 * share, 3)
 
 
 def _across(axis: Axis) -> str:
@@ -98,7 +106,7 @@ def _bar(low: float, high: float, meaning: str) -> str:
                 width=14,
                 height=tall / steps + 0.2,
                 fill="var(--heat)",
-                fill_opacity=round(0.12 + 0.88 * share, 2),
+                fill_opacity=_opacity(share),
             )
         )
     for share, value in ((0.0, high), (1.0, low)):

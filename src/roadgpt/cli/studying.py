@@ -1,0 +1,222 @@
+"""``roadgpt study thesis`` and ``alignment``: many roads of many descriptions, and a report on them."""
+
+import shlex
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import click
+
+from roadgpt.cli.flags import CHAT, SETUP, WORLD
+from roadgpt.cli.options import (
+    ROADS,
+    SEED,
+    chat_of,
+    chat_options,
+    folder,
+    setup_options,
+    together,
+    whole,
+    world_of,
+    world_options,
+)
+from roadgpt.errors import ChatError
+
+if TYPE_CHECKING:
+    from roadgpt.study.plan import Plan
+    from roadgpt.study.prompts import Prompt
+    from roadgpt.study.working import Problem
+
+EVERY = 0.1  # share of the roads between two lines in a pipe
+NOT_ASKED = ChatError.exit_status
+SHOWN = ("reader", "driver", "simulator", "keep_driving", "geometry")
+
+study_options = together(
+    click.option(
+        "--designer", "designers", multiple=True, default=("planner",), show_default=True,
+        help="Who designs; give it again to see designers side by side.",
+    ),
+    click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed, the same files."),
+    click.option("--out", type=folder, default=None, help="The study's. [default: one in roadgpt-runs]"),
+    click.option(
+        "--workers", type=whole(1, 64, "processes"), default=2, show_default=True,
+        help="Descriptions at work at once; the files are the same.",
+    ),
+    setup_options(*SHOWN),
+    world_options(),
+    click.option("--no-plot", is_flag=True, help="Draw no pictures of single runs."),
+    click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors, and where the report is."),
+    chat_options,
+)  # fmt: skip
+
+
+@click.command()
+@click.option("--roads", "-n", type=ROADS, default=100, show_default=True, help="Roads of each description.")
+@click.option("--no-drive", is_flag=True, help="Design and check only.")
+@study_options
+def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
+    """Do the evaluation of RoadGPT's thesis again: validity, drives, alignment and diversity.
+
+    Takes the three descriptions of the thesis' table and those of its survey, makes so many roads of each,
+    drives them, and writes one page with all tables, tests, intervals and figures, and the thesis' own counts
+    beside ours. After Ctrl-C the same command goes on where it stopped. With a designer that asks a language
+    model which cannot be asked, the report says so and the exit status is 4.
+
+    \b
+    roadgpt study thesis
+    roadgpt study thesis --roads 20 --designer planner --designer thesis --model gpt-5-mini
+    """
+    from roadgpt.study.prompts import thesis_prompts
+
+    return _study("thesis", thesis_prompts(), "", roads, not no_drive, rest)
+
+
+@click.command()
+@click.argument("prompts", metavar="PROMPTS.jsonl", type=click.Path(path_type=Path))
+@click.option("--roads", "-n", type=ROADS, default=10, show_default=True, help="Roads of each description.")
+@click.option("--drive", "drives", is_flag=True, help="Drive the roads as well.")
+@study_options
+def alignment(prompts: Path, roads: int, drives: bool, **rest: Any) -> int:
+    """Measure on finished roads what their descriptions asked for, criterion by criterion.
+
+    PROMPTS.jsonl has a line {"id": "1", "prompt": "a U-turn", "truth": {"turns": 1}} for each description;
+    the guide has all keys of a truth. Where none is given, roads are held against what the reader read.
+
+    \b
+    roadgpt study alignment prompts.jsonl
+    roadgpt study alignment prompts.jsonl -n 3 --designer chat --model gpt-5-mini
+    """
+    from roadgpt.study.prompts import read_prompts
+
+    return _study("alignment", read_prompts(prompts), str(prompts), roads, drives, rest)
+
+
+def _study(
+    kind: Literal["thesis", "alignment"],
+    prompts: "Sequence[Prompt]",
+    source: str,
+    roads: int,
+    drives: bool,
+    rest: dict[str, Any],
+) -> int:
+    """Work, report, and say where the report is; the exit status."""
+    from roadgpt.run import roll_call
+    from roadgpt.study.plan import open_folder
+    from roadgpt.study.reporting import keep_problems, write_study
+    from roadgpt.study.working import work
+
+    workers, quiet, no_plot = rest.pop("workers"), rest.pop("quiet"), rest.pop("no_plot")
+    seed, out = rest.pop("seed"), rest.pop("out")
+    place = out or Path("roadgpt-runs") / f"study-{kind}-{seed}"
+    plan = _plan(kind, prompts, source, roads, seed, drives, rest)
+    plan = plan.model_copy(update={"command": _command(plan, place)})
+    for designer in plan.designers:
+        roll_call(plan.setup_of(designer))
+    open_folder(plan, place)
+    total = len(plan.parts()) * plan.roads
+    tell = None if quiet else _teller(total)
+    if not quiet:
+        click.echo(
+            f"{len(prompts)} descriptions, {roads} roads each, by {' and '.join(plan.designers)}, "
+            f"into {place}"
+        )
+    begun = time.perf_counter()
+    try:
+        problems = work(plan, place, workers, None if no_plot else _drawing(), tell)
+    except KeyboardInterrupt:
+        click.echo("\nroadgpt: stopped; what is finished is complete, and the same command goes on", err=True)
+        raise
+    keep_problems(place, problems)
+    if not quiet:
+        click.echo(f"{total} roads in {time.perf_counter() - begun:.0f} s; writing the report")
+    page = write_study(place)
+    _complain(problems)
+    click.echo(str(page))
+    return NOT_ASKED if any(problem.is_of_chat for problem in problems) else 0
+
+
+def _plan(
+    kind: Literal["thesis", "alignment"],
+    prompts: "Sequence[Prompt]",
+    source: str,
+    roads: int,
+    seed: int,
+    drives: bool,
+    rest: dict[str, Any],
+) -> "Plan":
+    from roadgpt import plugins
+    from roadgpt.chat import asks_a_model
+    from roadgpt.run import Setup
+    from roadgpt.study.plan import Plan
+
+    designers = tuple(dict.fromkeys(rest.pop("designers")))
+    asking = [name for name in designers if asks_a_model(plugins.find("designers", name))]
+    world = world_of(rest)
+    chat = chat_of(rest, rest["reader"], (asking or designers)[0])
+    setup = Setup(drives=drives, chat=chat, designer=designers[0], **rest)
+    return Plan(
+        kind=kind,
+        prompts=tuple(prompts),
+        designers=designers,
+        roads=roads,
+        seed=seed,
+        world=world,
+        setup=setup,
+        source=source,
+    )
+
+
+def _command(plan: "Plan", place: Path) -> str:
+    """What makes the study again."""
+    words = ["roadgpt", "study", plan.kind, *([plan.source] if plan.source else [])]
+    words += ["--roads", str(plan.roads), "--seed", str(plan.seed)]
+    if plan.designers != ("planner",):
+        words += [word for name in plan.designers for word in ("--designer", name)]
+    for flag in SETUP:
+        if flag.field in SHOWN:
+            words += flag.written(getattr(plan.setup, flag.field))
+    words += [word for flag in WORLD for word in flag.written(getattr(plan.world, flag.field))]
+    if plan.setup.chat is not None:
+        chat, usual = plan.setup.chat, type(plan.setup.chat)()
+        for flag in CHAT:
+            words += flag.written(getattr(chat, flag.field), getattr(usual, flag.field))
+    if plan.setup.drives != (plan.kind == "thesis"):
+        words.append("--drive" if plan.setup.drives else "--no-drive")
+    return shlex.join([*words, "--out", str(place)])
+
+
+def _drawing() -> Any:
+    from roadgpt.report import drawing
+
+    return drawing()
+
+
+def _teller(total: int) -> Callable[[str, int], None]:
+    """Says how far it is: in place on a terminal, some lines in a pipe."""
+    begun, is_seen = time.perf_counter(), sys.stderr.isatty()
+    first: list[int] = []
+    said = [0]
+
+    def tell(at: str, done: int) -> None:
+        first.append(done) if not first else None
+        seconds = time.perf_counter() - begun
+        rate = (done - first[0]) / max(seconds, 1e-9)
+        left = f", about {(total - done) / rate:.0f} s left" if rate > 0 else ""
+        line = f"{done}/{total} roads, {rate:.1f} roads/s{left}"
+        if is_seen:
+            click.echo(f"\r{line:<60}", err=True, nl=done >= total)
+        elif done - said[0] >= EVERY * total or (done >= total > said[0]):
+            said[0] = done
+            click.echo(line)
+
+    return tell
+
+
+def _complain(problems: "Sequence[Problem]") -> None:
+    told: dict[str, list[str]] = {}
+    for problem in problems:
+        told.setdefault(problem.sentence, []).append(problem.part)
+    for sentence, parts in told.items():
+        click.echo(f"roadgpt: {', '.join(parts)}: {sentence}", err=True)

@@ -1,0 +1,63 @@
+"""How a study was made: command, seeds, versions, and the hashes of the model that reads."""
+
+from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from importlib.util import find_spec
+from pathlib import Path
+
+from roadgpt.road import World
+from roadgpt.run import Setup
+from roadgpt.study.looking import LookedPart
+
+DIGITS = 16  # of a hash
+WEIGHTS = (".onnx", ".npz", ".safetensors", ".bin")
+
+
+def card_of(
+    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[LookedPart]
+) -> dict[str, str]:
+    """Lines of a card by their names."""
+    out = {"command": command} if command else {}
+    out |= {"seed": str(seed), "roads of each": f"{roads:,}", "made by": _designers(parts)}
+    out["reader"] = setup.reader + _hashes(setup.reader)
+    if setup.drives:
+        out["driven by"] = f"{setup.driver} in {setup.simulator}"
+    if setup.chat is not None and setup.chat.model:
+        out["language model"] = setup.chat.model
+    out["world"] = ", ".join(f"{name.replace('_', ' ')} {value:g}" for name, value in _numbers(world))
+    return out | {"versions": _versions(parts)}
+
+
+def _designers(parts: Sequence[LookedPart]) -> str:
+    return ", ".join(dict.fromkeys(part.part.designer for part in parts))
+
+
+def _numbers(world: World) -> list[tuple[str, float]]:
+    return [(name, value) for name, value in world.model_dump().items() if isinstance(value, (int, float))]
+
+
+def _versions(parts: Sequence[LookedPart]) -> str:
+    """Of all runs; more than one of a kind where a study went on with others."""
+    found: dict[str, dict[str, None]] = {}
+    for part in parts:
+        for road in part.roads:
+            for name, number in road.versions.items():
+                found.setdefault(name, {})[number] = None
+    return ", ".join(f"{name} {' and '.join(numbers)}" for name, numbers in found.items()) or "–"
+
+
+def _hashes(reader: str) -> str:
+    """Of the weights of our own reader, so that another one is noticed."""
+    name, _, folder = reader.partition(":")
+    if name != "model":
+        return ""
+    spec = find_spec("roadgpt.brief.readers.model")
+    home = Path(spec.origin).parent / "weights" if spec and spec.origin else None
+    place = Path(folder) if folder else home
+    if place is None or not place.is_dir():
+        return ""
+    files: Mapping[str, bytes] = {
+        path.name: path.read_bytes() for path in sorted(place.iterdir()) if path.suffix in WEIGHTS
+    }
+    told = (f"{name} sha256 {sha256(data).hexdigest()[:DIGITS]}" for name, data in files.items())
+    return f" ({', '.join(told)})" if files else ""

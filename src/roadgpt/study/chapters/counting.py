@@ -1,0 +1,203 @@
+"""Sections of counts by prompt: which roads are valid, and on which of them the car left its lane."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from roadgpt.report.page import Block, Cell, Details, Figure, Section, Table, cell, linked
+from roadgpt.report.page.forest import Share, forest
+from roadgpt.study.baseline import NAME, ROADS, THESIS
+from roadgpt.study.chapters.saying import SHARE_HEADS, p_value, plural, share_cells, share_of
+from roadgpt.study.chapters.significance import Count, Source, worked_out
+from roadgpt.study.looking import Looked, LookedPart
+from roadgpt.study.statistics import exact, wilson
+
+MOST_NAMED = 100  # roads in a list
+
+
+class Kind(NamedTuple):
+    """A way to count roads as valid."""
+
+    slug: str
+    name: str
+    which: str
+    """Property of a Looked."""
+
+
+STRICT = Kind("strict", "strict rules", "is_valid")
+SOUND = Kind("sound", "strict rules but for the words", "is_sound")
+SBFT = Kind("sbft", "SBFT rules", "is_sbft")
+KINDS = (STRICT, SOUND, SBFT)
+
+
+def of_thesis(parts: Sequence[LookedPart]) -> list[LookedPart]:
+    """Those whose prompts stand in the thesis' table."""
+    return [part for part in parts if part.part.prompt.prompt in THESIS]
+
+
+def valid_source(designer: str, parts: Sequence[LookedPart], kind: Kind) -> Source:
+    """Roads that are valid by one kind of rules."""
+    counts = tuple(
+        Count(part.part.prompt.prompt, part.count(kind.which), len(part.roads), part.overview)
+        for part in parts
+        if part.part.designer == designer and part.roads
+    )
+    return Source(f"{designer}, {kind.name}", counts, f"{designer}-{kind.slug}")
+
+
+def left_source(designer: str, parts: Sequence[LookedPart]) -> Source:
+    """Drives on valid roads on which the car left its lane."""
+    counts = tuple(
+        Count(part.part.prompt.prompt, part.count("has_left"), part.count("is_driven"), part.overview)
+        for part in parts
+        if part.part.designer == designer and part.roads
+    )
+    return Source(designer, counts, designer)
+
+
+def thesis_valid() -> Source:
+    """The thesis' table 6.1."""
+    counts = tuple(Count(prompt, counted.valid, ROADS) for prompt, counted in THESIS.items())
+    return Source(f"{NAME}, its own checks", counts, "thesis")
+
+
+def thesis_left() -> Source:
+    """The thesis' drives that left the lane, of its valid roads."""
+    counts = tuple(Count(prompt, counted.left, counted.valid) for prompt, counted in THESIS.items())
+    return Source(NAME, counts, "thesis")
+
+
+def validity(parts: Sequence[LookedPart], designers: Sequence[str], has_baseline: bool) -> Section:
+    """How many roads are valid, by every kind of rules, beside the thesis' where its prompts are asked."""
+    told = of_thesis(parts) if has_baseline else list(parts)
+    every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
+    every = [source for source in every if source.counts] + ([thesis_valid()] if has_baseline else [])
+    blocks: list[Block] = [
+        "Strict rules: inside the map, no overlap, radius and slope within limits, and every promise of the "
+        "words kept. But for the words: the same without the promises, which RoadGPT's thesis did not "
+        "check. SBFT rules: what the validator of the SBFT tool competition says, quirks included."
+    ]
+    blocks += [_forest("validity", "valid", every), _shares("validity", "valid", every)]
+    blocks += _silent(parts)
+    if has_baseline:
+        blocks += [_beside(source, every[-1]) for source in every if source.slug.endswith("-strict")]
+    for source in every:
+        if source.slug.endswith("-strict") or source.slug == "thesis":
+            blocks += worked_out(source, "valid", "invalid", f"validity-{source.slug}")
+    others = [source for source in every if source.slug.endswith(("-sound", "-sbft"))]
+    if others:
+        inside: list[Block] = []
+        for source in others:
+            inside += worked_out(source, "valid", "invalid", f"validity-{source.slug}")
+        blocks.append(Details("The same by the other rules", inside))
+    return Section(
+        "Validity", [*blocks, *_named(parts, "Invalid roads", lambda road: not road.is_valid, _why)]
+    )
+
+
+def departures(parts: Sequence[LookedPart], designers: Sequence[str], has_baseline: bool) -> Section:
+    """On how many of the valid roads the car left its lane."""
+    told = of_thesis(parts) if has_baseline else list(parts)
+    every = [left_source(designer, told) for designer in designers]
+    every = [source for source in every if source.total]
+    blocks: list[Block] = []
+    if not every:
+        blocks.append("Nobody drove these roads.")
+    every += [thesis_left()] if has_baseline else []
+    if every:
+        blocks += [
+            "Counted are drives on roads that the strict rules let pass (in the thesis: that its own checks "
+            "let pass) on which the car left its lane.",
+            _forest("departures", "left", every),
+            _shares("departures", "left", every),
+        ]
+    for source in every:
+        blocks += worked_out(source, "left", "kept", f"departures-{source.slug}")
+    return Section("Leaving the lane", [*blocks, *_named(parts, "Drives that left", _has_left, _says)])
+
+
+def _has_left(road: Looked) -> bool:
+    return road.has_left
+
+
+def _says(road: Looked) -> str:
+    return road.says
+
+
+def _why(road: Looked) -> str:
+    sbft = f"; SBFT: {road.sbft_says}" if road.sbft_says else ""
+    return road.says + sbft
+
+
+def _beside(source: Source, thesis: Source) -> str:
+    """Ours against theirs, all prompts together."""
+    table = [[each.hits, each.total - each.hits] for each in (source, thesis)]
+    return (
+        f"{source.name}: {share_of(source.hits, source.total)} against {share_of(thesis.hits, thesis.total)} "
+        f"of {NAME}; Fisher's exact test {p_value(exact(table).p)}. The rules differ, and ours are stricter."
+    )
+
+
+def _forest(name: str, hit: str, every: Sequence[Source]) -> Figure:
+    prompts = list(dict.fromkeys(count.prompt for source in every for count in source.counts))
+    groups = []
+    for prompt in prompts:
+        rows = []
+        for series, source in enumerate(every):
+            for count in source.counts:
+                if count.prompt == prompt and count.total:
+                    rows.append(
+                        Share(
+                            series,
+                            count.hits / count.total,
+                            *wilson(count.hits, count.total),
+                            f"{count.hits} of {count.total}",
+                        )
+                    )
+        groups.append((_short(prompt), rows))
+    caption = f"Share of roads {'that are valid' if hit == 'valid' else 'on which the car left its lane'}"
+    caption += ", by prompt; dots are shares, lines Wilson's 95 % intervals."
+    return Figure(name, caption, forest(groups, [source.name for source in every], caption))
+
+
+def _short(prompt: str) -> str:
+    return prompt if len(prompt) <= 72 else f"{prompt[:70].rstrip()} …"
+
+
+def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:
+    rows: list[list[Cell]] = []
+    for source in every:
+        for count in source.counts:
+            rows.append(
+                [cell(count.prompt), cell(source.name), *share_cells(count.hits, count.total, count.href)]
+            )
+        rows.append([cell("all of these"), cell(source.name), *share_cells(source.hits, source.total)])
+    return Table(
+        f"{name}-shares", f"Shares: {hit}, with intervals", ["prompt", "made by", hit, *SHARE_HEADS], rows
+    )
+
+
+def _silent(parts: Sequence[LookedPart]) -> list[Block]:
+    """Whom nobody could ask, and what could not be made."""
+    out: list[Block] = []
+    for sentence in dict.fromkeys(f"{p.part.designer}: {p.problem}" for p in parts if p.problem):
+        out.append(f"Not made, or not all: {sentence}.")
+    return out
+
+
+def _named(
+    parts: Sequence[LookedPart],
+    title: str,
+    which: Callable[[Looked], bool],
+    says: Callable[[Looked], str],
+) -> list[Block]:
+    """The roads that are so, each with its link; nothing where there are none."""
+    lines: list[Block] = []
+    for part in parts:
+        for road in part.roads:
+            if which(road):
+                where = linked(f"{part.part.name}, road {road.index}", part.href(road))
+                lines.append([where, f": {says(road)}"])
+    if not lines:
+        return []
+    more: list[Block] = [f"… and {len(lines) - MOST_NAMED} more."] if len(lines) > MOST_NAMED else []
+    return [Details(f"{title} ({plural(len(lines), 'road')})", lines[:MOST_NAMED] + more)]

@@ -1,0 +1,132 @@
+"""The section on diversity: how different the roads of one description are, and those of similar ones."""
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+
+from roadgpt.report.page import Block, Cell, Details, Figure, Section, Table, cell, linked
+from roadgpt.report.page.heat import Axis, heat
+from roadgpt.study.chapters.saying import decimal, plural
+from roadgpt.study.looking import Looked, LookedPart
+from roadgpt.study.similarity import Likeness, Spread, between, spread
+
+MOST = 150  # roads of a part that are compared, each with every other
+MOST_BETWEEN = 40  # of a part that are compared with those of another one
+MOST_NAMED = 50
+
+
+def spread_of(part: LookedPart) -> tuple[list[Looked], Spread]:
+    """The roads of a part that are compared, and how different they are."""
+    roads = [road for road in part.roads if road.likeness is not None][:MOST]
+    return roads, spread([road.likeness for road in roads if road.likeness is not None])
+
+
+def diversity(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], Spread]]) -> Section:
+    """Distances within every part, near duplicates by name, and distances between prompts."""
+    blocks: list[Block] = [
+        "Two plans are laid onto each other by the best shift, turn and mirroring and compared at equal "
+        "shares of their lengths; their distance is the root mean square in metres. Near duplicates are "
+        "pairs less than 5.5 m and 2 percentage points of grade apart with as many turns. Similarity, from 0 "
+        "to 1, is the mean of number, sequence and direction of turns, length, incline and shape.",
+        _within(parts, found),
+    ]
+    pairs = _between(parts)
+    blocks += [pairs] if pairs.rows else []
+    twins = _twins(parts, found)
+    if twins:
+        blocks.append(Details(f"Near duplicates ({plural(len(twins), 'pair')})", twins[:MOST_NAMED]))
+    else:
+        blocks.append("There are no near duplicates.")
+    pictures = [_matrix(part, roads, own) for part, (roads, own) in zip(parts, found, strict=True)]
+    shown: list[Block] = [picture for picture in pictures if picture is not None]
+    blocks += shown[:1]
+    if shown[1:]:
+        blocks.append(Details(f"Distances of the other prompts ({len(shown) - 1})", shown[1:]))
+    return Section("Diversity", blocks)
+
+
+def _within(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], Spread]]) -> Table:
+    rows = []
+    for part, (roads, own) in zip(parts, found, strict=True):
+        if len(roads) < 2:
+            continue
+        nearest = own.nearest
+        i = int(np.argmin(nearest))
+        j = int(np.nanargmin(own.metres[i]))
+        rows.append(
+            [
+                cell(part.part.prompt.prompt, href=part.overview),
+                cell(part.part.designer),
+                cell(len(roads)),
+                decimal(float(nearest.min()), 1, part.href(roads[i])),
+                cell(f"{roads[i].index} and {roads[j].index}", href=part.href(roads[j])),
+                decimal(float(np.median(nearest)), 1),
+                cell(len(own.duplicates)),
+                decimal(own.general),
+                decimal(own.sparseness, 1),
+            ]
+        )
+    heads = [
+        "prompt", "made by", "roads", "nearest pair, m", "which", "nearest, median, m", "near duplicates",
+        "mean similarity", "sparseness",
+    ]  # fmt: skip
+    note = (
+        "Sparseness is the SBFT competition's weighted Levenshtein distance to the road that differs most, "
+        "taken of whole roads in steps of 5 m; theirs is of 60 m around failures, in steps of 1 m."
+    )
+    return Table("diversity", "Roads of the same description", heads, rows, note)
+
+
+def _some(part: LookedPart) -> list[Likeness]:
+    return [road.likeness for road in part.roads if road.likeness is not None][:MOST_BETWEEN]
+
+
+def _between(parts: Sequence[LookedPart]) -> Table:
+    """Pairs of prompts of one designer; few enough to be read."""
+    rows: list[list[Cell]] = []
+    for designer in dict.fromkeys(part.part.designer for part in parts):
+        own = [part for part in parts if part.part.designer == designer and part.roads][:6]
+        for one, other in combinations(own, 2):
+            told = between(_some(one), _some(other))
+            rows.append(
+                [
+                    cell(one.part.prompt.prompt),
+                    cell(other.part.prompt.prompt),
+                    cell(designer),
+                    decimal(told.general),
+                    decimal(told.metres, 1),
+                    cell(told.duplicates),
+                ]
+            )
+    heads = ["prompt", "and", "made by", "mean similarity", "nearest pair, m", "near duplicates"]
+    note = f"The first {MOST_BETWEEN} roads of either, each with each."
+    return Table("diversity-between", "Roads of different descriptions", heads, rows, note)
+
+
+def _twins(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], Spread]]) -> list[Block]:
+    out: list[Block] = []
+    for part, (roads, own) in zip(parts, found, strict=True):
+        for i, j in own.duplicates:
+            out.append(
+                [
+                    f"{part.part.name}: roads ",
+                    linked(str(roads[i].index), part.href(roads[i])),
+                    " and ",
+                    linked(str(roads[j].index), part.href(roads[j])),
+                    f", {own.metres[i, j]:.1f} m apart",
+                ]
+            )
+    return out
+
+
+def _matrix(part: LookedPart, roads: list[Looked], own: Spread) -> Figure | None:
+    if len(roads) < 3:
+        return None
+    lower = np.where(np.tri(len(roads), k=-1, dtype=bool), own.metres, np.nan)
+    axis = Axis("road", 0.0, float(len(roads)))
+    caption = (
+        f"{part.part.designer}, “{part.part.prompt.prompt}”: distance between every two roads, metres; "
+        "the paler, the more alike."
+    )
+    return Figure(f"distances-{part.part.number}", caption, heat(lower, axis, axis, "metres", caption, True))

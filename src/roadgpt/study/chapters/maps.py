@@ -1,0 +1,80 @@
+"""Sections of pictures: the roads themselves, and the maps of features that they cover."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from roadgpt.report.page import Block, Figure, Section
+from roadgpt.report.page.gallery import Small, gallery
+from roadgpt.report.page.heat import Axis, heat
+from roadgpt.study.looking import Looked, LookedPart
+
+CELLS = 25  # along each side of a map
+MOST = 100  # roads in a picture
+MAPS = (
+    ("MAX_CURV", "largest curvature, 1/m", 0.0, 0.07, "DIR_COV", "share of directions", 0.0, 1.0),
+    (
+        "STD_SA",
+        "steering, standard deviation, degrees",
+        0.0,
+        200.0,
+        "MEAN_LP",
+        "mean distance to the lane's edge, m",
+        0.0,
+        2.5,
+    ),
+)
+
+
+def coverage(parts: Sequence[LookedPart]) -> Section | None:
+    """Feature maps of all roads together, by designer; None where no road has features."""
+    blocks: list[Block] = []
+    for designer in dict.fromkeys(part.part.designer for part in parts):
+        roads = [road for part in parts if part.part.designer == designer for road in part.roads]
+        for places in MAPS:
+            figure = _map(designer, roads, places)
+            blocks += [figure] if figure is not None else []
+    if not blocks:
+        return None
+    says = "Cells of the competition's features that valid roads fall into; the stronger, the more roads."
+    return Section("Coverage", [says, *blocks])
+
+
+def _map(
+    designer: str, roads: Sequence[Looked], places: tuple[str, str, float, float, str, str, float, float]
+) -> Figure | None:
+    across, across_name, x0, x1, upwards, upwards_name, y0, y1 = places
+    found = [(r.features[across], r.features[upwards]) for r in roads if {across, upwards} <= {*r.features}]
+    if not found:
+        return None
+    values = np.clip(np.array(found), [x0, y0], [x1, y1])
+    counts, _, _ = np.histogram2d(values[:, 1], values[:, 0], CELLS, ((y0, y1), (x0, x1)))
+    filled = int(np.count_nonzero(counts))
+    caption = f"{designer}: {len(found)} roads in {filled} of {CELLS * CELLS} cells ({across}, {upwards})."
+    picture = heat(counts, Axis(across_name, x0, x1), Axis(upwards_name, y0, y1), "roads", caption)
+    return Figure(f"coverage-{across.lower()}", caption, picture)
+
+
+def roads(parts: Sequence[LookedPart], size: float) -> Section:
+    """Every road as a small map that leads to its run."""
+    blocks: list[Block] = [
+        "A dot is where a road starts, a cross where the car left it. Each leads to its bird's-eye view; "
+        "roadgpt view shows it in 3-D with its drive."
+    ]
+    for part in parts:
+        if not part.roads:
+            continue
+        small = [
+            Small(
+                road.index,
+                road.outcome,
+                road.points,
+                road.failed_at if road.has_left else None,
+                part.href(road),
+            )
+            for road in part.roads[:MOST]
+        ]
+        more = f" The first {MOST} of {len(part.roads)}." if len(part.roads) > MOST else ""
+        caption = f"{part.part.designer}, “{part.part.prompt.prompt}”.{more}"
+        blocks.append(Figure(f"roads-{part.part.number}", caption, gallery(small, size, caption)))
+    return Section("Roads", blocks)

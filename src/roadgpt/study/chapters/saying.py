@@ -1,0 +1,57 @@
+"""How reports say numbers."""
+
+import math
+
+from roadgpt.report.page import Cell, cell
+from roadgpt.study.statistics import Interval, clopper_pearson, wilson
+
+
+def p_value(p: float) -> str:
+    """With two digits that count; 'p = 0.010', 'p < 1e-15'."""
+    if p < 1e-15:
+        return "p < 1e-15"
+    return f"p = {p:.1e}" if p < 0.001 else f"p = {p:.3f}"
+
+
+def percent(share: float, digits: int = 1) -> str:
+    """'60.7 %'; a dash where there is nothing to divide by."""
+    return "–" if math.isnan(share) else f"{100 * share:.{digits}f} %"
+
+
+def between(interval: Interval) -> str:
+    """'54.9 to 66.2 %'."""
+    return f"{100 * interval.lo:.1f} to {100 * interval.hi:.1f} %"
+
+
+def share_of(k: int, n: int) -> str:
+    """'182 of 300 (60.7 %)'."""
+    return f"{k} of {n}" + (f" ({percent(k / n)})" if n else "")
+
+
+def decimal(value: float | None, digits: int = 2, href: str = "") -> Cell:
+    """A cell with a rounded number; a dash where there is none."""
+    if value is None or not math.isfinite(value):
+        return cell(None)
+    return cell(round(value, digits + 3), f"{value:.{digits}f}".replace("-", "−"), href)
+
+
+def share_cells(k: int, n: int, href: str = "") -> list[Cell]:
+    """k, n, share, Clopper and Pearson's interval, Wilson's."""
+    if not n:
+        return [cell(k, href=href), cell(n), cell(None), cell(None), cell(None)]
+    exact, score = clopper_pearson(k, n), wilson(k, n)
+    return [
+        cell(k, href=href),
+        cell(n),
+        cell(round(k / n, 6), percent(k / n)),
+        cell(between(exact)),
+        cell(between(score)),
+    ]
+
+
+SHARE_HEADS = ("of", "share", "Clopper-Pearson 95 %", "Wilson 95 %")
+
+
+def plural(n: int, word: str) -> str:
+    """'1 road', '2 roads'."""
+    return f"{n:,} {word}{'' if n == 1 else 's'}"

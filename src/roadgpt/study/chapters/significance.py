@@ -1,0 +1,112 @@
+"""Does the description decide on a count? A table of counts worked out as the thesis does, step by step."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from roadgpt.report.page import Block, Cell, Table, cell
+from roadgpt.study.chapters.saying import decimal, p_value
+from roadgpt.study.statistics import ChiSquared, chi_squared, exact, trend
+
+LEVEL = 0.05
+
+
+class Count(NamedTuple):
+    """Of the roads of one prompt, how many are so."""
+
+    prompt: str
+    hits: int
+    total: int
+    href: str = ""
+
+
+class Source(NamedTuple):
+    """Who made the roads, and their counts, prompt by prompt in the order of the table."""
+
+    name: str
+    counts: tuple[Count, ...]
+    slug: str
+
+    @property
+    def hits(self) -> int:
+        """Of all prompts."""
+        return sum(count.hits for count in self.counts)
+
+    @property
+    def total(self) -> int:
+        """Of all prompts."""
+        return sum(count.total for count in self.counts)
+
+    def table(self) -> list[list[int]]:
+        """Counts ``(prompts, 2)``."""
+        return [[count.hits, count.total - count.hits] for count in self.counts]
+
+
+def worked_out(source: Source, hit: str, miss: str, name: str) -> list[Block]:
+    """The contingency table with expected values and terms, and what follows from it.
+
+    Args:
+        source: whose counts.
+        hit, miss: what the columns are called.
+        name: of the table's files.
+    """
+    found = chi_squared(source.table(), LEVEL)
+    return [_table(source, found, hit, miss, name), _verdict(source, found, hit, miss)]
+
+
+def _table(source: Source, found: ChiSquared, hit: str, miss: str, name: str) -> Table:
+    heads = ["prompt", hit, miss, "total"]
+    heads += [f"expected {each}" for each in (hit, miss)] + [f"(o − e)²/e {each}" for each in (hit, miss)]
+    rows: list[Sequence[Cell]] = []
+    for n, count in enumerate(source.counts):
+        rows.append(
+            [
+                cell(count.prompt),
+                cell(count.hits, href=count.href),
+                cell(count.total - count.hits),
+                cell(count.total),
+                *(decimal(float(value)) for value in (*found.expected[n], *found.terms[n])),
+            ]
+        )
+    sums = [source.hits, source.total - source.hits, source.total]
+    rows.append(
+        [
+            cell("total"),
+            *(cell(each) for each in sums),
+            cell(None, ""),
+            cell(None, ""),
+            cell(None, "χ² ="),
+            decimal(found.statistic),
+        ]
+    )
+    return Table(name, f"{source.name}: {hit} by prompt, and chi-squared term by term", heads, rows, "", True)
+
+
+def _verdict(source: Source, found: ChiSquared, hit: str, miss: str) -> str:
+    if not found.freedom:
+        every = f"all roads are {hit}" if source.hits else f"all roads are {miss}"
+        if not source.total:
+            return f"{source.name}: there is nothing to count."
+        return (
+            f"{source.name}: {every}, so no prompt differs from another: chi-squared is 0 with no degrees of "
+            "freedom, Cramér's V is 0, and the exact test gives p = 1. What the true shares may be, the "
+            "intervals say."
+        )
+    counted = exact(source.table())
+    how = f"drawn {counted.tables:,} times from a seed" if counted.is_drawn else "counted out"
+    slope = trend([count.hits for count in source.counts], [count.total for count in source.counts])
+    against = "exceeds" if found.statistic > found.critical else "does not exceed"
+    sound = (
+        "Cochran's rule on expected counts holds."
+        if found.is_sound
+        else f"Expected counts are small (least {found.expected[found.expected > 0].min():.2f}): Cochran's "
+        "rule is broken, and the exact test decides."
+    )
+    p = found.p if found.is_sound else counted.p
+    end = "the prompt makes a difference" if p < LEVEL else "no difference between prompts is shown"
+    return (
+        f"{source.name}: χ² = {found.statistic:.2f} with {found.freedom} degrees of freedom {against} the "
+        f"critical value {found.critical:.2f} at the {100 * LEVEL:.0f} % level ({p_value(found.p)}); "
+        f"Cramér's V = {found.cramers_v:.2f}. Exact test ({how}): {p_value(counted.p)}. "
+        f"Trend in the order of the table (Cochran-Armitage): z = {slope.z:.2f}, {p_value(slope.p)}. "
+        f"{sound} So {end}."
+    ).replace("z = -", "z = −")

@@ -1,0 +1,183 @@
+"""What a study looks at of each road: validity by every set of rules, the drive, the measured geometry."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.brief.model import Brief
+from roadgpt.check import inspect
+from roadgpt.check.measures import measure
+from roadgpt.check.rules.promises import promises_of
+from roadgpt.errors import RoadGPTError
+from roadgpt.road import Road, World
+from roadgpt.run import Run, read_run
+from roadgpt.run.campaign import finished
+from roadgpt.run.folder import run_folder
+from roadgpt.run.sbft_json import test_name
+from roadgpt.run.tables import DEPARTURES
+from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth
+from roadgpt.study.plan import Part, Plan
+from roadgpt.study.prompts import Prompt
+from roadgpt.study.similarity import Likeness, likeness
+from roadgpt.study.truth import SHORTEST
+
+Array = NDArray[np.float64]
+
+BARE = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)  # any road: to see what is asked for
+
+
+@dataclass(frozen=True, eq=False)
+class Looked:
+    """One road of a study."""
+
+    index: int
+    folder: str
+    """Of its run, relative to the study's folder, with forward slashes."""
+    outcome: str
+    says: str
+    """The outcome in a sentence."""
+    is_valid: bool
+    """No strict rule objects."""
+    is_sound: bool
+    """No strict rule objects but for promises of the words, which RoadGPT's thesis did not check."""
+    is_sbft: bool
+    """The SBFT competition's validator does not object."""
+    sbft_says: str
+    has_left: bool
+    """The car left its lane, or fell."""
+    margin: float | None
+    length: float
+    points: Array
+    """Centre line ``(n, 2)``, metres; empty where there is no road."""
+    failed_at: tuple[float, float] | None
+    kept: Mapping[Criterion, bool]
+    """Criteria that the description asks for, and whether the road keeps them."""
+    likeness: Likeness | None
+    features: Mapping[str, float] = field(default_factory=dict)
+    """Of the competition's feature maps."""
+    versions: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def is_driven(self) -> bool:
+        """Did somebody drive it to a verdict?"""
+        return self.outcome in ("PASS", "FAIL")
+
+
+@dataclass(frozen=True, eq=False)
+class LookedPart:
+    """All roads of one description by one designer."""
+
+    part: Part
+    roads: tuple[Looked, ...]
+    home: str = ""
+    """Its folder, relative to that of the report."""
+    problem: str = ""
+    """Why there are none, or not all."""
+    has_pictures: bool = False
+
+    def count(self, which: str) -> int:
+        """Roads with a property: is_valid, is_sound, is_sbft, has_left, is_driven."""
+        return sum(getattr(road, which) for road in self.roads)
+
+    def href(self, road: Looked) -> str:
+        """Where a reader sees the road: its bird's-eye view, or the run itself where none is drawn."""
+        return f"{road.folder}/{'birds_eye.png' if self.has_pictures and len(road.points) else 'run.json'}"
+
+    @property
+    def overview(self) -> str:
+        """Where a reader sees all roads."""
+        name = "overview.png" if self.has_pictures else "generation_stats.csv"
+        return f"{self.home}/{name}".lstrip("/")
+
+
+def look_at_parts(plan: Plan, folder: Path, problems: Mapping[str, str]) -> Iterator[LookedPart]:
+    """Every part of a study, read from the disk.
+
+    Args:
+        plan: what was asked for.
+        folder: where it lies.
+        problems: by name of a part's folder, why roads are missing.
+
+    Raises:
+        UsageError: a run cannot be read.
+    """
+    for part in plan.parts():
+        yield _looked(folder / part.name, part, part.name, problems.get(part.name, ""))
+
+
+def look_at_campaign(place: Path, part: Part) -> LookedPart:
+    """The one part that a campaign of ``roadgpt run`` is.
+
+    Raises:
+        UsageError: a run cannot be read.
+    """
+    return _looked(place, part, "", "")
+
+
+def _looked(place: Path, part: Part, home: str, problem: str) -> LookedPart:
+    indices = finished(place) if place.is_dir() else []
+    roads = tuple(
+        look(read_run(run_folder(place, n)), part, home, _features(place / test_name(n))) for n in indices
+    )
+    return LookedPart(part, roads, home, problem, (place / "overview.png").is_file())
+
+
+def look(run: Run, part: Part, home: str, features: Mapping[str, float]) -> Looked:
+    """What a study looks at of a run."""
+    verdict, road = run.verdict, run.road
+    sbft = inspect(road, None, run.world, "sbft") if road is not None else ()
+    return Looked(
+        index=run.index,
+        folder=f"{home}/runs/{run.index:04d}".lstrip("/"),
+        outcome=run.outcome,
+        says=run.description,
+        is_valid=run.is_valid,
+        is_sound=road is not None and all(finding.rule == "promises" for finding in run.findings),
+        is_sbft=road is not None and not sbft,
+        sbft_says=sbft[0].sentence if sbft else "" if road is not None else "no road",
+        has_left=verdict is not None and verdict.cause in DEPARTURES,
+        margin=verdict.margin if verdict is not None else None,
+        length=run.length,
+        points=road.centreline(2.0)[:, :2] if road is not None else np.empty((0, 2)),
+        failed_at=verdict.at_xy if verdict is not None else None,
+        kept=kept_of(road, part.prompt, run.brief, run.world),
+        likeness=_likeness(road),
+        features=features,
+        versions=run.versions,
+    )
+
+
+def kept_of(road: Road | None, prompt: Prompt, brief: Brief | None, world: World) -> dict[Criterion, bool]:
+    """Which criteria of a description a road keeps; none where there is no road."""
+    points = road.centreline() if road is not None else BARE
+    is_road = bool(np.isfinite(points).all()) and len(points) > 1
+    found = measure(points if is_road else BARE)
+    if prompt.truth is not None:
+        kept = criteria_of_truth(found, prompt.truth)
+    elif brief is not None:
+        kept = criteria_of_outline(found, promises_of(brief, world))
+    else:
+        return {}
+    whole = road is not None and is_road and found.length >= SHORTEST
+    return {criterion: good and whole for criterion, good in kept.items()}
+
+
+def _likeness(road: Road | None) -> Likeness | None:
+    if road is None:
+        return None
+    try:
+        return likeness(road)
+    except (RoadGPTError, FloatingPointError, ValueError):  # a broken road is like no other
+        return None
+
+
+def _features(test: Path) -> dict[str, float]:
+    try:
+        found = json.loads(test.read_text(encoding="utf-8")).get("features")
+    except (OSError, ValueError):
+        return {}
+    return {str(key): float(value) for key, value in (found or {}).items()}

@@ -1,0 +1,131 @@
+"""What a study is asked for, and where its campaigns lie: ``study.json`` in its folder says it."""
+
+import json
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+from pydantic import Field, ValidationError
+
+from roadgpt import plugins
+from roadgpt.brief.model import Frozen
+from roadgpt.chat import asks_a_model
+from roadgpt.errors import UsageError
+from roadgpt.road import World
+from roadgpt.run import Setup
+from roadgpt.run.atomic import json_text, write_whole
+from roadgpt.run.naming import slug
+from roadgpt.study.prompts import Prompt
+
+CARD = "study.json"
+LETTERS = 32  # of a description, in the name of its folder
+
+Kind = Literal["thesis", "alignment"]
+
+
+class Part(NamedTuple):
+    """One description with one designer: one campaign."""
+
+    designer: str
+    number: int
+    """Of the prompt, from 1."""
+    prompt: Prompt
+
+    @property
+    def name(self) -> str:
+        """Folder below the study's, with forward slashes."""
+        return f"{slug(self.designer)}/{self.number:02d}-{slug(self.prompt.prompt)[:LETTERS].strip('-')}"
+
+
+class Plan(Frozen):
+    """All of a study but its results; the same Plan gives the same files."""
+
+    format: Literal[1] = 1
+    kind: Kind
+    prompts: tuple[Prompt, ...]
+    designers: tuple[str, ...] = Field(min_length=1)
+    roads: int = Field(ge=1)
+    """Of every prompt and designer."""
+    seed: int = 0
+    world: World = World()
+    setup: Setup = Setup()
+    """But for the designer; rules are always the strict ones."""
+    source: str = ""
+    """Name of the file of prompts."""
+    command: str = ""
+    """What makes the study again."""
+
+    def parts(self) -> tuple[Part, ...]:
+        """All campaigns, designer by designer."""
+        return tuple(
+            Part(designer, number, prompt)
+            for designer in self.designers
+            for number, prompt in enumerate(self.prompts, 1)
+        )
+
+    def setup_of(self, designer: str) -> Setup:
+        """Who does the work, with this designer; language models only where it or the reader asks one."""
+        asks = asks_a_model(plugins.find("designers", designer)) or asks_a_model(
+            plugins.find("readers", self.setup.reader.partition(":")[0])
+        )
+        chat = self.setup.chat if asks else None
+        return self.setup.model_copy(update={"designer": designer, "rules": "strict", "chat": chat})
+
+    def essence(self) -> "Plan":
+        """Without what may be another when an interrupted study goes on."""
+        chat = self.setup.chat and self.setup.chat.essence()
+        return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
+
+
+def open_folder(plan: Plan, folder: Path) -> None:
+    """Make a study's folder ready, or take up the one that is there.
+
+    Raises:
+        UsageError: it holds something else, or cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if (folder / CARD).is_file():
+            _same(read_plan(folder), plan, folder)
+        elif any(path.name != CARD and not path.name.endswith(".part") for path in folder.iterdir()):
+            raise UsageError(f"{folder} is not empty and holds no study; name another folder")
+        write_whole(folder / CARD, json_text(plan.model_dump(mode="json", by_alias=True)))
+    except OSError as error:
+        raise UsageError(f"cannot use {folder}: {error.strerror or error}; name another folder") from error
+
+
+def _same(there: Plan, asked: Plan, folder: Path) -> None:
+    one, other = there.essence(), asked.essence()
+    free = ("roads", "designers", "source", "command")  # more roads and more designers may join
+    differs = [name for name in type(one).model_fields if getattr(one, name) != getattr(other, name)]
+    wrong = [name for name in differs if name not in free]
+    if wrong:
+        raise UsageError(
+            f"{folder} holds another study (other {' and '.join(wrong)}); name another folder with --out"
+        )
+    if asked.roads < there.roads:
+        raise UsageError(f"{folder} holds a study of {there.roads} roads each; ask for as many or more")
+    lost = [name for name in there.designers if name not in asked.designers]
+    if lost:
+        raise UsageError(
+            f"{folder} holds roads by {' and '.join(lost)} as well; say --designer {lost[0]} too"
+        )
+
+
+def read_plan(folder: Path) -> Plan:
+    """What a study's folder says that it was asked for.
+
+    Raises:
+        UsageError: no study lies there, or its card cannot be read.
+    """
+    try:
+        card = json.loads((folder / CARD).read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise UsageError(f"there is no study in {folder}; give the folder of one") from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
+    try:
+        return Plan.model_validate(card)
+    except ValidationError as error:
+        raise UsageError(
+            f"{folder / CARD} is damaged or was written by another version of roadgpt; name another folder"
+        ) from error

@@ -1,0 +1,215 @@
+"""Writes the report of a study, or of one campaign of ``roadgpt run``, from what lies in its folder."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from roadgpt.errors import UsageError
+from roadgpt.report.page import Page, Section, write
+from roadgpt.run import Setup
+from roadgpt.run.atomic import json_text, write_whole
+from roadgpt.run.card import read_card
+from roadgpt.study.baseline import NAME, THESIS
+from roadgpt.study.chapters.alignment import alignment, kept, pooled
+from roadgpt.study.chapters.card import card_of
+from roadgpt.study.chapters.counting import (
+    SBFT,
+    STRICT,
+    departures,
+    left_source,
+    of_thesis,
+    thesis_left,
+    thesis_valid,
+    valid_source,
+    validity,
+)
+from roadgpt.study.chapters.diversity import diversity, spread_of
+from roadgpt.study.chapters.maps import coverage, roads
+from roadgpt.study.chapters.saying import between, p_value, percent, plural, share_of
+from roadgpt.study.looking import Looked, LookedPart, look_at_campaign, look_at_parts
+from roadgpt.study.plan import Part, Plan, read_plan
+from roadgpt.study.prompts import Prompt
+from roadgpt.study.similarity import Spread
+from roadgpt.study.statistics import chi_squared, exact, wilson
+from roadgpt.study.working import Problem
+
+PROBLEMS = "problems.json"
+
+Found = Sequence[tuple[list[Looked], Spread]]
+
+
+def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
+    """Write down what could not be made, so that the report can say it whenever it is written."""
+    told = {problem.part: problem.sentence for problem in problems}
+    write_whole(folder / PROBLEMS, json_text(told))
+
+
+def write_study(folder: Path) -> Path:
+    """Write the report of the study in a folder; gives back where the page lies.
+
+    Raises:
+        UsageError: there is no study, or a run of it cannot be read.
+        RoadGPTError: a file cannot be written.
+    """
+    plan = read_plan(folder)
+    parts = list(look_at_parts(plan, folder, _problems(folder)))
+    found = [spread_of(part) for part in parts]
+    return write(page_of(plan, parts, found), folder)
+
+
+def _problems(folder: Path) -> Mapping[str, str]:
+    try:
+        found = json.loads((folder / PROBLEMS).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return {str(key): str(value) for key, value in found.items()} if isinstance(found, dict) else {}
+
+
+def page_of(plan: Plan, parts: Sequence[LookedPart], found: Found) -> Page:
+    """The report of a study."""
+    is_thesis = plan.kind == "thesis"
+    sections = [
+        validity(parts, plan.designers, is_thesis),
+        departures(parts, plan.designers, is_thesis),
+        alignment(parts, plan.designers),
+    ]
+    if not is_thesis:
+        sections = [sections[2], sections[0], *([sections[1]] if plan.setup.drives else [])]
+    sections += [diversity(parts, found), *_pictures(parts, plan.world.map_size)]
+    summary = [*_summary(plan, parts, found)]
+    title = "The evaluation of RoadGPT's thesis, done again" if is_thesis else "Do roads keep the words?"
+    lead = f"{plural(len(plan.prompts), 'description')}, {plural(plan.roads, 'road')} each"
+    lead += f", seed {plan.seed}" + (f", from {plan.source}" if plan.source else "")
+    card = card_of(plan.command, plan.roads, plan.seed, plan.setup, plan.world, parts)
+    return Page(title, summary, sections, card, lead)
+
+
+def _pictures(parts: Sequence[LookedPart], size: float) -> list[Section]:
+    covered = coverage(parts)
+    return [*([covered] if covered else []), roads(parts, size)]
+
+
+def _summary(plan: Plan, parts: Sequence[LookedPart], found: Found) -> list[str]:
+    """What a reader wants to know, designer by designer."""
+    is_thesis = plan.kind == "thesis"
+    lines = []
+    for designer in plan.designers:
+        own = [part for part in parts if part.part.designer == designer]
+        if not any(part.roads for part in own):
+            problem = next((part.problem for part in own if part.problem), "nothing was made")
+            lines.append(f"{designer} was not run: {problem}.")
+            continue
+        told = of_thesis(own) if is_thesis else own
+        lines += _valid_lines(designer, told, is_thesis)
+        lines += _left_lines(designer, told, is_thesis)
+        lines.append(_kept_line(designer, own))
+        pairs = [(p, f) for p, f in zip(parts, found, strict=True) if p.part.designer == designer]
+        lines.append(_different_line(designer, [f for _, f in pairs]))
+    return lines
+
+
+def _valid_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) -> list[str]:
+    strict, sbft = (valid_source(designer, parts, kind) for kind in (STRICT, SBFT))
+    if not strict.total:
+        return []
+    text = (
+        f"{designer}: {share_of(strict.hits, strict.total)} roads are valid by strict rules, words included "
+        f"(95 % interval {between(wilson(strict.hits, strict.total))}), and "
+        f"{share_of(sbft.hits, sbft.total)} by the SBFT competition's"
+    )
+    if not is_thesis:
+        return [f"{text}."]
+    theirs = thesis_valid()
+    lines = [f"{text}; {NAME} had {share_of(theirs.hits, theirs.total)} by its own checks."]
+    ours, them = (chi_squared(source.table()) for source in (strict, theirs))
+    if len(strict.counts) == len(THESIS):
+        says = (
+            "the prompt makes no difference: all are alike"
+            if not ours.freedom
+            else f"over its prompts χ² = {ours.statistic:.2f} ({p_value(_p(strict.table()))})"
+        )
+        lines.append(
+            f"{designer}: {says}; in the thesis validity fell as prompts grew (88, 57, 37 of 100; χ² = "
+            f"{them.statistic:.2f}, {p_value(them.p)})."
+        )
+    return lines
+
+
+def _p(table: list[list[int]]) -> float:
+    found = chi_squared(table)
+    return found.p if found.is_sound else exact(table).p
+
+
+def _left_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) -> list[str]:
+    ours = left_source(designer, parts)
+    if not ours.total:
+        return []
+    theirs = thesis_left()
+    beside = f"; in the thesis on {share_of(theirs.hits, theirs.total)}" if is_thesis else ""
+    return [f"{designer}: the car left its lane on {share_of(ours.hits, ours.total)} driven roads{beside}."]
+
+
+def _kept_line(designer: str, parts: Sequence[LookedPart]) -> str:
+    good = [value for part in parts for value in kept(part, "general")]
+    counts = [value for part in parts for value in kept(part, "turns")]
+    sure = pooled(parts, designer, "general")
+    text = f"{designer}: {share_of(sum(good), len(good))} roads keep every word"
+    if len(parts) > 1:
+        text += f" (95 % interval by prompt {between(sure.interval)})"
+    return text + (
+        f"; the number of turns is right on {percent(sum(counts) / len(counts))}." if counts else "."
+    )
+
+
+def _different_line(designer: str, found: Found) -> str:
+    nearest = [float(own.nearest.min()) for roads, own in found if len(roads) > 1]
+    twins = sum(len(own.duplicates) for _, own in found)
+    if not nearest:
+        return f"{designer}: one road of each description, so there is nothing to compare."
+    said = "no near duplicates" if not twins else plural(twins, "pair") + " of near duplicates"
+    return (
+        f"{designer}: {said} among roads of one description; the nearest two plans are {min(nearest):.1f} m "
+        "apart (root mean square, however shifted, turned or mirrored)."
+    )
+
+
+def write_campaign(folder: Path, command: str = "") -> Path:
+    """Write the report of a campaign of ``roadgpt run`` into its folder; gives back where the page lies.
+
+    Raises:
+        UsageError: there is no campaign, or a run of it cannot be read.
+        RoadGPTError: a file cannot be written.
+    """
+    card = read_card(folder)
+    request, setup = card.request, card.request.setup
+    words = request.words or "roads that were given"
+    part = look_at_campaign(folder, Part(setup.designer, 1, Prompt(id="1", prompt=words)))
+    if not part.roads:
+        raise UsageError(f"{folder} holds no finished road yet; go on with the campaign first")
+    found = [spread_of(part)]
+    sections = [validity([part], [setup.designer], has_baseline=False)]
+    if setup.drives:
+        sections.append(departures([part], [setup.designer], has_baseline=False))
+    if request.words:
+        sections.append(alignment([part], [setup.designer]))
+    sections += [diversity([part], found), *_pictures([part], request.world.map_size)]
+    page = Page(
+        words,
+        _campaign_summary(part, setup, found),
+        sections,
+        card_of(command, card.roads, request.seed, setup, request.world, [part]),
+        f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",
+    )
+    return write(page, folder)
+
+
+def _campaign_summary(part: LookedPart, setup: Setup, found: Found) -> list[str]:
+    own = setup.designer
+    lines = [*_valid_lines(own, [part], is_thesis=False), *_left_lines(own, [part], is_thesis=False)]
+    margins = [(road.margin, road) for road in part.roads if road.margin is not None]
+    if margins:
+        least, road = min(margins, key=lambda pair: pair[0])
+        lines.append(f"The smallest margin is {least:+.2f} m, on road {road.index}.")
+    if any(road.kept for road in part.roads):
+        lines.append(_kept_line(own, [part]))
+    return [*lines, _different_line(own, found)]
