@@ -156,6 +156,12 @@ class Record:
             for number, batch, seed, origin, text in rows
         ]
 
+    def spent(self) -> tuple[int, float]:
+        """Tokens and USD that language models were paid for so far."""
+        sql = "SELECT coalesce(sum(tokens), 0), coalesce(sum(cost), 0) FROM "
+        tests, other = (self.query(sql + table)[0] for table in ("tests", "sittings"))
+        return tests[0] + other[0], tests[1] + other[1]
+
     def trace_file(self, cell: str, number: int) -> str | None:
         """Name of the file that holds the drive of a test; None where nobody drove."""
         rows = self.query(

@@ -7,7 +7,7 @@
     details   the long parts of the same tests: designs, sentences, features
     traces    files of drives
     leases    who is at which test now; they end with the sitting, for nobody else can be at work
-    sittings  from when to when somebody worked on it
+    sittings  from when to when somebody worked on it; what was asked of language models to no end
     features  names of all features there are
 
 Deterministic columns of tests and details make the tables; ``ended`` and all after it are the clock's.
@@ -22,7 +22,7 @@ import sqlite3
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Self
 
@@ -31,6 +31,7 @@ from roadgpt.campaign.model import Cell, Proposal
 from roadgpt.campaign.record import FORMAT, STORE, Record
 from roadgpt.campaign.rows import cell_text, detail_values, proposal_rows, result_values
 from roadgpt.campaign.worker import Ended
+from roadgpt.chat import Spent
 from roadgpt.errors import RoadGPTError, UsageError
 
 SCHEMA = """
@@ -48,7 +49,8 @@ CREATE TABLE details(cell TEXT, number INTEGER, origin TEXT NOT NULL, design TEX
 CREATE TABLE traces(trace INTEGER PRIMARY KEY, file TEXT NOT NULL);
 CREATE TABLE leases(cell TEXT, number INTEGER, worker TEXT NOT NULL, until REAL NOT NULL,
   PRIMARY KEY(cell, number)) WITHOUT ROWID;
-CREATE TABLE sittings(begun REAL NOT NULL, seen REAL NOT NULL, workers INTEGER NOT NULL);
+CREATE TABLE sittings(begun REAL NOT NULL, seen REAL NOT NULL, workers INTEGER NOT NULL,
+  tokens INTEGER NOT NULL DEFAULT 0, cost REAL NOT NULL DEFAULT 0);
 CREATE TABLE features(name TEXT PRIMARY KEY) WITHOUT ROWID;
 CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 """
@@ -122,7 +124,9 @@ class Store(Record):
         now = time.time()
         with self._whole() as db:
             db.execute("DELETE FROM leases")
-            done = db.execute("INSERT INTO sittings VALUES (?, ?, ?)", (now, now, workers))
+            done = db.execute(
+                "INSERT INTO sittings(begun, seen, workers) VALUES (?, ?, ?)", (now, now, workers)
+            )
             self._sitting = done.lastrowid or 0
 
     def add_batch(self, cell: str, batch: int, first: int, proposals: Sequence[Proposal]) -> None:
@@ -145,15 +149,25 @@ class Store(Record):
         with self._whole() as db:
             db.execute("UPDATE cells SET closed = ? WHERE name = ?", (why, cell))
 
-    def finish(self, value: str = "yes") -> None:
-        """Everything is done."""
+    def finish(self) -> None:
+        """Everything is done: the store becomes one file again, which may be copied and made read-only."""
         with self._whole() as db:
-            db.execute("UPDATE meta SET value = ? WHERE name = 'finished'", (value,))
+            db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
+        with suppress(sqlite3.OperationalError):  # somebody reads it at this moment
+            self._db.execute("PRAGMA journal_mode = DELETE")
 
     def set_plan(self, plan: str) -> None:
         """Another plan, which differs in limits only."""
         with self._whole() as db:
             db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))
+
+    def spend(self, spent: Spent) -> None:
+        """Something was asked of a language model that no test stands for."""
+        with self._whole() as db:
+            db.execute(
+                "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?",
+                (spent.usage.total, spent.cost or 0.0, self._sitting),
+            )
 
     def next_trace(self) -> int:
         """Number of the next file of drives."""

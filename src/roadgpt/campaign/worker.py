@@ -8,7 +8,7 @@ from roadgpt.campaign.behaviour import behaviour_of
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.traces import Trace, trace_of
 from roadgpt.chat import ChatError, Meter, ReplyError, Spent
-from roadgpt.errors import DesignError, PartError, RoadGPTError, UsageError
+from roadgpt.errors import BudgetError, DesignError, PartError, RoadGPTError, UsageError
 from roadgpt.road import Design
 from roadgpt.run import Run, Seconds, Setup, perform, prove, roll_call, seed_of
 from roadgpt.run.execution import records_of
@@ -51,6 +51,14 @@ class Ended:
     """Of a test that failed: where in which file."""
 
 
+@dataclass(frozen=True)
+class Broke:
+    """A test whose allowance was not enough; it has to be done again."""
+
+    spent: Spent
+    sentence: str
+
+
 class Ready:
     """Prepares a worker for these setups: imports and compiles what they need."""
 
@@ -67,7 +75,7 @@ class Ready:
             roll_call(setup)
 
 
-def do(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended:
+def do(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended | Broke:
     """One test.
 
     Args:
@@ -84,15 +92,18 @@ def do(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended:
         trace = trace_of(run.drive) if run.drive is not None else None
         return Ended(result_of(run, cell, task), trace, run.seconds, run.spent, run.trace)
     except (DesignError, ReplyError) as error:
-        return Ended(_failed(task, str(error)), spent=meter.spent if meter.spent.calls else None)
+        return Ended(failed(task, str(error)), spent=meter.spent if meter.spent.calls else None)
+    except BudgetError as error:
+        return Broke(meter.spent, str(error))
     except CONCERNS_ALL:
         raise
     except Exception as error:  # whatever a part raises costs this test, not the campaign
         said = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
-        return Ended(_failed(task, said), error=traceback.format_exc())
+        return Ended(failed(task, said), error=traceback.format_exc())
 
 
-def _failed(task: Task, sentence: str) -> Result:
+def failed(task: Task, sentence: str) -> Result:
+    """Of a test that came to nothing."""
     return Result(task.number, task.batch, task.proposal, "ERROR", sentence, task.proposal.design)
 
 

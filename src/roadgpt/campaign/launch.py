@@ -1,0 +1,167 @@
+"""Launching campaigns, and going on with them: one process that thinks and writes, and workers that drive.
+
+begin     a folder with a store in it: the plan, its cells with their Briefs, nothing done
+work      whatever the store lacks: resumed as often as it takes, it comes to the same table
+"""
+
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from roadgpt import plugins
+from roadgpt.brief.model import Brief
+from roadgpt.campaign.executors import Executor, Staff
+from roadgpt.campaign.office import Office, Progress
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.record import STORE, Record
+from roadgpt.campaign.store import Store, refused
+from roadgpt.campaign.table import CELLS, RESULTS, write_tables
+from roadgpt.campaign.traces import TRACES
+from roadgpt.campaign.worker import Ready
+from roadgpt.chat import Meter
+from roadgpt.errors import UsageError
+from roadgpt.run import Setup, brief_of
+from roadgpt.run.atomic import held, sweep
+from roadgpt.run.versions import versions_of
+
+LOCK = "campaign.lock"
+LOG = "workers.log"
+
+
+def begin(plan: Plan, folder: Path) -> bool:
+    """Make a campaign's folder ready for its plan: a new one, or the one that lies there, to be gone on with.
+
+    Reads the descriptions. Gives back whether it was there before.
+
+    Raises:
+        UsageError: the plan cannot be carried out, or the folder holds something else.
+        BriefError: a description cannot be read.
+        ChatError: a language model that reads them could not be asked.
+    """
+    plan.check()
+    with _lone(folder):
+        if (folder / STORE).is_file():
+            _same(plan, folder)
+            return True
+        if any(path.name != LOCK and not path.name.startswith(STORE) for path in folder.iterdir()):
+            raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
+        briefs = _briefs(plan)
+        cells = plan.cells(briefs)
+        versions = versions_of(cells[0].request.setup)
+        Store.new(folder, plan.model_dump_json(), cells, versions).close()
+        return False
+
+
+def _briefs(plan: Plan) -> dict[str, Brief]:
+    """What is read out of each description."""
+    request, _ = next(plan.requests())
+    meter = Meter.of(plan.chat)
+    words = dict.fromkeys(text for text in plan.prompts if text.strip())
+    return {text: brief_of(text, plan.world, request.setup, meter) for text in words}
+
+
+def _same(plan: Plan, folder: Path) -> None:
+    with Store.opened(folder) as store:
+        there = plan_of(store)
+        other = [name for name, value in plan.essence() if getattr(there.essence(), name) != value]
+        if other:
+            raise UsageError(
+                f"{folder} holds another campaign (other {' and '.join(other)}); name another folder, "
+                f"or go on with it: roadgpt resume {folder}"
+            )
+        store.set_plan(plan.model_dump_json())
+
+
+def plan_of(record: Record) -> Plan:
+    """The plan that a store holds."""
+    return Plan.model_validate_json(record.meta("plan"))
+
+
+@contextmanager
+def _lone(folder: Path) -> Iterator[None]:
+    """Be the only process at work in a folder, which is made where there is none."""
+    with ExitStack() as stack:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(held(folder / LOCK))
+        except BlockingIOError as error:
+            raise UsageError(
+                f"another process is at work in {folder}; wait for it or name another folder"
+            ) from error
+        except OSError as error:
+            raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder") from error
+        yield
+
+
+def work(
+    folder: Path, workers: int = 1, executor: str = "processes", address: str = "", plan: Plan | None = None
+) -> Iterator[Progress]:
+    """Do what the campaign in a folder still lacks; iterate over it to make it work.
+
+    Args:
+        folder: made by ``begin``.
+        workers: how many.
+        executor: name of a part on the shelf ``executors``.
+        address: where the workers are, for executors that ask.
+        plan: with other limits than the one in the store; None: that one.
+
+    Raises:
+        UsageError: there is no campaign, or another process is at work on it, or a part is not installed.
+        ChatError: a language model could not be asked, or a limit is reached; what is done is kept.
+        RoadGPTError: the system refuses to write, or there are no workers.
+    """
+    kind: type[Executor] = plugins.find("executors", executor)
+    if not (folder / STORE).is_file():
+        raise UsageError(f"there is no campaign in {folder}; give the folder of one")
+    with _lone(folder), Store.opened(folder) as store:
+        if plan is not None:
+            store.set_plan(plan.model_dump_json())
+        else:
+            plan = plan_of(store)
+        if not store.meta("finished"):
+            try:
+                _sweep(folder, store)
+                staff = Staff(workers, Ready(_setups(plan)), plan.patience, folder / LOG, address)
+                yield from _worked(kind, staff, plan, store)
+            except (OSError, sqlite3.Error) as error:
+                raise refused(folder, error) from error
+        if not store.meta("finished") or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
+            _conclude(folder, store)
+
+
+def _setups(plan: Plan) -> tuple[Setup, ...]:
+    return tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
+
+
+def _worked(kind: type[Executor], staff: Staff, plan: Plan, store: Store) -> Iterator[Progress]:
+    office = Office(plan, store, staff, kind)
+    try:
+        yield from office.run()
+    except BaseException:
+        office.leave()
+        raise
+    finally:
+        office.executor.stop()
+
+
+def _conclude(folder: Path, store: Store) -> None:
+    try:
+        write_tables(store, folder)
+        store.finish()
+    except (OSError, sqlite3.Error) as error:
+        raise refused(folder, error) from error
+
+
+def _sweep(folder: Path, store: Store) -> None:
+    """Remove what a killed process left: files that are not whole, and drives whose results were not kept."""
+    sweep(folder)
+    if (folder / TRACES).is_dir():
+        sweep(folder / TRACES)
+        known = {name for (name,) in store.query("SELECT file FROM traces")}
+        for path in (folder / TRACES).iterdir():
+            if path.name not in known:
+                path.unlink()
+
+
+__all__: Sequence[str] = ("LOCK", "LOG", "begin", "plan_of", "work")

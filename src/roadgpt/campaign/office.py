@@ -1,0 +1,258 @@
+"""The office of a campaign: hands out tests, takes in results, keeps them in groups, asks for more."""
+
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from roadgpt.campaign.course import Course
+from roadgpt.campaign.executors import Doing, Done, Executor, Job, Staff
+from roadgpt.campaign.model import Cell
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.purse import Purse
+from roadgpt.campaign.store import Store
+from roadgpt.campaign.traces import Trace, write_traces
+from roadgpt.campaign.worker import Broke, Ended, Task, do, failed
+from roadgpt.errors import BudgetError, RoadGPTError
+
+WAIT = 0.25  # s for results, before looking round
+GROUP_SECONDS = 1.0  # that a result waits to be kept: so much work is lost at most when the process is killed
+GROUP = 128  # results that are kept together, at most: 10 MB of drives
+PER_WORKER = 2  # tests under way or waiting, below which the next cell is begun
+
+
+@dataclass
+class Progress:
+    """How far a campaign is."""
+
+    total: int | None
+    """Tests; None where only time limits them."""
+    outcomes: Counter[str] = field(default_factory=Counter)
+    cells: int = 0
+    """That are done."""
+    of_cells: int = 0
+    under_way: int = 0
+
+    @property
+    def done(self) -> int:
+        """Tests that have ended."""
+        return self.outcomes.total()
+
+
+@dataclass(frozen=True)
+class _Out:
+    """A test that was handed out."""
+
+    course: Course
+    task: Task
+
+
+class Office:
+    """One sitting: the process that writes the store, with its workers."""
+
+    def __init__(self, plan: Plan, store: Store, staff: Staff, kind: type[Executor]) -> None:
+        self._store = store
+        self._staff = staff
+        self._names = [name for (name,) in store.query("SELECT name FROM cells ORDER BY name")]
+        self._purse = Purse(plan.chat, *store.spent())
+        self._chat = plan.chat
+        counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
+        total = plan.budget.tests and plan.budget.tests * len(self._names)
+        self.progress = Progress(total, Counter(dict(counts)), of_cells=len(self._names))
+        self._next = 0
+        self._courses: list[Course] = []
+        self._out: dict[int, _Out] = {}
+        self._keys = 0
+        self._poor: list[_Out] = []
+        self._shared: dict[str, set[int]] = {}
+        self._pending: list[tuple[str, Ended]] = []
+        self._oldest = self._looked = time.monotonic()
+        self._error: Exception | None = None
+        self._may_write = True
+        self.executor = kind(staff)
+
+    def run(self) -> Iterator[Progress]:
+        """Work until nothing is left to do; tells how far it is after every group of results."""
+        self._store.begin_sitting(self._staff.workers)
+        while True:
+            self._fill()
+            if not self._out and not self._poor:
+                break
+            self._take(self.executor.done(WAIT))
+            if self._is_due():
+                self._keep()
+                yield self.progress
+            if self._error is not None:
+                raise self._error
+        self._keep()
+        yield self.progress
+
+    def leave(self) -> None:
+        """Keep what is done, when the work ends before its time."""
+        self.executor.stop()
+        if self._may_write and self._error is None:
+            try:
+                self._take(self.executor.done(0.0))
+            except RoadGPTError:
+                self._error = None  # it was told already
+        if self._may_write:
+            self._keep()
+
+    # Handing out
+
+    def _fill(self) -> None:
+        if self._poor:
+            self._help_the_poor()
+            return
+        while True:
+            course = next((course for course in self._courses if course.may_ask), None)
+            if course is not None:
+                self._ask(course)
+            elif len(self._out) >= PER_WORKER * self._staff.workers or not self._open():
+                return
+
+    def _ask(self, course: Course) -> None:
+        if self._pending:
+            self._keep()  # what the generator is told has to be in the store
+        if course.is_late:
+            course.close("its time was up")
+        else:
+            batch = len(course.batches)
+            tests = [Task(number, batch, proposal) for number, proposal in course.ask(self.executor)]
+            self._hand_out(course, tests)
+        self._drop_if_done(course)
+
+    def _open(self) -> bool:
+        """Begin the next cell that is not done; False where there is none."""
+        while self._next < len(self._names):
+            course = Course(self._store.cell(self._names[self._next]), self._store)
+            self._next += 1
+            if course.is_done:
+                self.progress.cells += 1
+                continue
+            self._courses.append(course)
+            name = course.cell.name
+            self.executor.share(name, self._with_chat(course.cell))
+            self._shared[name] = set()
+            waiting = self._store.waiting(name)
+            self._hand_out(course, [Task(number, batch, made) for number, batch, made in waiting])
+            return True
+        return False
+
+    def _with_chat(self, cell: Cell) -> Cell:
+        """With the language model's settings of this sitting, which may have other limits."""
+        setup = cell.request.setup.model_copy(update={"chat": self._chat})
+        return replace(cell, request=cell.request.model_copy(update={"setup": setup}))
+
+    def _hand_out(self, course: Course, tests: Sequence[Task]) -> None:
+        jobs = []
+        if self._purse.is_bounded and tests:
+            share = self._purse.share(len(tests))
+            tests = [Task(test.number, test.batch, test.proposal, share) for test in tests]
+        for test in tests:
+            self._keys += 1
+            self._out[self._keys] = _Out(course, test)
+            self._purse.give(self._keys, test.allowance)
+            needs = (course.cell.name, *self._earlier(course, test))
+            jobs.append(Job(self._keys, do, test, needs))
+        self.executor.submit(jobs)
+
+    def _earlier(self, course: Course, test: Task) -> list[str]:
+        """Names of the blocks of designs that a draft is not to repeat; workers get those they have not."""
+        if test.proposal.design is not None:
+            return []
+        name = course.cell.name
+        wanted, shared = course.known(test.batch), self._shared[name]
+        for batch in wanted:
+            if batch not in shared:
+                self.executor.share(f"{name}/{batch}", course.designs(batch))
+                shared.add(batch)
+        # tests of the batch before may still wait for what this one needs no more
+        for batch in [batch for batch in shared if batch < course.known(max(test.batch - 1, 0)).start]:
+            self.executor.forget(f"{name}/{batch}")
+            shared.remove(batch)
+        return [f"{name}/{batch}" for batch in wanted]
+
+    def _help_the_poor(self) -> None:
+        """Tests whose share of the money was too small get all that is left, one after another."""
+        if self._out:
+            return
+        one = self._poor.pop(0)
+        everything = self._purse.all()
+        if one.task.allowance == everything:
+            self._error = BudgetError(self._purse.sentence(self._store.folder))
+            return
+        task = Task(one.task.number, one.task.batch, one.task.proposal, everything)
+        self._keys += 1
+        self._out[self._keys] = _Out(one.course, task)
+        self._purse.give(self._keys, everything)
+        needs = (one.course.cell.name, *self._earlier(one.course, task))
+        self.executor.submit([Job(self._keys, do, task, needs)])
+
+    # Taking in
+
+    def _take(self, ended: Sequence[Done]) -> None:
+        for done in ended:
+            out = self._out.pop(done.key)
+            if done.error is not None:
+                self._error = self._error or done.error
+                continue
+            value: Ended | Broke = Ended(failed(out.task, done.lost)) if done.lost else done.value
+            self._purse.back(done.key, value.spent)
+            if isinstance(value, Broke):
+                self._store.spend(value.spent)
+                self._poor.append(out)
+                continue
+            if not self._pending:
+                self._oldest = time.monotonic()
+            self._pending.append((out.course.cell.name, value))
+            self.progress.outcomes[value.result.outcome] += 1
+            out.course.ended(out.task.batch)
+
+    def _is_due(self) -> bool:
+        waited = time.monotonic() - (self._oldest if self._pending else self._looked)
+        return waited >= GROUP_SECONDS or len(self._pending) >= GROUP
+
+    def _keep(self) -> None:
+        """Write what has ended: its drives first, so that every result has its own."""
+        now = time.monotonic()
+        drives = [(cell, one.result.number, one.trace) for cell, one in self._pending if one.trace]
+        self._may_write = False  # until it went well
+        trace = self._kept_drives(drives) if drives else None
+        taken = {course.cell.name: now - self._looked for course in self._courses}
+        self._store.keep(self._pending, trace, self._leases(), taken)
+        self._may_write = True
+        for course in self._courses:
+            course.seconds += now - self._looked
+        self._looked = now
+        self._pending = []
+        self.progress.under_way = len(self._out)
+        for course in [*self._courses]:
+            self._drop_if_done(course)
+
+    def _kept_drives(self, drives: Sequence[tuple[str, int, Trace]]) -> tuple[int, str]:
+        number = self._store.next_trace()
+        return number, write_traces(self._store.folder, number, drives)
+
+    def _leases(self) -> list[tuple[str, int, Doing, float]]:
+        now = time.time()
+        doing = [(self._out[one.key], one) for one in self.executor.under_way() if one.key in self._out]
+        return [
+            (out.course.cell.name, out.task.number, one, now - one.seconds + self._staff.patience)
+            for out, one in doing
+        ]
+
+    def _drop_if_done(self, course: Course) -> None:
+        if not course.is_done or course not in self._courses:
+            return
+        if any(out.course is course for out in self._poor) or self._has_pending(course):
+            return
+        self._courses.remove(course)
+        self.progress.cells += 1
+        name = course.cell.name
+        for batch in self._shared.pop(name):
+            self.executor.forget(f"{name}/{batch}")
+        self.executor.forget(name)
+
+    def _has_pending(self, course: Course) -> bool:
+        return any(cell == course.cell.name for cell, _ in self._pending)
