@@ -51,7 +51,7 @@ class Place(NamedTuple):
 
 
 MOUNTS: dict[str, Place] = {
-    "bonnet": Place(0.62, 1.26, -0.075),
+    "bonnet": Place(0.72, 1.28, -0.060),
     "chase": Place(-8.4, 2.95, -0.17),
     "above": Place(0.0, 34.0, -math.pi / 2),
 }

@@ -7,7 +7,8 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.scene.land import Land
 from roadgpt.scene.light import daylight
-from roadgpt.scene.mesh import GRASS, PLAIN, POST, ROAD, Patch, attributes, grid
+from roadgpt.scene.mesh import GRASS, POST, ROAD, Patch, attributes, grid
+from roadgpt.scene.paint import CONCRETE
 
 CHORD = 0.004  # m
 LONGEST = 4.0  # m between stations: light and texture follow crests
@@ -15,7 +16,6 @@ BLOCK = 24  # stations of a patch
 THICK = 0.5  # m of a road that floats
 BANK = 1.7  # run over fall of an embankment
 FOOT = 0.4  # m that an embankment ends below the land
-CONCRETE = PLAIN
 POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
 """m; half of what German rules ask for on straights, so that speed is seen."""
 POST_FROM_RIM = 0.6  # m

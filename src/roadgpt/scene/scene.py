@@ -8,14 +8,18 @@ from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
 from roadgpt.export.ego import CAR
+from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.scene.camera import Camera, Pose, axes_of
+from roadgpt.scene.car import palette_of, saloon
 from roadgpt.scene.land import Land
 from roadgpt.scene.mesh import Mesh
 from roadgpt.scene.raster import PLANE, SAMPLES, draw
 from roadgpt.scene.ribbon import road_patches
 from roadgpt.scene.shade import shade, to_screen
+from roadgpt.scene.sprites import overlay
 from roadgpt.scene.textures import noise, screen_table
+from roadgpt.scene.trees import Trees, pictures, plant
 
 Image = NDArray[np.uint8]
 
@@ -40,7 +44,7 @@ class Scene:
     world: World
     land: Land
     ground: Mesh
-    palette: NDArray[np.float64]
+    trees: Trees
     _own: threading.local = field(default_factory=threading.local, repr=False)
 
     @classmethod
@@ -52,8 +56,7 @@ class Scene:
         """
         land = Land.around(road, world)
         ground = Mesh.of([*road_patches(road, world, land), *land.patches()])
-        palette = np.array([[0.36, 0.35, 0.33, 0.0, 0.0, 0.0]])
-        return cls(road, world, land, ground, palette)
+        return cls(road, world, land, ground, plant(road, world, land))
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
         """A picture ``(height, width, 3)`` of bytes, red first, from a camera on a car at ``pose``.
@@ -79,14 +82,19 @@ class Scene:
         numbers = np.r_[eye.position, eye.axes.ravel(), eye.focal]
         sheet.depth.fill(0.0)
         sheet.ids.fill(-1)
-        for mesh in (self.ground,):
-            draw(
-                mesh.points, mesh.attributes, mesh.triangles, mesh.kinds, mesh.ranges, mesh.spheres,
-                numbers, sheet.depth, sheet.ids, sheet.planes, sheet.seen, sheet.kinds, 0,
-            )  # fmt: skip
+        count = _draw(self.ground, self.ground.points, self.ground.attributes, numbers, sheet, 0)
+        if car is not None:
+            made = saloon()
+            count = _draw(made.mesh, *made.placed(car, eye), numbers, sheet, count)
         shade(
-            sheet.ids, sheet.planes, sheet.kinds, self.palette, noise(), numbers,
+            sheet.ids, sheet.planes, sheet.kinds, palette_of(car), noise(), numbers,
             np.r_[self.world.lane_width, self.road.length, _shade_of(car)], sheet.picture,
+        )  # fmt: skip
+        trees = self.trees
+        order = np.argsort((eye.position - trees.places) @ eye.axes[2], kind="stable")
+        overlay(
+            order, trees.places, trees.sizes, trees.looks, trees.tints, pictures(),
+            numbers, sheet.depth, sheet.picture,
         )  # fmt: skip
         to_screen(sheet.picture, screen_table(), out)
         return out
@@ -97,16 +105,28 @@ class Scene:
         kept: dict[tuple[int, int], Sheet] = self._own.__dict__.setdefault("sheets", {})
         if key not in kept:
             high, wide = camera.height, camera.width
-            count = len(self.ground.triangles)
+            count = len(self.ground.triangles) + len(saloon().mesh.triangles)
             kept[key] = Sheet(
                 np.empty((SAMPLES * high, wide), np.float32),
                 np.empty((SAMPLES * high, wide), np.int32),
                 np.empty((high, wide, 3), np.float32),
                 np.empty((count, PLANE)),
                 np.empty(count, np.int64),
-                np.empty((max(np.ptp(self.ground.ranges[:, :2], axis=1)), 3)),
+                np.empty((max(*np.ptp(self.ground.ranges[:, :2], axis=1), len(saloon().mesh.points)), 3)),
             )
         return kept[key]
+
+
+def _draw(mesh: Mesh, points: Array, attributes: Array, eye: Array, sheet: Sheet, count: int) -> int:
+    """Draw a mesh whose points lie elsewhere than it says, if it is a car."""
+    spheres = mesh.spheres
+    if points is not mesh.points:
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        spheres = np.r_[middle, np.linalg.norm(points - middle, axis=1).max()][None]
+    return draw(
+        points, attributes, mesh.triangles, mesh.kinds, mesh.ranges, spheres,
+        eye, sheet.depth, sheet.ids, sheet.planes, sheet.seen, sheet.kinds, count,
+    )  # fmt: skip
 
 
 def _shade_of(car: Pose | None) -> NDArray[np.float64]:

@@ -1,0 +1,189 @@
+"""The saloon's shapes: a hull drawn through cross-sections, a cabin with windows, and what is put on them."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from roadgpt.export.ego import CAR
+from roadgpt.geometry.curve import Array
+from roadgpt.scene.mesh import grid
+from roadgpt.scene.paint import GLASS, HEAD, HIGH, PAINT, PLATE, TAIL, TRIM
+
+# Cross-sections from the tail to the nose: x; height of the underside, half width of the sill; half width and
+# height where it is widest; of the shoulder; of the deck's edge; height of the deck's middle. All m.
+SECTIONS = (
+    (-2.350, 0.38, 0.60, 0.70, 0.52, 0.72, 0.66, 0.66, 0.74, 0.76),
+    (-2.325, 0.30, 0.70, 0.80, 0.52, 0.79, 0.74, 0.72, 0.90, 0.92),
+    (-2.270, 0.25, 0.77, 0.87, 0.54, 0.85, 0.82, 0.76, 0.985, 1.005),
+    (-2.100, 0.22, 0.80, 0.905, 0.56, 0.88, 0.87, 0.78, 1.000, 1.025),
+    (-1.750, 0.20, 0.82, 0.925, 0.58, 0.90, 0.91, 0.78, 1.000, 1.030),
+    (-1.000, 0.19, 0.83, 0.930, 0.60, 0.905, 0.935, 0.80, 0.975, 0.990),
+    (0.000, 0.18, 0.83, 0.925, 0.60, 0.900, 0.930, 0.80, 0.960, 0.970),
+    (0.850, 0.18, 0.83, 0.925, 0.60, 0.895, 0.915, 0.80, 0.950, 0.985),
+    (1.300, 0.19, 0.83, 0.925, 0.58, 0.885, 0.880, 0.78, 0.915, 0.960),
+    (1.800, 0.20, 0.81, 0.910, 0.55, 0.860, 0.805, 0.74, 0.845, 0.890),
+    (2.130, 0.22, 0.75, 0.860, 0.52, 0.800, 0.715, 0.66, 0.760, 0.800),
+    (2.280, 0.26, 0.65, 0.745, 0.48, 0.690, 0.620, 0.54, 0.670, 0.695),
+    (2.350, 0.34, 0.50, 0.570, 0.46, 0.520, 0.550, 0.38, 0.580, 0.590),
+)
+SILL, BELT, ROOF = (
+    0.80,
+    0.935,
+    1.385,
+)  # m: half width and height of the cabin's foot; height of the roof's edge
+NARROW = 0.575  # m, half width of the roof
+FRONT, REAR = (1.02, 0.28), (-1.74, -1.02)  # m: windscreen and rear window, foot and top
+CROWN = 0.055  # m that the roof's middle is higher than its edge
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A surface with normals."""
+
+    points: Array
+    normals: Array
+    triangles: NDArray[np.int64]
+    kinds: NDArray[np.int64]
+
+    def moved(self, by: Array) -> "Part":
+        """The same elsewhere."""
+        return Part(self.points + by, self.normals, self.triangles, self.kinds)
+
+
+def surface(net: Array, kind: int) -> Part:
+    """Smooth, over a net ``(rows, columns, 3)``; columns run to the left of rows, seen from outside."""
+    along, across = np.gradient(net, axis=0), np.gradient(net, axis=1)
+    normals = np.cross(along, across)
+    size = np.linalg.norm(normals, axis=-1, keepdims=True)
+    normals = (normals / np.maximum(size, 1e-12)).reshape(-1, 3)
+    patch = grid(net, np.zeros_like(net), kind)
+    return Part(patch.points, normals, patch.triangles, patch.kinds)
+
+
+def body() -> Iterator[Part]:
+    """Hull and cabin."""
+    rings = np.stack([_ring(*section) for section in SECTIONS])
+    ends = [np.repeat(ring.mean(axis=0)[None], len(ring), axis=0) for ring in (rings[0], rings[-1])]
+    yield surface(np.concatenate([ends[0][None], rings, ends[1][None]]), PAINT)
+    yield from _cabin()
+
+
+def _ring(x: float, *numbers: float) -> Array:
+    """A cross-section: from the middle of the underside over the right side and the deck, and back."""
+    half = np.column_stack([np.full(8, x), _half(*numbers)])
+    return np.concatenate([half * [1, -1, 1], half[-2::-1]])
+
+
+def _half(*numbers: float) -> Array:
+    """Its left half (y, z), from the middle of the underside to that of the deck: (8, 2)."""
+    low, sill, wide, wide_z, shoulder, shoulder_z, deck, deck_z, middle = numbers
+    side = [(0, low), (sill, low), (sill + 0.04, low + 0.12), (wide, wide_z), (shoulder, shoulder_z)]
+    return np.array([*side, (deck, deck_z), (deck / 2, middle - 0.25 * (middle - deck_z)), (0, middle)])
+
+
+def _cabin() -> Iterator[Part]:
+    """Windows in painted frames, and the roof."""
+    (front_low, front_top), (rear_low, rear_top) = FRONT, REAR
+    for side in (-1.0, 1.0):
+        low = np.array([[rear_low, side * SILL, BELT], [front_low, side * SILL, BELT - 0.005]])
+        top = np.array([[rear_top, side * NARROW, ROOF - 0.01], [front_top, side * NARROW, ROOF - 0.01]])
+        along = [0.0, 0.10, 0.24, 0.27, 0.52, 0.56, 0.955, 1.0]
+        glazed = {1, 3, 5}
+        yield from _glazed(low, top, along, [0.0, 0.07, 0.90, 1.0], glazed, is_turned=side > 0)
+    for foot, head, base, is_turned in ((front_low, front_top, 0.97, True), (rear_low, rear_top, 1.0, False)):
+        low = np.array([[foot, SILL, BELT], [foot, -SILL, BELT]])
+        low[:, 2] = base - 0.035
+        top = np.array([[head, NARROW, ROOF], [head, -NARROW, ROOF]])
+        yield from _glazed(low, top, [0.0, 0.055, 0.945, 1.0], [0.0, 0.04, 0.93, 1.0], {1}, is_turned)
+    x = np.array([rear_top, -0.72, -0.35, 0.05, front_top])
+    y = np.linspace(-NARROW, NARROW, 7)
+    rise = CROWN * (1 - (np.abs(y) / NARROW) ** 2.5)[None] * np.array([0.1, 0.8, 1.0, 0.8, 0.1])[:, None]
+    edge = ROOF + np.array([0.0, 0.012, 0.016, 0.010, 0.0])[:, None]
+    yield surface(np.stack(np.broadcast_arrays(x[:, None], y[None], edge + rise), axis=-1), PAINT)
+
+
+def _glazed(
+    low: Array, top: Array, along: Sequence[float], up: Sequence[float], glazed: set[int], is_turned: bool
+) -> Iterator[Part]:
+    """A wall between two edges, cut at shares of both; bulges a little; some of its middle row is glass."""
+    a, b = np.array(along), np.array(up)
+    foot = low[0] + a[:, None] * (low[1] - low[0])
+    head = top[0] + a[:, None] * (top[1] - top[0])
+    net = foot[:, None] + b[None, :, None] * (head - foot)[:, None]
+    outward = np.cross(low[1] - low[0], top[0] - low[0]) * (-1 if is_turned else 1)
+    bulge = 0.05 * np.sin(np.pi * a)[:, None, None] * np.sin(np.pi * b)[None, :, None]
+    net = net + bulge * outward / np.linalg.norm(outward)
+    whole = surface(net[::-1] if is_turned else net, PAINT)
+    cells = len(a) - 1
+    for i in range(cells):
+        for j in range(len(b) - 1):
+            row = cells - 1 - i if is_turned else i
+            at = 2 * (row * (len(b) - 1) + j)
+            kind = GLASS if i in glazed and j == 1 else PAINT
+            triangles = whole.triangles[at : at + 2]
+            used, where = np.unique(triangles, return_inverse=True)
+            yield Part(
+                whole.points[used], whole.normals[used], where.reshape(2, 3), np.full(2, kind, np.int64)
+            )
+
+
+def trim() -> Iterator[Part]:
+    """Bumpers, plate, seams, grille, wheel arches and mirrors."""
+    wide = np.array([-0.76, -0.7, -0.6, -0.3, 0.0, 0.3, 0.6, 0.7, 0.76])
+    yield _on_hull(-0.97 * wide, (0.315, 0.36, 0.41), TRIM, -1)
+    yield _on_hull(-wide, (0.672, 0.684), TRIM, -1)
+    yield _on_hull(np.array([0.27, 0.0, -0.27]), (0.545, 0.65), PLATE, -1, 0.018)
+    yield _on_hull(np.array([-0.4, -0.2, 0.0, 0.2, 0.4]), (0.45, 0.50, 0.55), TRIM, 1)
+    yield _on_hull(0.75 * wide, (0.35, 0.38, 0.41), TRIM, 1)
+    for ahead in (CAR.front_axle - CAR.middle, CAR.rear_axle - CAR.middle):
+        for side in (-1.0, 1.0):
+            yield _disc(ahead, side * 0.934, CAR.wheel / 2 + 0.01, 0.385, TRIM)
+    for side in (-1.0, 1.0):
+        yield from _box(np.array([0.74, side * 0.985, 1.0]), np.array([0.09, 0.11, 0.065]), PAINT)
+
+
+def lamps() -> Iterator[Part]:
+    """Tail lamps around the corners, a third one in the rear window, and headlamps."""
+    tail, head = np.array([0.40, 0.55, 0.70, 0.77, 0.82, 0.855]), np.array([0.46, 0.56, 0.66, 0.74, 0.80])
+    for side in (-1.0, 1.0):
+        yield _on_hull(np.sort(side * tail)[::-1], (0.71, 0.77, 0.83), TAIL, -1)
+        yield _on_hull(np.sort(side * head), (0.575, 0.62, 0.665), HEAD, 1, 0.02)
+    high = np.array([[-1.125, 0.2, 1.345], [-1.125, -0.2, 1.345]])
+    yield surface(np.stack([high, high + [0.035, 0.0, 0.028]], axis=1), HIGH)
+
+
+def _on_hull(across: Array, heights: tuple[float, ...], kind: int, end: int, lift: float = 0.012) -> Part:
+    """A strip on the tail (end -1, from left to right) or on the nose (end 1, from right to left)."""
+    x = np.linspace(SECTIONS[0][0], SECTIONS[-1][0], 4701)[::-end]
+    table = np.array(SECTIONS)
+    wide = np.empty((len(heights), len(x)))
+    profiles = [_half(*row[1:]) for row in table]
+    for k in range(len(x)):
+        n = int(np.clip(np.searchsorted(table[:, 0], x[k]) - 1, 0, len(table) - 2))
+        share = (x[k] - table[n, 0]) / (table[n + 1, 0] - table[n, 0])
+        y, z = (profiles[n] + share * (profiles[n + 1] - profiles[n])).T
+        wide[:, k] = np.interp(heights, z[1:], y[1:], right=0.0)
+    at = (wide[:, None] >= np.abs(across)[None, :, None]).argmax(axis=-1)
+    net = np.stack(np.broadcast_arrays(x[at].T + end * lift, across[:, None], np.array(heights)), axis=-1)
+    return surface(net, kind)
+
+
+def _disc(x: float, y: float, z: float, radius: float, kind: int) -> Part:
+    """Upright, facing away from the car."""
+    angle = np.linspace(0.0, 2 * np.pi, 25) * (-1 if y > 0 else 1)
+    rim = np.column_stack([x + radius * np.cos(angle), np.full(25, y), z + radius * np.sin(angle)])
+    rim[:, 2] = np.maximum(rim[:, 2], 0.18)
+    middle = np.repeat([[x, y, z]], 25, axis=0)
+    part = surface(np.stack([rim, middle], axis=1), kind)
+    return Part(part.points, np.tile([0.0, np.sign(y), 0.0], (50, 1)), part.triangles, part.kinds)
+
+
+def _box(middle: Array, half: ArrayLike, kind: int) -> Iterator[Part]:
+    for axis in range(3):
+        for sign in (-1.0, 1.0):
+            u, v, w = (np.eye(3)[(axis + k) % 3] * np.asarray(half) for k in range(3))
+            corners = [middle + sign * u + a * v + b * w for a in (-1, 1) for b in (-1, 1)]
+            net = np.array(corners).reshape(2, 2, 3)
+            yield surface(net if sign > 0 else net[::-1], kind)

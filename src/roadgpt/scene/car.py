@@ -1,0 +1,104 @@
+"""The car that is seen: a plain saloon of the simulator's size, with wheels that turn and lights that brake.
+
+Its frame has the middle of the car's length on the ground as origin, x forward, y left, z up; metres.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.export.ego import CAR
+from roadgpt.geometry.curve import Array
+from roadgpt.scene.body import Part, body, lamps, trim
+from roadgpt.scene.camera import Eye, Pose, axes_of
+from roadgpt.scene.light import SUN, daylight
+from roadgpt.scene.mesh import Mesh, Patch
+from roadgpt.scene.paint import BRAKE, GLOSS, PALETTE, SHINING
+from roadgpt.scene.wheel import wheel
+
+MIRRORED = 0.05  # share of the sky's light that paint and glass throw back, seen straight on (index 1.5)
+
+
+@dataclass(frozen=True, eq=False)
+class Saloon:
+    """Its surface at rest, with normals, and which points turn with which wheel."""
+
+    mesh: Mesh
+    """The attributes are not filled in: they depend on where the car is."""
+    normals: Array
+    gloss: Array
+    shade: Array
+    """Share of the light that is left near the ground and under the sills."""
+    wheels: tuple[tuple[slice, Array, bool], ...]
+    """Points of each wheel, its hub, and whether it steers."""
+
+    def placed(self, pose: Pose, eye: Eye) -> tuple[Array, Array]:
+        """Points ``(n, 3)`` in the world, and their attributes: shine, nothing, light."""
+        points, normals = self.mesh.points.copy(), self.normals.copy()
+        for part, hub, steers in self.wheels:
+            turn = _turn(pose.wheel, pose.steer if steers else 0.0)
+            points[part] = (points[part] - hub) @ turn.T + hub
+            normals[part] = normals[part] @ turn.T
+        axes = axes_of(pose.heading, pose.pitch, pose.roll)
+        points[:, 0] += CAR.middle
+        points[:, 2] -= CAR.gravity_height
+        points = points @ axes + np.array([pose.x, pose.y, pose.z])
+        normals = normals @ axes
+        light = daylight(normals) * self.shade
+        return points, np.stack([self._shine(points, normals, eye), light, light], axis=1)
+
+    def _shine(self, points: Array, normals: Array, eye: Eye) -> Array:
+        """What glossy points throw back of the sky, the ground and the sun."""
+        away = eye.position - points
+        away /= np.linalg.norm(away, axis=1, keepdims=True)
+        facing = np.clip((away * normals).sum(axis=1), 0.0, 1.0)
+        back = 2 * facing[:, None] * normals - away
+        sky = np.clip(back[:, 2] * 4.0 + 0.5, 0.0, 1.0)
+        seen = 0.10 + sky * (0.72 - 0.40 * np.clip(back[:, 2], 0.0, 1.0))
+        sun = np.clip(back @ SUN, 0.0, 1.0) ** 40
+        mirrored = MIRRORED + (1 - MIRRORED) * (1 - facing) ** 5
+        return np.asarray(self.gloss * (mirrored * seen + 0.35 * sun))
+
+
+def _turn(rolled: float, steer: float) -> Array:
+    """Of a wheel that has rolled forward by an angle and is turned to the left by another."""
+    c, s = np.cos(rolled), np.sin(rolled)
+    roll: Array = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+    c, s = np.cos(steer), np.sin(steer)
+    return np.asarray(np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ roll)
+
+
+@cache
+def saloon() -> Saloon:
+    """The only one there is."""
+    parts: list[Part] = [*body(), *trim(), *lamps()]
+    count = sum(len(part.points) for part in parts)
+    wheels = []
+    for ahead, steers in ((CAR.front_axle - CAR.middle, True), (CAR.rear_axle - CAR.middle, False)):
+        for side in (-1.0, 1.0):
+            hub = np.array([ahead, side * CAR.track / 2, CAR.wheel / 2])
+            made = [part.moved(hub) for part in wheel(side)]
+            size = sum(len(part.points) for part in made)
+            wheels.append((slice(count, count + size), hub, steers))
+            parts += made
+            count += size
+    patches = [Patch(p.points, np.zeros_like(p.points), p.triangles, p.kinds) for p in parts]
+    mesh = Mesh.of(patches)
+    whole = Mesh(
+        mesh.points, mesh.attributes, mesh.triangles, mesh.kinds,
+        np.array([[0, len(mesh.points), 0, len(mesh.triangles)]]), np.zeros((1, 4)),
+    )  # fmt: skip
+    gloss = np.concatenate([np.full(len(p.points), GLOSS.get(int(p.kinds[0]), 0.0)) for p in parts])
+    shade = 0.45 + 0.55 * np.clip((mesh.points[:, 2] - 0.05) / 0.5, 0.0, 1.0)
+    return Saloon(whole, np.concatenate([p.normals for p in parts]), gloss, shade, tuple(wheels))
+
+
+def palette_of(pose: Pose | None) -> NDArray[np.float64]:
+    """The colours of everything that is plain, brake lights lit if the car brakes."""
+    colours = PALETTE.copy()
+    if pose is not None and pose.brake > BRAKE:
+        for row, light in SHINING.items():
+            colours[row, 3:] = light
+    return np.asarray(colours)

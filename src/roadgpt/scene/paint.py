@@ -1,0 +1,27 @@
+"""Colours of what has no pattern: the car, and concrete. Kinds of surface from PLAIN on."""
+
+import numpy as np
+
+from roadgpt.scene.mesh import PLAIN
+from roadgpt.scene.textures import linear
+
+CONCRETE, PAINT, GLASS, TRIM, TYRE, RIM, GAP, TAIL, HEAD, PLATE, HIGH = range(PLAIN, PLAIN + 11)
+
+_COLOURS = {
+    CONCRETE: (158, 154, 148),
+    PAINT: (36, 92, 165),
+    GLASS: (30, 37, 44),
+    TRIM: (34, 36, 40),
+    TYRE: (38, 39, 41),
+    RIM: (176, 180, 186),
+    GAP: (28, 29, 31),
+    TAIL: (128, 14, 16),
+    HEAD: (224, 228, 232),
+    PLATE: (232, 232, 226),
+    HIGH: (70, 12, 14),
+}
+PALETTE = np.array([[*linear(*_COLOURS[kind]), 0.0, 0.0, 0.0] for kind in sorted(_COLOURS)])
+"""(n, 6): colour, and what shines of its own."""
+GLOSS = {PAINT: 1.0, GLASS: 1.0, TAIL: 0.6, HEAD: 0.9, RIM: 0.5, TRIM: 0.15}
+BRAKE = 0.03  # of the pedal, from where the lights are on
+SHINING = {TAIL - PLAIN: (0.85, 0.035, 0.02), HIGH - PLAIN: (0.95, 0.05, 0.03)}

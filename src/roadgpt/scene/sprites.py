@@ -1,0 +1,101 @@
+"""Pictures that stand upright in the scene, laid over it from the farthest to the nearest."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.geometry.curve import Array
+from roadgpt.scene.compiled import compiled, inlined
+from roadgpt.scene.light import SUN_X, SUN_Y
+from roadgpt.scene.shade import hazy
+from roadgpt.scene.trees import SIDE
+
+SMALLEST = 0.7  # pixels high
+NEAREST = 2.0  # m
+
+
+@inlined
+def _texel(
+    pictures: NDArray[np.float32], look: int, start: int, side: int, u: float, v: float, k: int
+) -> float:
+    """Part k of a picture at (u, v) in its texels, between four of them; nothing outside."""
+    fu, fv = math.floor(u - 0.5), math.floor(v - 0.5)
+    du, dv = u - 0.5 - fu, v - 0.5 - fv
+    out = 0.0
+    for j in range(2):
+        for i in range(2):
+            if 0 <= fu + i < side and 0 <= fv + j < side:
+                part = (du if i else 1.0 - du) * (dv if j else 1.0 - dv)
+                out += part * pictures[look, start + (fv + j) * side + fu + i, k]
+    return out
+
+
+@compiled
+def overlay(
+    order: NDArray[np.int64], places: Array, sizes: Array, looks: NDArray[np.int64], tints: Array,
+    pictures: NDArray[np.float32], eye: Array, depth: NDArray[np.float32], picture: NDArray[np.float32],
+) -> None:  # fmt: skip
+    """Lay trees over a picture in linear light, in this order, where nothing nearer is seen.
+
+    Args:
+        order: numbers of trees, the farthest first.
+        places, sizes, looks, tints: as `Trees` has them.
+        pictures: `trees.pictures`.
+        eye, depth: as for `raster.draw`.
+        picture: (height, width, 3), changed.
+    """
+    rows, columns = picture.shape[0], picture.shape[1]
+    foot, top = np.empty(3), np.empty(3)
+    for n in order:
+        dx, dy, dz = places[n, 0] - eye[0], places[n, 1] - eye[1], places[n, 2] - eye[2]
+        for k in range(3):
+            a, b, c = eye[3 + 3 * k], eye[4 + 3 * k], eye[5 + 3 * k]
+            foot[k] = dx * a + dy * b + dz * c
+            top[k] = foot[k] + sizes[n, 0] * c
+        if foot[2] < NEAREST or top[2] < NEAREST:
+            continue
+        x0, y0 = columns / 2.0 + eye[12] * foot[0] / foot[2], rows / 2.0 + eye[12] * foot[1] / foot[2]
+        ux, uy = columns / 2.0 + eye[12] * top[0] / top[2] - x0, rows / 2.0 + eye[12] * top[1] / top[2] - y0
+        high = math.sqrt(ux * ux + uy * uy)
+        if high < SMALLEST:
+            continue
+        wide = high * sizes[n, 1] / sizes[n, 0]
+        reach_x, reach_y = abs(uy) / high * wide / 2 + 1, abs(ux) / high * wide / 2 + 1
+        left, right = (
+            max(0, int(min(x0, x0 + ux) - reach_x)),
+            min(columns, int(max(x0, x0 + ux) + reach_x) + 1),
+        )
+        above, below = max(0, int(min(y0, y0 + uy) - reach_y)), min(rows, int(max(y0, y0 + uy) + reach_y) + 1)
+        if left >= right or above >= below:
+            continue
+        side, start = SIDE, 0
+        while side > 1 and side > 1.4 * high:
+            start += side * side
+            side >>= 1
+        near = 1.0 / foot[2]
+        far = math.sqrt(dx * dx + dy * dy + dz * dz)
+        toward = (dx * SUN_X + dy * SUN_Y) / far
+        hr, hg, hb = hazy(0.0, 0.0, 0.0, far, toward)
+        thin = hazy(1.0, 0.0, 0.0, far, toward)[0] - hr
+        for row in range(above, below):
+            for i in range(left, right):
+                px, py = i + 0.5 - x0, row + 0.5 - y0
+                v = 1.0 - (px * ux + py * uy) / (high * high)
+                u = 0.5 + (py * ux - px * uy) / (high * wide)
+                if not (-0.1 < u < 1.1 and -0.1 < v < 1.1):
+                    continue
+                cover = _texel(pictures, looks[n], start, side, u * side, v * side, 3)
+                if cover <= 0.003:
+                    continue
+                free = 0
+                for k in range(4):
+                    free += depth[4 * row + k, i] < near
+                if free == 0:
+                    continue
+                part, light = free / 4.0, tints[n] * thin
+                cover *= part
+                for k in range(3):
+                    colour = _texel(pictures, looks[n], start, side, u * side, v * side, k) * light * part
+                    haze = hr if k == 0 else (hg if k == 1 else hb)
+                    picture[row, i, k] = picture[row, i, k] * (1.0 - cover) + colour + haze * cover

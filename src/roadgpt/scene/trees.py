@@ -1,0 +1,125 @@
+"""Trees beside the road, where nobody drives: what they look like, and where they stand."""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+from roadgpt.scene.land import LONGEST_STEP, Land
+from roadgpt.scene.light import SUN
+
+SEED = 11
+SIDE = 128  # texels, of a picture
+BROAD, CONIFERS = 3, 2  # pictures of each
+CLEAR = 9.0  # m from the verge to the nearest tree
+EACH = 210.0  # m^2 of land for a tree
+MOST = 900
+BORDER = 4  # far columns of the land, where no trees stand
+
+
+@dataclass(frozen=True, eq=False)
+class Trees:
+    """Pictures that stand upright and face the camera."""
+
+    places: Array
+    """(n, 3): foot, metres."""
+    sizes: Array
+    """(n,): height and width, metres."""
+    looks: NDArray[np.int64]
+    """(n,): which picture."""
+    tints: Array
+    """(n,): how light it is."""
+
+
+def plant(road: Road, world: World, land: Land) -> Trees:
+    """In loose groups all over the land, but not near the road."""
+    rng = np.random.default_rng(SEED)
+    x0, x1, y0, y1 = land.x[BORDER], land.x[-BORDER - 1], land.y[BORDER], land.y[-BORDER - 1]
+    count = int(min(MOST, (x1 - x0) * (y1 - y0) / EACH))
+    middles = rng.uniform((x0, y0), (x1, y1), (max(1, count // 7), 2))
+    spots = middles[rng.integers(len(middles), size=count)] + rng.normal(0.0, 13.0, (count, 2))
+    alone = rng.random(count) < 0.25
+    spots[alone] = rng.uniform((x0, y0), (x1, y1), (int(alone.sum()), 2))
+    looks = rng.integers(BROAD + CONIFERS, size=count)
+    heights = np.where(looks < BROAD, rng.uniform(6.0, 11.0, count), rng.uniform(8.0, 14.0, count))
+    widths = heights * np.where(looks < BROAD, rng.uniform(0.85, 1.1, count), rng.uniform(0.42, 0.5, count))
+    tints = rng.uniform(0.8, 1.12, count)
+    away = cKDTree(road.centreline(LONGEST_STEP)[:, :2]).query(spots)[0]
+    inside = (spots > (x0, y0)).all(axis=1) & (spots < (x1, y1)).all(axis=1)
+    kept = inside & (away > world.lane_width + world.verge + CLEAR + widths / 2)
+    foot = np.column_stack([spots, land.height(spots[:, 0], spots[:, 1]) - 0.15])
+    return Trees(foot[kept], np.column_stack([heights, widths])[kept], looks[kept], tints[kept])
+
+
+@cache
+def pictures() -> NDArray[np.float32]:
+    """(looks, n, 4): red, green, blue and cover, colours times cover, followed by all halved versions."""
+    rng = np.random.default_rng(SEED)
+    drawn = [_tree(*_crown(rng), rng, (0.085, 0.15, 0.035)) for _ in range(BROAD)]
+    drawn += [_tree(*_cone(rng), rng, (0.035, 0.085, 0.035)) for _ in range(CONIFERS)]
+    return np.stack([_halved(picture) for picture in drawn]).astype(np.float32)
+
+
+def _halved(picture: Array) -> Array:
+    levels = [picture.reshape(-1, 4)]
+    while len(picture) > 1:
+        n = len(picture) // 2
+        picture = picture.reshape(n, 2, n, 2, 4).mean(axis=(1, 3))
+        levels.append(picture.reshape(-1, 4))
+    return np.concatenate(levels)
+
+
+def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
+    """Tufts of a broad-leaved tree: places (x, y, z) in -1..1 and 0..1 upwards, and radii."""
+    boughs = rng.normal(size=(14, 3))
+    boughs *= (0.62 * rng.random(14) ** 0.4 / np.linalg.norm(boughs, axis=1))[:, None]
+    tufts = boughs[rng.integers(14, size=420)]
+    way = rng.normal(size=(420, 3))
+    tufts = tufts + 0.27 * way / np.linalg.norm(way, axis=1, keepdims=True)
+    height = 0.60 + 0.37 * tufts[:, 2]
+    return np.column_stack([tufts[:, :2], height]), tufts, rng.uniform(0.028, 0.06, 420)
+
+
+def _cone(rng: np.random.Generator) -> tuple[Array, Array, Array]:
+    """Twigs of a conifer, wider below, in tiers."""
+    up = 1.0 - rng.random(520) ** 0.62
+    tier = 0.78 + 0.22 * (1.0 - (up * 9.0) % 1.0)
+    turn = rng.uniform(0, 2 * np.pi, 520)
+    wide = 0.92 * (1.0 - up) * tier * rng.uniform(0.72, 1.0, 520) + 0.02
+    way = np.column_stack([wide * np.cos(turn), wide * np.sin(turn)])
+    normal = np.column_stack([np.cos(turn), np.sin(turn), np.full(520, 0.45)])
+    radius = rng.uniform(0.016, 0.034, 520) * (1.15 - 0.5 * up)
+    core = 1.0 - np.sqrt((np.arange(120) + 0.5) / 120)
+    inner = np.column_stack([np.zeros((120, 2)), 0.10 + 0.88 * core])
+    inner[:, 0] = rng.uniform(-0.55, 0.55, 120) * (1.0 - core)
+    places = np.concatenate([np.column_stack([way, 0.10 + 0.88 * up]), inner])
+    return places, np.concatenate([0.62 * normal, 0.02 * inner]), np.r_[radius, 0.05 * (1.0 - core) + 0.012]
+
+
+def _tree(
+    places: Array, normals: Array, radii: Array, rng: np.random.Generator, leaf: tuple[float, ...]
+) -> Array:
+    """A picture (SIDE, SIDE, 4) of tufts, the nearest last, lit from above and from the side of the sun."""
+    picture = np.zeros((SIDE, SIDE, 4))
+    rows, columns = np.mgrid[0:SIDE, 0:SIDE] + 0.5
+    across, up = 2 * columns / SIDE - 1, 1 - rows / SIDE
+    trunk = (np.abs(across) < 0.045 * (1.4 - up)) & (up < 0.55)
+    picture[trunk] = [0.075, 0.058, 0.042, 1.0]
+    size = np.maximum(np.linalg.norm(normals, axis=1), 1e-9)
+    lit = normals @ np.array([0.35 * np.hypot(*SUN[:2]), -0.5, SUN[2]]) / size
+    inner = 0.55 + 0.45 * np.clip(size / 0.62, 0.0, 1.0)
+    for k in np.argsort(-places[:, 1]):
+        x, _, z = places[k]
+        inside = ((across - x) / 1.0) ** 2 + ((up - z) * 2) ** 2 < (2 * radii[k]) ** 2
+        tone = (
+            (0.62 + 0.55 * max(lit[k], -0.45))
+            * inner[k]
+            * (0.85 + 0.3 * places[k, 2])
+            * rng.uniform(0.8, 1.2)
+        )
+        picture[inside] = [*(np.array(leaf) * tone * 1.35), 1.0]
+    return picture
