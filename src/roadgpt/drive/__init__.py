@@ -70,7 +70,7 @@ def simulate(
     world: "World",
     driver: Driver | type[Driver] | str,
     seed: int = 0,
-    simulator: str = "mujoco",
+    simulator: str | Simulator = "mujoco",
     keep_driving: bool = False,
 ) -> Drive:
     """One driver on one road; the same arguments give the same Drive, bit for bit, on one machine.
@@ -78,7 +78,7 @@ def simulate(
     Args:
         driver: a driver, its class, the name of one on the shelf ``drivers``, or a user's PATH.py:CLASS.
         seed: handed to the driver and recorded; the car's physics draws no random number.
-        simulator: the name of one on the shelf ``simulators``.
+        simulator: a simulator, or the name of one on the shelf ``simulators``.
         keep_driving: go on after the car has left the lane.
 
     Raises:
@@ -89,7 +89,7 @@ def simulate(
     made: Any = load_driver(driver) if isinstance(driver, str) else driver
     if isinstance(made, type):
         made = made()
-    engine: Any = plugins.find("simulators", simulator)
+    engine: Any = plugins.find("simulators", simulator) if isinstance(simulator, str) else simulator
     if isinstance(engine, type):
         engine = engine()
     drive: Drive = engine.simulate(road, world, made, seed, keep_driving)

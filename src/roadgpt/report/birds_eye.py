@@ -31,12 +31,16 @@ SLOWEST = 10.0  # km/h; the colours span at least so much
 SPEEDS = LinearSegmentedColormap.from_list("speeds", colormaps["plasma"](np.linspace(0.0, 0.86, 64)))
 
 
-def birds_eye(run: Run, scale: Scale = "equal") -> Figure:
-    """The road from above, the driven path coloured by speed, and the place of a departure or a finding."""
+def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> Figure:
+    """The road from above, the driven path coloured by speed, and the place of a departure or a finding.
+
+    ``frame`` is what is shown where that is not the whole road.
+    """
     road, world = run.road, run.world
     assert road is not None
     centre = road.at(stations_of(road))[:, :2]
-    frame = THESIS if scale == "thesis" else _frame(run, centre)
+    is_part = frame is not None
+    frame = frame or (THESIS if scale == "thesis" else _frame(run, centre))
     across = SIDE * min(1.0, frame.width / frame.height)
     right = BAR if run.drive is not None else 0.3
     header = Header.of(run, LEFT + across + right)
@@ -59,8 +63,9 @@ def birds_eye(run: Run, scale: Scale = "equal") -> Figure:
     for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
         heading = float(road.heading(s))
         x, y, _ = road.at(s)
-        labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
-    if not all(frame.holds(x, y) for x, y in centre):
+        if frame.holds(x, y):
+            labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
+    if not is_part and not all(frame.holds(x, y) for x, y in centre):
         axes.text(
             0.98, 0.98, "the road goes on beyond these axes", transform=axes.transAxes, ha="right", va="top",
             size=9.5, color=SOFT, path_effects=HALO, zorder=12,

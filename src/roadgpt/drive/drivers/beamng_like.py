@@ -55,6 +55,8 @@ class BeamngLike:
         self,
         cut: float = 4.0,
         sharpness: float = 0.104,
+        aside: float = 0.1,
+        joining: float = 35.0,
         eagerness: float = 0.5,
         risk: float = 0.64,
         headway: float = 0.65,
@@ -67,6 +69,7 @@ class BeamngLike:
         wheelbase: float = 2.83,
     ) -> None:
         self.cut, self.sharpness, self.eagerness, self.risk = cut, sharpness, eagerness, risk
+        self.aside, self.joining = aside, joining
         self.headway, self.nearest = headway, nearest
         self.compensation, self.throttle, self.brake = compensation, throttle, brake
         self.edge_room, self.assumed_friction, self.wheelbase = edge_room, assumed_friction, wheelbase
@@ -88,11 +91,16 @@ class BeamngLike:
         bend = road.curvature(s)
         bend = _smoothed(bend / np.maximum(1 - middle * bend, TIGHTEST), float(s[1]))
         cut = self.cut * (world.speed_limit / USUAL) ** self.eagerness
-        offset = middle + cut * np.tanh(bend / self.sharpness)
+        offset = middle + self._joined(s) * (cut * np.tanh(bend / self.sharpness) - self.aside)
         if world.verge == 0 and self.edge_room is not None:
             inside = np.maximum(-bend, 0.0) * PURSUIT_CUTS
             offset = np.maximum(offset, HALF_TRACK + self.edge_room + inside - world.lane_width)
         return np.asarray(offset, float)
+
+    def _joined(self, s: FloatArray) -> FloatArray:
+        """Share of the way from the lane's middle, where it is parked, to its line; eases in and out."""
+        share = np.clip(s / self.joining, 0.0, 1.0) if self.joining > 0 else np.ones_like(s)
+        return np.asarray(share * share * (3 - 2 * share), float)
 
     def steer(self, view: View) -> Command:
         """Aim at the point of the line ahead; chase the planned speed."""

@@ -35,9 +35,9 @@ _SEEN = tuple(
 class MujocoSimulator:
     """A saloon car on the road, every 2 ms; the driver is asked every 20 ms."""
 
-    def __init__(self, car: Car = ETK_LIKE) -> None:
-        """A simulator with this car."""
-        self.car = car
+    def __init__(self, car: Car = ETK_LIKE, start_offset: float = 0.0) -> None:
+        """A simulator with this car, which starts so many metres to the left of its lane's middle."""
+        self.car, self.start_offset = car, start_offset
 
     def simulate(
         self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
@@ -47,15 +47,16 @@ class MujocoSimulator:
         vehicle = Vehicle.on(road, world, self.car)
         with seat.watched():
             seat.start(road, world, seed)
-            rows, ended = _drive(vehicle, seat, road, world, keep_driving)
+            place = -world.lane_width / 2 + self.start_offset
+            rows, ended = _drive(vehicle, seat, road, world, keep_driving, place)
         columns = Columns({name: rows[:, place] for place, name in enumerate(_NAMES)})
         return Drive(seat.name, "mujoco", seed, columns, ended, self.car.box)
 
 
 def _drive(
-    vehicle: Vehicle, seat: Seat, road: "Road", world: "World", keep_driving: bool
+    vehicle: Vehicle, seat: Seat, road: "Road", world: "World", keep_driving: bool, t: float
 ) -> tuple[FloatArray, Ended]:
-    vehicle.put(min(START, road.length / 2), -world.lane_width / 2)
+    vehicle.put(min(START, road.length / 2), t)
     end = np.asarray(road.at(road.length)).tolist()
     limit = math.ceil((road.length / SLOWEST + SPARE) / CONTROL)
     tolerance = 2.0 if keep_driving else world.oob_tolerance

@@ -1,0 +1,140 @@
+"""The smallest change of a road that the car kept which makes it fail: what broke it.
+
+First the fewest fields of the fewest segments, by delta debugging (see ``minimise``), then the smallest share
+of what is left of the change, by halving.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from roadgpt.brief.model import Brief
+from roadgpt.campaign.faults.minimise import MOST_DRIVES, Trial
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, Segment
+from roadgpt.run import Run
+
+FINEST = 1 / 64  # of the change
+UNITS = {"distance": " m", "turn_degrees": " degrees", "radius": " m", "transition": " m", "incline": " %"}
+NAMES = {"distance": "length", "turn_degrees": "turn", "transition": "clothoid", "incline": "grade"}
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One field of one segment, from the kept road to the failing one."""
+
+    segment: int
+    """From 0."""
+    field: str
+    kept: Any
+    failing: Any
+
+    @property
+    def sentence(self) -> str:
+        """For people."""
+        unit = UNITS.get(self.field, "")
+        before, after = (_told(value, unit) for value in (self.kept, self.failing))
+        return f"segment {self.segment + 1}: {NAMES.get(self.field, self.field)} {before} -> {after}"
+
+
+def _told(value: Any, unit: str) -> str:
+    if value is None:
+        return "as it comes"
+    return f"{value:.4g}{unit}" if isinstance(value, float) else str(value)
+
+
+@dataclass(frozen=True)
+class SmallestChange:
+    """The change, and the failing road that it makes of the kept one."""
+
+    run: Run
+    differences: tuple[Difference, ...]
+    drives: int
+
+
+def smallest_change(
+    kept: Run, failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES
+) -> SmallestChange:
+    """Between two Runs whose Designs have equally many segments.
+
+    Args:
+        kept: the car kept its lane.
+        failure: it did not.
+        brief: promises that the roads between them must keep; None: none.
+        most: drives at most.
+
+    Raises:
+        UsageError: the designs do not correspond, or the second Run did not fail.
+    """
+    if kept.design is None or failure.design is None:
+        raise UsageError("only roads with designs can be told apart segment by segment")
+    if len(kept.design.segments) != len(failure.design.segments):
+        raise UsageError(
+            f"the roads have {len(kept.design.segments)} and {len(failure.design.segments)} segments; "
+            "a smallest change is looked for between roads of equally many"
+        )
+    trial = Trial(failure, brief, most)
+    base = _at_the_start_of(failure.design, kept.design)
+    every = _differences(base, failure.design)
+    needed = _fewest(base, every, trial)
+    least = _least(base, needed, trial)
+    run = trial.fails(_changed(base, least))
+    return SmallestChange(run or failure, tuple(least), trial.drives)
+
+
+def _at_the_start_of(failing: Design, kept: Design) -> Design:
+    """Where a road lies on the map is no difference that a car could feel."""
+    return failing.model_copy(update={"segments": kept.segments})
+
+
+def _differences(kept: Design, failing: Design) -> list[Difference]:
+    return [
+        Difference(index, field, getattr(old, field), getattr(new, field))
+        for index, (old, new) in enumerate(zip(kept.segments, failing.segments, strict=True))
+        for field in Segment.model_fields
+        if getattr(old, field) != getattr(new, field)
+    ]
+
+
+def _changed(design: Design, differences: Sequence[Difference]) -> Design:
+    segments = list(design.segments)
+    for each in differences:
+        segments[each.segment] = segments[each.segment].model_copy(update={each.field: each.failing})
+    return design.model_copy(update={"segments": tuple(segments)})
+
+
+def _fewest(base: Design, every: Sequence[Difference], trial: Trial) -> list[Difference]:
+    """A part of the differences that fails, and none of which can be left out."""
+    left = [*every]
+    size = max(1, len(left) // 2)
+    while True:
+        for at in range(0, len(left), size):
+            fewer = left[:at] + left[at + size :]
+            if fewer and trial.fails(_changed(base, fewer)) is not None:
+                left = fewer
+                break
+        else:
+            if size == 1:
+                return left
+            size = max(1, size // 2)
+
+
+def _least(base: Design, differences: Sequence[Difference], trial: Trial) -> list[Difference]:
+    """The same differences, as small as they may be."""
+    low, high = 0.0, 1.0
+    while high - low > FINEST:
+        middle = (low + high) / 2
+        if trial.fails(_changed(base, _scaled(differences, middle))) is not None:
+            high = middle
+        else:
+            low = middle
+    return _scaled(differences, high)
+
+
+def _scaled(differences: Sequence[Difference], share: float) -> list[Difference]:
+    return [
+        Difference(each.segment, each.field, each.kept, each.kept + share * (each.failing - each.kept))
+        if isinstance(each.kept, float) and isinstance(each.failing, float)
+        else each
+        for each in differences
+    ]

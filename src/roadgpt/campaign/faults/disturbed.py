@@ -1,0 +1,76 @@
+"""Small disturbances of one drive: the road's grip, where the car starts, and how late its sensors tell.
+
+A failure that only one exact drive shows is chance; one that survives these is the road's.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roadgpt.drive import Command, View
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+GRIP = 0.05  # share by which friction is off, standard deviation: patches of one dry road differ by so much
+START = 0.10  # m beside the lane's middle, standard deviation: a positioning system with corrections
+DELAY = 0.06  # s at most that what the driver sees is old: a camera and its network take up to 100 ms
+MOST = 3.0  # standard deviations; what is drawn beyond is drawn again
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """One draw."""
+
+    friction: float
+    """Factor on the world's friction."""
+    offset: float
+    """Metres to the left of the lane's middle at the start."""
+    delay: float
+    """Seconds by which what the driver sees is old."""
+
+
+def draw(seed: int, number: int) -> Disturbance:
+    """The disturbance of repetition ``number`` (from 1) of a drive with this seed."""
+    rng = np.random.default_rng([seed, number, 0xD157])
+    return Disturbance(1 + GRIP * _normal(rng), START * _normal(rng), float(rng.uniform(0.0, DELAY)))
+
+
+def _normal(rng: np.random.Generator) -> float:
+    while abs(value := float(rng.normal())) > MOST:
+        pass
+    return value
+
+
+class LateDriver:
+    """A driver that sees what was a while ago.
+
+    Args:
+        driver: who steers.
+        delay: seconds; rounded to whole control steps.
+        world: the world that the driver is told of, whatever the grip really is.
+    """
+
+    def __init__(self, driver: Any, delay: float, world: "World") -> None:
+        self.name = str(getattr(driver, "name", type(driver).__name__))
+        self._driver, self._delay, self._world = driver, delay, world
+        if hasattr(driver, "camera"):
+            self.camera = driver.camera
+        self._seen: deque[View] = deque()
+
+    def start(self, road: "Road", world: "World", seed: int) -> None:
+        """Hands on the world that the driver believes in."""
+        del world
+        self._seen.clear()
+        if hasattr(self._driver, "start"):
+            self._driver.start(road, self._world, seed)
+
+    def steer(self, view: View) -> Command:
+        """The driver's answer to what it saw so long ago; at first to the first that it saw."""
+        self._seen.append(view._replace(world=self._world))
+        if len(self._seen) > round(self._delay / view.dt) + 1:
+            self._seen.popleft()
+        command: Command = self._driver.steer(self._seen[0])
+        return command

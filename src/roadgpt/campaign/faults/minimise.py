@@ -1,0 +1,135 @@
+"""The simplest road that still fails alike.
+
+By delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input, IEEE
+Transactions on Software Engineering 28 (2002). What comes out is 1-minimal: no single step more can be taken
+without the failure going away.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from roadgpt.brief.model import Brief
+from roadgpt.campaign.faults.reductions import Step, taken, ways
+from roadgpt.check import inspect
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.road import Design, build
+from roadgpt.run import Run, prove
+
+MOST_DRIVES = 400  # of one minimisation; at 20 to 25 drives a second that is under half a minute
+
+
+@dataclass(frozen=True)
+class Simplest:
+    """What is left of a failing road."""
+
+    run: Run
+    """Fails for the same cause and to the same side."""
+    segments_before: int
+    drives: int
+    """That it took."""
+    is_minimal: bool
+    """False where the drives were used up before every step had been tried."""
+
+    @property
+    def sentence(self) -> str:
+        """For people."""
+        assert self.run.design is not None
+        left = len(self.run.design.segments)
+        what = f"{self.segments_before} segments" if self.segments_before != 1 else "1 segment"
+        return (
+            f"{what} -> {left}, {self.run.length:.0f} m: {self.run.description} ({self.drives} drives"
+            f"{'' if self.is_minimal else ', given up before all was tried'})"
+        )
+
+
+class Trial:
+    """Drives candidates of one failure, each once, and counts."""
+
+    def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
+        if failure.verdict is None or failure.verdict.kept or failure.design is None:
+            raise UsageError(
+                f"road {failure.index} is no failing road with a design; only those are made simpler"
+            )
+        self.failure, self.brief, self.most = failure, brief, most
+        self.kind = (failure.verdict.cause, failure.verdict.side)
+        self.drives = 0
+        self.is_exhausted = False
+        """Was a drive refused because all were used up?"""
+        self._known: dict[Design, Run | None] = {}
+
+    def fails(self, design: Design | None) -> Run | None:
+        """The Run of a valid road that fails as the first did; None for any other."""
+        if design is None:
+            return None
+        if design not in self._known:
+            self._known[design] = self._driven(design)
+        return self._known[design]
+
+    def _driven(self, design: Design) -> Run | None:
+        request, failure = self.failure.request, self.failure
+        for placed in (design, *_moved(design, failure)):
+            road = build(placed, request.setup.geometry)
+            if not inspect(road, self.brief, request.world, request.setup.rules):
+                break
+        else:
+            return None
+        if self.drives >= self.most:
+            self.is_exhausted = True
+            return None
+        self.drives += 1
+        run = prove(placed, failure.seed, request.world, request.setup, failure.index)
+        same = run.verdict is not None and (run.verdict.cause, run.verdict.side) == self.kind
+        return replace(run, request=request, brief=self.brief) if same and run.outcome == "FAIL" else None
+
+
+def _moved(design: Design, failure: Run) -> list[Design]:
+    """The Design in the middle of the map: what is left of a road may stick out where the road did not."""
+    try:
+        points = build(design, failure.request.setup.geometry).centreline()
+    except RoadGPTError:
+        return []
+    middle = failure.world.map_size / 2
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y, z = design.starting_point
+    dx, dy = (round(float(middle - (a + b) / 2), 2) for a, b in zip(low[:2], high[:2], strict=True))
+    return [design.model_copy(update={"starting_point": (x + dx, y + dy, z)})]
+
+
+def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) -> Simplest:
+    """The simplest valid road that fails for the same cause and to the same side.
+
+    Args:
+        failure: a failing Run with a Design.
+        brief: promises that it must go on keeping; None: it need not be what was asked for any more.
+        most: drives at most.
+
+    Raises:
+        UsageError: the Run did not fail, or has no Design.
+    """
+    trial = Trial(failure, brief, most)
+    assert failure.design is not None
+    design, before = failure.design, None
+    while design != before:
+        before = design
+        for way in ways():
+            design = _reduced(design, way(design), trial)
+    run = failure if design == failure.design else trial.fails(design)
+    assert run is not None
+    return Simplest(run, len(failure.design.segments), trial.drives, not trial.is_exhausted)
+
+
+def _reduced(design: Design, steps: Sequence[Step], trial: Trial) -> Design:
+    """The Design after as many of the steps as it goes on failing with: all, or halves of them."""
+    kept: list[Step] = []
+
+    def take(part: Sequence[Step]) -> None:
+        if not part:
+            return
+        if trial.fails(taken(design, [*kept, *part])) is not None:
+            kept.extend(part)
+        elif len(part) > 1:
+            take(part[: len(part) // 2])
+            take(part[len(part) // 2 :])
+
+    take(steps)
+    return taken(design, kept) or design

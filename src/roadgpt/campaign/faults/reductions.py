@@ -1,0 +1,107 @@
+"""Ways in which a Design can be simpler: fewer segments, level, straighter, rounder numbers.
+
+Each way is a list of single steps; ``minimise`` tries how many of them can be taken together.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from roadgpt.road import Design, Segment
+
+ROUND = {
+    "distance": (50.0, 10.0, 5.0, 1.0),
+    "turn_degrees": (30.0, 10.0, 5.0, 1.0),
+    "radius": (10.0, 5.0, 1.0),
+}
+"""Field -> what it is rounded to, the coarsest first; metres and degrees."""
+NAMES = {"distance": "length", "turn_degrees": "turn", "radius": "radius"}
+
+
+@dataclass(frozen=True)
+class Step:
+    """One simplification of one segment."""
+
+    segment: int
+    """From 0, in the Design that is simplified."""
+    change: Callable[[Segment], Segment | None]
+    """None: the segment goes."""
+    told: str
+
+
+Way = Callable[[Design], list[Step]]
+
+
+def taken(design: Design, steps: Sequence[Step]) -> Design | None:
+    """The Design after all these steps; None where no segment would be left."""
+    segments: list[Segment | None] = list(design.segments)
+    for step in steps:
+        segment = segments[step.segment]
+        if segment is not None:
+            segments[step.segment] = step.change(segment)
+    left = tuple(segment for segment in segments if segment is not None)
+    return design.model_copy(update={"segments": left}) if left else None
+
+
+def ways() -> list[Way]:
+    """All, those that take away most first."""
+    rounding = [
+        _rounding(field, unit)
+        for unit in (50.0, 30.0, 10.0, 5.0, 1.0)
+        for field in ROUND
+        if unit in ROUND[field]
+    ]
+    return [_dropping, _levelling, _straightening, *rounding, _whole_percent]
+
+
+def _dropping(design: Design) -> list[Step]:
+    # the end first: what lies behind the departure matters least
+    count = len(design.segments)
+    return [Step(index, lambda segment: None, "left out") for index in reversed(range(count))]
+
+
+def _levelling(design: Design) -> list[Step]:
+    return [
+        Step(index, lambda segment: segment.model_copy(update={"incline": 0.0}), "made level")
+        for index, segment in enumerate(design.segments)
+        if segment.incline
+    ]
+
+
+def _straightening(design: Design) -> list[Step]:
+    return [
+        Step(index, _straight, "made straight")
+        for index, segment in enumerate(design.segments)
+        if segment.turn_degrees
+    ]
+
+
+def _straight(segment: Segment) -> Segment:
+    return Segment(distance=segment.distance, direction="straight", incline=segment.incline)
+
+
+def _rounding(field: str, unit: float) -> Way:
+    def way(design: Design) -> list[Step]:
+        return [
+            Step(index, lambda segment: _rounded(segment, field, unit), f"{NAMES[field]} rounded")
+            for index, segment in enumerate(design.segments)
+            if getattr(segment, field) and getattr(segment, field) % unit
+        ]
+
+    return way
+
+
+def _rounded(segment: Segment, field: str, unit: float) -> Segment:
+    value = round(getattr(segment, field) / unit) * unit
+    return segment.model_copy(update={field: value}) if value else segment
+
+
+def _whole_percent(design: Design) -> list[Step]:
+    return [
+        Step(
+            index,
+            lambda segment: segment.model_copy(update={"incline": float(round(segment.incline))}),
+            "grade rounded",
+        )
+        for index, segment in enumerate(design.segments)
+        if segment.incline % 1
+    ]

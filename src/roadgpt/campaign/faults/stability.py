@@ -1,0 +1,109 @@
+"""How often a failure fails again under small disturbances: the difference between a fault and a fluke."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from inspect import signature
+
+from scipy.stats import beta
+
+from roadgpt import plugins
+from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
+from roadgpt.drive import Simulator, simulate
+from roadgpt.drive.custom import load_in_time
+from roadgpt.errors import RoadGPTError
+from roadgpt.run import Run
+from roadgpt.verdict import Verdict, judge
+
+SURE = 0.95  # of the interval
+
+
+@dataclass(frozen=True)
+class Repeated:
+    """One drive more of the same road."""
+
+    number: int
+    disturbance: Disturbance
+    failed: bool
+    margin: float
+    """Metres."""
+    at_s: float | None
+
+
+@dataclass(frozen=True)
+class Stability:
+    """All drives more of one road."""
+
+    drives: tuple[Repeated, ...]
+
+    @property
+    def failed(self) -> int:
+        """How many failed."""
+        return sum(drive.failed for drive in self.drives)
+
+    @property
+    def share(self) -> float:
+        """Of drives that failed; 1 means that it always does."""
+        return self.failed / len(self.drives)
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Of the share: Clopper and Pearson (Biometrika 26, 1934), 95 %."""
+        n, k = len(self.drives), self.failed
+        low = float(beta.ppf((1 - SURE) / 2, k, n - k + 1)) if k else 0.0
+        high = float(beta.ppf((1 + SURE) / 2, k + 1, n - k)) if k < n else 1.0
+        return low, high
+
+    @property
+    def sentence(self) -> str:
+        """For people."""
+        if self.failed == len(self.drives):
+            return f"fails every time ({len(self.drives)} of {len(self.drives)} disturbed drives)"
+        return f"fails {self.failed} of {len(self.drives)} times with friction, start or sensors off a little"
+
+
+def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = map) -> Stability:
+    """Drive the Run's road so many times more, each time disturbed; the same Run gives the same drives.
+
+    Args:
+        run: of a valid road, whatever its outcome.
+        times: how often, 1 or more.
+        spread: applies a function to all of its items, as ``map`` does, or a pool's.
+
+    Raises:
+        UsageError: a part is not installed, or the driver's file makes no driver.
+    """
+    return Stability(tuple(spread(once, [(run, number) for number in range(1, times + 1)])))
+
+
+def once(task: tuple[Run, int]) -> Repeated:
+    """One disturbed drive of a Run's road; a driver that breaks down has failed."""
+    run, number = task
+    disturbance = draw(run.seed, number)
+    try:
+        verdict = drive_disturbed(run, disturbance)
+    except RoadGPTError:
+        return Repeated(number, disturbance, True, float("nan"), None)
+    return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
+
+
+def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
+    """The verdict on the Run's road with its driver, disturbed.
+
+    Raises:
+        DriverError, SimulationError: as ``roadgpt.drive.simulate``.
+    """
+    road, world, setup = run.road, run.world, run.request.setup
+    assert road is not None
+    driver = LateDriver(load_in_time(setup.driver), disturbance.delay, world)
+    slippery = world.model_copy(update={"friction": world.friction * disturbance.friction})
+    drive = simulate(road, slippery, driver, run.seed, _engine(setup.simulator, disturbance), False)
+    return judge(road, drive, slippery)
+
+
+def _engine(name: str, disturbance: Disturbance) -> Simulator | str:
+    """The simulator with the car beside its lane's middle, where it can be put there."""
+    part = plugins.find("simulators", name)
+    if not isinstance(part, type) or "start_offset" not in signature(part).parameters:
+        return name
+    engine: Simulator = part(start_offset=disturbance.offset)
+    return engine

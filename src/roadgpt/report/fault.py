@@ -1,0 +1,38 @@
+"""The picture of one failure: the road around the place where the car left its lane, and why it did."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from roadgpt.campaign.faults import Why
+from roadgpt.report.birds_eye import birds_eye
+from roadgpt.report.canvas import in_our_style, save
+from roadgpt.report.scenery import Frame
+from roadgpt.run import Run
+
+BEFORE, AFTER = 50.0, 20.0  # m of road that are shown
+ROOM = 6.0  # m beside it
+LEAST = 45.0  # m across
+
+
+def fault_picture(run: Run, reason: Why, more: str = "") -> Figure:
+    """From above, closer than ``birds_eye``; the reason stands where else the outcome does.
+
+    Args:
+        run: a failed one.
+        reason: of it.
+        more: a sentence that follows, such as how often it failed again.
+    """
+    assert run.road is not None
+    s = run.road.sample(1.0)
+    near = (s.s >= reason.station - BEFORE) & (s.s <= reason.station + AFTER)
+    frame = Frame.around(s.points[near][:, :2], ROOM + run.world.lane_width, LEAST, run.world.map_size)
+    said = f"{reason.sentence}; {more}" if more else reason.sentence
+    return birds_eye(replace(run, description=said), frame=frame)
+
+
+@in_our_style
+def draw_fault(run: Run, reason: Why, more: str, path: Path) -> Path:
+    """Write the picture of a failure; see ``fault_picture``."""
+    return save(fault_picture(run, reason, more), path)

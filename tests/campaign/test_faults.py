@@ -1,0 +1,333 @@
+"""Failures looked into: reasons by hand, likeness by a slow loop, intervals by scipy, simplest by force."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.stats import binomtest
+
+from roadgpt.campaign.faults import Repeated, Stability, faults_of, repeated, simplest, smallest_change, why
+from roadgpt.campaign.faults import minimise as minimising
+from roadgpt.campaign.faults.distinct import BEND, GRADE, SHIFT, Surroundings, distances, surroundings
+from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
+from roadgpt.campaign.faults.stability import drive_disturbed
+from roadgpt.cli.app import app
+from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.run import Request, Run, prove, write_run
+from roadgpt.verdict import Verdict, judge
+
+WORLD = World()
+BOX = Box(4.7, 1.86)
+SPEED = 17.0  # m/s
+
+
+def design(*segments: Segment, start: tuple[float, float, float] = (60.0, 120.0, 0.0)) -> Design:
+    return Design(starting_point=start, theta=0.0, segments=segments)
+
+
+def straight(metres: float, incline: float = 0.0) -> Segment:
+    return Segment(distance=metres, direction="straight", incline=incline)
+
+
+def bend(degrees: float, radius: float, incline: float = 0.0) -> Segment:
+    length = math.radians(abs(degrees)) * radius
+    side = "left" if degrees > 0 else "right"
+    return Segment(
+        distance=length,
+        direction=side,
+        turn_degrees=degrees,
+        radius=radius,
+        transition=0.001,
+        incline=incline,
+    )
+
+
+def driven(road: Road, until: float, t: float, speed: float = SPEED) -> Drive:
+    """Along the lane at one speed; at the end the car stands outside, t metres to the left of the centre."""
+    s = np.arange(2.5, until, speed * 0.02)
+    columns = {name: np.zeros(len(s)) for name in COLUMNS}
+    columns |= {"time": np.arange(len(s)) * 0.02, "s": s, "speed": np.full(len(s), speed)}
+    columns["t"] = np.full(len(s), -2.0)
+    columns["t"][-1] = t
+    columns["outside"][-1] = 1.0
+    place = road.at(s, columns["t"])
+    columns |= {"x": place[:, 0], "y": place[:, 1], "z": place[:, 2], "heading": road.heading(s)}
+    return Drive("nobody", "nothing", 0, Columns(columns), "out_of_lane", BOX)
+
+
+def failed(road: Road, until: float, t: float, speed: float = SPEED) -> Run:
+    drive = driven(road, until, t, speed)
+    verdict = judge(road, drive, WORLD)
+    assert not verdict.kept
+    return Run(Request(), 7, 7, outcome="FAIL", description="", road=road, drive=drive, verdict=verdict)
+
+
+def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
+    road = build(design(straight(60), bend(-80, 20)))
+    reason = why(failed(road, 72.0, t=1.5))
+    assert (reason.way, reason.side) == ("wide", "right")
+    assert reason.radius == pytest.approx(20, rel=0.01)
+    # the middle of the right lane lies 2 m inside of a right bend
+    assert reason.needed == pytest.approx(SPEED**2 / 18 / 9.81, rel=0.01)
+    assert reason.entered == SPEED
+    assert "R 20 m right at 61 km/h and ran wide after 72 m" in reason.sentence
+
+
+def test_a_car_that_cuts_says_so_and_names_the_bend_before() -> None:
+    road = build(design(straight(50), bend(-60, 25), bend(70, 16), start=(30.0, 120.0, 0.0)))
+    reason = why(failed(road, 50 + math.radians(60) * 25 + 6, t=3.0, speed=8.0))
+    assert (reason.way, reason.side) == ("inside", "left")
+    assert "R 16 m left at 29 km/h right after an R 25 m right and cut its inside" in reason.sentence
+
+
+def test_a_crest_takes_grip_and_is_named() -> None:
+    level = build(design(straight(60), bend(-80, 30)))
+    humped = build(design(straight(60, 9.0), bend(-80, 30, -9.0)))
+    flat, crest = why(failed(level, 66.0, t=1.5)), why(failed(humped, 66.0, t=1.5))
+    assert " on a crest " in crest.sentence
+    assert "crest" not in flat.sentence
+    assert crest.hill < 0
+    assert crest.needed > flat.needed * 1.05
+
+
+def test_a_straight_a_standstill_and_a_car_that_kept_its_lane() -> None:
+    road = build(design(straight(120, -8.0), start=(60.0, 120.0, 12.0)))
+    run = failed(road, 60.0, t=1.5)
+    assert why(run).sentence == "left a straight to the left at 61 km/h after 60 m downhill at 8 %"
+    assert run.verdict is not None
+    stuck = replace(run, verdict=replace(run.verdict, cause="stuck", side=None))
+    assert why(stuck).sentence == "came to a standstill after 60 m downhill at 8 %"
+    kept = replace(run, verdict=replace(run.verdict, outcome="PASS", cause=None))
+    with pytest.raises(UsageError, match="road 7 did not fail"):
+        why(kept)
+
+
+profiles = st.lists(st.floats(-0.07, 0.07), min_size=77, max_size=77)
+
+
+@given(profiles, profiles, st.integers(0, 50))
+@settings(max_examples=30)
+def test_distances_are_those_of_a_plain_loop(one: list[float], other: list[float], missing: int) -> None:
+    a = Surroundings(np.array(one), np.array(other) / 2, "x")
+    ends = np.array(other)
+    ends[len(ends) - missing :] = np.nan
+    b = Surroundings(ends, np.where(np.isnan(ends), np.nan, np.array(one) / 3), "x")
+    best = math.inf
+    for shift in range(-SHIFT, SHIFT + 1):
+        total = {"bends": [], "grades": []}
+        for i in range(len(one) - 2 * SHIFT):
+            p, q = SHIFT + i + shift // 2, SHIFT + i + shift // 2 - shift
+            for name, its in total.items():
+                x, y = getattr(a, name)[p], getattr(b, name)[q]
+                if not (math.isnan(x) and math.isnan(y)):
+                    its.append(((0 if math.isnan(x) else x) - (0 if math.isnan(y) else y)) ** 2)
+        squares = np.mean(total["bends"]) / BEND**2 + np.mean(total["grades"]) / GRADE**2
+        best = min(best, math.sqrt(squares))
+    assert distances(a, [b])[0] == pytest.approx(best, abs=1e-9)
+    assert distances(b, [a])[0] == pytest.approx(best, abs=1e-9)
+    assert distances(a, [replace(b, kind="y")])[0] == math.inf
+
+
+def test_the_same_bend_reached_otherwise_is_one_fault_and_its_mirror_image_another() -> None:
+    def around(*segments: Segment, at: float, kind: str = "out of lane right") -> Surroundings:
+        return surroundings(build(design(*segments)), WORLD, at, kind)
+
+    plain = around(straight(50), bend(-90, 16), straight(40), at=60.0)
+    later = around(straight(90), bend(-88, 16.5), straight(30), at=103.0)
+    mirrored = around(straight(50), bend(90, 16), straight(40), at=60.0)
+    gentle = around(straight(50), bend(-60, 40), straight(40), at=60.0)
+    steep = around(straight(50, 8.0), bend(-90, 16, 8.0), straight(40, 8.0), at=60.0)
+    left = replace(plain, kind="out of lane left")
+    assert faults_of([plain, mirrored, later, gentle, steep, left, plain]) == [0, 1, 0, 2, 3, 4, 0]
+    assert faults_of([]) == []
+    assert faults_of([plain]) == [0]
+
+
+@given(st.integers(1, 40), st.data())
+def test_the_interval_is_scipys_exact_one(n: int, data: st.DataObject) -> None:
+    k = data.draw(st.integers(0, n))
+    nothing = Disturbance(1.0, 0.0, 0.0)
+    made = Stability(tuple(Repeated(i, nothing, i < k, 0.0, None) for i in range(n)))
+    wanted = binomtest(k, n).proportion_ci(0.95, method="exact")
+    assert made.interval == pytest.approx((wanted.low, wanted.high), abs=1e-9)
+    assert made.share == k / n
+    assert ("every time" in made.sentence) == (k == n)
+
+
+def test_disturbances_are_small_seeded_and_all_different() -> None:
+    drawn = [draw(3, number) for number in range(1, 400)]
+    assert drawn == [draw(3, number) for number in range(1, 400)]
+    assert len(set(drawn)) == 399
+    assert draw(4, 1) != draw(3, 1)
+    offsets = np.array([each.offset for each in drawn])
+    assert offsets.std() == pytest.approx(0.10, rel=0.15)
+    assert all(0.85 <= each.friction <= 1.15 and 0 <= each.delay <= 0.06 for each in drawn)
+
+
+class Notes:
+    """Writes down what it is shown."""
+
+    name = "notes"
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+
+    def start(self, road: Road, world: World, seed: int) -> None:
+        self.believes = world.friction
+
+    def steer(self, view: View) -> Command:
+        self.times.append(view.time)
+        return Command(0.0)
+
+
+def test_a_late_driver_sees_what_was_and_does_not_know_of_the_grip() -> None:
+    notes = Notes()
+    late = LateDriver(notes, 0.06, WORLD)
+    road = build(design(straight(60)))
+    late.start(road, WORLD.model_copy(update={"friction": 0.5}), 1)
+    numbers = dict.fromkeys(View._fields, 0.0) | {"road": road, "world": WORLD, "dt": 0.02, "image": None}
+    for step in range(6):
+        late.steer(View(**{**numbers, "time": step * 0.02}))  # type: ignore[arg-type]
+    assert notes.times == pytest.approx([0.0, 0.0, 0.0, 0.0, 0.02, 0.04])
+    assert notes.believes == 1.0
+
+
+# Two hairpins' worth of bend at the least radius: the default driver cuts its inside.
+CUTS = design(
+    Segment(distance=20, direction="right", turn_degrees=-60, radius=20, transition=9.7),
+    Segment(distance=20, direction="right", turn_degrees=-60, radius=20, transition=9.7),
+)
+
+
+@pytest.fixture(scope="module")
+def cut() -> Run:
+    run = prove(CUTS, 3)
+    assert run.outcome == "FAIL"
+    return run
+
+
+def test_disturbed_drives_start_and_slip_as_they_are_told(cut: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[tuple[Drive, World]] = []
+
+    def judged(road: Road, drive: Drive, world: World) -> Verdict:
+        seen.append((drive, world))
+        return judge(road, drive, world)
+
+    monkeypatch.setattr("roadgpt.campaign.faults.stability.judge", judged)
+    drive_disturbed(cut, Disturbance(0.9, 0.25, 0.0))
+    ((drive, world),) = seen
+    assert drive["t"][0] == pytest.approx(-1.75, abs=0.02)
+    assert world.friction == pytest.approx(0.9)
+
+
+def test_the_same_failure_is_repeated_alike(cut: Run) -> None:
+    first, again = repeated(cut, 3), repeated(cut, 3)
+    assert first == again
+    assert len({each.at_s for each in first.drives}) == 3
+
+
+def _proved_by(fails: object, monkeypatch: pytest.MonkeyPatch) -> list[Design]:
+    """Instead of driving: a road fails where ``fails`` says so."""
+    asked: list[Design] = []
+
+    def proved(blueprint: Design, seed: int, world: World, setup: object, index: int) -> Run:
+        asked.append(blueprint)
+        bad = fails(blueprint)  # type: ignore[operator]
+        verdict = Verdict(
+            "FAIL" if bad else "PASS", "out of lane" if bad else None, "", "", 1.0, -0.1, 1,
+            at_s=10.0 if bad else None, side="right" if bad else None,
+        )  # fmt: skip
+        return Run(
+            Request(),
+            index,
+            seed,
+            outcome=verdict.outcome,
+            design=blueprint,
+            road=build(blueprint),
+            verdict=verdict,
+        )
+
+    monkeypatch.setattr(minimising, "prove", proved)
+    return asked
+
+
+LONG = design(
+    straight(40, 4.0), bend(-50, 22.0), straight(31, -3.0), bend(47, 19.0), straight(24),
+    bend(-41, 17.0, 2.0), straight(33), start=(30.0, 150.0, 3.0),
+)  # fmt: skip
+
+
+def test_the_simplest_road_has_what_fails_and_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(road: Design) -> bool:
+        tight = [s for s in road.segments if s.direction == "left" and s.radius and s.radius < 20]
+        return bool(tight) and tight[0].turn_degrees > 33 and sum(s.distance for s in road.segments) > 40
+
+    asked = _proved_by(fails, monkeypatch)
+    failing = minimising.prove(LONG, 1, WORLD, None, 5)  # type: ignore[arg-type]
+    found = simplest(failing)
+    assert found.is_minimal
+    left = found.run.design
+    assert left is not None
+    assert fails(left)
+    assert [s.direction for s in left.segments if s.turn_degrees] == ["left"]
+    assert all(s.incline == 0 for s in left.segments)
+    for index in range(len(left.segments)):
+        rest = left.segments[:index] + left.segments[index + 1 :]
+        assert not rest or not fails(left.model_copy(update={"segments": rest}))
+    assert found.drives <= len(asked)
+    assert len(set(asked)) == len(asked), "nothing is driven twice"
+
+
+def test_a_search_that_runs_out_of_drives_gives_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    _proved_by(lambda road: any(s.direction == "left" for s in road.segments), monkeypatch)
+    failing = minimising.prove(LONG, 1, WORLD, None, 5)  # type: ignore[arg-type]
+    found = simplest(failing, most=3)
+    assert found.drives <= 3
+    assert not found.is_minimal
+    assert found.run.outcome == "FAIL"
+    assert "given up" in found.sentence
+
+
+def test_the_smallest_change_is_one_field_at_its_border(monkeypatch: pytest.MonkeyPatch) -> None:
+    _proved_by(lambda road: (road.segments[3].radius or 99) < 20.3, monkeypatch)
+    other = LONG.model_copy(update={"segments": (*LONG.segments[:3], bend(47, 26.0), *LONG.segments[4:])})
+    other = other.model_copy(
+        update={"segments": (straight(37, 4.0), *other.segments[1:6], straight(30, 1.0))}
+    )
+    failing = minimising.prove(LONG, 1, WORLD, None, 5)  # type: ignore[arg-type]
+    kept = minimising.prove(other, 1, WORLD, None, 6)  # type: ignore[arg-type]
+    found = smallest_change(kept, failing)
+    assert [each.field for each in found.differences] == ["radius"]
+    radius = found.differences[0].failing
+    assert radius < 20.3
+    assert radius > 20.3 - 7 / 32
+    assert found.differences[0].sentence.startswith("segment 4: radius 26 m -> 20.")
+    with pytest.raises(UsageError, match="7 and 2 segments"):
+        smallest_change(kept, replace(failing, design=CUTS))
+
+
+def test_the_command_looks_into_failures_once(
+    cut: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = write_run(replace(cut, index=1), tmp_path)
+    write_run(prove(design(straight(60)), 1, index=2), tmp_path)
+    first = CliRunner().invoke(app, ["faults", str(tmp_path), "--repeat", "2"], standalone_mode=False)
+    assert first.exception is None
+    assert "1 failures" in first.output or "1 failure" in first.output
+    png = (tmp_path / "faults" / "0001.png").read_bytes()
+    assert png.startswith(b"\x89PNG")
+    table = (tmp_path / "faults" / "faults.csv").read_text(encoding="utf-8")
+    assert len(table.splitlines()) == 2
+    monkeypatch.setattr("roadgpt.campaign.faults.book.repeated", lambda *_: pytest.fail("driven again"))
+    CliRunner().invoke(app, ["faults", str(tmp_path), "--repeat", "2"], standalone_mode=False)
+    assert (tmp_path / "faults" / "faults.csv").read_text(encoding="utf-8") == table
+    assert folder.is_dir()
+    nothing = CliRunner().invoke(app, ["faults", str(tmp_path / "nothing")], standalone_mode=False)
+    assert isinstance(nothing.exception, UsageError)
