@@ -58,7 +58,7 @@ def driven(way: list[Step], keep_driving: bool) -> tuple[Drive, Verdict]:
     def on(*_: Any) -> OnRails:
         return OnRails(way)
 
-    with patch.object(simulator.Vehicle, "on", on), patch.object(simulator, "STUCK_TIME", PATIENCE):
+    with patch.object(simulator.Vehicle, "on", on), patch.object(course, "STUCK_TIME", PATIENCE):
         drive = MujocoSimulator().simulate(ROAD, WORLD, Sits(), seed=0, keep_driving=keep_driving)
     return drive, judge(ROAD, drive, WORLD)
 

@@ -42,7 +42,7 @@ class View(NamedTuple):
     """Metres per second, to the car's left."""
     image: Any = None
     """What the driver's camera sees, shape (height, width, 3), uint8; None where it has no attribute
-    ``camera``, or the simulator has no images."""
+    ``camera``."""
 
 
 class Camera(NamedTuple):
@@ -59,6 +59,8 @@ class Camera(NamedTuple):
     """Metres above the road."""
     down: float = 0.05
     """Radians by which it looks down."""
+    every: int = 2
+    """Control steps from one image to the next: 2 are 25 images a second. BeamNG gives one at each."""
 
 
 class Command(NamedTuple):

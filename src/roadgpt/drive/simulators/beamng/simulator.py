@@ -3,13 +3,13 @@
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.drive import Drive
+from roadgpt.drive.eyes import camera_of
 from roadgpt.drive.seat import Seat
 from roadgpt.drive.simulators.beamng.loop import record
 from roadgpt.drive.simulators.beamng.session import Session, session_of
 from roadgpt.drive.simulators.beamng.settings import Settings
 from roadgpt.drive.simulators.beamng.stage import Stage
-from roadgpt.drive.view import Camera
-from roadgpt.errors import RoadGPTError, SimulationError, UsageError
+from roadgpt.errors import RoadGPTError, SimulationError
 
 if TYPE_CHECKING:
     from roadgpt.drive import Driver
@@ -71,9 +71,7 @@ class BeamngSimulator:
         seed: int,
         keep_driving: bool,
     ) -> Drive:
-        camera = getattr(driver, "camera", None)
-        if camera is not None and not isinstance(camera, Camera):
-            raise UsageError("the driver's attribute camera must be a roadgpt.drive.Camera")
+        camera = camera_of(driver)
         seat = None if self._ai_drives(driver) else Seat(driver)
         with Stage(session, road, world, seed) as stage:
             if seat is None:

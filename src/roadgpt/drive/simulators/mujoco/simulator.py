@@ -1,34 +1,24 @@
 """The simulator ``mujoco``: rigid bodies by MuJoCo, tyres and road surface of our own."""
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
+from roadgpt.drive.eyes import Eyes, camera_of
 from roadgpt.drive.seat import Seat
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car
+from roadgpt.drive.simulators.mujoco.course import Course
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import View
-from roadgpt.errors import SimulationError
 
 if TYPE_CHECKING:
     from roadgpt.drive import Driver
     from roadgpt.road import Road, World
 
-START = 2.5  # m along the road (RoadGPT, SBFT)
-GOAL = 8.0  # m from the end of the centre line (SBFT)
-STUCK_TIME = 10.0  # s in which a car must move ... (SBFT)
-STUCK_WAY = 1.0  # m ... this far
-SLOWEST = 2.0  # m/s, mean, before time is out
-SPARE = 30.0  # s, on top
-
 _NAMES = tuple(COLUMNS)
 _SEEN = tuple(
-    map(
-        _NAMES.index,
-        ("x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy", "outside"),
-    )
+    map(_NAMES.index, ("x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"))
 )
 
 
@@ -43,53 +33,49 @@ class MujocoSimulator:
         self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
     ) -> Drive:
         """See `roadgpt.drive.Simulator`. The seed is the driver's; the physics draws no random number."""
-        seat = Seat(driver)
+        seat, camera = Seat(driver), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
+        eyes = None if camera is None else Eyes(camera, road, world)
+        course = Course(road, 2.0 if keep_driving else world.oob_tolerance)
         with seat.watched():
             seat.start(road, world, seed)
-            place = -world.lane_width / 2 + self.start_offset
-            rows, ended = _drive(vehicle, seat, road, world, keep_driving, place)
+            vehicle.put(course.start, -world.lane_width / 2 + self.start_offset)
+            rows, ended = _drive(vehicle, seat, course, eyes, road, world)
         columns = Columns({name: rows[:, place] for place, name in enumerate(_NAMES)})
         return Drive(seat.name, "mujoco", seed, columns, ended, self.car.box)
 
 
 def _drive(
-    vehicle: Vehicle, seat: Seat, road: "Road", world: "World", keep_driving: bool, t: float
+    vehicle: Vehicle, seat: Seat, course: Course, eyes: Eyes | None, road: "Road", world: "World"
 ) -> tuple[FloatArray, Ended]:
-    vehicle.put(min(START, road.length / 2), t)
-    end = np.asarray(road.at(road.length)).tolist()
-    limit = math.ceil((road.length / SLOWEST + SPARE) / CONTROL)
-    tolerance = 2.0 if keep_driving else world.oob_tolerance
     log = _Log()
     row = log.add(vehicle.row)
-    since, (from_x, from_y) = 0, row[1:3]
-    for step in range(limit + 1):
-        x, y, z, heading, speed, yaw_rate, s, t, steer, vx, vy, outside = (row[i] for i in _SEEN)
-        if not math.isfinite(x + y + z + speed + outside):
-            raise SimulationError(
-                f"the physics broke down at {step * CONTROL:.2f} s: check the road and the car for numbers "
-                "that make no sense"
-            )
-        # At one and the same step the competition asks for the goal, then for motion, then for the lane.
-        # Where a road ends near its start, only a car that has come round has arrived.
-        if s > road.length / 2 and math.hypot(x - end[0], y - end[1]) < GOAL:
-            return log.rows(), "goal"
-        if math.hypot(x - from_x, y - from_y) >= STUCK_WAY:
-            since, from_x, from_y = step, x, y
-        elif (step - since) * CONTROL >= STUCK_TIME:
-            return log.rows(), "stuck"
-        if outside > tolerance:
-            return log.rows(), "out_of_lane"
-        if vehicle.has_fallen:
-            return log.rows(), "fell"
-        if step == limit:
-            break
+    step = 0
+    while (ended := course.ended(vehicle.row, step, vehicle.has_fallen)) is None:
+        x, y, z, heading, speed, yaw_rate, s, t, steer, vx, vy = (row[i] for i in _SEEN)
+        image = None if eyes is None else eyes.see(vehicle.see())
         view = View(
-            step * CONTROL, x, y, z, heading, speed, yaw_rate, s, t, road, world, steer, CONTROL, vx, vy
+            step * CONTROL,
+            x,
+            y,
+            z,
+            heading,
+            speed,
+            yaw_rate,
+            s,
+            t,
+            road,
+            world,
+            steer,
+            CONTROL,
+            vx,
+            vy,
+            image,
         )
         vehicle.move(*seat.ask(view))
         row = log.add(vehicle.row)
-    return log.rows(), "timeout"
+        step += 1
+    return log.rows(), ended
 
 
 class _Log:
