@@ -141,6 +141,8 @@ class Office:
 
     def _with_chat(self, cell: Cell) -> Cell:
         """With the language model's settings of this sitting, which may have other limits."""
+        if cell.request.setup.chat is None:
+            return cell
         setup = cell.request.setup.model_copy(update={"chat": self._chat})
         return replace(cell, request=cell.request.model_copy(update={"setup": setup}))
 

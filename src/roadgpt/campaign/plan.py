@@ -13,7 +13,7 @@ from pydantic import Field
 from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.campaign.model import UNLIMITED, Budget, Cell, Goal
-from roadgpt.chat import ChatSettings
+from roadgpt.chat import ChatSettings, asks_a_model
 from roadgpt.errors import UsageError
 from roadgpt.road import Geometry, World
 from roadgpt.run.model import Request, Setup
@@ -58,6 +58,15 @@ class Plan(Frozen):
         chat = self.chat and self.chat.essence()
         return self.model_copy(update={"chat": chat, "patience": PATIENCE})
 
+    @property
+    def asks_a_model(self) -> bool:
+        """Does the reader or a designer ask a language model?"""
+        return any(self._asks(designer) for designer in self.designers)
+
+    def _asks(self, designer: str) -> bool:
+        parts = (("readers", self.reader.partition(":")[0]), ("designers", designer))
+        return any(asks_a_model(plugins.find(shelf, name)) for shelf, name in parts)
+
     def requests(self) -> Iterator[tuple[Request, str]]:
         """Of each cell its request and generator, in order."""
         every = product(
@@ -74,7 +83,7 @@ class Plan(Frozen):
                 geometry=getattr(plugins.find("designers", designer), "geometry", None) or self.geometry,
                 keep_driving=self.keep_driving,
                 drives=self.drives,
-                chat=self.chat,
+                chat=self.chat if self._asks(designer) else None,
             )
             yield Request(words=words, seed=seed, world=self.world, setup=setup), generator
 

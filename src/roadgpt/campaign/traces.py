@@ -79,12 +79,9 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
     import pyarrow.parquet as pq
 
     lengths = [len(trace.columns["time"]) for _, _, trace in drives]
-    cells = pa.DictionaryArray.from_arrays(
-        np.repeat(np.arange(len(drives), dtype=np.int32), lengths), [cell for cell, _, _ in drives]
-    )
     table = pa.table(
         {
-            "cell": cells.cast(pa.string()),
+            "cell": np.repeat([cell for cell, _, _ in drives], lengths),
             "number": np.repeat(np.array([number for _, number, _ in drives], np.int32), lengths),
             **{name: np.concatenate([trace.columns[name] for *_, trace in drives]) for name in COLUMNS},
         }
@@ -95,15 +92,17 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
         "drives": [{"cell": cell, "number": number, **trace.header} for cell, number, trace in drives],
     }
     data = io.BytesIO()
-    pq.write_table(
-        table.replace_schema_metadata({"roadgpt": json.dumps(told)}),
+    with pq.ParquetWriter(
         data,
+        table.schema,
         compression="zstd",
         use_dictionary=["cell"],
         column_encoding=dict.fromkeys(("number", *COLUMNS), "DELTA_BINARY_PACKED"),
         write_statistics=["number"],
         store_schema=False,
-    )
+    ) as writer:
+        writer.write_table(table)
+        writer.add_key_value_metadata({"roadgpt": json.dumps(told)})
     name = f"{number:07d}.parquet"
     path = folder / TRACES / name
     path.parent.mkdir(exist_ok=True)

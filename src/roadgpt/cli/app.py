@@ -31,6 +31,11 @@ COMMANDS = {
     "compare": "How alike two roads are, seen one above the other.",
     "report": "Write a report on the folder of a campaign or of a study.",
     "study": "Do the thesis' evaluation again, measure alignment, ask people.",
+    "campaign": "Search for failures, or make roads by the thousand, with many workers.",
+    "resume": "Go on with a campaign that was interrupted.",
+    "status": "Say how far a campaign is.",
+    "top": "Watch a campaign as it works.",
+    "redrive": "Drive tests of a campaign again, into folders that show and view open.",
     "show": "Tell what is in the folder of a run or a campaign.",
     "learn": "Descriptions by hand and by the thousand; train, judge and export a reader of your own.",
     "sbft": "Let a generator of the SBFT tool competition loose on the simulator.",
@@ -52,6 +57,9 @@ MISSING = {
     "formats": "Name a format: --to opendrive; 'roadgpt parts' lists them.",
     "RUN": "Name the folder of a run, or the file of a design.",
     "CHANGE": 'Say what is to be different: roadgpt edit RUN "make the second turn sharper"',
+    "DESCRIPTION|FILE.toml": 'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200',
+    "CAMPAIGN": "Name the folder of a campaign, as 'roadgpt campaign' told it.",
+    "TEST...": "Name one or more tests by their numbers in results.csv.",
     "OUT": "Name the folder to write into.",
 }
 

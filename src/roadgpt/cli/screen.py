@@ -31,7 +31,7 @@ class Screen:
     def __enter__(self) -> Self:
         self._begun = time.perf_counter()
         if not self.quiet and sys.stderr.isatty():
-            self._bar = _new_bar()
+            self._bar = new_bar()
             self._task = self._bar.add_task("roads", total=self.total or None, rate="")
             self._bar.start()
         return self
@@ -101,7 +101,8 @@ def _coloured(row: Row) -> str:
     return click.style(line[:head], fg=COLOURS[row.test_outcome], bold=True) + line[head:]
 
 
-def _new_bar() -> "Progress":
+def new_bar() -> "Progress":
+    """A bar on standard error, with a rate of its own and the time that is left."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 

@@ -1,0 +1,158 @@
+"""How a campaign is doing, also while somebody works on it: counted by the store, never loading all rows."""
+
+import time
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from roadgpt.campaign.launch import plan_of
+from roadgpt.campaign.record import Record
+
+FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
+LATELY = 60.0  # s over which the speed of the moment is taken
+
+
+@dataclass(frozen=True)
+class CellStatus:
+    """How one cell is doing."""
+
+    name: str
+    words: str
+    driver: str
+    generator: str
+    seed: int
+    asked: int
+    outcomes: Mapping[str, int]
+    least_margin: float | None
+    closed: str | None
+    """Why nothing more is asked for, where that is not that all were."""
+
+    @property
+    def done(self) -> int:
+        """Tests that have ended."""
+        return sum(self.outcomes.values())
+
+
+@dataclass(frozen=True)
+class Lease:
+    """Who is at which test."""
+
+    cell: str
+    number: int
+    worker: str
+
+
+@dataclass(frozen=True)
+class Status:
+    """How a campaign is doing."""
+
+    folder: str
+    is_finished: bool
+    is_running: bool
+    total: int | None
+    """Tests; None where only time limits them."""
+    outcomes: Mapping[str, int]
+    seconds: float
+    """That somebody has worked on it."""
+    rate: float
+    """Tests per second, lately where somebody works, else on the whole."""
+    tokens: int
+    cost_usd: float
+    cells: tuple[CellStatus, ...]
+    under_way: tuple[Lease, ...]
+
+    @property
+    def done(self) -> int:
+        """Tests that have ended."""
+        return sum(self.outcomes.values())
+
+    @property
+    def seconds_left(self) -> float | None:
+        """At this rate; None where nobody can tell."""
+        if self.is_finished:
+            return 0.0
+        if self.total is None or self.rate <= 0:
+            return None
+        return (self.total - self.done) / self.rate
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data."""
+        return {
+            **asdict(self),
+            "done": self.done,
+            "seconds_left": self.seconds_left,
+        }
+
+
+def status_of(folder: Path) -> Status:
+    """How the campaign in a folder is doing.
+
+    Raises:
+        UsageError: there is none.
+    """
+    with Record.opened(folder) as record:
+        cells = _cells(record)
+        outcomes: Counter[str] = Counter()
+        for cell in cells:
+            outcomes.update(cell.outcomes)
+        ((seconds, seen),) = record.query(
+            "SELECT coalesce(sum(seen - begun), 0), coalesce(max(seen), 0) FROM sittings"
+        )
+        is_finished = bool(record.meta("finished"))
+        is_running = not is_finished and time.time() - seen < FRESH
+        plan = plan_of(record)
+        leases = record.query("SELECT cell, number, worker FROM leases ORDER BY worker")
+        tokens, cost = record.spent()
+        return Status(
+            folder=str(folder),
+            is_finished=is_finished,
+            is_running=is_running,
+            total=plan.budget.tests and plan.budget.tests * len(cells),
+            outcomes=dict(outcomes),
+            seconds=round(seconds, 3),
+            rate=round(_rate(record, outcomes.total(), seconds, is_running), 3),
+            tokens=tokens,
+            cost_usd=cost,
+            cells=cells,
+            under_way=tuple(Lease(*lease) for lease in leases) if is_running else (),
+        )
+
+
+def _rate(record: Record, done: int, seconds: float, is_running: bool) -> float:
+    if not is_running:
+        return done / seconds if seconds else 0.0
+    ((begun,),) = record.query("SELECT max(begun) FROM sittings")
+    since = max(begun, time.time() - LATELY)
+    # the clock's columns have no index, which every result would pay for: the last ones are at the end
+    last = "SELECT ended FROM tests WHERE cell = ? AND ended IS NOT NULL ORDER BY number DESC LIMIT 20000"
+    open_cells = [cell for (cell,) in record.query("SELECT DISTINCT cell FROM batches WHERE left > 0")]
+    lately = [ended for cell in open_cells for (ended,) in record.query(last, (cell,)) if ended >= since]
+    return len(lately) / max(time.time() - float(since), 1.0)
+
+
+def _cells(record: Record) -> tuple[CellStatus, ...]:
+    counts: dict[str, dict[str, int]] = {}
+    least: dict[str, float] = {}
+    grouped = "SELECT cell, outcome, count(*), min(margin) FROM tests WHERE outcome IS NOT NULL GROUP BY 1, 2"
+    for cell, outcome, count, margin in record.stream(grouped):
+        counts.setdefault(cell, {})[outcome] = count
+        if margin is not None:
+            least[cell] = min(margin, least.get(cell, margin))
+    asked = dict(record.query("SELECT cell, sum(n) FROM batches GROUP BY cell"))
+    closed = dict(record.query("SELECT name, closed FROM cells"))
+    return tuple(
+        CellStatus(
+            name=cell.name,
+            words=cell.request.words,
+            driver=cell.request.setup.driver,
+            generator=cell.generator,
+            seed=cell.request.seed,
+            asked=asked.get(cell.name, 0),
+            outcomes=counts.get(cell.name, {}),
+            least_margin=least.get(cell.name),
+            closed=closed[cell.name],
+        )
+        for cell in record.cells()
+    )

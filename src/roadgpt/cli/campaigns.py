@@ -1,0 +1,136 @@
+"""How commands show campaigns: while one is at work, and how far it is."""
+
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from roadgpt.cli.options import Decorator, together, whole
+from roadgpt.cli.rows import COLOURS, metres
+from roadgpt.cli.screen import new_bar
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.office import Progress
+    from roadgpt.campaign.status import CellStatus, Status
+
+MOST_WORKERS = 4096
+MOST_CELLS = 40  # that are shown one by one
+HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
+LINE = "{:<6} {:>9} {:>7} {:>7} {:>7} {:>13}  {}"
+
+worker_options = together(
+    click.option(
+        "-j",
+        "--workers",
+        type=whole(1, MOST_WORKERS, "the number of workers"),
+        default=1,
+        show_default=True,
+        help="Tests at a time; as many as there are cores is best.",
+    ),
+    click.option(
+        "--executor", default="processes", show_default=True, help="Where the workers are: processes, or ray."
+    ),
+    click.option("--address", default="", help="Of a Ray cluster. [default: this machine]"),
+)
+
+screen_options: Decorator = together(
+    click.option("--json", "as_json", is_flag=True, help="One JSON object at the end, on standard output."),
+    click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors."),
+)
+
+
+def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool) -> None:
+    """Let a campaign work, show how far it is, and sum up; Ctrl-C ends with how to go on."""
+    try:
+        if quiet or not sys.stderr.isatty():
+            for _ in steps:
+                pass
+        else:
+            _with_bar(steps)
+    except KeyboardInterrupt:
+        click.echo(f"roadgpt: stopped; what is done is kept, go on with: roadgpt resume {folder}", err=True)
+        raise
+    sum_up(folder, as_json, quiet)
+
+
+def sum_up(folder: Path, as_json: bool, quiet: bool) -> None:
+    """What came of a campaign."""
+    from roadgpt.campaign.status import status_of
+
+    status = status_of(folder)
+    if as_json:
+        click.echo(as_line(status))
+    elif not quiet:
+        for line in told(status):
+            click.echo(line)
+        click.echo(f"tables: {folder / 'results.csv'} and {folder / 'cells.csv'}")
+
+
+def as_line(status: "Status") -> str:
+    """A status as one line of JSON."""
+    import json
+
+    return json.dumps(status.to_json())
+
+
+def _with_bar(steps: "Iterator[Progress]") -> None:
+    bar = new_bar()
+    task = bar.add_task("tests", total=None, rate="")
+    with bar:
+        for progress in steps:
+            rate = outcomes_line(progress.outcomes)
+            bar.update(task, completed=progress.done, total=progress.total, rate=rate)
+
+
+def outcomes_line(outcomes: Mapping[str, int]) -> str:
+    """Counts of outcomes: '120 PASS, 31 FAIL'."""
+    return ", ".join(f"{outcomes[name]:,} {name}" for name in COLOURS if outcomes.get(name)) or "nothing yet"
+
+
+def told(status: "Status") -> Iterator[str]:
+    """A status in lines to read."""
+    state = "finished" if status.is_finished else "at work" if status.is_running else "interrupted"
+    of = "" if status.total is None else f" of {status.total:,}"
+    yield f"{status.folder}: {state}, {status.done:,}{of} tests in {duration(status.seconds)}" + _pace(status)
+    yield f"  {outcomes_line(status.outcomes)}"
+    if status.tokens:
+        yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
+    if not status.is_finished and not status.is_running:
+        yield f"  go on with: roadgpt resume {status.folder}"
+    yield LINE.format(*HEAD)
+    for cell in status.cells[:MOST_CELLS]:
+        yield LINE.format(*cell_columns(cell))
+    if len(status.cells) > MOST_CELLS:
+        yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"
+
+
+def _pace(status: "Status") -> str:
+    left = status.seconds_left
+    if not status.rate:
+        return ""
+    more = f", {duration(left)} to go" if left and status.is_running else ""
+    return f", {status.rate:.1f} tests/s{more}"
+
+
+def cell_columns(cell: "CellStatus") -> tuple[str, ...]:
+    """What ``HEAD`` names, of one cell."""
+    passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
+    margin = "-" if cell.least_margin is None else metres(cell.least_margin)
+    what = f"{cell.words or 'any road'} ({cell.driver}, {cell.generator}, seed {cell.seed})"
+    why = f"; {cell.closed}" if cell.closed else ""
+    counts = (cell.done, passed, failed, cell.done - passed - failed)
+    return (cell.name, *(f"{count:,}" for count in counts), margin, what + why)
+
+
+def duration(seconds: float) -> str:
+    """Seconds as people say them: '42 s', '3 min 20 s', '2 h 05 min'."""
+    whole_seconds = round(seconds)
+    if whole_seconds < 60:
+        return f"{seconds:.1f} s" if seconds < 10 else f"{whole_seconds} s"
+    minutes, rest = divmod(whole_seconds, 60)
+    if minutes < 60:
+        return f"{minutes} min {rest:02d} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02d} min"

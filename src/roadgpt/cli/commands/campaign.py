@@ -1,0 +1,151 @@
+"""``roadgpt campaign``: thousands of tests, by many workers, that nothing interrupts for good."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from roadgpt.cli.beamng import beamng_options
+from roadgpt.cli.campaigns import screen_options, watch, worker_options
+from roadgpt.cli.dashes import DescribedCommand
+from roadgpt.cli.flags import CHAT, measure
+from roadgpt.cli.options import (
+    SEED,
+    chat_of,
+    chat_options,
+    folder,
+    setup_options,
+    whole,
+    world_of,
+    world_options,
+)
+from roadgpt.errors import UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.plan import Plan
+
+MOST_TESTS = 10_000_000
+TESTS = whole(1, MOST_TESTS, "the number of tests")
+SECONDS = measure(0, 1e8, "s", above=True)
+BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "as_json", "quiet"}
+
+
+@click.command(cls=DescribedCommand)
+@click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION|FILE.toml")
+@click.option("-n", "--tests", type=TESTS, default=None, help="How many tests.")
+@click.option(
+    "--goal",
+    type=click.Choice(["failures", "coverage", "hardest", "boundary"]),
+    default=None,
+    help="What to search for; without one, roads are made as they come.",
+)
+@click.option(
+    "--generator", default=None, help="Who thinks out tests. [default: quality_diversity, or words]"
+)
+@click.option("--seconds", type=SECONDS, default=None, help="Ask for no more tests after so long.")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="The same seed gives the same table.")
+@click.option("--out", type=folder, default=None, help="Folder for the campaign. [default: a new one]")
+@worker_options
+@setup_options("reader", "designer", "driver", "simulator", "keep_driving")
+@world_options()
+@setup_options("geometry", "rules")
+@click.option("--no-drive", is_flag=True, help="Design and check only.")
+@chat_options
+@beamng_options
+@screen_options
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    words: tuple[str, ...],
+    out: Path | None,
+    workers: int,
+    executor: str,
+    address: str,
+    as_json: bool,
+    quiet: bool,
+    **rest: Any,
+) -> None:
+    """Search for roads that a driver fails on, or make roads by the thousand.
+
+    Give a description, or a FILE.toml that names many prompts, designers, drivers, simulators and seeds;
+    every combination is then a cell with tests of its own. The folder can be gone on with after Ctrl-C, a
+    crash or a power cut, and comes to the same table of results whatever happened and however many workers
+    there are.
+
+    \b
+    roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7
+    roadgpt campaign study.toml -j 16 --out study
+    roadgpt status study
+    """
+    from roadgpt.campaign.launch import begin, work
+    from roadgpt.run.naming import new_folder
+
+    text = " ".join(words)
+    plan = _filed(ctx, Path(text), rest) if text.endswith(".toml") else _described(text, rest)
+    plan.check()
+    if out is None:
+        out = new_folder(Path(text).stem if text.endswith(".toml") else text, plan.seeds[0])
+    was_there = begin(plan, out)
+    if not quiet and not as_json:
+        _tell(out, plan, was_there)
+    watch(out, work(out, workers, executor, address, plan), as_json, quiet)
+
+
+def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
+    """The plan in a file; options that it could name itself have no place beside it."""
+    from roadgpt.campaign.plan_file import read_plan
+    from roadgpt.chat import configured
+
+    chat = {flag.field for flag in CHAT}
+    for parameter in ctx.command.params:
+        name = parameter.name or ""
+        is_given = ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE
+        if is_given and name not in BESIDE_A_FILE | chat and name in rest:
+            raise UsageError(f"{parameter.opts[0]} has no place beside {path}; write it into the file")
+    written = read_plan(path)
+    told = {flag.field: flag.read(rest[flag.field]) for flag in CHAT if rest.get(flag.field) is not None}
+    if not written.plan.asks_a_model:
+        return written.plan
+    return written.plan.model_copy(update={"chat": configured({**written.chat, **told})})
+
+
+def _described(text: str, rest: dict[str, Any]) -> "Plan":
+    from roadgpt.campaign.model import Budget
+    from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL, Plan
+
+    goal, seconds, tests = rest["goal"], rest["seconds"], rest["tests"]
+    world = world_of(rest)
+    chat = chat_of(rest, rest["reader"], rest["designer"])
+    return Plan(
+        prompts=(text,),
+        designers=(rest["designer"],),
+        drivers=(rest["driver"],),
+        simulators=(rest["simulator"],),
+        generators=(rest["generator"] or (WITH_GOAL if goal else WITHOUT_GOAL),),
+        seeds=(rest["seed"],),
+        goal=goal,
+        budget=Budget(tests=tests, seconds=seconds),
+        reader=rest["reader"],
+        rules=rest["rules"],
+        geometry=rest["geometry"],
+        keep_driving=rest["keep_driving"],
+        drives=not rest["no_drive"],
+        world=world,
+        chat=chat,
+    )
+
+
+def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
+    """What is about to happen, where it is no surprise."""
+    from roadgpt.campaign.record import Record
+    from roadgpt.cli.work import understood
+
+    with Record.opened(out) as record:
+        cells = record.cells()
+    if len(plan.prompts) == 1 and cells[0].brief is not None:
+        click.echo(understood(cells[0].brief))
+    if len(cells) > 1:
+        click.echo(f"{len(cells):,} cells, each with tests of its own")
+    click.echo(f"{'going on in' if was_there else 'into'} {out}")

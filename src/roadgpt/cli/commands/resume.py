@@ -1,0 +1,43 @@
+"""``roadgpt resume``: goes on with a campaign where it stopped."""
+
+from pathlib import Path
+
+import click
+
+from roadgpt.cli.campaigns import screen_options, watch, worker_options
+from roadgpt.cli.flags import CHAT
+from roadgpt.cli.options import together
+
+LIMITS = [flag for flag in CHAT if flag.field in ("max_tokens", "max_cost")]
+
+
+@click.command()
+@click.argument("campaign", metavar="CAMPAIGN", type=click.Path(path_type=Path))
+@worker_options
+@together(*(flag.option() for flag in LIMITS))
+@screen_options
+def command(
+    campaign: Path,
+    workers: int,
+    executor: str,
+    address: str,
+    as_json: bool,
+    quiet: bool,
+    **limits: float | None,
+) -> None:
+    """Go on with a campaign that was interrupted, with as many workers as you like.
+
+    Tests that were under way are done again; the table of results is the same as if nothing had happened.
+
+    \b
+    roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2
+    """
+    from roadgpt.campaign.launch import plan_of, work
+    from roadgpt.campaign.record import Record
+
+    with Record.opened(campaign) as record:
+        plan = plan_of(record)
+    given = {name: value for name, value in limits.items() if value is not None}
+    if given and plan.chat is not None:
+        plan = plan.model_copy(update={"chat": plan.chat.model_copy(update=given)})
+    watch(campaign, work(campaign, workers, executor, address, plan), as_json, quiet)

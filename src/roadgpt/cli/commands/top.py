@@ -1,0 +1,76 @@
+"""``roadgpt top``: a campaign as it works, on the whole screen."""
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from roadgpt.cli.campaigns import HEAD, cell_columns, duration, outcomes_line
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from roadgpt.campaign.status import CellStatus, Status
+
+MOST_CELLS, MOST_WORKERS = 12, 16  # rows of the screen
+
+
+@click.command()
+@click.argument("campaign", metavar="CAMPAIGN", type=click.Path(path_type=Path))
+@click.option("--once", is_flag=True, help="Show it once and end.")
+def command(campaign: Path, once: bool) -> None:
+    """Watch a campaign that another command works on; ends with it, or with Ctrl-C."""
+    from rich.console import Console
+    from rich.live import Live
+
+    from roadgpt.campaign.status import status_of
+
+    console = Console(file=sys.stdout)
+    if once or not sys.stdout.isatty():
+        console.print(_picture(status_of(campaign)))
+        return
+    with Live(console=console, auto_refresh=False, screen=False) as live:
+        while True:
+            status = status_of(campaign)
+            live.update(_picture(status), refresh=True)
+            if status.is_finished:
+                return
+            time.sleep(1.0)
+
+
+def _picture(status: "Status") -> "RenderableType":
+    from rich.console import Group
+    from rich.progress_bar import ProgressBar
+    from rich.table import Table
+    from rich.text import Text
+
+    state = "finished" if status.is_finished else "at work" if status.is_running else "nobody is at work"
+    of = "" if status.total is None else f" of {status.total:,}"
+    left = f", {duration(status.seconds_left)} to go" if status.seconds_left else ""
+    head = Text(f"{status.folder}: {state}", style="bold")
+    pace = Text(f"{status.done:,}{of} tests, {status.rate:.1f} tests/s, {duration(status.seconds)}{left}")
+    bar = ProgressBar(total=status.total or max(status.done, 1), completed=status.done)
+    cells = Table(box=None, pad_edge=False)
+    rows = [cell_columns(cell) for cell in _chosen(status)]
+    for name, *texts in zip(HEAD, *rows, strict=True):
+        if name == "what":  # it gives way where the screen is narrow
+            cells.add_column(name, no_wrap=True, overflow="ellipsis")
+        else:
+            wide = max(map(len, [name, *texts]))
+            cells.add_column(name, justify="left" if name == "cell" else "right", min_width=wide)
+    for row in rows:
+        cells.add_row(*row)
+    workers = Table(box=None, pad_edge=False, show_header=False)
+    for lease in status.under_way[:MOST_WORKERS]:
+        workers.add_row(lease.worker, f"test {lease.number} of {lease.cell}")
+    return Group(head, pace, bar, Text(outcomes_line(status.outcomes)), Text(""), cells, Text(""), workers)
+
+
+def _chosen(status: "Status") -> "list[CellStatus]":
+    """Cells that are being worked on first, then those with most failures."""
+    busy = {lease.cell for lease in status.under_way}
+    return sorted(
+        status.cells, key=lambda cell: (cell.name not in busy, -cell.outcomes.get("FAIL", 0), cell.name)
+    )[:MOST_CELLS]
