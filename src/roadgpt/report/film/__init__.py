@@ -1,0 +1,187 @@
+"""Films of drives: from behind the car, from its bonnet, or two roads in one picture. Verb: ``film_of``.
+
+The frames depend on nothing but the Run and the settings; threads draw them, and PyAV encodes them.
+"""
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+
+from roadgpt.errors import UsageError
+from roadgpt.report.film.encoding import encoder, write_film
+from roadgpt.report.film.glyphs import Frame
+from roadgpt.report.film.pane import Pane
+from roadgpt.report.film.trip import Trip
+from roadgpt.run import Run
+from roadgpt.scene import Mount, Scene
+
+__all__ = ["Film", "Settings", "View", "film_of", "split_film"]
+
+View = Literal["chase", "bonnet", "both"]
+Watch = Callable[[Iterator[Frame], int], Iterator[Frame]]
+"""Is handed all frames and how many there will be, and hands them on."""
+
+MOST = 2  # roads in one film
+HOLD = 2.0  # s that the last picture stays, with the outcome
+SEAM = 4  # pixels between two pictures
+SLOWEST, FASTEST = 1, 120  # frames per second
+SMALLEST, LARGEST = 64, 3840  # pixels, a side of a picture
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a film is made.
+
+    Raises:
+        UsageError: a number that no film can have.
+    """
+
+    width: int = 640
+    """Pixels, of each picture in it."""
+    height: int = 360
+    fps: int = 25
+    begin: float = 0.0
+    """Seconds of the drive at which it begins."""
+    seconds: float | None = None
+    """Of the drive that are shown at most; None: all of it."""
+
+    def __post_init__(self) -> None:
+        sides = (self.width, self.height)
+        if any(side % 2 or not SMALLEST <= side <= LARGEST for side in sides):
+            raise UsageError(
+                f"a film of {self.width}x{self.height} pixels cannot be made; give even numbers from "
+                f"{SMALLEST} to {LARGEST}, such as 640x360"
+            )
+        if not SLOWEST <= self.fps <= FASTEST:
+            raise UsageError(f"a film cannot have {self.fps} pictures a second; give {SLOWEST} to {FASTEST}")
+        if not self.begin >= 0 or (self.seconds is not None and not self.seconds > 0):
+            raise UsageError("a film begins at second 0 or later and lasts longer than nothing")
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """Its pictures side by side, roads in columns and views in rows."""
+
+    rows: tuple[tuple[Pane, ...], ...]
+    settings: Settings
+    times: tuple[float, ...]
+
+    @classmethod
+    def of(cls, runs: Sequence[Run], view: View = "chase", settings: Settings | None = None) -> "Film":
+        """A film of one or two Runs.
+
+        Raises:
+            UsageError: there is no Run or more than two, an unknown view, a Run without a road, or a film
+                that would begin after its end.
+        """
+        if not 1 <= len(runs) <= MOST:
+            raise UsageError(f"a film shows one road or two side by side; {len(runs)} are given")
+        if view not in get_args(View):
+            raise UsageError(f"there is no view '{view}'; say {', '.join(get_args(View))}")
+        settings = settings or Settings()
+        trips = [Trip.of(run) for run in runs]
+        scenes = [Scene.of(run.road, run.world) for run in runs if run.road is not None]
+        mounts: tuple[Mount, ...] = ("chase", "bonnet") if view == "both" else (view,)
+        panes = [
+            tuple(
+                Pane.of(run, scene, trip, mount, settings.width, settings.height)
+                for run, scene, trip in zip(runs, scenes, trips, strict=True)
+            )
+            for mount in mounts
+        ]
+        is_wide = len(runs) == 1 and len(mounts) == 2
+        rows = (panes[0] + panes[1],) if is_wide else tuple(panes)
+        return cls(rows, settings, _times(max(trip.duration for trip in trips), settings))
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def frame(self, n: int) -> Frame:
+        """Frame n, whole."""
+        time = self.times[n]
+        strips = [_beside([pane.draw(time) for pane in row], axis=1) for row in self.rows]
+        return _beside(strips, axis=0)
+
+    def frames(self, threads: int | None = None) -> Iterator[Frame]:
+        """All frames in order, drawn by several threads a little ahead."""
+        count = threads or os.cpu_count() or 1
+        numbers = iter(range(len(self)))
+        with ThreadPoolExecutor(count) as pool:
+            ahead: deque[Future[Frame]] = deque(
+                pool.submit(self.frame, n) for n in islice(numbers, 2 * count)
+            )
+            try:
+                while ahead:
+                    frame = ahead.popleft().result()
+                    ahead.extend(pool.submit(self.frame, n) for n in islice(numbers, 1))
+                    yield frame
+            finally:
+                for future in ahead:
+                    future.cancel()
+
+
+def film_of(run: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None) -> Path:
+    """Film one drive into an MP4 file.
+
+    Args:
+        run: driven; along a road that nobody drove the camera rides alone.
+        path: the file; one of that name is replaced.
+        view: from behind ("chase"), from the bonnet, or both side by side.
+        settings: size, frames per second, which seconds.
+
+    Raises:
+        UsageError: there is nothing to film, a setting cannot be, or PyAV is missing.
+        RoadGPTError: the file cannot be written.
+    """
+    return write([run], path, view, settings)
+
+
+def split_film(
+    run_a: Run, run_b: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None
+) -> Path:
+    """Film two drives at once, side by side under one clock; otherwise as ``film_of``."""
+    return write([run_a, run_b], path, view, settings)
+
+
+def write(
+    runs: Sequence[Run], path: Path | str, view: View | str = "chase", settings: Settings | None = None,
+    watch: Watch | None = None,
+) -> Path:  # fmt: skip
+    """Film one Run or two; ``watch`` is told of each frame."""
+    encoder()  # before anything is drawn
+    film = Film.of(runs, view, settings)  # type: ignore[arg-type]
+    frames = film.frames()
+    title = " and ".join(dict.fromkeys(run.words or run.source or "a road that was given" for run in runs))
+    write_film(frames if watch is None else watch(frames, len(film)), Path(path), film.settings.fps, title)
+    return Path(path)
+
+
+def _times(duration: float, settings: Settings) -> tuple[float, ...]:
+    """When the frames are; the last picture stays where the film reaches the end."""
+    if settings.begin >= duration:
+        raise UsageError(f"the drive is over after {duration:.1f} s; let the film begin before that")
+    wished = duration - settings.begin if settings.seconds is None else settings.seconds
+    is_whole = settings.begin + wished >= duration
+    last = min(settings.begin + wished, duration)
+    count = max(1, int(np.floor((last - settings.begin) * settings.fps + 1e-6)))
+    shown = [settings.begin + n / settings.fps for n in range(count)]
+    hold = [duration] * round(HOLD * settings.fps) if is_whole else []
+    return (*shown, *hold)
+
+
+def _beside(pictures: list[Frame], axis: int) -> Frame:
+    """Pictures of one size with seams between them."""
+    if len(pictures) == 1:
+        return pictures[0]
+    shape = list(pictures[0].shape)
+    shape[axis] = SEAM
+    seam = np.full(shape, 16, np.uint8)
+    parts = [part for picture in pictures for part in (seam, picture)][1:]
+    return np.ascontiguousarray(np.concatenate(parts, axis=axis))

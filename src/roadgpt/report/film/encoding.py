@@ -1,0 +1,68 @@
+"""Frames as an MP4 file, H.264, by PyAV."""
+
+import os
+from collections.abc import Iterable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.report.film.glyphs import Frame
+from roadgpt.run.atomic import PART
+
+ENCODER = "libx264"
+QUALITY, PRESET = 20, "veryfast"  # x264's scale, on which less is better
+
+
+def encoder() -> Any:
+    """The library, which has the encoder.
+
+    Raises:
+        UsageError: it is not installed, or was built without the encoder.
+    """
+    try:
+        import av
+    except ImportError as error:
+        raise UsageError("films need PyAV; say python -m pip install 'roadgpt[film]'") from error
+    if ENCODER not in av.codecs_available:
+        raise UsageError(
+            f"PyAV is installed without {ENCODER}, which writes films; install it from its wheels: "
+            "python -m pip install --force-reinstall --only-binary av 'roadgpt[film]'"
+        )
+    return av
+
+
+def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -> None:
+    """Write frames of one even size into a file, which is there whole or not at all.
+
+    Raises:
+        UsageError: as for `encoder`.
+        RoadGPTError: the file cannot be written.
+    """
+    av = encoder()
+    draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with av.open(str(draft), "w", format="mp4", options={"movflags": "+faststart"}) as file:
+            file.metadata["title"] = about
+            _encode(av, file, frames, fps)
+        draft.replace(path)
+    except OSError as error:
+        raise RoadGPTError(f"cannot write {path}: {error.strerror or error}; name another --out") from error
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _encode(av: Any, file: Any, frames: Iterable[Frame], fps: int) -> None:
+    stream = None
+    for n, frame in enumerate(frames):
+        if stream is None:
+            options = {"crf": str(QUALITY), "preset": PRESET}
+            stream = file.add_stream(ENCODER, rate=fps, options=options)
+            stream.height, stream.width = frame.shape[:2]
+            stream.pix_fmt = "yuv420p"
+        picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
+        picture.pts, picture.time_base = n, Fraction(1, fps)
+        file.mux(stream.encode(picture))
+    if stream is not None:
+        file.mux(stream.encode(None))

@@ -1,0 +1,78 @@
+"""Letters as pictures, made once: a frame is lettered at once, in the lettering of all our pictures."""
+
+from functools import cache
+from typing import Literal, NamedTuple
+
+import numpy as np
+from matplotlib.font_manager import FontProperties, findfont, get_font
+from numpy.typing import NDArray
+
+from roadgpt.report.lettering import POINTS
+
+Frame = NDArray[np.uint8]
+Weight = Literal["normal", "bold"]
+
+
+class Glyph(NamedTuple):
+    """One letter at one size."""
+
+    cover: NDArray[np.uint8]
+    """(height, width), 0 to 255."""
+    top: int
+    """Pixels from the baseline up to its first row."""
+    left: int
+    """Pixels from where the letter begins to its first column."""
+    advance: float
+    """Pixels to the next letter."""
+
+
+@cache
+def glyph(letter: str, size: int, weight: Weight) -> Glyph:
+    """A letter of a size in pixels."""
+    font = get_font(findfont(FontProperties(family="DejaVu Sans", weight=weight)))
+    font.set_size(float(size), POINTS)
+    advance = float(font.load_char(ord(letter)).linearHoriAdvance) / 65536
+    font.set_text(letter)
+    font.draw_glyphs_to_bitmap(antialiased=True)
+    cover = np.array(font.get_image())
+    left, _ = font.get_bitmap_offset()
+    top = len(cover) - int(np.ceil(font.get_descent() / 64))
+    return Glyph(cover, top, int(np.floor(left / 64)), advance)
+
+
+def width_of(text: str, size: int, weight: Weight = "normal") -> int:
+    """Pixels."""
+    return int(np.ceil(sum(glyph(letter, size, weight).advance for letter in text)))
+
+
+def write(
+    frame: Frame, x: float, y: float, text: str, size: int, colour: tuple[int, int, int] = (255, 255, 255),
+    weight: Weight = "normal",
+) -> None:  # fmt: skip
+    """Write one line of text into a frame; its baseline begins at (x, y); what lies outside is left out."""
+    for letter in text:
+        shape = glyph(letter, size, weight)
+        _blend(frame, round(x) + shape.left, round(y) - shape.top, shape.cover, colour)
+        x += shape.advance
+
+
+def _blend(frame: Frame, x: int, y: int, cover: NDArray[np.uint8], colour: tuple[int, int, int]) -> None:
+    x0, y0 = max(x, 0), max(y, 0)
+    x1, y1 = min(x + cover.shape[1], frame.shape[1]), min(y + cover.shape[0], frame.shape[0])
+    if x0 >= x1 or y0 >= y1:
+        return
+    part = frame[y0:y1, x0:x1].astype(np.int32)
+    share = cover[y0 - y : y1 - y, x0 - x : x1 - x, None].astype(np.int32)
+    part += ((np.array(colour) - part) * share + 127) // 255
+    frame[y0:y1, x0:x1] = part
+
+
+def shade(frame: Frame, x0: float, y0: float, x1: float, y1: float, left: int = 110) -> None:
+    """Darken a rectangle, so that letters can be read on it; ``left`` of 256 is left of its light."""
+    part = frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)]
+    part[:] = (part.astype(np.uint16) * left) >> 8
+
+
+def fill(frame: Frame, x0: float, y0: float, x1: float, y1: float, colour: tuple[int, int, int]) -> None:
+    """Fill a rectangle."""
+    frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)] = colour

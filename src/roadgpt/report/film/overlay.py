@@ -1,0 +1,97 @@
+"""What is written over the pictures: the description, speed, place, how far from failing, the outcome."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.colors import to_rgb
+
+from roadgpt.report.canvas import GREEN, INK, ORANGE, OUTCOMES, VERMILLION
+from roadgpt.report.film.glyphs import Frame, fill, shade, width_of, write
+from roadgpt.report.film.trip import Told
+from roadgpt.report.lettering import POINTS, fitted
+from roadgpt.run import Run
+
+TITLE, TEXT, SMALL, LARGE = 13, 12, 10, 27  # pixels in a picture 360 high
+EDGE, LINE = 10, 17  # likewise: from the border, and from line to line
+LEAST = 0.5  # of all sizes, in small pictures
+AMPLE, WHOLE = 0.5, 2.0  # m of margin: from where it is green, and what fills its bar
+WHITE, PALE = (255, 255, 255), (206, 212, 218)
+
+
+def _rgb(colour: str) -> tuple[int, int, int]:
+    r, g, b = (round(255 * part) for part in to_rgb(colour))
+    return r, g, b
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """Of one Run, on pictures of one size."""
+
+    run: Run
+    width: int
+    height: int
+
+    @property
+    def scale(self) -> float:
+        """Pixels to one of a picture 640 by 360."""
+        return max(LEAST, min(self.height / 360, self.width / 440))
+
+    def _size(self, pixels: int) -> int:
+        return max(7, round(pixels * self.scale))
+
+    def lay(self, frame: Frame, told: Told, is_over: bool) -> None:
+        """Write into a frame; ``is_over``: the drive has ended, and its outcome is told."""
+        self._title(frame)
+        self._numbers(frame, told)
+        if is_over and self.run.drive is not None:
+            self._outcome(frame)
+
+    def _rows(self, text: str, size: int, room: float, lines: int, bold: bool = False) -> list[str]:
+        return fitted(text, room / POINTS, size, bold, lines).split("\n")
+
+    def _title(self, frame: Frame) -> None:
+        """The description, at the top."""
+        u, size = self.scale, self._size(TITLE)
+        text = self.run.words or self.run.source or "a road that was given"
+        rows = self._rows(text, size, self.width - 2 * EDGE * u, 2, bold=True)
+        shade(frame, 0, 0, self.width, (9 + LINE * len(rows)) * u)
+        for k, row in enumerate(rows):
+            write(frame, EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
+
+    def _numbers(self, frame: Frame, told: Told) -> None:
+        """Speed, station and margin, below on the left."""
+        u, edge = self.scale, EDGE * self.scale
+        large, text, small = self._size(LARGE), self._size(TEXT), self._size(SMALL)
+        wide, high = 148 * u, (78 if told.margin is not None else 52) * u
+        x, y = edge, self.height - edge - high
+        shade(frame, x, y, x + wide, y + high)
+        speed = f"{told.speed * 3.6:.0f}"
+        right = x + 62 * u
+        write(frame, right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
+        write(frame, right + 6 * u, y + 29 * u, "km/h", text, PALE)
+        write(frame, x + 8 * u, y + 45 * u, f"at {told.s:.0f} of {self.run.length:.0f} m", text, PALE)
+        if told.margin is None:
+            return
+        colour = _rgb(GREEN if told.margin >= AMPLE else ORANGE if told.margin > 0 else VERMILLION)
+        said = f"margin {told.margin:.1f} m" if told.margin > 0 else "out of its lane"
+        write(frame, x + 8 * u, y + 61 * u, said, text if told.margin > 0 else small, WHITE)
+        share = float(np.clip(told.margin / WHOLE, 0.0, 1.0)) if told.margin > 0 else 1.0
+        left, wide = x + 8 * u, wide - 16 * u
+        fill(frame, left, y + 67 * u, left + wide, y + 71 * u, (70, 76, 82))
+        fill(frame, left, y + 67 * u, left + wide * share, y + 71 * u, colour)
+
+    def _outcome(self, frame: Frame) -> None:
+        """The outcome and its sentence, in the middle."""
+        u, text, bold = self.scale, self._size(TEXT), self._size(LARGE)
+        room = min(self.width - 2 * EDGE * u, 420 * u)
+        rows = self._rows(self.run.description, text, room - 28 * u, 3)
+        badge = width_of(self.run.outcome, bold, "bold")
+        wide = max(badge, *(width_of(row, text) for row in rows)) + 28 * u
+        high = (52 + LINE * len(rows)) * u
+        x, y = (self.width - wide) / 2, self.height * 0.30
+        fill(frame, x, y, x + wide, y + high, (255, 255, 255))
+        fill(frame, x, y, x + wide, y + 38 * u, _rgb(OUTCOMES.get(self.run.outcome, INK)))
+        write(frame, x + (wide - badge) / 2, y + 29 * u, self.run.outcome, bold, WHITE, "bold")
+        for k, row in enumerate(rows):
+            start = x + (wide - width_of(row, text)) / 2
+            write(frame, start, y + (38 + 5 + LINE * (k + 0.75)) * u, row, text, _rgb(INK))

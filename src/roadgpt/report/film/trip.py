@@ -1,0 +1,119 @@
+"""What a film shows of one Run at any time: where the car is, where the camera follows, what is told."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.signal import lfilter
+
+from roadgpt.errors import UsageError
+from roadgpt.export.ego import CAR, calm_speed, goal_of, start_of
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+from roadgpt.run import Run
+from roadgpt.scene import Pose
+from roadgpt.verdict.margin import margins
+
+COLUMNS = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
+STEP = 0.02  # s, of a trip along a road that nobody drove
+TURN_LAG, TILT_LAG = 0.30, 0.45  # s by which the camera behind the car follows its heading and its slope
+STEEPEST = 0.35  # rad; a camera behind a car that tumbles does not tumble
+LONGEST = 3600.0  # s
+
+
+class Told(NamedTuple):
+    """What stands in the picture at one time."""
+
+    speed: float
+    """m/s."""
+    s: float
+    """m along the road."""
+    margin: float | None
+    """m from failing, as the verdict has it; None where nobody drove."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trip:
+    """Columns ``(n,)`` over rising times."""
+
+    time: Array
+    columns: dict[str, Array]
+    """COLUMNS, and ``wheel``."""
+    followed: dict[str, Array]
+    """``heading`` and ``pitch`` of the camera behind the car."""
+    s: Array
+    margin: Array | None
+
+    @classmethod
+    def of(cls, run: Run) -> "Trip":
+        """The drive of a Run, or a calm ride along a road that nobody drove.
+
+        Raises:
+            UsageError: the Run has no road, or its drive no motion to be shown.
+        """
+        if run.road is None:
+            raise UsageError(f"there is no road to film: {run.description}")
+        if run.drive is None:
+            return cls._made(*_ride(run.road, run.world), None)
+        drive = run.drive
+        if len(drive) < 2 or not all(np.isfinite(column).all() for column in drive.columns.values()):
+            raise UsageError("the drive has no motion that could be filmed; drive the road again")
+        columns = {name: np.asarray(drive[name]) for name in COLUMNS}
+        rolled = np.r_[0.0, np.cumsum(drive["vx"][1:] * np.diff(drive["time"]))]
+        columns["wheel"] = rolled / (CAR.wheel / 2)
+        return cls._made(drive["time"], columns, drive["s"], margins(run.road, drive, run.world))
+
+    @classmethod
+    def _made(cls, time: Array, columns: dict[str, Array], s: Array, margin: Array | None) -> "Trip":
+        columns["heading"] = np.unwrap(columns["heading"])
+        step = float(np.median(np.diff(time)))
+        pitch = np.clip(columns["pitch"], -STEEPEST, STEEPEST)
+        followed = {
+            "heading": _lagging(columns["heading"], step / TURN_LAG),
+            "pitch": _lagging(pitch, step / TILT_LAG),
+        }
+        return cls(time, columns, followed, s, margin)
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return float(self.time[-1])
+
+    def car(self, time: float) -> Pose:
+        """The car, between two steps of its drive."""
+        return Pose(**{name: float(np.interp(time, self.time, c)) for name, c in self.columns.items()})
+
+    def follower(self, time: float) -> Pose:
+        """Where the car would be for the camera behind it: that turns and tilts a little later."""
+        late = {name: float(np.interp(time, self.time, c)) for name, c in self.followed.items()}
+        return self.car(time)._replace(**late, roll=0.0)
+
+    def told(self, time: float) -> Told:
+        """The numbers at a time."""
+        at = int(np.clip(np.searchsorted(self.time, time + 1e-6) - 1, 0, len(self.time) - 1))
+        margin = None if self.margin is None else float(self.margin[at])
+        return Told(float(self.columns["speed"][at]), float(self.s[at]), margin)
+
+
+def _lagging(values: Array, share: float) -> Array:
+    """Each value moved by this share towards the next one."""
+    share = min(1.0, share)
+    return np.asarray(lfilter([share], [1.0, share - 1.0], values, zi=[values[0] * (1 - share)])[0])
+
+
+def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
+    """Along the middle of the driven lane at one calm speed, from where drives start to where they end."""
+    speed = calm_speed(road, world)
+    way = goal_of(road) - start_of(road)
+    if way / speed > LONGEST:
+        raise UsageError(f"a film of {way / speed / 60:.0f} minutes is too long; give a shorter road")
+    time = np.arange(0.0, max(way / speed, 2 * STEP), STEP)
+    s = np.minimum(start_of(road) + speed * time, road.length)
+    place, heading, grade = road.at(s, -world.lane_width / 2), road.heading(s), road.grade(s)
+    level = np.zeros_like(s)
+    columns = {
+        "x": place[:, 0], "y": place[:, 1], "z": place[:, 2] + CAR.gravity_height,
+        "heading": heading, "pitch": np.arctan(grade), "roll": level, "steer": level,
+        "speed": np.full_like(s, speed), "brake": level, "wheel": level,
+    }  # fmt: skip
+    return time, columns, s
