@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.drive import COLUMNS, Command, Drive, View
-from roadgpt.drive.simulators.mujoco import MujocoSimulator, simulator
+from roadgpt.drive.simulators.mujoco import MujocoSimulator, course, simulator
 from roadgpt.road import Road, World
 from roadgpt.verdict import Verdict, consult, judge
 
