@@ -16,23 +16,20 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
     lines = []
     request = run.request
     if run.words:
-        rest = [
-            "-n",
-            str(run.index),
-            "--seed",
-            str(request.seed),
-            *_written(request, SETUP),
-            *_asked(request),
-        ]
-        if not request.setup.drives:
-            rest.append("--no-drive")
-        # words that begin with a dash would pass for an option
-        said = [*rest, "--", run.words] if run.words.startswith("-") else [run.words, *rest]
-        lines.append(shlex.join(["roadgpt", "run", *said]))
+        lines.append(shlex.join(["roadgpt", "run", *request_words(request, run.index)]))
     if folder is not None and run.road is not None and request.setup.drives:
         again = ["roadgpt", "drive", str(folder / "road.json"), "--seed", str(run.seed)]
         lines.append(shlex.join(again + _written(request, OF_DRIVES)))
     return lines
+
+
+def request_words(request: Request, roads: int) -> list[str]:
+    """The words after ``roadgpt run`` that make so many roads of a request."""
+    rest = ["-n", str(roads), "--seed", str(request.seed), *_written(request, SETUP), *_asked(request)]
+    if not request.setup.drives:
+        rest.append("--no-drive")
+    # words that begin with a dash would pass for an option
+    return [*rest, "--", request.words] if request.words.startswith("-") else [request.words, *rest]
 
 
 def _asked(request: Request) -> list[str]:

@@ -7,8 +7,9 @@ from pathlib import Path
 from roadgpt.report.page.model import Block, Cell, Details, Figure, Line, Page, Section, Table, pieces_of
 
 STYLE = Path(__file__).parent / "style.css"
-# The page forbids itself to run or to fetch anything.
+SHORT = 24  # letters of a cell that is not broken into lines
 TOTAL = ' class="total"'
+# The page forbids itself to run or to fetch anything.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 
@@ -79,7 +80,7 @@ def _table(table: Table) -> str:
     rows = []
     for number, row in enumerate(table.rows, 1):
         cells = "".join(
-            f"<td{_class(is_number)}>{_anchored(each)}</td>"
+            f"<td{_class(is_number, len(each.text) <= SHORT)}>{_anchored(each)}</td>"
             for each, is_number in zip(row, numeric, strict=True)
         )
         is_total = table.has_total and number == len(table.rows)
@@ -91,8 +92,8 @@ def _table(table: Table) -> str:
     )
 
 
-def _class(is_number: bool) -> str:
-    return ' class="n"' if is_number else ""
+def _class(is_number: bool, is_short: bool = False) -> str:
+    return ' class="n"' if is_number else ' class="short"' if is_short else ""
 
 
 def _card(page: Page) -> str:

@@ -1,5 +1,6 @@
 """Sections of counts by prompt: which roads are valid, and on which of them the car left its lane."""
 
+import textwrap
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ from roadgpt.study.looking import Looked, LookedPart
 from roadgpt.study.statistics import exact, wilson
 
 MOST_NAMED = 100  # roads in a list
+LONGEST = 66  # letters of a prompt in a figure
 
 
 class Kind(NamedTuple):
@@ -160,7 +162,7 @@ def _forest(name: str, hit: str, every: Sequence[Source]) -> Figure:
 
 
 def _short(prompt: str) -> str:
-    return prompt if len(prompt) <= 72 else f"{prompt[:70].rstrip()} …"
+    return textwrap.shorten(prompt, LONGEST, placeholder=" …")
 
 
 def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:

@@ -124,7 +124,7 @@ def _matrix(part: LookedPart, roads: list[Looked], own: Spread) -> Figure | None
     if len(roads) < 3:
         return None
     lower = np.where(np.tri(len(roads), k=-1, dtype=bool), own.metres, np.nan)
-    axis = Axis("road", 0.0, float(len(roads)))
+    axis = Axis("road", 0.5, len(roads) + 0.5)
     caption = (
         f"{part.part.designer}, “{part.part.prompt.prompt}”: distance between every two roads, metres; "
         "the paler, the more alike."

@@ -1,0 +1,99 @@
+"""``roadgpt compare``: how alike two roads are."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from roadgpt.cli.options import axes_option, setup_options, world_of, world_options
+from roadgpt.cli.roads import shown_run
+from roadgpt.errors import RoadGPTError, UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.study.similarity import Similarity
+
+PICTURE = Path("compared.png")
+NAMES = {
+    "turns": "number of turns",
+    "sequence": "turns and straights in order",
+    "direction": "sides of the turns",
+    "length": "length",
+    "incline": "incline",
+    "shape": "shape from above",
+    "general": "in general",
+}
+
+
+@click.command()
+@click.argument("one", metavar="A")
+@click.argument("other", metavar="B")
+@click.option(
+    "--out", type=click.Path(path_type=Path), default=PICTURE, show_default=True, metavar="FILE.png",
+    help="The picture; one of that name is replaced.",
+)  # fmt: skip
+@click.option("--no-plot", is_flag=True, help="Draw no picture.")
+@click.option("--mirror", is_flag=True, help="A road and its mirror image count as alike.")
+@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@axes_option
+@world_options("map_size")
+@setup_options("geometry")
+def command(
+    one: str,
+    other: str,
+    out: Path,
+    no_plot: bool,
+    mirror: bool,
+    as_json: bool,
+    axes: Any,
+    geometry: Any,
+    **rest: Any,
+) -> None:
+    """Say how alike two roads are, and draw them one above the other, as RoadGPT's thesis showed them.
+
+    A and B are folders or test files of runs, or road files. Similarities run from 0, nothing in common, to
+    1, the same; shifting and turning a road changes nothing.
+
+    \b
+    roadgpt compare DIR/runs/0001 DIR/runs/0002
+    roadgpt compare a.json b.json --axes thesis --mirror
+    """
+    from roadgpt.study import compare
+
+    world = world_of(rest)
+    runs = [shown_run(file, world, geometry) for file in (one, other)]
+    roads = [run.road for run in runs if run.road is not None]
+    if len(roads) < 2:
+        missing = one if runs[0].road is None else other
+        raise UsageError(f"there is no road in {missing}; give a run that has one")
+    found = compare(roads[0], roads[1], mirror)
+    if as_json:
+        click.echo(json.dumps({**asdict(found), "general": found.general, "duplicate": found.is_duplicate}))
+    else:
+        _tell(found)
+    if not no_plot:
+        _draw(runs, out, axes)
+        click.echo(str(out), err=as_json)
+
+
+def _tell(found: "Similarity") -> None:
+    for name, said in NAMES.items():
+        more = {"shape": f"  {found.metres:.1f} m apart", "incline": f"  {found.points:.1f} points apart"}
+        click.echo(f"{said:<30} {getattr(found, name):5.2f}{more.get(name, '')}")
+    if found.is_duplicate:
+        click.echo("near duplicates: nobody would take them for two tests")
+
+
+def _draw(runs: list[Any], out: Path, axes: Any) -> None:
+    from roadgpt.report.canvas import save
+    from roadgpt.report.pair import pair
+
+    if out.is_dir():
+        raise UsageError(f"{out} is a folder; give the name of a picture, such as {out / PICTURE}")
+    try:
+        save(pair(runs[0], runs[1], axes), out)
+    except OSError as error:
+        raise RoadGPTError(
+            f"cannot write {out}: {error.strerror or error}; name another file with --out"
+        ) from error

@@ -1,0 +1,57 @@
+"""``roadgpt report``: a page on the folder of a campaign or of a study."""
+
+import shlex
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from roadgpt.errors import UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.run.card import Card
+
+
+@click.command()
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
+def command(folder: Path, opens: bool) -> None:
+    """Write DIR/report.html on a campaign or a study, with report.md and its tables as CSV and LaTeX.
+
+    DIR is what roadgpt run, roadgpt campaign or roadgpt study wrote into. The page needs no network and no
+    server; its links lead to the runs beside it.
+
+    \b
+    roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open
+    """
+    page = _written(folder)
+    click.echo(str(page))
+    if opens and not webbrowser.open(page.resolve().as_uri()):
+        click.echo(f"roadgpt: no browser could be started; open {page} in one", err=True)
+
+
+def _written(folder: Path) -> Path:
+    from roadgpt.campaign.record import STORE
+    from roadgpt.run.card import CARD, read_card
+    from roadgpt.study import plan, reporting
+
+    if (folder / plan.CARD).is_file():
+        return reporting.write_study(folder)
+    if (folder / STORE).is_file():
+        from roadgpt.study.many import write_many
+
+        return write_many(folder)
+    if (folder / CARD).is_file():
+        return reporting.write_campaign(folder, _command(read_card(folder), folder))
+    raise UsageError(f"there is no campaign and no study in {folder}; give the folder of one")
+
+
+def _command(card: "Card", folder: Path) -> str:
+    """What makes the campaign again."""
+    from roadgpt.cli.replay import request_words
+
+    if not card.request.words:
+        return ""
+    words = request_words(card.request, card.roads)
+    return shlex.join(["roadgpt", "run", *words, "--out", str(folder)])

@@ -1,0 +1,139 @@
+"""Two roads one above the other, as the thesis showed them to people: bird's-eye view and heights of each."""
+
+import textwrap
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+from roadgpt.report.birds_eye import THESIS, Scale
+from roadgpt.report.canvas import FAINT, HALO, INK, SOFT, dress, in_our_style, new_figure
+from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
+from roadgpt.report.scenery import GROUND, Array, Frame, draw_ends, draw_road, stations_of
+from roadgpt.run import Run
+
+WIDTH, LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 10.6, 0.7, 0.25, 0.62, 0.62, 0.95  # inches
+SIDE = 3.3  # inches, of the square that shows a road from above
+MARGIN, LEAST = 14.0, 60.0  # m, around the roads and across the square
+LONGEST = 78  # letters of a title
+STEP_BACK = 17.0  # points from the start to its name
+LOWEST = 6.0  # m that the heights span at least
+
+
+@in_our_style
+def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
+    """Both roads on the same scales, so that nothing but the roads makes them look alike or different.
+
+    Args:
+        one, other: with a road each; the first stands above.
+        scale: "equal" fits both; "thesis" has the fixed axes of RoadGPT's plots.
+    """
+    runs = (one, other)
+    row = SIDE + BOTTOM + TOP
+    figure = new_figure(WIDTH, 2 * row)
+    side = max(_side(run) for run in runs)
+    long = max(run.length for run in runs)
+    span = max(LOWEST, *(float(np.ptp(_heights(run))) for run in runs)) * 1.25
+    for number, run in enumerate(runs):
+        foot = (1 - number) * row + BOTTOM
+        frame = THESIS if scale == "thesis" else _square(run, side)
+        _above(_axes(figure, LEFT, foot, SIDE), run, frame)
+        wide = WIDTH - LEFT - SIDE - BETWEEN - RIGHT
+        beside = _axes(figure, LEFT + SIDE + BETWEEN, foot, wide)
+        _beside(beside, run, (long, span), scale)
+        title = run.words or run.source or "a road that was given"
+        title = textwrap.shorten(title, LONGEST, placeholder=" …")
+        at = (foot + SIDE + 0.32) / (2 * row)
+        figure.text(LEFT / WIDTH, at, f"Road {number + 1}", size=11, weight="bold", color=INK)
+        figure.text((LEFT + 0.72) / WIDTH, at, title, size=11, color=INK, parse_math=False)
+        said = f"{_seed(run)}{run.length:.0f} m, {run.outcome.lower()}"
+        figure.text(LEFT / WIDTH, at - 0.2 / (2 * row), said, size=8.5, color=SOFT)
+    return figure
+
+
+def _seed(run: Run) -> str:
+    return f"seed {run.request.seed}, road {run.index}, " if run.words else ""
+
+
+def _axes(figure: Figure, left: float, foot: float, wide: float) -> Axes:
+    """Axes of the square's height, at a place in inches."""
+    across, high = figure.get_size_inches()
+    axes: Axes = figure.add_axes((left / across, foot / high, wide / across, SIDE / high))
+    return dress(axes)
+
+
+def _plan(run: Run) -> Array:
+    assert run.road is not None
+    points: Array = run.road.at(stations_of(run.road))[:, :2]
+    return points
+
+
+def _heights(run: Run) -> Array:
+    assert run.road is not None
+    return np.asarray(run.road.at(stations_of(run.road))[:, 2])
+
+
+def _side(run: Run) -> float:
+    return max(LEAST, float(np.ptp(_plan(run), axis=0).max()) + 2 * MARGIN)
+
+
+def _square(run: Run, side: float) -> Frame:
+    """A square of the same size for either road, around its middle."""
+    points = _plan(run)
+    x, y = (points.min(axis=0) + points.max(axis=0)) / 2
+    return Frame(x - side / 2, x + side / 2, y - side / 2, y + side / 2)
+
+
+def _above(axes: Axes, run: Run, frame: Frame) -> None:
+    assert run.road is not None
+    axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
+    axes.set_facecolor(GROUND)
+    step = next(step for step in (10, 20, 50, 100, 200, 500, 1e6) if frame.width / step <= 6)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MultipleLocator(step))
+    axes.grid(color="white", lw=0.8, zorder=0.5)
+    axes.set_axisbelow(True)
+    axes.set_xlabel("x, metres east")
+    axes.set_ylabel("y, metres north")
+    draw_road(axes, run.road, run.world, frame.width / SIDE)
+    draw_ends(axes, run.road, run.world)
+    (x, y), ahead = run.road.at(0.0)[:2], float(run.road.heading(0.0))
+    away = -STEP_BACK * np.cos(ahead), -STEP_BACK * np.sin(ahead)
+    axes.annotate(
+        "start", (x, y), away, textcoords="offset points", size=9, color=INK, path_effects=HALO, zorder=12,
+        ha="center", va="center", annotation_clip=True,
+    )  # fmt: skip
+    if not all(frame.holds(x, y) for x, y in _plan(run)):
+        _remark(axes, "goes on beyond these axes")
+
+
+def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> None:
+    """Heights over the distance, both roads over the same length and span."""
+    assert run.road is not None
+    s, z = stations_of(run.road), _heights(run)
+    long, span = shown
+    if scale == "thesis":
+        z = z - min(float(z.min()), 0.0)
+        axes.set(xlim=(0, THESIS_X), ylim=(0, THESIS_Z))
+    else:
+        middle = (z.min() + z.max()) / 2
+        axes.set(xlim=(0, long), ylim=(middle - span / 2, middle + span / 2))
+        axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    low, _ = axes.get_ylim()
+    axes.fill_between(s, z, low, color=EARTH, lw=0)
+    axes.plot(s, z, color=SURFACE, lw=2.2)
+    axes.grid(color=FAINT, lw=0.8)
+    axes.set_axisbelow(True)
+    axes.set_xlabel("distance along the road, m")
+    axes.set_ylabel("height, m")
+    if scale == "thesis" and (run.length > THESIS_X or z.max() > THESIS_Z):
+        _remark(axes, f"goes on to {run.length:.0f} m, {z.max():.0f} m high")
+
+
+def _remark(axes: Axes, text: str) -> None:
+    """In the upper right corner."""
+    axes.text(
+        0.985, 0.97, text, transform=axes.transAxes, ha="right", va="top", size=9, color=SOFT,
+        path_effects=HALO, zorder=13,
+    )  # fmt: skip

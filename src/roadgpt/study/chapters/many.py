@@ -1,0 +1,140 @@
+"""Sections on many tests: their failures, their margins, what they cover; all counted by the store."""
+
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.campaign.behaviour import BOUNDS
+from roadgpt.campaign.record import Record
+from roadgpt.campaign.status import CellStatus
+from roadgpt.report.page import Block, Figure, Table, cell
+from roadgpt.report.page.heat import Axis, heat
+from roadgpt.report.page.lines import bars, lines
+from roadgpt.study.chapters.saying import decimal
+
+WORST = 30  # failures that are named
+STEPS = 200  # of a curve
+SAMPLE = 100_000  # tests whose features are read, evenly spread
+SIDE = 25  # cells of a map along each axis
+MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is in the outermost
+MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))
+
+
+def failures(folder: Path, record: Record, cells: Sequence[CellStatus]) -> list[Block]:
+    """When failures were found, why, and the worst by name."""
+    blocks: list[Block] = [_curves(record, cells), _causes(record)]
+    worst = record.query(
+        "SELECT cell, number, margin, cause, side, at_s, description FROM (SELECT * FROM tests WHERE "
+        "outcome = 'FAIL' ORDER BY margin IS NULL, margin, cell, number LIMIT ?) JOIN details "
+        "USING (cell, number) ORDER BY margin IS NULL, margin, cell, number",
+        (WORST,),
+    )
+    rows = []
+    for name, number, margin, cause, side, at_s, says in worst:
+        rows.append(
+            [
+                cell(f"{name}/{number}", href=_again(folder, name, number)),
+                decimal(margin),
+                cell(cause or ""),
+                cell(side or ""),
+                decimal(at_s, 0),
+                cell(says or ""),
+            ]
+        )
+    if rows:
+        note = f"To see one: {shlex.join(['roadgpt', 'redrive', str(folder), str(rows[0][0].value)])}"
+        heads = ["test", "margin, m", "cause", "side", "at, m", "what happened"]
+        blocks.append(Table("worst", f"The {len(rows)} worst failures", heads, rows, note))
+    return blocks
+
+
+def _again(folder: Path, name: str, number: int) -> str:
+    """The picture of a test that was driven again; empty where none was."""
+    place = f"again/{name}/runs/{number:04d}/birds_eye.png"
+    return place if (folder / place).is_file() else ""
+
+
+def _curves(record: Record, cells: Sequence[CellStatus]) -> Figure:
+    curves = []
+    for each in cells:
+        width = max(1, -(-each.asked // STEPS))
+        found = record.query(
+            "SELECT (number - 1) / ?, sum(outcome = 'FAIL') FROM tests WHERE cell = ? AND outcome IS NOT "
+            "NULL GROUP BY 1 ORDER BY 1",
+            (width, each.name),
+        )
+        at = np.array([0, *((step + 1) * width for step, _ in found)], float)
+        at[-1] = min(at[-1], each.asked) if len(at) > 1 else at[-1]
+        curves.append((each.name, at, np.cumsum([0, *(failed for _, failed in found)])))
+    caption = "Failures found over the tests of each cell, in the order in which they were asked for."
+    return Figure("found", caption, lines(curves, "tests", "failures found", caption))
+
+
+def _causes(record: Record) -> Table:
+    found = record.query(
+        "SELECT cause, side, count(*), min(margin) FROM tests WHERE outcome = 'FAIL' GROUP BY 1, 2 "
+        "ORDER BY 3 DESC, 1, 2"
+    )
+    rows = [
+        [cell(cause or "other"), cell(side or "–"), cell(count), decimal(least)]
+        for cause, side, count, least in found
+    ]
+    return Table("causes", "How the car failed", ["cause", "side", "tests", "least margin, m"], rows)
+
+
+def margins(record: Record) -> Figure:
+    """A histogram of how near tests came to failing."""
+    low, high, width = MARGINS
+    n = round((high - low) / width)
+    found: Mapping[int, int] = dict(
+        record.query(
+            "SELECT CAST(floor((max(min(margin, ?), ?) - ?) / ?) AS INTEGER), count(*) FROM tests "
+            "WHERE margin IS NOT NULL GROUP BY 1",
+            (high - width / 2, low, low, width),
+        )
+    )
+    counts = [found.get(step, 0) for step in range(n)]
+    caption = (
+        "Margins: how far sideways the car still was from failing where it came closest; negative where it "
+        "failed. The outermost bars hold what lies beyond."
+    )
+    edges = np.linspace(low, high, n + 1)
+    return Figure("margins", caption, bars(edges, counts, "margin, m", "tests", caption, 0.0))
+
+
+def coverage(record: Record, done: int) -> list[Block]:
+    """Maps of two features each, of an even sample of so many tests; none where the features are not known."""
+    known = {*record.feature_names()}
+    every = max(1, -(-done // SAMPLE))
+    blocks: list[Block] = []
+    for pair in MAPS:
+        if not {*pair} <= known:
+            continue
+        across, upwards = pair
+        sums = _map(record, across, upwards, every)
+        if not sums.any():
+            continue
+        filled = int(np.count_nonzero(sums))
+        part = f" of every {every:,}th test" if every > 1 else ""
+        caption = f"Tests{part} by {across} and {upwards}: {filled} of {SIDE * SIDE} cells are filled."
+        axes = (Axis(across, *BOUNDS[across]), Axis(upwards, *BOUNDS[upwards]))
+        blocks.append(Figure(f"map-{across.lower()}", caption, heat(sums, *axes, "tests", caption)))
+    return blocks
+
+
+def _map(record: Record, across: str, upwards: str, every: int) -> NDArray[np.float64]:
+    """Counts ``(SIDE, SIDE)`` of tests, by the store."""
+    (x0, x1), (y0, y1) = BOUNDS[across], BOUNDS[upwards]
+    rows = record.query(
+        "SELECT CAST((x - ?) * ? AS INTEGER), CAST((y - ?) * ? AS INTEGER), count(*) FROM "
+        "(SELECT json_extract(features, ?) AS x, json_extract(features, ?) AS y FROM details "
+        "WHERE number % ? = 0 AND features IS NOT NULL) WHERE x IS NOT NULL AND y IS NOT NULL GROUP BY 1, 2",
+        (x0, SIDE / (x1 - x0), y0, SIDE / (y1 - y0), f"$.{across}", f"$.{upwards}", every),
+    )
+    out = np.zeros((SIDE, SIDE))
+    for column, row, count in rows:
+        out[min(max(row, 0), SIDE - 1), min(max(column, 0), SIDE - 1)] += count
+    return out

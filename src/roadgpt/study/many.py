@@ -1,0 +1,149 @@
+"""The report of a campaign of many tests, counted by its store: a million tests need no million rows."""
+
+import json
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+from roadgpt.campaign.record import Record
+from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.report.page import Block, Cell, Figure, Page, Section, Table, cell, linked, write
+from roadgpt.report.page.forest import Share, forest
+from roadgpt.study.chapters.many import coverage, failures, margins
+from roadgpt.study.chapters.saying import decimal, p_value, percent, plural, share_cells, share_of
+from roadgpt.study.statistics import chi_squared, wilson
+
+MOST_CELLS = 12  # whose curves and shares are drawn
+TABLES = ("results.csv", "cells.csv")
+
+
+def write_many(folder: Path) -> Path:
+    """Write the report of the campaign in a folder; gives back where the page lies.
+
+    Raises:
+        UsageError: there is no campaign, or nothing has been done.
+        RoadGPTError: a file cannot be written.
+    """
+    status = status_of(folder)
+    with Record.opened(folder) as record:
+        page = _page(folder, record, status)
+    return write(page, folder)
+
+
+def _page(folder: Path, record: Record, status: Status) -> Page:
+    fields = [c for c in status.cells if c.done]
+    words = list(dict.fromkeys(c.words for c in status.cells if c.words))
+    title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
+    lead = f"{status.done:,} tests in {plural(len(status.cells), 'cell')}"
+    lead += "" if status.is_finished else "; the campaign goes on"
+    sections = [Section("Outcomes", _outcomes(record, status, fields))]
+    if any(c.outcomes.get("PASS") or c.outcomes.get("FAIL") for c in fields):
+        sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS])))
+        sections.append(Section("How near to failing", [margins(record)]))
+    covered = coverage(record, status.done)
+    sections += [Section("Coverage", covered)] if covered else []
+    return Page(title, _summary(record, status, fields), sections, _card(folder, record, status), lead)
+
+
+def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[str]:
+    counts = status.outcomes
+    driven = counts.get("PASS", 0) + counts.get("FAIL", 0)
+    told = ", ".join(f"{number:,} {outcome}" for outcome, number in sorted(counts.items()))
+    out = [f"{status.done:,} tests: {told or 'nothing yet'}."]
+    if driven:
+        failed = counts.get("FAIL", 0)
+        out.append(f"The car failed on {share_of(failed, driven)} of the roads that were driven.")
+        best = max(cells, key=_failing)
+        if len(cells) > 1:
+            out.append(f"Most fail in {best.name}: {percent(_failing(best))} of its driven roads.")
+        least = record.query("SELECT cell, number, margin FROM tests WHERE margin IS NOT NULL "
+                             "ORDER BY margin LIMIT 1")  # fmt: skip
+        out.append(f"The least margin is {least[0][2]:+.2f} m, in test {least[0][0]}/{least[0][1]}.")
+    wrong = counts.get("INVALID", 0) + counts.get("ERROR", 0)
+    out.append(f"Of all tests {share_of(wrong, status.done)} were invalid or ended in an error.")
+    if status.seconds:
+        out.append(f"It took {status.seconds:,.0f} s, {status.done / status.seconds:.1f} tests a second.")
+    return out
+
+
+def _failing(of: CellStatus) -> float:
+    driven = of.outcomes.get("PASS", 0) + of.outcomes.get("FAIL", 0)
+    return of.outcomes.get("FAIL", 0) / driven if driven else 0.0
+
+
+def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[Block]:
+    seconds = dict(record.query("SELECT name, seconds FROM cells"))
+    rows: list[list[Cell]] = []
+    for each in status.cells:
+        failed = each.outcomes.get("FAIL", 0)
+        driven = failed + each.outcomes.get("PASS", 0)
+        rows.append(
+            [
+                cell(each.name),
+                cell(each.words or "roads that were given"),
+                cell(each.generator),
+                cell(each.driver),
+                cell(each.done),
+                cell(each.outcomes.get("INVALID", 0)),
+                cell(each.outcomes.get("ERROR", 0)),
+                *share_cells(failed, driven)[:3],
+                cell(None) if not driven else _interval(failed, driven),
+                decimal(each.least_margin),
+                decimal(seconds.get(each.name), 0),
+            ]
+        )
+    heads = ["cell", "description", "generator", "driver", "tests", "invalid", "error", "failed", "driven",
+             "share", "Wilson 95 %", "least margin, m", "s"]  # fmt: skip
+    blocks: list[Block] = [Table("outcomes", "Outcomes, cell by cell", heads, rows)]
+    counts = [[c.outcomes.get("FAIL", 0), c.outcomes.get("PASS", 0)] for c in cells]
+    if len(cells) > 1:
+        found = chi_squared(counts)
+        blocks.append(
+            f"Do cells differ in how many roads fail? χ² = {found.statistic:.2f} with {found.freedom} "
+            f"degrees of freedom, {p_value(found.p)}, Cramér's V = {found.cramers_v:.2f}."
+            + ("" if found.is_sound or not found.freedom else " Expected counts are small.")
+        )
+        blocks.append(_forest(cells[:MOST_CELLS]))
+    beside = [linked(name, name) for name in TABLES if (record.folder / name).is_file()]
+    if beside:
+        blocks.append(["Every test stands in ", *_listed(beside), "."])
+    return blocks
+
+
+def _listed(links: Sequence[Cell]) -> list[str | Cell]:
+    out: list[str | Cell] = []
+    for number, link in enumerate(links):
+        out += [" and ", link] if number else [link]
+    return out
+
+
+def _interval(k: int, n: int) -> Cell:
+    low, high = wilson(k, n)
+    return cell(f"{100 * low:.1f} to {100 * high:.1f} %")
+
+
+def _forest(cells: Sequence[CellStatus]) -> Figure:
+    groups = []
+    for each in cells:
+        failed = each.outcomes.get("FAIL", 0)
+        driven = failed + each.outcomes.get("PASS", 0)
+        if driven:
+            share = Share(0, failed / driven, *wilson(failed, driven), f"{failed:,} of {driven:,}")
+            groups.append((f"{each.name} · {each.generator} · {each.driver}", [share]))
+    caption = "Share of driven roads on which the car failed, with Wilson's 95 % intervals."
+    return Figure("failed", caption, forest(groups, ["failed"], caption))
+
+
+def _card(folder: Path, record: Record, status: Status) -> dict[str, str]:
+
+    versions = json.loads(record.meta("versions"))
+    seeds = sorted({each.seed for each in status.cells})
+    return {
+        "command": shlex.join(["roadgpt", "resume", str(folder)]) if not status.is_finished else "",
+        "seeds": ", ".join(map(str, seeds[:20])),
+        "tests": f"{status.done:,}",
+        "language models": f"{status.tokens:,} tokens, {status.cost_usd:.4f} USD"
+        if status.tokens
+        else "none",
+        "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
+    }
