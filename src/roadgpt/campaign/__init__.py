@@ -4,9 +4,37 @@
                                                             |
                                                         Store (one file)
 
-Two shelves. ``generators/`` think out tests; ``executors/`` are the workers that drive them.
+Two shelves. ``generators/`` think out tests; ``executors/`` are the workers that drive them. Verbs: ``begin``
+a campaign in a folder, and ``work`` on it as often as it takes; ``status_of`` says how far it is,
+``read_trace`` and ``run_again`` give one test of it.
 """
 
-from roadgpt.campaign.model import Budget, Cell, Generator, Goal, Pool, Proposal, Result
+from importlib import import_module
+from typing import Any
 
-__all__ = ["Budget", "Cell", "Generator", "Goal", "Pool", "Proposal", "Result"]
+# Each is imported when it is first used: a worker that starts wants none of it yet.
+_MODULES = {
+    "Budget": "model",
+    "Cell": "model",
+    "Generator": "model",
+    "Goal": "model",
+    "Pool": "model",
+    "Proposal": "model",
+    "Result": "model",
+    "Plan": "plan",
+    "Record": "record",
+    "begin": "launch",
+    "read_plan": "plan_file",
+    "read_trace": "again",
+    "run_again": "again",
+    "status_of": "status",
+    "work": "launch",
+}
+
+__all__ = [*sorted(_MODULES)]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"roadgpt.campaign has no '{name}'; it offers {', '.join(sorted(_MODULES))}")
+    return getattr(import_module(f"roadgpt.campaign.{_MODULES[name]}"), name)
