@@ -1,0 +1,55 @@
+"""A curriculum by description: the next one when the agent has come to the goal often enough."""
+
+from collections import deque
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium
+
+from roadgpt.errors import UsageError
+
+
+class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """Starts with the first description and goes on to the next.
+
+    ``info["level"]`` is the number of the description, from 0.
+
+    Args:
+        env: a LaneKeeping.
+        prompts: descriptions, the easiest first.
+        share: of the last episodes that must reach the goal before it goes on.
+        episodes: how many those are.
+
+    Raises:
+        UsageError: no description, or numbers that make no sense.
+    """
+
+    def __init__(
+        self, env: gymnasium.Env[Any, Any], prompts: Sequence[str], share: float = 0.8, episodes: int = 20
+    ) -> None:
+        super().__init__(env)
+        if not prompts or not 0 < share <= 1 or episodes < 1:
+            raise UsageError("a curriculum needs descriptions, a share up to 1, and 1 or more episodes")
+        self.prompts, self.share = [*prompts], share
+        self.level = 0
+        self._last: deque[bool] = deque(maxlen=episodes)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Any]:
+        """A road of the present level."""
+        chosen = {"prompt": self.prompts[self.level], **(options or {})}
+        seen, info = self.env.reset(seed=seed, options=chosen)
+        return seen, {**info, "level": self.level}
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """As the environment; at the end of an episode it is counted."""
+        seen, reward, terminated, truncated, info = self.env.step(action)
+        if terminated or truncated:
+            self._count(info.get("ended") == "goal")
+        return seen, reward, terminated, truncated, {**info, "level": self.level}
+
+    def _count(self, arrived: bool) -> None:
+        self._last.append(arrived)
+        is_full = len(self._last) == self._last.maxlen
+        if is_full and sum(self._last) >= self.share * len(self._last) and self.level + 1 < len(self.prompts):
+            self.level += 1
+            self._last.clear()

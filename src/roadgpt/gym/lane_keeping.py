@@ -1,0 +1,175 @@
+"""The environment ``roadgpt/LaneKeeping-v0``: keep the right lane of a road that a description asks for."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from roadgpt.drive.eyes import Eyes
+from roadgpt.drive.simulators.mujoco.car import ETK_LIKE
+from roadgpt.drive.simulators.mujoco.course import Course
+from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
+from roadgpt.drive.view import Camera
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.gym.seen import LABELS, MOST, Preview
+from roadgpt.road import Road, World
+from roadgpt.run import Setup, brief_of, perform
+
+OBSERVATIONS = ("state", "camera")
+WAYS = ("rgb_array",)
+STEPS = 2  # control steps of 20 ms per step of the environment: 25 Hz, as a camera has it
+FAILED, ARRIVED = -10.0, 10.0
+ASIDE = 0.1  # of reward per metre beside the lane's middle, per step
+ROUGH = 0.02  # per rad/s of the front wheels
+TRIES = 5  # seeds of one road, before a description is given up
+SEEDS = 2**31 - 1
+FILM = (640, 360)  # pixels of what render() gives
+
+State = NDArray[np.float32] | NDArray[np.uint8]
+
+
+class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
+    """One road after another, all keeping what the description promises; the seed of ``reset`` draws it.
+
+    Action: two numbers from -1 to 1. The first is the angle of the front wheels in parts of full lock (0.62
+    rad), left positive; the second is throttle above 0 and brake below.
+
+    Observation ``state``: 24 numbers, see ``roadgpt.gym.seen.LABELS``, each divided by a usual size.
+    Observation ``camera``: a picture (height, width, 3) from behind the windscreen.
+
+    Reward of a step: metres gained along the lane, less 0.1 per metre beside the lane's middle, less a little
+    for rough steering; +10 at the goal, -10 where the car leaves its lane, falls or gets stuck. An episode
+    ends (``terminated``) as a drive does; where time runs out it is ``truncated``.
+
+    ``info`` has s, t, outside, speed (m/s), prompt, and at the end ``ended``.
+
+    Args:
+        prompt: one description, or several that take turns by the seed.
+        observation: "state" or "camera".
+        render_mode: "rgb_array" or None.
+        world: fields of ``roadgpt.road.World`` that are not to be the usual, such as ``{"friction": 0.6}``.
+        camera: of the observation; the competition's 320 x 160 pixels unless told otherwise.
+        reader: of the descriptions.
+
+    Raises:
+        BriefError: a description cannot be read, or asks for what the world does not allow.
+        UsageError: an argument is none of these.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": [*WAYS], "render_fps": round(1 / (STEPS * CONTROL))}  # noqa: RUF012
+
+    def __init__(
+        self,
+        prompt: str | Sequence[str] = "a road",
+        observation: str = "state",
+        render_mode: str | None = None,
+        world: Mapping[str, Any] | None = None,
+        camera: Camera | None = None,
+        reader: str = "model",
+    ) -> None:
+        if observation not in OBSERVATIONS:
+            raise UsageError(f"there is no observation '{observation}'; there are: {', '.join(OBSERVATIONS)}")
+        if render_mode is not None and render_mode not in WAYS:
+            raise UsageError(f"there is no render_mode '{render_mode}'; there are: {', '.join(WAYS)}")
+        self.render_mode = render_mode
+        self._world = World(**(world or {}))
+        self._setup = Setup(reader=reader, drives=False)
+        self._camera = None if observation == "state" else (camera or Camera(every=1))
+        self.set_prompts([prompt] if isinstance(prompt, str) else prompt)
+        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        if self._camera is None:
+            self.observation_space: Any = spaces.Box(-MOST, MOST, (len(LABELS),), np.float32)
+        else:
+            shape = (self._camera.height, self._camera.width, 3)
+            self.observation_space = spaces.Box(0, 255, shape, np.uint8)
+        self._road: Road | None = None
+
+    def set_prompts(self, prompts: Sequence[str]) -> None:
+        """Other descriptions, from the next ``reset`` on.
+
+        Raises:
+            BriefError: one cannot be read, or asks for what the world does not allow.
+            UsageError: there is none.
+        """
+        if not prompts:
+            raise UsageError("there is no description; give one, such as 'a winding road'")
+        self._briefs = [brief_of(words, self._world, self._setup) for words in prompts]
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[State, dict[str, Any]]:
+        """A new road, and the car at its start. ``options["prompt"]`` is a description for this road only."""
+        super().reset(seed=seed)
+        brief = self._briefs[int(self.np_random.integers(len(self._briefs)))]
+        if options and "prompt" in options:
+            brief = brief_of(str(options["prompt"]), self._world, self._setup)
+        self._words = brief.words
+        self._road = road = self._drawn(brief)
+        self._vehicle = Vehicle.on(road, self._world, ETK_LIKE)
+        self._course = Course(road, self._world.oob_tolerance)
+        self._vehicle.put(self._course.start, -self._world.lane_width / 2)
+        self._preview = Preview(road)
+        self._eyes = None if self._camera is None else Eyes(self._camera, road, self._world)
+        self._scene: Any = None
+        self._step, self._row = 0, self._vehicle.see()
+        self._ended = self._course.ended(self._vehicle.row, 0, self._vehicle.has_fallen)
+        return self._seen(), self._info()
+
+    def _drawn(self, brief: Any) -> Road:
+        """A valid road of the Brief, by the next seeds of this environment."""
+        said = ""
+        for _ in range(TRIES):
+            seed = int(self.np_random.integers(SEEDS))
+            try:
+                run = perform(brief, seed, self._world, self._setup)
+            except DesignError as error:
+                said = str(error)
+                continue
+            if run.road is not None and run.is_valid:
+                return run.road
+            said = run.validation_message
+        raise DesignError(f"no road of '{brief.words}' could be drawn: {said}")
+
+    def step(self, action: NDArray[np.float32]) -> tuple[State, float, bool, bool, dict[str, Any]]:
+        """Two control steps (40 ms) with an action; a drive that is over stays so."""
+        if self._road is None:
+            raise UsageError("the environment has no road yet; call reset() first")
+        turn, pedal = np.clip(np.nan_to_num(np.asarray(action, float)), -1.0, 1.0).tolist()
+        before, steer = self._row["s"], self._row["steer"]
+        for _ in range(STEPS):
+            if self._ended is not None:
+                break
+            self._vehicle.move(turn * ETK_LIKE.steer_limit, max(pedal, 0.0), max(-pedal, 0.0))
+            self._step += 1
+            self._ended = self._course.ended(self._vehicle.row, self._step, self._vehicle.has_fallen)
+        self._row = row = self._vehicle.see()
+        aside = abs(row["t"] + self._world.lane_width / 2)
+        reward = row["s"] - before - ASIDE * aside - ROUGH * abs(row["steer"] - steer) / (STEPS * CONTROL)
+        reward += {None: 0.0, "goal": ARRIVED, "timeout": 0.0}.get(self._ended, FAILED)
+        is_over = self._ended not in (None, "timeout")
+        return self._seen(), float(reward), is_over, self._ended == "timeout", self._info()
+
+    def _seen(self) -> State:
+        if self._eyes is not None:
+            return self._eyes.see(self._row).copy()
+        return self._preview.numbers(self._row, self._world)
+
+    def _info(self) -> dict[str, Any]:
+        told: dict[str, Any] = {name: self._row[name] for name in ("s", "t", "outside", "speed")}
+        told["prompt"] = self._words
+        return told if self._ended is None else {**told, "ended": self._ended}
+
+    def render(self) -> Any:
+        """What a camera behind the car sees, (360, 640, 3); None without a render mode."""
+        if self.render_mode is None or self._road is None:
+            return None
+        from roadgpt.scene import Camera as Pinhole
+        from roadgpt.scene import Pose, Scene
+
+        if self._scene is None:
+            self._scene = Scene.of(self._road, self._world)
+        pose = Pose(**{name: self._row[name] for name in Pose._fields if name in self._row})
+        return self._scene.render(Pinhole(*FILM, mount="chase"), pose, car=pose)
