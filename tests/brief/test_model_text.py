@@ -136,3 +136,13 @@ def test_word_pieces_are_the_longest_that_fit() -> None:
 )
 def test_the_network_has_a_word_for_whatever_a_brief_can_say(words: list[str], meant: object) -> None:
     assert sorted(words) == sorted(get_args(meant))
+
+
+def test_a_radius_does_not_take_the_unit_of_what_follows() -> None:
+    found = slotted("left (R 40, 60 deg), then 30 to 50 degrees")
+    assert [(slot.value, slot.unit) for slot in found.slots] == [
+        (40, ""),
+        (60, "degrees"),
+        (30, "degrees"),
+        (50, "degrees"),
+    ]

@@ -260,7 +260,7 @@ def _share_units(numbers: list[_Number], tokens: list[str]) -> None:
         between = tokens[one.last + 1 : other.first]
         while between and between[-1] in ("about", "than", "de", "di", "maximal", "another"):
             between = between[:-1]
-        if one.unit or not other.unit or not 1 <= len(between) <= 2:
+        if one.unit or not other.unit or not 1 <= len(between) <= 2 or _is_radius(tokens, one):
             continue
         if any(token not in JOINTS for token in between) or (between == [","] and one.value < LARGEST_SEEN):
             continue
