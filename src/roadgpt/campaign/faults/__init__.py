@@ -3,7 +3,7 @@
 from roadgpt.campaign.faults.book import Failure, Line, look_into, table, write_table
 from roadgpt.campaign.faults.change import Difference, SmallestChange, smallest_change
 from roadgpt.campaign.faults.distinct import Surroundings, faults_of, surroundings
-from roadgpt.campaign.faults.failed import failed_runs
+from roadgpt.campaign.faults.failed import cells_of, failed_runs
 from roadgpt.campaign.faults.minimise import Simplest, simplest
 from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.faults.why import Why, why
@@ -18,6 +18,7 @@ __all__ = [
     "Stability",
     "Surroundings",
     "Why",
+    "cells_of",
     "failed_runs",
     "faults_of",
     "look_into",

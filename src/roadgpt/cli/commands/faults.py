@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -34,26 +34,50 @@ def command(place: Path, repeat: int, minimise: bool, workers: int, no_plot: boo
     roadgpt faults roadgpt-runs/hairpins-7
     roadgpt faults roadgpt-runs/hairpins-7 --repeat 30 --minimise -j 2
     """
-    from roadgpt.campaign.faults import failed_runs, look_into, table, write_table
+    from roadgpt.campaign.faults import cells_of
     from roadgpt.campaign.faults.book import FOLDER
 
-    base = place / FOLDER
-    found: list[Failure] = []
+    found = 0
     with _spread(workers) as spread:
-        for failure in look_into(failed_runs(place), base, repeat, _draws(not no_plot), spread):
-            found.append(failure)
-            if not quiet:
-                click.echo(_line(failure), err=True)
+        for cell in cells_of(place):
+            work = _Work(place, cell, place / FOLDER / cell, repeat, _draws(not no_plot), spread, quiet)
+            found += _looked_into(work, minimise)
     if not found:
         click.echo("no road failed: there is no fault to look into")
-        return
+
+
+class _Work(NamedTuple):
+    """What is to be done for one cell."""
+
+    place: Path
+    cell: str
+    base: Path
+    repeat: int
+    draw: "Draws | None"
+    spread: "Callable[..., Any]"
+    quiet: bool
+
+
+def _looked_into(work: _Work, minimise: bool) -> int:
+    """Look into the failures of a cell, and tell; how many there are."""
+    from roadgpt.campaign.faults import failed_runs, look_into, table, write_table
+
+    found: list[Failure] = []
+    runs = failed_runs(work.place, work.cell)
+    for failure in look_into(runs, work.base, work.repeat, work.draw, work.spread):
+        found.append(failure)
+        if not work.quiet:
+            click.echo(_line(failure), err=True)
+    if not found:
+        return 0
     lines = table(found)
-    path = write_table(lines, base)
-    if not quiet:
-        click.echo(_summary(lines))
+    path = write_table(lines, work.base)
+    if not work.quiet:
+        click.echo("\n".join([*([work.cell] if work.cell else []), _summary(lines)]))
     if minimise:
-        _minimise(place, base, lines, quiet)
-    click.echo(f"{path}" if quiet else f"table: {path}; pictures: {base}/*.png")
+        _minimise(work, lines)
+    click.echo(f"{path}" if work.quiet else f"table: {path}; pictures: {work.base}/*.png")
+    return len(found)
 
 
 def _draws(has_pictures: bool) -> "Draws | None":
@@ -98,18 +122,18 @@ def _summary(lines: "list[Line]") -> str:
     return "\n".join(rows)
 
 
-def _minimise(place: Path, base: Path, lines: "list[Line]", quiet: bool) -> None:
+def _minimise(work: _Work, lines: "list[Line]") -> None:
     """The simplest road of each fault's most stable failure, beside its picture."""
     from roadgpt.campaign.faults import failed_runs, simplest
     from roadgpt.run.folder import write_run
 
-    wanted = {line.failure.number: line.fault for line in reversed(lines)}
-    first = {fault: number for number, fault in wanted.items()}
-    for run in failed_runs(place):
+    chosen = {line.fault: line.failure.number for line in reversed(lines)}
+    wanted = {number: fault for fault, number in chosen.items()}
+    for run in failed_runs(work.place, work.cell):
         fault = wanted.get(run.index)
-        if fault is None or first[fault] != run.index or run.design is None:
+        if fault is None or run.design is None:
             continue
         found = simplest(run)
-        written = write_run(found.run, base / f"simplest-{fault:02d}")
-        if not quiet:
+        written = write_run(found.run, work.base / f"simplest-{fault:02d}")
+        if not work.quiet:
             click.echo(f"fault {fault}: {found.sentence}: {written}", err=True)
