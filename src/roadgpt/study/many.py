@@ -1,7 +1,6 @@
 """The report of a campaign of many tests, counted by its store: a million tests need no million rows."""
 
 import json
-import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,8 +16,12 @@ MOST_CELLS = 12  # whose curves and shares are drawn
 TABLES = ("results.csv", "cells.csv")
 
 
-def write_many(folder: Path) -> Path:
+def write_many(folder: Path, command: str = "") -> Path:
     """Write the report of the campaign in a folder; gives back where the page lies.
+
+    Args:
+        folder: of the campaign.
+        command: that makes it again, to stand on the card.
 
     Raises:
         UsageError: there is no campaign, or nothing has been done.
@@ -26,11 +29,11 @@ def write_many(folder: Path) -> Path:
     """
     status = status_of(folder)
     with Record.opened(folder) as record:
-        page = _page(folder, record, status)
+        page = _page(folder, record, status, command)
     return write(page, folder)
 
 
-def _page(folder: Path, record: Record, status: Status) -> Page:
+def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     fields = [c for c in status.cells if c.done]
     words = list(dict.fromkeys(c.words for c in status.cells if c.words))
     title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
@@ -42,7 +45,7 @@ def _page(folder: Path, record: Record, status: Status) -> Page:
         sections.append(Section("How near to failing", [margins(record)]))
     covered = coverage(record, status.done)
     sections += [Section("Coverage", covered)] if covered else []
-    return Page(title, _summary(record, status, fields), sections, _card(folder, record, status), lead)
+    return Page(title, _summary(record, status, fields), sections, _card(command, record, status), lead)
 
 
 def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[str]:
@@ -134,12 +137,12 @@ def _forest(cells: Sequence[CellStatus]) -> Figure:
     return Figure("failed", caption, forest(groups, ["failed"], caption))
 
 
-def _card(folder: Path, record: Record, status: Status) -> dict[str, str]:
+def _card(command: str, record: Record, status: Status) -> dict[str, str]:
 
     versions = json.loads(record.meta("versions"))
     seeds = sorted({each.seed for each in status.cells})
     return {
-        "command": shlex.join(["roadgpt", "resume", str(folder)]) if not status.is_finished else "",
+        **({"command": command} if command else {}),
         "seeds": ", ".join(map(str, seeds[:20])),
         "tests": f"{status.done:,}",
         "language models": f"{status.tokens:,} tokens, {status.cost_usd:.4f} USD"

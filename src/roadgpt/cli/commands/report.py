@@ -41,10 +41,26 @@ def _written(folder: Path) -> Path:
     if (folder / STORE).is_file():
         from roadgpt.study.many import write_many
 
-        return write_many(folder)
+        return write_many(folder, _command_of_many(folder))
     if (folder / CARD).is_file():
         return reporting.write_campaign(folder, _command(read_card(folder), folder))
     raise UsageError(f"there is no campaign and no study in {folder}; give the folder of one")
+
+
+def _command_of_many(folder: Path) -> str:
+    """What makes a campaign of many tests again, or goes on with one that a file describes."""
+    from roadgpt.campaign.record import Record
+    from roadgpt.cli.replay import request_words
+
+    with Record.opened(folder) as record:
+        cells = record.cells()
+    only, n = cells[0], cells[0].budget.tests
+    if len(cells) > 1 or not only.request.words or n is None or only.settings:
+        return shlex.join(["roadgpt", "resume", str(folder)])
+    words = request_words(only.request, n)
+    words += ["--goal", only.goal] if only.goal else []
+    words += ["--generator", only.generator] if only.generator != "words" else []
+    return shlex.join(["roadgpt", "campaign", *words, "--out", str(folder)])
 
 
 def _command(card: "Card", folder: Path) -> str:

@@ -87,7 +87,8 @@ def _table(table: Table) -> str:
         rows.append(f"<tr{TOTAL if is_total else ''}>{cells}</tr>")
     note = f'<p class="note">{escape(table.note)}</p>' if table.note else ""
     return (
-        f'<div class="table"><div class="wide"><table><caption>{escape(table.caption)}</caption>'
+        f'<div class="table"><p class="caption">{escape(table.caption)}</p>'
+        f'<div class="wide"><table aria-label="{escape(table.caption)}">'
         f"<thead><tr>{heads}</tr></thead><tbody>\n{chr(10).join(rows)}\n</tbody></table></div>{note}</div>"
     )
 

@@ -82,7 +82,7 @@ def _pooled(parts: Sequence[LookedPart], designers: Sequence[str]) -> Table:
                     cell(len(good)),
                     cell(round(found.value, 6), percent(found.value)),
                     cell(between(wilson(sum(good), len(good)))),
-                    cell(between(found.interval)),
+                    cell(between(found.interval)) if len(asking) > 1 else cell(None),
                 ]
             )
     heads = [

@@ -13,6 +13,8 @@ from roadgpt.study.looking import Looked, LookedPart
 from roadgpt.study.statistics import exact, wilson
 
 MOST_NAMED = 100  # roads in a list
+MOST_DRAWN = 12  # prompts in a figure; of more, all together
+ALL = "all prompts"
 LONGEST = 66  # letters of a prompt in a figure
 
 
@@ -83,9 +85,9 @@ def validity(parts: Sequence[LookedPart], designers: Sequence[str], has_baseline
     if has_baseline:
         blocks += [_beside(source, every[-1]) for source in every if source.slug.endswith("-strict")]
     for source in every:
-        if source.slug.endswith("-strict") or source.slug == "thesis":
+        if (source.slug.endswith("-strict") or source.slug == "thesis") and len(source.counts) > 1:
             blocks += worked_out(source, "valid", "invalid", f"validity-{source.slug}")
-    others = [source for source in every if source.slug.endswith(("-sound", "-sbft"))]
+    others = [s for s in every if s.slug.endswith(("-sound", "-sbft")) and len(s.counts) > 1]
     if others:
         inside: list[Block] = []
         for source in others:
@@ -107,13 +109,15 @@ def departures(parts: Sequence[LookedPart], designers: Sequence[str], has_baseli
     every += [thesis_left()] if has_baseline else []
     if every:
         blocks += [
-            "Counted are drives on roads that the strict rules let pass (in the thesis: that its own checks "
-            "let pass) on which the car left its lane.",
+            "Counted are drives on roads that the strict rules let pass "
+            f"{'(in the thesis: that its own checks let pass) ' if has_baseline else ''}"
+            "on which the car left its lane.",
             _forest("departures", "left", every),
             _shares("departures", "left", every),
         ]
     for source in every:
-        blocks += worked_out(source, "left", "kept", f"departures-{source.slug}")
+        if len(source.counts) > 1:
+            blocks += worked_out(source, "left", "kept", f"departures-{source.slug}")
     return Section("Leaving the lane", [*blocks, *_named(parts, "Drives that left", _has_left, _says)])
 
 
@@ -141,6 +145,9 @@ def _beside(source: Source, thesis: Source) -> str:
 
 def _forest(name: str, hit: str, every: Sequence[Source]) -> Figure:
     prompts = list(dict.fromkeys(count.prompt for source in every for count in source.counts))
+    if len(prompts) > MOST_DRAWN:
+        prompts = [ALL]
+        every = [s._replace(counts=(Count(ALL, s.hits, s.total),)) for s in every]
     groups = []
     for prompt in prompts:
         rows = []
@@ -172,7 +179,8 @@ def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:
             rows.append(
                 [cell(count.prompt), cell(source.name), *share_cells(count.hits, count.total, count.href)]
             )
-        rows.append([cell("all of these"), cell(source.name), *share_cells(source.hits, source.total)])
+        if len(source.counts) > 1:
+            rows.append([cell("all of these"), cell(source.name), *share_cells(source.hits, source.total)])
     return Table(
         f"{name}-shares", f"Shares: {hit}, with intervals", ["prompt", "made by", hit, *SHARE_HEADS], rows
     )

@@ -14,6 +14,7 @@ from roadgpt.study.similarity import Likeness, Spread, between, spread
 MOST = 150  # roads of a part that are compared, each with every other
 MOST_BETWEEN = 40  # of a part that are compared with those of another one
 MOST_NAMED = 50
+MOST_DRAWN = 30  # parts whose distances are drawn
 
 
 def spread_of(part: LookedPart) -> tuple[list[Looked], Spread]:
@@ -38,7 +39,7 @@ def diversity(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], S
         blocks.append(Details(f"Near duplicates ({plural(len(twins), 'pair')})", twins[:MOST_NAMED]))
     else:
         blocks.append("There are no near duplicates.")
-    pictures = [_matrix(part, roads, own) for part, (roads, own) in zip(parts, found, strict=True)]
+    pictures = [_matrix(part, *own) for part, own in list(zip(parts, found, strict=True))[:MOST_DRAWN]]
     shown: list[Block] = [picture for picture in pictures if picture is not None]
     blocks += shown[:1]
     if shown[1:]:

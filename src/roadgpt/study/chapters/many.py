@@ -106,7 +106,7 @@ def margins(record: Record) -> Figure:
 
 
 def coverage(record: Record, done: int) -> list[Block]:
-    """Maps of two features each, of an even sample of so many tests; none where the features are not known."""
+    """Maps of two features each, of an even sample of tests; none where the features are not known."""
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))
     blocks: list[Block] = []

@@ -10,7 +10,7 @@ from roadgpt.report.page.heat import Axis, heat
 from roadgpt.study.looking import Looked, LookedPart
 
 CELLS = 25  # along each side of a map
-MOST = 100  # roads in a picture
+MOST, MOST_PARTS = 100, 30  # roads in a picture, and pictures
 MAPS = (
     ("MAX_CURV", "largest curvature, 1/m", 0.0, 0.07, "DIR_COV", "share of directions", 0.0, 1.0),
     (
@@ -61,7 +61,7 @@ def roads(parts: Sequence[LookedPart], size: float) -> Section:
         "A dot is where a road starts, a cross where the car left it. Each leads to its bird's-eye view; "
         "roadgpt view shows it in 3-D with its drive."
     ]
-    for part in parts:
+    for part in parts[:MOST_PARTS]:
         if not part.roads:
             continue
         small = [

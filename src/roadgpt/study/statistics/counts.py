@@ -1,7 +1,6 @@
 """Do rows of a table of counts differ? Chi-squared, term by term, and the exact test beside it."""
 
 from dataclasses import dataclass
-from itertools import product
 from math import prod
 
 import numpy as np
@@ -15,7 +14,8 @@ Array = NDArray[np.float64]
 FEW = 5.0  # Cochran (1954): an expected count below this is small
 MOST_SMALL = 0.2  # share of small ones that chi-squared bears, and none below 1
 MOST_TABLES = 2_000_000  # that are counted out before tables are drawn instead
-DRAWN = 99_999
+DRAWN, FEWEST = 99_999, 999  # tables that are drawn: as a rule, and of the largest tables
+MOST_CELLS, AT_ONCE = 20_000_000, 2_000_000  # of all tables that are drawn, and of those in memory
 AS_RARE = 1e-7  # relative, two tables whose probabilities differ by less are as rare
 
 
@@ -118,7 +118,7 @@ def exact(table: ArrayLike, seed: int = 0) -> Exact:
 def _counted(observed: NDArray[np.intp]) -> Exact:
     """All tables of two columns with the same sums, told by their first column."""
     rows, hits = observed.sum(axis=1), int(observed[:, 0].sum())
-    first = np.array(list(product(*(range(row + 1) for row in rows[:-1]))), int)
+    first = np.indices([row + 1 for row in rows[:-1]]).reshape(len(rows) - 1, -1).T
     last = hits - first.sum(axis=1)
     there = (last >= 0) & (last <= rows[-1])
     tables = np.c_[first[there], last[there]]
@@ -131,11 +131,14 @@ def _counted(observed: NDArray[np.intp]) -> Exact:
 def _drawn(observed: NDArray[np.intp], seed: int) -> Exact:
     """Tables with the same sums, drawn; this one counts among them."""
     rng = np.random.default_rng(seed)
-    many = stats.random_table(observed.sum(axis=1), observed.sum(axis=0)).rvs(DRAWN, random_state=rng)
-    weight = -special.gammaln(np.asarray(many) + 1.0).sum(axis=(1, 2))
-    own = -special.gammaln(observed + 1.0).sum()
-    as_rare = int(np.count_nonzero(weight <= own + AS_RARE))
-    return Exact((as_rare + 1) / (DRAWN + 1), DRAWN, is_drawn=True)
+    source = stats.random_table(observed.sum(axis=1), observed.sum(axis=0))
+    tables = min(DRAWN, max(FEWEST, MOST_CELLS // observed.size))
+    own, as_rare, at_once = -special.gammaln(observed + 1.0).sum(), 0, max(1, AT_ONCE // observed.size)
+    for first in range(0, tables, at_once):
+        many = np.asarray(source.rvs(min(at_once, tables - first), random_state=rng))
+        weight = -special.gammaln(many + 1.0).sum(axis=(1, 2))
+        as_rare += int(np.count_nonzero(weight <= own + AS_RARE))
+    return Exact((as_rare + 1) / (tables + 1), tables, is_drawn=True)
 
 
 def _log_choices(of: NDArray[np.intp], taken: NDArray[np.intp]) -> Array:
