@@ -109,9 +109,9 @@ class Worker:
                 if stream is not None:
                     stream.close()
         status = self._process.returncode
-        return self.fault or (
-            f"ended by signal {-status}" if status and status < 0 else f"ended with {status}"
-        )
+        if status is not None and status < 0:
+            return self.fault or f"was ended by signal {-status}"
+        return self.fault or f"ended with status {status}"
 
     def join(self) -> None:
         """Wait until its end was heard."""

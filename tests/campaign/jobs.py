@@ -1,0 +1,106 @@
+"""Jobs for workers, good and bad. As a program: two workers at a job that does not end, and their pids."""
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from roadgpt.errors import UsageError
+
+TESTS = Path(__file__).resolve().parents[1]
+
+
+def nothing() -> None:
+    """Prepares nobody."""
+
+
+def refuses() -> None:
+    raise UsageError("there is no driver of that name")
+
+
+def leaves() -> None:
+    os._exit(5)
+
+
+def square(number: int) -> int:
+    return number * number
+
+
+def plus(number: int, *values: int) -> int:
+    return number + sum(values)
+
+
+def fails_at_three(number: int) -> int:
+    if number == 3:
+        raise ValueError("no number 3")
+    return number
+
+
+def unanswerable(number: int) -> Any:
+    return lambda: number
+
+
+class HeavyError(Exception):
+    """An error that pickles and cannot be read again."""
+
+    def __init__(self, one: int, two: int) -> None:
+        super().__init__(f"cannot travel {one} {two}")
+
+
+def raises_what_cannot_travel(number: int) -> None:
+    raise HeavyError(number, number)
+
+
+def prints(number: int) -> int:
+    print("a driver that prints", flush=True)
+    os.write(1, b"and writes\n")
+    assert sys.stdin.read() == ""
+    return number
+
+
+def dies(status: int) -> None:
+    os._exit(status)
+
+
+def sleeps(seconds: float) -> float:
+    time.sleep(seconds)
+    return seconds
+
+
+def stops_itself(mark: str) -> str:
+    """The first time the process stops and says nothing more; the second time it answers."""
+    if Path(mark).exists():
+        return "second time"
+    Path(mark).touch()
+    os.kill(os.getpid(), signal.SIGSTOP)
+    return "first time"
+
+
+def is_alive(pid: int) -> bool:
+    """Is there a process of this number that has not ended?"""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def main() -> None:
+    from roadgpt.campaign.executors import Job, Staff
+    from roadgpt.campaign.executors.processes import Processes
+
+    workers = Processes(Staff(2, nothing, 1000.0, Path(os.devnull)))
+    workers.submit([Job(key, sleeps, 1000.0) for key in range(2)])
+    while len(doing := workers.under_way()) < 2:
+        time.sleep(0.05)
+    print(*(one.worker.split("(")[1].rstrip(")") for one in doing), flush=True)
+    time.sleep(1000)
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(TESTS))
+    import campaign.jobs
+
+    campaign.jobs.main()

@@ -1,0 +1,166 @@
+"""Campaigns whose tests cost nothing: a search that depends on all it is told, and results made of numbers.
+
+As a program: works off such a campaign in a process of its own, so that a test may kill it:
+FOLDER TESTS WORKERS [SECONDS of one test]. It prints a line whenever results were kept.
+"""
+
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from roadgpt import plugins
+from roadgpt.campaign import launch, office
+from roadgpt.campaign.executors import Doing, Done, Job, Staff
+from roadgpt.campaign.model import Budget, Cell, Pool, Proposal, Result
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.worker import Ended, Task
+from roadgpt.road import Design, Segment
+
+OUTCOMES = ("PASS", "FAIL", "INVALID", "ERROR", "VALID")
+
+
+def a_design(number: int) -> Design:
+    """A design that tells one number."""
+    return Design(
+        starting_point=(0, 0, 0),
+        theta=number % 360,
+        segments=(Segment(distance=50 + number / 7, direction="straight"),),
+    )
+
+
+def made(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended:
+    """A result that depends on everything that a result may depend on."""
+    proposal = task.proposal
+    known = [design.theta for block in earlier for design in block]
+    design = proposal.design or a_design(proposal.seed + task.number + round(sum(known)))
+    rng = np.random.default_rng(
+        [proposal.seed, task.number, len(known), round(sum(known)), round(design.theta)]
+    )
+    result = Result(
+        number=task.number,
+        batch=task.batch,
+        proposal=proposal,
+        outcome=OUTCOMES[rng.integers(5)],
+        description=f"knew {len(known)} designs, 'quoted', \"twice\"\nand ünïcode",
+        design=design,
+        length=float(rng.random() * 300),
+        margin=float(rng.normal()) if rng.random() < 0.9 else None,
+        features={"A": float(rng.random()), f"B_{rng.integers(3)}": float(rng.integers(9))},
+    )
+    return Ended(result)
+
+
+def slowly(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended:
+    """The same, in as many seconds as the cell's settings say."""
+    time.sleep(cell.settings["seconds"])
+    return made(task, cell, *earlier)
+
+
+def nothing() -> None:
+    """Prepares nobody."""
+
+
+class Search:
+    """Asks for what follows from everything it was told, in that order; every third test is drafted."""
+
+    batch_size = 5
+    told: list[tuple[str, int, list[int]]] = []  # noqa: RUF012 - of all that were made, for tests to look at
+
+    def __init__(self, cell: Cell) -> None:
+        self.cell = cell
+        self.sum = 0.0
+
+    def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
+        Search.told.append(("ask", batch, []))
+        rng = np.random.default_rng([self.cell.request.seed, batch])
+        drawn = pool.map(abs, [int(rng.integers(1000)) + round(1000 * self.sum) for _ in range(n)])
+        return [
+            Proposal(None if number % 3 == 0 else a_design(number), number, f"vary {number}")
+            for number in drawn
+        ]
+
+    def tell(self, results: Sequence[Result]) -> None:
+        Search.told.append(("tell", results[0].batch, [result.number for result in results]))
+        for result in results:
+            self.sum = (self.sum * 1.25 + (result.margin or 0.5) + sum(result.features.values())) % 7
+
+
+class Inline:
+    """An executor without workers: jobs end a few at a time, in an order drawn by ``rng``."""
+
+    rng = np.random.default_rng(0)
+
+    def __init__(self, staff: Staff) -> None:
+        self.staff = staff
+        self.values: dict[str, Any] = {}
+        self.jobs: list[Job] = []
+
+    def share(self, name: str, value: Any) -> None:
+        self.values[name] = value
+
+    def forget(self, name: str) -> None:
+        del self.values[name]
+
+    def submit(self, jobs: Sequence[Job]) -> None:
+        self.jobs.extend(jobs)
+
+    def done(self, seconds: float) -> list[Done]:
+        ended = []
+        for _ in range(min(len(self.jobs), int(self.rng.integers(1, 4)) if seconds else 0)):
+            near = min(len(self.jobs), 3 * self.staff.workers)
+            job = self.jobs.pop(int(self.rng.integers(near)))
+            ended.append(Done(job.key, job.function(job.item, *(self.values[name] for name in job.needs))))
+        return ended
+
+    def under_way(self) -> list[Doing]:
+        return [Doing(job.key, "me", 0.0) for job in self.jobs[: self.staff.workers]]
+
+    def map(self, function: Any, items: Sequence[Any]) -> list[Any]:
+        return [function(item) for item in items]
+
+    def stop(self) -> None:
+        """Nobody is there."""
+
+
+def plan(tests: int, cells: int = 1, seconds: float = 0.0, **rest: Any) -> Plan:
+    """A plan of quick tests."""
+    return Plan(
+        prompts=("two hairpins",),
+        reader="grammar",
+        generators=("search",),
+        seeds=tuple(range(cells)),
+        budget=Budget(tests=tests),
+        settings={"seconds": seconds},
+        drives=False,
+        **rest,
+    )
+
+
+def put_on_shelves(patch: Any, seconds: float = 0.0) -> None:
+    """Let the parts above be found; ``patch(object, name, value)`` sets an attribute."""
+    installed = plugins.find
+    parts = {"search": Search, "inline": Inline}
+    patch(plugins, "find", lambda shelf, name: parts.get(name) or installed(shelf, name))
+    patch(office, "do", slowly if seconds else made)
+    patch(launch, "Ready", lambda setups: nothing)
+
+
+def main() -> None:
+    """Work until everything is done."""
+    folder, tests, workers = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    seconds = float(sys.argv[4]) if len(sys.argv) > 4 else 0.0
+    put_on_shelves(setattr, seconds)
+    launch.begin(plan(tests, seconds=seconds), folder)
+    for progress in launch.work(folder, workers):
+        print(progress.done, flush=True)
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    import campaign.quick
+
+    campaign.quick.main()  # under its own name, so that workers find its functions
