@@ -114,21 +114,18 @@ class Camera:
         position = np.array([pose.x, pose.y, pose.z]) + place.ahead * forward
         position = position + (place.up - CAR.gravity_height) * up
         sin, cos = math.sin(place.tilt), math.cos(place.tilt)
-        looking = np.stack([-left, sin * forward - cos * up, cos * forward + sin * up])
+        looking = np.array([-left, sin * forward - cos * up, cos * forward + sin * up])
         return Eye(position, looking, self.focal)
 
 
 def axes_of(heading: float, pitch: float, roll: float) -> Array:
     """Forward, left and up of a body, as rows of (3, 3)."""
-    forward = np.array(
-        [math.cos(heading) * math.cos(pitch), math.sin(heading) * math.cos(pitch), math.sin(pitch)]
-    )
-    left = np.array([-math.sin(heading), math.cos(heading), 0.0])
-    level_up = np.cross(forward, left)
-    return np.stack(
+    ch, sh, cp, sp = math.cos(heading), math.sin(heading), math.cos(pitch), math.sin(pitch)
+    cr, sr = math.cos(roll), math.sin(roll)
+    return np.array(
         [
-            forward,
-            left * math.cos(roll) + level_up * math.sin(roll),
-            level_up * math.cos(roll) - left * math.sin(roll),
+            [ch * cp, sh * cp, sp],
+            [-sh * cr - ch * sp * sr, ch * cr - sh * sp * sr, cp * sr],
+            [-ch * sp * cr + sh * sr, -sh * sp * cr - ch * sr, cp * cr],
         ]
     )

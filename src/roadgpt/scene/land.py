@@ -15,7 +15,7 @@ FINEST, CELLS = 4.0, 160  # m; along the longer side, at most
 FAR = (300.0, 900.0, 2500.0, 7000.0)  # m beyond the margin, so that the land reaches the horizon
 BELOW = 0.35  # m that the land stays below the road, at least
 LEAST = 40.0  # m across
-BLOCK = 16  # cells along a side of a patch
+BLOCK = 8  # cells along a side of a patch
 LONGEST_STEP = 2.0  # m along the road
 
 

@@ -21,8 +21,9 @@ def plain_noise(tiles: Tiles, tile: int, start: int, side: int, u: float, v: flo
     mask = side - 1
     i, j = fu & mask, fv & mask
     i1, j1 = (i + 1) & mask, (j + 1) & mask
-    a, b = tiles[tile, start + j * side + i], tiles[tile, start + j * side + i1]
-    c, d = tiles[tile, start + j1 * side + i], tiles[tile, start + j1 * side + i1]
+    low, high = np.uint64(start + j * side), np.uint64(start + j1 * side)  # unsigned: never from the end
+    a, b = tiles[tile, low + np.uint64(i)], tiles[tile, low + np.uint64(i1)]
+    c, d = tiles[tile, high + np.uint64(i)], tiles[tile, high + np.uint64(i1)]
     return float((a + (b - a) * du) * (1.0 - dv) + (c + (d - c) * du) * dv)
 
 
@@ -54,6 +55,20 @@ def dashed(x: float, dash: float, period: float) -> float:
     """Length of all dashes from 0 to x; the first begins at 0."""
     whole = math.floor(x / period)
     return whole * dash + min(x - whole * period, dash)
+
+
+@inlined
+def bump(x: float, wide: float) -> float:
+    """1 at 0, and from there smoothly to 0 at ``wide``."""
+    part = max(1.0 - x * x * (1.0 / (wide * wide)), 0.0)
+    return part * part
+
+
+@inlined
+def length_of(x: float, y: float) -> float:
+    """Of a vector, within 4 percent."""
+    x, y = abs(x), abs(y)
+    return max(0.96 * max(x, y) + 0.40 * min(x, y), max(x, y))
 
 
 @inlined

@@ -73,10 +73,15 @@ def _is_outside(sphere: Array, eye: Array, reach_x: float, reach_y: float) -> bo
 
 
 @inlined
-def _misses(a: Array, b: Array, c: Array, axis: int, reach: float) -> bool:
-    """Do all corners lie beyond the same border of the picture?"""
-    high = a[axis] > reach * a[2] and b[axis] > reach * b[2] and c[axis] > reach * c[2]
-    return bool(high or (-a[axis] > reach * a[2] and -b[axis] > reach * b[2] and -c[axis] > reach * c[2]))
+def _beyond(x: float, y: float, ahead: float, reach_x: float, reach_y: float) -> int:
+    """A bit for each border of the picture beyond which a point lies, and one if it is too near."""
+    code = 1 if x > reach_x * ahead else (2 if -x > reach_x * ahead else 0)
+    code += 4 if y > reach_y * ahead else (8 if -y > reach_y * ahead else 0)
+    if x > reach_x * ahead and -x > reach_x * ahead:  # behind the camera it may be both
+        code |= 2
+    if y > reach_y * ahead and -y > reach_y * ahead:
+        code |= 8
+    return code + (16 if ahead < NEAR else 0)
 
 
 @inlined
@@ -100,6 +105,22 @@ def _outline(three: Array, focal: float, middle_x: float, middle_y: float, x: Ar
     return corners
 
 
+@inlined
+def _holds_samples(x: Array, y: Array, corners: int, rows: int, columns: int) -> bool:
+    """May a sample lie in the outline? Far triangles mostly slip between them."""
+    left, right, top, bottom = x[0], x[0], y[0], y[0]
+    for k in range(1, corners):
+        left, right = min(left, x[k]), max(right, x[k])
+        top, bottom = min(top, y[k]), max(bottom, y[k])
+    if right < 0.0 or left > columns or bottom < 0.0 or top > rows / 4.0:
+        return False
+    # samples stand an eighth, three, five and seven eighths of a pixel apart, either way
+    return bool(
+        np.ceil(4.0 * top - 0.5) <= np.floor(4.0 * bottom - 0.5)
+        and np.ceil(4.0 * left - 0.5) <= np.floor(4.0 * right - 0.5)
+    )
+
+
 @compiled
 def draw(
     points: Array, attributes: Array, triangles: NDArray[np.int64], kinds: NDArray[np.int64],
@@ -121,6 +142,7 @@ def draw(
     rows, columns = depth.shape
     focal, middle_x, middle_y = eye[12], columns / 2.0, rows / 8.0
     reach_x, reach_y = middle_x / focal, middle_y / focal
+    codes = np.empty(seen.shape[0], np.uint8)
     px, py, three, across = np.empty(4), np.empty(4), np.empty((3, 3)), np.empty((3, 3))
     for patch in range(ranges.shape[0]):
         if _is_outside(spheres[patch], eye, reach_x, reach_y):
@@ -130,13 +152,15 @@ def draw(
             dx, dy, dz = points[n, 0] - eye[0], points[n, 1] - eye[1], points[n, 2] - eye[2]
             for k in range(3):
                 seen[n - first, k] = dx * eye[3 + 3 * k] + dy * eye[4 + 3 * k] + dz * eye[5 + 3 * k]
+            m = n - first
+            codes[m] = _beyond(seen[m, 0], seen[m, 1], seen[m, 2], reach_x, reach_y)
         for t in range(ranges[patch, 2], ranges[patch, 3]):
-            for k in range(3):
-                for j in range(3):
-                    three[k, j] = seen[triangles[t, k] - first, j]
-            a, b, c = three[0], three[1], three[2]
-            if max(a[2], b[2], c[2]) < NEAR or _misses(a, b, c, 0, reach_x) or _misses(a, b, c, 1, reach_y):
+            i0, i1, i2 = triangles[t, 0] - first, triangles[t, 1] - first, triangles[t, 2] - first
+            if codes[i0] & codes[i1] & codes[i2]:  # all beyond the same border
                 continue
+            for j in range(3):
+                three[0, j], three[1, j], three[2, j] = seen[i0, j], seen[i1, j], seen[i2, j]
+            a, b, c = three[0], three[1], three[2]
             for k in range(3):  # products across of the corners, two and two
                 j, m = (k + 1) % 3, (k + 2) % 3
                 across[0, k] = b[j] * c[m] - b[m] * c[j]
@@ -144,6 +168,9 @@ def draw(
                 across[2, k] = a[j] * b[m] - a[m] * b[j]
             volume = a[0] * across[0, 0] + a[1] * across[0, 1] + a[2] * across[0, 2]
             if volume > -1e-9:  # seen from behind, or edge on
+                continue
+            corners = _outline(three, focal, middle_x, middle_y, px, py)
+            if not _holds_samples(px, py, corners, rows, columns):
                 continue
             for k in range(4):
                 for j in range(3):
@@ -157,7 +184,6 @@ def draw(
                     planes[count, 3 * k] * middle_x + planes[count, 3 * k + 1] * middle_y
                 )
             seen_kinds[count] = kinds[t]
-            corners = _outline(three, focal, middle_x, middle_y, px, py)
             _fill(px, py, corners, planes[count, 0], planes[count, 1], planes[count, 2], count, depth, ids)
             count += 1
     return count

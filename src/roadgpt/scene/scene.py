@@ -79,7 +79,7 @@ class Scene:
             raise UsageError(f"the picture is bytes of the shape {shape}; give such an array")
         sheet = self._sheet(camera)
         eye = camera.eye(pose)
-        numbers = np.r_[eye.position, eye.axes.ravel(), eye.focal]
+        numbers = np.concatenate([eye.position, eye.axes.ravel(), [eye.focal]])
         sheet.depth.fill(0.0)
         sheet.ids.fill(-1)
         count = _draw(self.ground, self.ground.points, self.ground.attributes, numbers, sheet, 0)
@@ -87,8 +87,8 @@ class Scene:
             made = saloon()
             count = _draw(made.mesh, *made.placed(car, eye), numbers, sheet, count)
         shade(
-            sheet.ids, sheet.planes, sheet.kinds, palette_of(car), noise(), numbers,
-            np.r_[self.world.lane_width, self.road.length, _shade_of(car)], sheet.picture,
+            sheet.ids, sheet.depth, sheet.planes, sheet.kinds, palette_of(car), noise(), numbers,
+            np.concatenate([[self.world.lane_width, self.road.length], _shade_of(car)]), sheet.picture,
         )  # fmt: skip
         trees = self.trees
         order = np.argsort((eye.position - trees.places) @ eye.axes[2], kind="stable")

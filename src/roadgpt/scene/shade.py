@@ -14,7 +14,8 @@ from roadgpt.geometry.curve import Array
 from roadgpt.scene.compiled import compiled, inlined
 from roadgpt.scene.light import SUN_X, SUN_Y, SUN_Z
 from roadgpt.scene.mesh import PLAIN, POST, ROAD
-from roadgpt.scene.patterns import Tiles, smooth
+from roadgpt.scene.patterns import Tiles, length_of, smooth
+from roadgpt.scene.raster import OFFSETS
 from roadgpt.scene.surfaces import Colour, grass, road, sky
 from roadgpt.scene.textures import STEPS
 
@@ -22,6 +23,9 @@ THINNEST = 0.008  # m: a pixel that sees less than this sees no finer marking
 HAZE = 1000.0  # m
 AMBER = 0.69, 0.80  # m, of a post's reflector
 DARK = 0.62, 0.86  # m, of its dark band
+BLOCK = 4  # pixels
+ALIKE = 0.08  # difference of depths of one ground
+RIDGES = 0.12  # upward part of a direction, below which the sky is drawn pixel by pixel
 REACH = 36.0  # m^2: farther from the car there is no shadow
 
 
@@ -63,61 +67,91 @@ def _post(side: float, height: float, light: float) -> Colour:
 
 
 @inlined
-def _triangle(
-    n: int, px: float, py: float, dx: float, dy: float, dz: float, planes: Array, kind: int, palette: Array,
-    tiles: Tiles, eye: Array, numbers: Array,
-) -> Colour:  # fmt: skip
-    """Colour of a triangle at a place of the picture, in the direction (dx, dy, dz) whose depth is 1."""
-    w = 1.0 / max(planes[n, 0] * px + planes[n, 1] * py + planes[n, 2], 1e-6)
-    u = (planes[n, 3] * px + planes[n, 4] * py + planes[n, 5]) * w
-    v = (planes[n, 6] * px + planes[n, 7] * py + planes[n, 8]) * w
-    light = (planes[n, 9] * px + planes[n, 10] * py + planes[n, 11]) * w
-    far = math.sqrt(dx * dx + dy * dy + dz * dz)
-    if kind < POST:
-        x, y, z = eye[0] + dx * w, eye[1] + dy * w, eye[2] + dz * w
-        wide = w / eye[12]
-        level = 0.5 * math.log2(wide * wide * far / max(abs(dz), 0.02 * far))
-        if kind == ROAD:
-            ux, uy = (planes[n, 3] - u * planes[n, 0]) * w, (planes[n, 4] - u * planes[n, 1]) * w
-            vx, vy = (planes[n, 6] - v * planes[n, 0]) * w, (planes[n, 7] - v * planes[n, 1]) * w
-            wide_u = max(math.sqrt(ux * ux + uy * uy), THINNEST)
-            wide_v = max(math.sqrt(vx * vx + vy * vy), THINNEST)
-            r, g, b = road(tiles, u, v, wide_u, wide_v, x, y, level, numbers[0], numbers[1])
-        else:
-            r, g, b = grass(tiles, x, y, level)
-        if numbers[10] > 0.0:
-            light *= _shadow(numbers[2:], x, y, z)
-        r, g, b = r * light, g * light, b * light
-    elif kind == POST:
-        r, g, b = _post(u, v, light)
-    else:
-        p = kind - PLAIN
-        r = palette[p, 0] * light + u * 0.80 + palette[p, 3]
-        g = palette[p, 1] * light + u * 0.90 + palette[p, 4]
-        b = palette[p, 2] * light + u + palette[p, 5]
-    return hazy(r, g, b, w * far, (dx * SUN_X + dy * SUN_Y) / far)
+def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
+    """A colour seen through air, of which ``thin`` is left; the air is warmer towards the sun."""
+    thick = 1.0 - thin
+    r, g = r * thin + (0.60 + warm) * thick, g * thin + (0.71 + 0.9 * warm) * thick
+    return r, g, b * thin + (0.79 + 0.7 * warm) * thick
 
 
 @inlined
-def hazy(r: float, g: float, b: float, distance: float, toward: float) -> Colour:
-    """A colour seen through so many metres of air; warmer towards the sun, whose cosine is ``toward``."""
-    d = distance / HAZE
-    thin = 1.0 / (1.0 + 0.9 * d + 2.2 * d * d)
-    warm = 0.10 * max(toward, 0.0) ** 2
-    r = r * thin + (0.60 + warm) * (1.0 - thin)
-    g = g * thin + (0.71 + 0.9 * warm) * (1.0 - thin)
-    return r, g, b * thin + (0.79 + 0.7 * warm) * (1.0 - thin)
+def air(distance: float, toward: float) -> tuple[float, float]:
+    """For `hazy`: what is left after so many metres, and how warm it is where the sun's cosine is so large."""
+    d = distance * (1.0 / HAZE)
+    toward = max(toward, 0.0)
+    return 1.0 / (1.0 + d * (0.9 + 2.2 * d)), 0.10 * toward * toward
+
+
+@inlined
+def _ground(
+    n: int, px: float, py: float, w: float, dx: float, dy: float, dz: float, level: float, planes: Array, is_road: bool,
+    tiles: Tiles, eye: Array, numbers: Array,
+) -> Colour:  # fmt: skip
+    """Colour of road or meadow in the direction (dx, dy, dz), whose depth is 1, at the depth w."""
+    light = (planes[n, 9] * px + planes[n, 10] * py + planes[n, 11]) * w
+    x, y, z = eye[0] + dx * w, eye[1] + dy * w, eye[2] + dz * w
+    if is_road:
+        s = (planes[n, 3] * px + planes[n, 4] * py + planes[n, 5]) * w
+        t = (planes[n, 6] * px + planes[n, 7] * py + planes[n, 8]) * w
+        sx, sy = (planes[n, 3] - s * planes[n, 0]) * w, (planes[n, 4] - s * planes[n, 1]) * w
+        tx, ty = (planes[n, 6] - t * planes[n, 0]) * w, (planes[n, 7] - t * planes[n, 1]) * w
+        wide_s = max(length_of(sx, sy), THINNEST)
+        wide_t = max(length_of(tx, ty), THINNEST)
+        r, g, b = road(tiles, s, t, wide_s, wide_t, x, y, level, numbers[0], numbers[1])
+    else:
+        r, g, b = grass(tiles, x, y, level)
+    if numbers[10] > 0.0:
+        light *= _shadow(numbers[2:], x, y, z)
+    return r * light, g * light, b * light
+
+
+@inlined
+def _thing(n: int, px: float, py: float, w: float, planes: Array, kind: int, palette: Array) -> Colour:
+    """Colour of a post, or of what has a plain one."""
+    u = (planes[n, 3] * px + planes[n, 4] * py + planes[n, 5]) * w
+    light = (planes[n, 9] * px + planes[n, 10] * py + planes[n, 11]) * w
+    if kind == POST:
+        return _post(u, (planes[n, 6] * px + planes[n, 7] * py + planes[n, 8]) * w, light)
+    p = kind - PLAIN
+    r = palette[p, 0] * light + u * 0.80 + palette[p, 3]
+    g = palette[p, 1] * light + u * 0.90 + palette[p, 4]
+    return r, g, palette[p, 2] * light + u + palette[p, 5]
+
+
+@inlined
+def _gather(
+    ids: NDArray[np.int32], depth: NDArray[np.float32], kinds: NDArray[np.int64], row: int, i: int,
+    shares: NDArray[np.int64],
+) -> None:  # fmt: skip
+    """How many of a pixel's samples each of them stands for; 0 where an earlier one stands for it.
+
+    One stands for another that sees the same triangle, or the same ground about as far away.
+    """
+    for k in range(4):
+        shares[k] = 1
+        n, near = ids[4 * row + k, i], depth[4 * row + k, i]
+        for j in range(k):
+            m, other = ids[4 * row + j, i], depth[4 * row + j, i]
+            is_same = n == m
+            if not is_same and n >= 0 and m >= 0 and kinds[n] < POST and kinds[n] == kinds[m]:
+                is_same = abs(near - other) < ALIKE * near
+            if shares[j] > 0 and is_same:
+                shares[j] += 1
+                shares[k] = 0
+                break
 
 
 @compiled
 def shade(
-    ids: NDArray[np.int32], planes: Array, kinds: NDArray[np.int64], palette: Array, tiles: Tiles, eye: Array,
-    numbers: Array, picture: NDArray[np.float32],
+    ids: NDArray[np.int32], depth: NDArray[np.float32], planes: Array, kinds: NDArray[np.int64],
+    palette: Array, tiles: Tiles, eye: Array, numbers: Array, picture: NDArray[np.float32],
 ) -> None:  # fmt: skip
     """Colour all pixels of ``picture`` (height, width, 3) from the four samples of each.
 
+    What changes slowly, haze and fineness, is worked out once for BLOCK pixels side by side.
+
     Args:
-        ids, planes, kinds: what `raster.draw` has seen, and of which kind.
+        ids, depth, planes, kinds: what `raster.draw` has seen, and of which kind.
         palette: (n, 6) colours, and what they shine of their own.
         tiles: `textures.noise`.
         eye: as for `raster.draw`.
@@ -126,34 +160,52 @@ def shade(
         picture: linear light, written.
     """
     rows, columns = picture.shape[0], picture.shape[1]
+    pixel = 1.0 / eye[12]
+    shares = np.zeros(4, np.int64)
     for row in range(rows):
+        last = -2
+        level = thin = warm = 0.0
+        r = g = b = 0.0
         for i in range(columns):
             red = green = blue = 0.0
-            k = 0
-            while k < 4:
+            n0, n1, n2, n3 = ids[4 * row, i], ids[4 * row + 1, i], ids[4 * row + 2, i], ids[4 * row + 3, i]
+            is_whole = n0 == n1 and n0 == n2 and n0 == n3
+            if not is_whole:
+                _gather(ids, depth, kinds, row, i, shares)
+            for k in range(4):
                 n = ids[4 * row + k, i]
-                same, is_first = 0, True
-                for other in range(4):
-                    if ids[4 * row + other, i] == n:
-                        same += 1
-                        is_first = is_first and other >= k
-                if is_first:
-                    px = i + 0.5 if same == 4 else i + (0.375, 0.875, 0.125, 0.625)[k]
-                    py = row + 0.5 if same == 4 else row + (k + 0.5) / 4
-                    rx, ry = (px - columns / 2.0) / eye[12], (py - rows / 2.0) / eye[12]
+                same = 4 if is_whole else shares[k]
+                if same > 0:
+                    px = i + 0.5 if is_whole else i + OFFSETS[k]
+                    py = row + 0.5 if is_whole else row + (k + 0.5) * 0.25
+                    rx, ry = (px - columns * 0.5) * pixel, (py - rows * 0.5) * pixel
                     dx = eye[3] * rx + eye[6] * ry + eye[9]
                     dy = eye[4] * rx + eye[7] * ry + eye[10]
                     dz = eye[5] * rx + eye[8] * ry + eye[11]
-                    if n >= 0:
-                        r, g, b = _triangle(
-                            n, px, py, dx, dy, dz, planes, kinds[n], palette, tiles, eye, numbers
-                        )
+                    is_new = n != last or not is_whole or i % BLOCK == 0
+                    if n < 0:
+                        if is_new or i % 2 == 0 or dz < RIDGES:
+                            short = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
+                            r, g, b = sky(tiles, dx * short, dy * short, dz * short)
                     else:
-                        short = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
-                        r, g, b = sky(tiles, dx * short, dy * short, dz * short)
-                    part = same / 4.0
+                        w = 1.0 / max(planes[n, 0] * px + planes[n, 1] * py + planes[n, 2], 1e-6)
+                        if is_new:
+                            far = math.sqrt(dx * dx + dy * dy + dz * dz)
+                            thin, warm = air(w * far, (dx * SUN_X + dy * SUN_Y) / far)
+                            level = 0.5 * math.log2(w * w * pixel * pixel * far / max(abs(dz), 0.02 * far))
+                        kind = kinds[n]
+                        if kind < POST:
+                            r, g, b = _ground(
+                                n, px, py, w, dx, dy, dz, level, planes, kind == ROAD, tiles, eye, numbers
+                            )
+                        else:
+                            r, g, b = _thing(n, px, py, w, planes, kind, palette)
+                        r, g, b = hazy(r, g, b, thin, warm)
+                    last = n if is_whole else -2
+                    part = same * 0.25
                     red, green, blue = red + r * part, green + g * part, blue + b * part
-                k = 4 if same == 4 else k + 1
+                if is_whole:
+                    break
             picture[row, i, 0], picture[row, i, 1], picture[row, i, 2] = red, green, blue
 
 

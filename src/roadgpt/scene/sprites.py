@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from roadgpt.geometry.curve import Array
 from roadgpt.scene.compiled import compiled, inlined
 from roadgpt.scene.light import SUN_X, SUN_Y
-from roadgpt.scene.shade import hazy
+from roadgpt.scene.shade import air, hazy
 from roadgpt.scene.trees import SIDE
 
 SMALLEST = 0.7  # pixels high
@@ -75,9 +75,8 @@ def overlay(
             side >>= 1
         near = 1.0 / foot[2]
         far = math.sqrt(dx * dx + dy * dy + dz * dz)
-        toward = (dx * SUN_X + dy * SUN_Y) / far
-        hr, hg, hb = hazy(0.0, 0.0, 0.0, far, toward)
-        thin = hazy(1.0, 0.0, 0.0, far, toward)[0] - hr
+        thin, warm = air(far, (dx * SUN_X + dy * SUN_Y) / far)
+        hr, hg, hb = hazy(0.0, 0.0, 0.0, thin, warm)
         for row in range(above, below):
             for i in range(left, right):
                 px, py = i + 0.5 - x0, row + 0.5 - y0

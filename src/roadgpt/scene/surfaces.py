@@ -4,14 +4,14 @@ import math
 
 from roadgpt.scene.compiled import inlined
 from roadgpt.scene.light import SUN_X, SUN_Y, SUN_Z
-from roadgpt.scene.patterns import Tiles, dashed, fine_noise, plain_noise, share, smooth
+from roadgpt.scene.patterns import Tiles, bump, dashed, fine_noise, plain_noise, share, smooth
 from roadgpt.scene.textures import CLOUD, GRAIN, MEADOW, SIDE
 
 Colour = tuple[float, float, float]
 
 LINE, DASH, PERIOD = 0.15, 4.0, 12.0  # m: width and length of dashes, and from one to the next (RMS-1)
 INSET = 0.10  # m of asphalt outside of an edge line
-WHEEL, TRACK = 0.79, 0.30  # m from the middle of a lane to its wheel tracks; their spread
+WHEEL, TRACK, OIL = 0.79, 0.55, 0.60  # m from the middle of a lane to its wheel tracks; where they fade out
 GRAVEL = 0.45  # m between asphalt and grass
 STONE = 90.0  # texels of asphalt's grain to a metre
 RIDGES = SIDE / (2.0 * math.pi)  # texels of the far hills to a radian
@@ -58,10 +58,8 @@ def asphalt(tiles: Tiles, s: float, t: float, half: float, level: float) -> floa
     grain = fine_noise(tiles, GRAIN, s * STONE, t * STONE, level + 6.5)
     patches = plain_noise(tiles, CLOUD, 0, SIDE, s * 1.3, t * 5.1)
     lane = abs(t) - half / 2
-    left, right = (lane - WHEEL) / TRACK, (lane + WHEEL) / TRACK
-    left, right, oil = left * left, right * right, lane * lane / 0.12
-    worn = 1.0 / (1.0 + left * left) + 1.0 / (1.0 + right * right)
-    tone = 1.0 + 0.20 * grain + 0.06 * patches - (0.17 + 0.04 * patches) * worn - 0.10 / (1.0 + oil * oil)
+    worn = bump(lane - WHEEL, TRACK) + bump(lane + WHEEL, TRACK)
+    tone = 1.0 + 0.20 * grain + 0.06 * patches - (0.17 + 0.04 * patches) * worn - 0.10 * bump(lane, OIL)
     return 0.142 * max(tone, 0.2)
 
 
@@ -73,8 +71,11 @@ def paved(
     tone = asphalt(tiles, s, t, half, level)
     r, g, b = tone, tone * 1.005, tone * 1.03
     line, outer = min(LINE, half / 4), half - min(INSET, half / 8)
-    paint = share(abs(t), outer - line, outer, wide_t)
-    middle = share(t, -line / 2, line / 2, wide_t)
+    paint = middle = 0.0
+    if abs(t) > outer - line - wide_t:
+        paint = share(abs(t), outer - line, outer, wide_t)
+    elif abs(t) < line + wide_t:
+        middle = share(t, -line / 2, line / 2, wide_t)
     if middle > 0.0:
         last, first = min(s + wide_s / 2, length), s - wide_s / 2
         paint += middle * max(dashed(last, DASH, PERIOD) - dashed(first, DASH, PERIOD), 0.0) / wide_s
