@@ -130,7 +130,16 @@ def test_beamng_like_draws_its_line_by_the_law(hand: int) -> None:
     middle = road.length / 2  # of the arc, farther than 5 m from its clothoids
     offsets = np.interp(middle, stations(road), BeamngLike(cut=4.0).offsets(road, USUAL))
     lane = 1 / (20.0 + 2.0 * hand)  # the right lane is wider in a left bend, tighter in a right one
-    assert offsets + 2.0 == pytest.approx(hand * 4.0 * math.tanh(lane / 0.104), abs=0.02)
+    assert offsets + 2.0 == pytest.approx(hand * 4.0 * math.tanh(lane / 0.104) - 0.1, abs=0.02)
+
+
+def test_beamng_like_is_parked_in_the_lanes_middle_and_swings_into_its_line() -> None:
+    road = bent(20.0, 1)
+    s, held = stations(road), BeamngLike(joining=0.0).offsets(road, USUAL)
+    line = BeamngLike(joining=60.0).offsets(road, USUAL)
+    assert line[0] == -2.0
+    assert np.interp(30.0, s, line) + 2.0 == pytest.approx((np.interp(30.0, s, held) + 2.0) / 2, abs=0.01)
+    assert np.allclose(line[s >= 60.0], held[s >= 60.0])
 
 
 @pytest.mark.parametrize("hand", [-1, 1])

@@ -28,16 +28,18 @@ class BeamngLike:
     lane's middle; aims at a point of it ahead; takes bends at a share of gravity.
 
     What it imitates: BeamNG's AI at aggression 0.7 under a limit of 70 km/h, as the SBFT tool competition
-    runs it. Its parameters were fitted to the recorded outcomes of 2,388 flat roads, and the cut once more
-    to our car (8.8 % fail at a tolerance of 0.85, recorded 9.1 %). On 2,129 others 7.7 % fail (recorded 6.8
-    %), AUC 0.73, Spearman 0.54: a fair stand-in on average, no oracle for one road. It fails as BeamNG's AI
-    does, by the corners it cuts: the left lane counts as outside, and so does the verge.
+    runs it. Its parameters were fitted to the recorded outcomes of 2,388 flat roads, and tried on 2,129
+    others: a fair stand-in on average, no oracle for one road (docs/explanation/fair-judge.md has the
+    figures). It fails as BeamNG's AI does, by the corners it cuts: the left lane counts as outside, and so
+    does the verge.
 
     Two habits are assumed, since all recordings are of one limit and of dry asphalt: the faster it may go,
     the more it cuts (``eagerness``), and it takes every road for dry (``assumed_friction``).
 
     Args:
         cut: metres, at 70 km/h; sharpness: 1/m.
+        aside: metres that its line keeps to the right of the lane's middle.
+        joining: metres from the road's start in which it swings from the lane's middle into its line.
         eagerness: the cut grows with this power of the speed limit; 0: it does not.
         risk: lateral acceleration in bends, in g (aggression 0.7 drives 0.64); at most 0.95 of the friction.
         headway: seconds to the point ahead; nearest: metres, its least distance.
@@ -53,7 +55,7 @@ class BeamngLike:
 
     def __init__(
         self,
-        cut: float = 4.0,
+        cut: float = 3.85,
         sharpness: float = 0.104,
         aside: float = 0.1,
         joining: float = 35.0,
