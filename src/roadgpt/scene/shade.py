@@ -76,7 +76,7 @@ def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
 
 @inlined
 def air(distance: float, toward: float) -> tuple[float, float]:
-    """For `hazy`: what is left after so many metres, and how warm it is where the sun's cosine is so large."""
+    """For `hazy`: what is left after so many metres, and how warm it is with the sun at a cosine."""
     d = distance * (1.0 / HAZE)
     toward = max(toward, 0.0)
     return 1.0 / (1.0 + d * (0.9 + 2.2 * d)), 0.10 * toward * toward
@@ -84,8 +84,8 @@ def air(distance: float, toward: float) -> tuple[float, float]:
 
 @inlined
 def _ground(
-    n: int, px: float, py: float, w: float, dx: float, dy: float, dz: float, level: float, planes: Array, is_road: bool,
-    tiles: Tiles, eye: Array, numbers: Array,
+    n: int, px: float, py: float, w: float, dx: float, dy: float, dz: float, level: float, planes: Array,
+    is_road: bool, tiles: Tiles, eye: Array, numbers: Array,
 ) -> Colour:  # fmt: skip
     """Colour of road or meadow in the direction (dx, dy, dz), whose depth is 1, at the depth w."""
     light = (planes[n, 9] * px + planes[n, 10] * py + planes[n, 11]) * w
