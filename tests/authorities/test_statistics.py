@@ -1,0 +1,301 @@
+"""Statistics of studies against scipy, statsmodels, scikit-posthocs, and examples that others published."""
+
+import itertools
+import math
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from scipy import stats
+
+from roadgpt.errors import UsageError
+from roadgpt.study.statistics import (
+    bootstrap,
+    chi_squared,
+    clopper_pearson,
+    conover,
+    exact,
+    friedman,
+    krippendorff,
+    mann_whitney,
+    spearman,
+    trend,
+    wilcoxon,
+    wilson,
+)
+from roadgpt.study.statistics import counts as counts_module
+
+THESIS = [[88, 12], [57, 43], [37, 63]]
+LEFT = [[1, 87], [2, 55], [5, 32]]
+NAN = math.nan
+# Krippendorff, Computing Krippendorff's alpha-reliability (2011), section C: 4 observers, 12 units
+KRIPPENDORFF = [
+    [1, 2, 3, 3, 2, 1, 4, 1, 2, NAN, NAN, NAN],
+    [1, 2, 3, 3, 2, 2, 4, 1, 2, 5, NAN, 3],
+    [NAN, 3, 3, 3, 2, 3, 4, 2, 2, 5, 1, NAN],
+    [1, 2, 3, 3, 2, 4, 4, 1, 2, 5, 1, NAN],
+]
+tables = st.integers(2, 4).flatmap(
+    lambda rows: st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=rows, max_size=rows)
+)
+
+
+def test_the_thesis_own_table_term_by_term() -> None:
+    """Its table 6.3, and what follows from it."""
+    found = chi_squared(THESIS)
+    assert found.statistic == pytest.approx(55.3455, abs=1e-4)
+    assert found.terms.round(2).tolist() == [[12.32, 18.99], [0.22, 0.34], [9.23, 14.24]]
+    assert found.expected.round(2).tolist() == [[60.67, 39.33]] * 3
+    assert (found.freedom, round(found.critical, 2)) == (2, 5.99)
+    assert found.p == pytest.approx(9.6e-13, rel=0.01)
+    assert found.cramers_v == pytest.approx(0.43, abs=0.005)
+    assert found.is_sound
+    assert found.rejects
+
+
+def test_the_thesis_drives_need_the_exact_test() -> None:
+    found = chi_squared(LEFT)
+    assert (round(found.statistic, 2), round(found.p, 3)) == (9.65, 0.008)
+    assert not found.is_sound
+    assert exact(LEFT).p == pytest.approx(brute_force(LEFT), rel=1e-9)
+    assert exact(LEFT).p == pytest.approx(0.0104, abs=5e-5)
+    method = stats.MonteCarloMethod(n_resamples=9999, rng=np.random.default_rng(0))
+    assert exact(LEFT).p == pytest.approx(stats.fisher_exact(LEFT, method=method).pvalue, abs=0.004)
+
+
+def brute_force(table: list[list[int]]) -> float:
+    """The exact test with whole numbers, by the book."""
+    rows, hits = [sum(row) for row in table], sum(row[0] for row in table)
+
+    def ways(first: tuple[int, ...]) -> int:
+        return math.prod(math.comb(row, k) for row, k in zip(rows, first, strict=True))
+
+    own, total, rare = ways(tuple(row[0] for row in table)), 0, 0
+    for first in itertools.product(*(range(row + 1) for row in rows)):
+        if sum(first) == hits:
+            total += ways(first)
+            rare += ways(first) if ways(first) <= own else 0
+    return rare / total
+
+
+@settings(max_examples=60)
+@given(table=tables)
+def test_chi_squared_is_scipys_and_the_exact_test_is_right(table) -> None:
+    found = chi_squared(table)
+    rows, columns = np.sum(table, axis=1), np.sum(table, axis=0)
+    assert 0 <= exact(table).p <= 1
+    assume((rows > 0).all() and (columns > 0).all())
+    theirs = stats.chi2_contingency(table, correction=False)
+    assert found.statistic == pytest.approx(theirs.statistic, abs=1e-9)
+    assert found.p == pytest.approx(theirs.pvalue, abs=1e-12)
+    assert found.expected == pytest.approx(theirs.expected_freq)
+    assert found.cramers_v == pytest.approx(stats.contingency.association(table, method="cramer"), abs=1e-9)
+    if len(table) == 2:
+        assert exact(table).p == pytest.approx(stats.fisher_exact(table).pvalue, abs=1e-9)
+    elif rows.sum() < 30:
+        assert exact(table).p == pytest.approx(brute_force([list(row) for row in table]), abs=1e-9)
+
+
+@pytest.mark.parametrize("table", [[[100, 0]] * 3, [[0, 100]] * 3, [[0, 0]] * 2, [[5, 5]], []])
+def test_where_nothing_differs_nothing_breaks(table) -> None:
+    if not table:
+        with pytest.raises(UsageError, match="rows and columns"):
+            chi_squared(table)
+        return
+    found = chi_squared(table)
+    assert (found.statistic, found.freedom, found.p, found.cramers_v) == (0, 0, 1, 0)
+    assert exact(table).p == 1
+    assert not found.is_sound
+
+
+def test_tables_too_many_to_count_are_drawn_from_a_seed(monkeypatch: pytest.MonkeyPatch) -> None:
+    counted = exact(LEFT)
+    monkeypatch.setattr(counts_module, "MOST_TABLES", 1)
+    drawn = exact(LEFT, seed=3)
+    assert drawn.is_drawn
+    assert drawn == exact(LEFT, seed=3)
+    assert drawn.p == pytest.approx(counted.p, abs=4 * math.sqrt(counted.p / drawn.tables))
+    assert exact([[3, 1, 4], [1, 5, 9], [2, 6, 5]]).is_drawn
+
+
+@settings(max_examples=40)
+@given(n=st.integers(1, 400), share=st.floats(0, 1), confidence=st.sampled_from([0.9, 0.95, 0.99]))
+def test_intervals_are_those_of_statsmodels(n, share, confidence) -> None:
+    from statsmodels.stats.proportion import proportion_confint
+
+    k = round(n * share)
+    for ours, name in ((wilson, "wilson"), (clopper_pearson, "beta")):
+        low, high = proportion_confint(k, n, 1 - confidence, method=name)
+        low, high = np.nan_to_num(low, nan=0.0), np.nan_to_num(high, nan=1.0)
+        assert ours(k, n, confidence) == pytest.approx((low, high), abs=1e-9)
+
+
+def test_published_intervals() -> None:
+    """Wilson, of the thesis' drives; Clopper and Pearson, of 10 of 10: Hanley and Lippman-Hand's rule."""
+    assert wilson(8, 182) == pytest.approx((0.0224, 0.0843), abs=1e-4)
+    assert clopper_pearson(10, 10).lo == pytest.approx(0.025 ** (1 / 10))
+    assert wilson(0, 0) == clopper_pearson(0, 0) == (0, 1)
+
+
+@settings(max_examples=40)
+@given(table=tables)
+def test_trend_is_that_of_statsmodels(table) -> None:
+    from statsmodels.stats.contingency_tables import Table
+
+    rows, columns = np.sum(table, axis=1), np.sum(table, axis=0)
+    assume((rows > 0).all() and (columns > 0).all())
+    found = trend([row[0] for row in table], rows.tolist())
+    # in their table the first row counts misses, and scores go up along the columns
+    other = Table(np.array(table)[:, ::-1].T, shift_zeros=False)
+    theirs = other.test_ordinal_association(row_scores=np.arange(2), col_scores=np.arange(len(table)))
+    assert found.z == pytest.approx(theirs.zscore, abs=1e-9)
+    assert found.p == pytest.approx(theirs.pvalue, abs=1e-9)
+
+
+def test_the_trend_of_the_thesis() -> None:
+    assert trend([88, 57, 37], [100] * 3).z == pytest.approx(-7.37, abs=0.005)
+    assert trend([100, 100], [100, 100]) == (0, 1)
+
+
+ratings = st.integers(0, 2**32 - 1).map(
+    lambda seed: np.random.default_rng(seed).integers(1, 6, (8, 4)).astype(float)
+)
+
+
+@settings(max_examples=30)
+@given(x=ratings)
+def test_friedman_and_conover_are_theirs(x) -> None:
+    import scikit_posthocs
+
+    found = friedman(x)
+    theirs = stats.friedmanchisquare(*x.T)
+    assert (found.statistic, found.p) == pytest.approx((theirs.statistic, theirs.pvalue))
+    assert 0 <= found.kendalls_w <= 1
+    for adjust, name in (("none", None), ("holm", "holm")):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            other = scikit_posthocs.posthoc_conover_friedman(x, p_adjust=name).to_numpy()
+        assert conover(x, adjust) == pytest.approx(other, abs=1e-9)  # type: ignore[arg-type]
+
+
+def test_conovers_own_example() -> None:
+    """Practical nonparametric statistics, 3rd edition, 5.8, example 1: grasses that homeowners ranked."""
+    grass = [
+        [4, 3, 2, 1], [4, 2, 3, 1], [3, 1.5, 1.5, 4], [3, 1, 2, 4], [4, 2, 1, 3], [2, 2, 2, 4],
+        [1, 3, 2, 4], [2, 4, 1, 3], [3.5, 1, 2, 3.5], [4, 1, 3, 2], [4, 2, 3, 1], [3.5, 1, 2, 3.5],
+    ]  # fmt: skip
+    found = friedman(grass)
+    assert found.statistic == pytest.approx(8.097, abs=5e-4)
+    assert found.freedom == 3
+    p = conover(grass, "none")
+    assert p[0, 1] < 0.05  # its conclusion: the first grass differs from the second and the third
+    assert p[0, 2] < 0.05
+    assert p[1, 2] > 0.05
+
+
+def test_ratings_that_say_nothing() -> None:
+    same = np.full((5, 3), 4.0)
+    assert friedman(same).p == 1
+    assert conover(same).tolist() == np.ones((3, 3)).tolist()
+    assert friedman([[1.0, NAN], [NAN, 2.0]]).people == 0
+    agreed = np.tile([1.0, 2.0, 3.0], (5, 1))
+    assert friedman(agreed).kendalls_w == pytest.approx(1)
+    assert conover(agreed)[0, 2] == 0
+
+
+def test_krippendorffs_own_example() -> None:
+    for level, alpha in (("nominal", 0.743), ("ordinal", 0.815), ("interval", 0.849)):
+        assert krippendorff(KRIPPENDORFF, level) == pytest.approx(alpha, abs=5e-4)  # type: ignore[arg-type]
+
+
+@settings(max_examples=40)
+@given(seed=st.integers(0, 10**6), level=st.sampled_from(["nominal", "interval", "ordinal"]))
+def test_alpha_is_one_less_the_ratio_of_disagreements(seed, level) -> None:
+    """By the definition, pair by pair."""
+    rng = np.random.default_rng(seed)
+    x = rng.integers(1, 5, (4, 6)).astype(float)
+    x[rng.random(x.shape) < 0.25] = NAN
+    units = [[v for v in column if not math.isnan(v)] for column in x.T]
+    units = [unit for unit in units if len(unit) > 1]
+    every = [v for unit in units for v in unit]
+    assume(len(set(every)) > 1)
+
+    def apart(a: float, b: float) -> float:
+        if level == "nominal":
+            return float(a != b)
+        if level == "interval":
+            return (a - b) ** 2
+        low, high = min(a, b), max(a, b)
+        between = sum(low <= v <= high for v in every)
+        return (between - (every.count(a) + every.count(b)) / 2) ** 2 if a != b else 0.0
+
+    seen = sum(
+        sum(apart(a, b) for a, b in itertools.permutations(unit, 2)) / (len(unit) - 1) for unit in units
+    ) / len(every)
+    chance = sum(apart(a, b) for a, b in itertools.permutations(every, 2)) / (len(every) * (len(every) - 1))
+    assert krippendorff(x, level) == pytest.approx(1 - seen / chance)
+
+
+def test_alpha_of_what_nobody_can_disagree_on() -> None:
+    assert math.isnan(krippendorff([[3, 3], [3, 3]]))
+    assert math.isnan(krippendorff([[3, NAN], [NAN, 2]]))
+    assert krippendorff([[1, 5, 2], [1, 5, 2]]) == 1
+
+
+@settings(max_examples=40)
+@given(seed=st.integers(0, 10**6), whole=st.booleans())
+def test_ranks_are_scipys_with_their_effects(seed, whole) -> None:
+    rng = np.random.default_rng(seed)
+    x, y = (rng.integers(1, 6, 14).astype(float) if whole else rng.normal(size=14) for _ in range(2))
+    unpaired = mann_whitney(x, y)
+    theirs = stats.mannwhitneyu(x, y)
+    assert (unpaired.statistic, unpaired.p) == pytest.approx((theirs.statistic, theirs.pvalue))
+    wins = [(a > b) + 0.5 * (a == b) for a in x for b in y]
+    assert unpaired.a12 == pytest.approx(np.mean(wins))
+    assume(np.ptp(x) > 0 and np.ptp(y) > 0 and (x != y).any())
+    paired = wilcoxon(x, y)
+    ranks = stats.rankdata(np.abs((x - y)[x != y]))
+    signed = np.sign((x - y)[x != y])
+    assert paired.effect == pytest.approx((ranks * signed).sum() / ranks.sum())
+    assert paired.statistic == pytest.approx(min(ranks[signed > 0].sum(), ranks[signed < 0].sum()))
+    if not whole:
+        assert paired.p == pytest.approx(stats.wilcoxon(x, y, method="exact").pvalue)
+    found, other = spearman(x, y), stats.spearmanr(x, y)
+    assert (found.rho, found.p) == pytest.approx((other.statistic, other.pvalue))
+
+
+def test_wilcoxons_own_example_and_darwins_corn() -> None:
+    """Cross- and self-fertilised corn (Darwin 1876), as in Siegel and in R's documentation of the test."""
+    difference = [49, -67, 8, 16, 6, 23, 28, 41, 14, 29, 56, 24, 75, 60, -48]
+    found = wilcoxon(difference, [0] * 15)
+    assert found.statistic == 24
+    assert found.p == pytest.approx(0.0413, abs=5e-5)
+    assert found.effect == pytest.approx((96 - 24) / 120)
+
+
+def test_gaps_are_left_out() -> None:
+    assert wilcoxon([1, NAN, 3], [2, 2, 3]).pairs == 2
+    assert wilcoxon([3, 3], [3, 3]).p == 1
+    assert mann_whitney([], [1, 2]).a12 == 0.5
+    assert mann_whitney([2, 2], [2, NAN]).p == 1
+    assert math.isnan(spearman([1, 1, 1], [1, 2, 3]).rho)
+
+
+def test_prompts_are_drawn_not_roads() -> None:
+    """Two prompts that are always alike: drawing them again gives 0, 1/2 or 1, as a coin is thrown twice."""
+    found = bootstrap([[1.0] * 50, [0.0] * 50], seed=1)
+    assert found.value == 0.5
+    assert found.interval == (0, 1)
+    assert bootstrap([[1.0] * 50, [0.0] * 50], 0.4, seed=1).interval == (0.5, 0.5)
+    assert bootstrap([[1.0], []]).interval == (1, 1)
+    assert math.isnan(bootstrap([]).value)
+
+
+def test_the_bootstrap_is_scipys_where_every_group_has_one_value() -> None:
+    values = np.random.default_rng(5).normal(size=30)
+    theirs = stats.bootstrap(
+        (values,), np.mean, n_resamples=10_000, method="percentile", rng=np.random.default_rng(2)
+    ).confidence_interval
+    assert bootstrap([[v] for v in values], seed=9).interval == pytest.approx(tuple(theirs), abs=0.02)
