@@ -1,0 +1,112 @@
+"""What a test is like, in numbers: the axes along which a search looks for roads of every kind.
+
+The field's own five are ``run.features``: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP. Here are those of the
+road's geometry besides, all but the first from ``check.measures``:
+
+    DIR_COV_360   share of 36 directions that occur, all round: what DIR_COV is meant to be
+    RADIUS        m, at the tightest place; TURNED degrees altogether; TURNS how many; LEFT share of them
+    GRADE         percent, the steepest place; CLIMB m from start to end; LENGTH m
+
+and, inside a Brief that says how many turns there are, RADIUS_1, DEGREES_1, RADIUS_2, ...: of every turn
+that was asked for, in order.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import outline
+from roadgpt.check.measures import Measures, measure
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road
+
+DIRECTIONS = 36  # of 10 degrees each
+WIDEST = 1000.0  # m: gentler turns count as so wide
+MOST_TURNS = 6  # that have features of their own
+DECIMALS = 6
+
+BOUNDS: dict[str, tuple[float, float]] = {
+    "MAX_CURV": (0.0, 0.07),  # 1/m: the competition's tightest turn is 0.0698
+    "DIR_COV": (0.0, 1.0),
+    "STD_SA": (0.0, 150.0),  # degrees at the steering wheel
+    "MEAN_LP": (-2.0, 2.0),  # m
+    "MAX_LP": (0.0, 2.0),  # m
+    "DIR_COV_360": (0.0, 1.0),
+    "RADIUS": (10.0, 110.0),  # m
+    "TURNED": (0.0, 900.0),  # degrees
+    "TURNS": (0.0, 12.0),
+    "LEFT": (0.0, 1.0),
+    "GRADE": (0.0, 15.0),  # percent
+    "CLIMB": (-40.0, 40.0),  # m
+    "LENGTH": (20.0, 620.0),  # m
+}
+"""Where the map of a search begins and ends along each axis; what lies beyond is in the outermost cell."""
+
+DEGREES = (0.0, 180.0)
+
+
+def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
+    """Features of a road's geometry.
+
+    Args:
+        road: the road.
+        brief: what was asked for, if anything was.
+    """
+    samples = road.sample()
+    return behaviour_of_measures(measure(samples.points), samples.heading, brief)
+
+
+def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) -> dict[str, float]:
+    """The same, of a road that was measured; ``heading`` in radians at equal stations."""
+    turns = found.turns
+    out = {
+        "DIR_COV_360": directions(heading),
+        "RADIUS": min(found.radius, WIDEST),
+        "TURNED": found.turning,
+        "TURNS": float(len(turns)),
+        "LEFT": found.count("left") / len(turns) if turns else 0.0,
+        "GRADE": found.steepest,
+        "CLIMB": found.climb,
+        "LENGTH": found.length,
+    }
+    for number, turn in enumerate(turns[: turns_asked(brief)], 1):
+        out[f"RADIUS_{number}"] = min(turn.radius, WIDEST)
+        out[f"DEGREES_{number}"] = turn.degrees
+    return {name: round(float(value), DECIMALS) for name, value in out.items()}
+
+
+def turns_asked(brief: Brief | None) -> int:
+    """How many turns of a Brief have features of their own: all, where their number was said."""
+    asked = outline(brief).turns if brief else None
+    return int(asked.lo) if asked and 0 < asked.lo == asked.hi <= MOST_TURNS else 0
+
+
+def directions(heading: Array) -> float:
+    """Share of the directions, 10 degrees each, that occur among headings in radians."""
+    number = np.floor(np.degrees(heading) % 360 / (360 / DIRECTIONS)).astype(int) % DIRECTIONS
+    return len(np.unique(number)) / DIRECTIONS
+
+
+def bounds_of(axis: str) -> tuple[float, float]:
+    """Where the map begins and ends along an axis.
+
+    Raises:
+        KeyError: there is no feature of that name.
+    """
+    name, _, number = axis.rpartition("_")
+    if number.isdecimal() and 0 < int(number) <= MOST_TURNS and name in ("RADIUS", "DEGREES"):
+        return BOUNDS["RADIUS"] if name == "RADIUS" else DEGREES
+    return BOUNDS[axis]
+
+
+def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> tuple[int, ...] | None:
+    """The cell of a map of so many cells along each axis; None where a feature is missing."""
+    if any(axis not in features for axis in axes):
+        return None
+    place = []
+    for axis in axes:
+        low, high = bounds_of(axis)
+        share = (features[axis] - low) / (high - low)
+        place.append(int(np.clip(np.floor(share * cells), 0, cells - 1)))
+    return tuple(place)

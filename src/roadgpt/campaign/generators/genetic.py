@@ -1,0 +1,68 @@
+"""The generator ``genetic``: the field's usual search, kept inside the Brief.
+
+The fittest roads so far, those that came nearest to failing, are crossed and changed; who wins a small
+tournament is a parent. No map, no model of the drive: what ``quality_diversity`` is measured against.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from roadgpt.campaign.model import Cell, Pool, Proposal, Result
+from roadgpt.campaign.search import (
+    Searching,
+    is_usable,
+    made,
+    proposed,
+    setting_of,
+    settings_of,
+    source,
+)
+from roadgpt.campaign.vary import Task
+from roadgpt.road import Design
+
+POPULATION = 20  # of the fittest
+TOURNAMENT = 3
+CROSSED = 0.6  # of the children; the others take after one parent
+
+
+class Genetic:
+    """Tournaments, crossing, changes."""
+
+    def __init__(self, cell: Cell) -> None:
+        """An empty population.
+
+        Raises:
+            UsageError: a setting cannot be.
+        """
+        self._cell, self._setting = cell, setting_of(cell)
+        self.batch_size = settings_of(cell, Searching).batch
+        self._fittest: list[tuple[float, int, Design]] = []
+
+    def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
+        """Children of the fittest; drafts while there are none."""
+        rng = source(self._cell, batch)
+        tasks = [self._task(rng) for _ in range(n)]
+        return proposed(self._cell, first, n, made(tasks, pool))
+
+    def tell(self, results: Sequence[Result]) -> None:
+        """Takes in what is fitter than the least fit."""
+        for result in results:
+            if is_usable(result):
+                assert result.margin is not None
+                assert result.design is not None
+                self._fittest.append((result.margin, result.number, result.design))
+        self._fittest = sorted(self._fittest, key=lambda one: one[:2])[:POPULATION]
+
+    def _task(self, rng: np.random.Generator) -> Task:
+        seed = (int(rng.integers(2**53)),)
+        if not self._fittest:
+            return Task("draft", (), "draft", seed, self._setting)
+        (_, number, mother), (_, other, father) = self._winner(rng), self._winner(rng)
+        if rng.random() < CROSSED and number != other:
+            return Task("cross", (mother, father), f"cross {number}+{other}", seed, self._setting)
+        return Task("vary", (mother,), f"vary {number}", seed, self._setting)
+
+    def _winner(self, rng: np.random.Generator) -> tuple[float, int, Design]:
+        drawn = rng.integers(len(self._fittest), size=TOURNAMENT)
+        return self._fittest[int(drawn.min())]  # they are sorted

@@ -1,0 +1,152 @@
+"""The generator ``quality_diversity``: many roads to fail on, all over the map, and inside the Brief.
+
+    elites of the map --change--> ten candidates for each test --surrogate--> the most valuable are driven
+
+MAP-Elites (Mouret, Clune 2015) with a surrogate in front (Gaier, Asteroth, Mouret 2018): a candidate costs
+milliseconds and a drive many times that, so most candidates are only looked at. The goal says what a drive is
+worth. Batches 0 and 1, of which nothing is known yet, are spread over what looks hard.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from roadgpt.campaign.archive import Archive
+from roadgpt.campaign.genome import Genes, genes_of
+from roadgpt.campaign.model import Cell, Goal, Pool, Proposal, Result
+from roadgpt.campaign.pairs import paired
+from roadgpt.campaign.picking import Expected, picked, spread, unlike
+from roadgpt.campaign.search import (
+    DRIVEN,
+    Mapped,
+    is_usable,
+    made,
+    proposed,
+    setting_of,
+    settings_of,
+    source,
+)
+from roadgpt.campaign.signs import hazard_of
+from roadgpt.campaign.surrogate import FEWEST, MOST, TREES, Surrogate, target_of
+from roadgpt.campaign.vary import Candidate, Kind, Task, look
+from roadgpt.road import Design
+
+KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
+OFTEN = (0.6, 0.2, 0.2)  # of candidates
+FAILED_PARENTS = 0.5  # of variations, whose parent failed; of others it is any elite
+BISECTED = 0.6  # of a batch, where the boundary is the goal
+SHARES = (0.5, 0.3, 0.7)  # of the way between a pair, by batch: so the next one asks for another road
+CLOSE = 0.05  # apart, a pair is near enough (see pairs.distance)
+
+
+class QualityDiversity:
+    """A map of elites, a surrogate, and a goal."""
+
+    def __init__(self, cell: Cell) -> None:
+        """An empty map.
+
+        Raises:
+            UsageError: a setting cannot be.
+        """
+        self._cell, self._setting = cell, setting_of(cell)
+        self._wanted = settings_of(cell, Mapped)
+        self._goal: Goal = cell.goal or "failures"
+        self.batch_size = self._wanted.batch
+        self._archive = Archive(self._wanted.axes, self._wanted.cells, self._wanted.archive)
+        self._driven = [axis for axis in self._wanted.axes if axis in DRIVEN]
+        self._results: dict[int, Result] = {}
+        self._looks: dict[int, Candidate] = {}
+        self._genes: dict[int, Genes] = {}
+
+    def tell(self, results: Sequence[Result]) -> None:
+        """Takes results into the map; all else waits until it is asked."""
+        for result in results:
+            if is_usable(result):
+                assert result.margin is not None
+                self._results[result.number] = result
+                self._archive.add(result.number, result.features, -result.margin, result.failed)
+
+    def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
+        """The candidates that are worth most for the goal."""
+        rng = source(self._cell, batch)
+        self._look(pool)
+        found = self._bisected(batch, n, pool) if self._goal == "boundary" else []
+        missing = n - len(found)
+        tasks = [self._task(rng) for _ in range(missing * self._wanted.candidates)]
+        fresh = made(tasks, pool)
+        fresh = unlike(fresh, [one.shape for one in self._looks.values()], self._wanted.apart) or fresh
+        return proposed(self._cell, first, n, [*found, *self._chosen(fresh, missing)])
+
+    def _look(self, pool: Pool) -> None:
+        """Signs and shapes of the roads that were told of since."""
+        known = list(self._results)[-MOST:]
+        self._looks = {number: self._looks[number] for number in known if number in self._looks}
+        new = [number for number in known if number not in self._looks]
+        designs = [self._results[number].design for number in new]
+        looks = pool.map(look, [(design, self._setting) for design in designs if design])
+        self._looks |= dict(zip(new, looks, strict=True))
+
+    def _task(self, rng: np.random.Generator) -> Task:
+        """A candidate to be made: a change of an elite, more often of one that failed, or something new."""
+        kind = KINDS[int(rng.choice(len(KINDS), p=OFTEN))] if self._results else "wild"
+        seed = (int(rng.integers(2**53)),)
+        if kind == "wild":
+            return Task(kind, (), "draft", seed, self._setting)
+        numbers = [self._parent(rng) for _ in range(1 + (kind == "cross"))]
+        parents = tuple(d for number in numbers if (d := self._results[number].design))
+        return Task(kind, parents, f"{kind} {'+'.join(map(str, numbers))}", seed, self._setting)
+
+    def _parent(self, rng: np.random.Generator) -> int:
+        elites = self._archive.elites() or list(self._results)
+        failed = [number for number in elites if self._results[number].failed]
+        if self._goal != "coverage" and failed and rng.random() < FAILED_PARENTS:
+            elites = failed
+        return elites[int(rng.integers(len(elites)))]
+
+    def _chosen(self, candidates: list[Candidate], n: int) -> list[Candidate]:
+        if len(self._looks) < FEWEST or not candidates:
+            return spread(candidates, n, hazard_of([one.signs for one in candidates])) if candidates else []
+        counts: Counter[int] = self._archive.tests if self._goal == "coverage" else self._archive.failures
+        expected = self._expected(candidates)
+        return picked(self._goal, n, candidates, expected, counts, self._wanted.apart)
+
+    def _expected(self, candidates: Sequence[Candidate]) -> Expected:
+        """What the surrogate's trees think of candidates."""
+        outcomes = [self._outcome(self._results[number]) for number in self._looks]
+        model = Surrogate([one.signs for one in self._looks.values()], outcomes)
+        opinions = model.opinions([one.signs for one in candidates])
+        places = np.zeros((TREES, len(candidates), len(self._wanted.axes)))
+        for column, axis in enumerate(self._wanted.axes):
+            if axis in self._driven:
+                places[..., column] = opinions[..., 1 + self._driven.index(axis)]
+            else:
+                places[..., column] = [one.features.get(axis, 0.0) for one in candidates]
+        cells = self._archive.cells(places.reshape(-1, places.shape[-1])).reshape(places.shape[:2])
+        return Expected(opinions[..., 0], cells)
+
+    def _outcome(self, result: Result) -> list[float]:
+        assert result.margin is not None
+        driven = [result.features.get(axis, 0.0) for axis in self._driven]
+        return [target_of(result.margin, result.failed), *driven]
+
+    def _bisected(self, batch: int, n: int, pool: Pool) -> list[Candidate]:
+        """Roads between those that were kept and their nearest relatives that were not."""
+        for number, result in self._results.items():
+            if number not in self._genes and result.design:
+                self._genes[number] = genes_of(result.design)
+        kept = [number for number, result in self._results.items() if not result.failed]
+        lost = [number for number, result in self._results.items() if result.failed]
+        tasks: list[Task] = []
+        for pair in paired(self._genes, kept, lost):
+            if pair.distance > CLOSE and len(tasks) < BISECTED * n:
+                ends = self._design(pair.kept), self._design(pair.lost)
+                origin = f"between {pair.kept}+{pair.lost}"
+                share = SHARES[batch % len(SHARES)]
+                tasks.append(Task("between", ends, origin, (batch,), self._setting, share))
+        return made(tasks, pool)
+
+    def _design(self, number: int) -> Design:
+        design = self._results[number].design
+        assert design is not None
+        return design

@@ -1,0 +1,120 @@
+"""A Design as a row of genes, one per turn and straight, which can be changed without knowing segments.
+
+RoadGPT's format cuts turns beyond 70 degrees into segments; a gene is the whole turn. Cut again by
+``design_of``, a road that a planner drafted comes back as it was, to the last written digit.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import ceil, inf, radians
+from typing import NamedTuple
+
+from roadgpt.check.extremes import lowest
+from roadgpt.design.layout import Place
+from roadgpt.design.spans import Span, cut, turn_span
+from roadgpt.road import Design, Segment, World
+from roadgpt.road.alignment import LONGEST_TRANSITION, TRANSITION_SHARE
+from roadgpt.road.grades import profile_of
+
+SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn between two straights
+SHORTEST = 0.5  # m, of a straight that is written
+ABOVE_GROUND = 1.0  # m from the ground to the lowest place of a road
+TENTH, CENTIMETRE = 10.0, 100.0  # per percent, per metre: how inclines and heights are written
+
+
+class Gene(NamedTuple):
+    """A turn, or a straight where ``turn`` is 0."""
+
+    turn: float = 0.0
+    """Degrees, left positive."""
+    length: float = 0.0
+    """Metres, of a straight; a turn's follows from its angle and radius."""
+    radius: float = inf
+    """Metres."""
+    ramp: float = 0.0
+    """Metres, of the clothoid at either end of a turn."""
+    incline: float = 0.0
+    """Percent."""
+
+    @property
+    def span(self) -> Span:
+        """The turn or straight with its numbers as they will be written."""
+        if not self.turn:
+            return Span(max(self.length, SHORTEST))
+        return turn_span(abs(self.turn), 1 if self.turn > 0 else -1, self.radius, self.ramp, None)
+
+
+Genes = tuple[Gene, ...]
+
+
+def genes_of(design: Design) -> Genes:
+    """The genes of a design, in driving order; neighbouring straights of one incline are one."""
+    out: list[Gene] = []
+    for group in _groups(design.segments):
+        for gene in _of_group(group):
+            last = out[-1] if out else None
+            if last and not last.turn and not gene.turn and last.incline == gene.incline:
+                out[-1] = last._replace(length=last.length + gene.length)
+            else:
+                out.append(gene)
+    return tuple(out)
+
+
+def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
+    """Segments that are one turn, or one straight each."""
+    group = [segments[0]]
+    for before, segment in pairwise(segments):
+        if _goes_on(before, segment, group[0].radius):
+            group.append(segment)
+        else:
+            yield group
+            group = [segment]
+    yield group
+
+
+def _goes_on(before: Segment, segment: Segment, radius: float | None) -> bool:
+    """Is a segment cut off the same turn as the one before?"""
+    same = (before.turn_degrees, before.incline) == (segment.turn_degrees, segment.incline)
+    return bool(segment.turn_degrees) and same and (segment.radius is None or segment.radius == radius)
+
+
+def _of_group(group: Sequence[Segment]) -> Iterator[Gene]:
+    first = group[0]
+    length = sum(segment.distance for segment in group)
+    turn = sum(segment.turn_degrees for segment in group)
+    if not turn:
+        yield Gene(length=length, incline=first.incline)
+        return
+    ramp = first.transition or min(TRANSITION_SHARE * first.distance, LONGEST_TRANSITION)
+    radius = (length - ramp) / radians(abs(turn))
+    spare = 0.0
+    if first.radius and first.radius < radius:
+        spare = length - ramp - first.radius * radians(abs(turn))
+        radius = first.radius
+    straight = Gene(length=spare / 2, incline=first.incline)
+    bend = Gene(turn=round(turn, 6), radius=radius, ramp=ramp, incline=first.incline)
+    yield from (straight, bend, straight) if spare > SPARE else (bend,)
+
+
+def spans_of(genes: Genes) -> list[Span]:
+    """The spans of genes, as planners lay them out."""
+    return [gene.span for gene in genes]
+
+
+def segments_of(genes: Genes) -> tuple[Segment, ...]:
+    """RoadGPT's segments."""
+    out: list[Segment] = []
+    for gene in genes:
+        span = gene.span
+        out += cut(span, [(span.length, round(gene.incline * TENTH) / TENTH + 0.0)])
+    return tuple(out)
+
+
+def design_of(genes: Genes, place: Place, world: World) -> Design:
+    """The design that lies at a place of the map, its lowest point a little above the ground."""
+    segments = segments_of(genes)
+    profile = profile_of(segments, 0.0)
+    _, sag = lowest(profile, profile.stations[-1])
+    ground = max(0.0, world.z_floor) + ABOVE_GROUND
+    height = ceil((ground - sag) * CENTIMETRE) / CENTIMETRE
+    return Design(starting_point=(place.x, place.y, height), theta=place.theta, segments=segments)
