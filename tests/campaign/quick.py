@@ -17,6 +17,7 @@ from roadgpt.campaign import launch, office
 from roadgpt.campaign.executors import Doing, Done, Job, Staff
 from roadgpt.campaign.model import Budget, Cell, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.record import STORE
 from roadgpt.campaign.worker import Ended, Task
 from roadgpt.road import Design, Segment
 
@@ -154,7 +155,9 @@ def main() -> None:
     folder, tests, workers = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     seconds = float(sys.argv[4]) if len(sys.argv) > 4 else 0.0
     put_on_shelves(setattr, seconds)
-    launch.begin(plan(tests, seconds=seconds), folder)
+    office.GROUP_SECONDS = 0.05  # so that kills fall into the keeping of results, too
+    if not (folder / STORE).exists():
+        launch.begin(plan(tests, seconds=seconds), folder)
     for progress in launch.work(folder, workers):
         print(progress.done, flush=True)
 

@@ -9,6 +9,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign.model import Budget, Cell, Proposal, Result
 from roadgpt.campaign.worker import Ended
 from roadgpt.road import Design
+from roadgpt.run.atomic import to_bytes
 from roadgpt.run.model import Request
 
 RESULT = (
@@ -35,7 +36,7 @@ def proposal_rows(
     given = proposal.design is not None
     return (
         (cell, number, batch, proposal.seed, given),
-        (cell, number, proposal.origin, design_text(proposal.design)),
+        (cell, number, _plain(proposal.origin), design_text(proposal.design)),
     )
 
 
@@ -49,7 +50,13 @@ def detail_values(ended: Ended) -> tuple[Any, ...]:
     """What is set in ``details`` when a test has ended."""
     result = ended.result
     features = {name: float(value) for name, value in sorted(result.features.items()) if math.isfinite(value)}
-    return (design_text(result.design), result.description, json.dumps(features), ended.error or None)
+    texts = (_plain(result.description), json.dumps(features), _plain(ended.error) or None)
+    return (design_text(result.design), *texts)
+
+
+def _plain(text: str) -> str:
+    """Text as UTF-8 can have it; what a broken terminal put into it is written as an escape."""
+    return to_bytes(text).decode()
 
 
 def _number(value: float | None) -> float | None:

@@ -79,12 +79,15 @@ def command(
     roadgpt campaign study.toml -j 16 --out study
     roadgpt status study
     """
+    from roadgpt import plugins
     from roadgpt.campaign.launch import begin, work
+    from roadgpt.run.atomic import to_bytes
     from roadgpt.run.naming import new_folder
 
-    text = " ".join(words)
+    text = to_bytes(" ".join(words)).decode()  # what a broken terminal put into it becomes an escape
     plan = _filed(ctx, Path(text), rest) if text.endswith(".toml") else _described(text, rest)
     plan.check()
+    plugins.find("executors", executor)
     if out is None:
         out = new_folder(Path(text).stem if text.endswith(".toml") else text, plan.seeds[0])
     was_there = begin(plan, out)

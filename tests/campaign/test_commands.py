@@ -1,0 +1,255 @@
+"""The commands, and campaigns in processes of their own that are killed, stopped and gone on with."""
+
+import csv
+import json
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from campaign.jobs import TESTS, is_alive
+from campaign.quick import Inline, plan, put_on_shelves
+from roadgpt.campaign.again import read_trace
+from roadgpt.campaign.launch import begin, work
+from roadgpt.campaign.record import Record
+from roadgpt.campaign.status import status_of
+from roadgpt.cli import app
+from roadgpt.run import read_run
+
+QUICK = [sys.executable, str(TESTS / "campaign" / "quick.py")]
+SOON = 120.0  # s: far more than anything here takes
+unix = pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
+
+
+def roadgpt(*words: object) -> Result:
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def start(*words: object) -> "subprocess.Popen[str]":
+    return subprocess.Popen(
+        [*QUICK, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=TESTS
+    )
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small campaign with real drives, made by the command."""
+    folder = tmp_path_factory.mktemp("driven") / "c"
+    words = ["a road with 2 turns", "-n", 3, "--reader", "grammar", "--seed", 7, "--out", folder, "--json"]
+    done = roadgpt("campaign", *words)
+    assert done.exit_code == 0, done.output
+    assert json.loads(done.stdout)["done"] == 3
+    return folder
+
+
+@unix
+def test_kill_9_again_and_again_gives_the_same_table(tmp_path: Path) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        put_on_shelves(patch.setattr)
+        Inline.rng = np.random.default_rng(0)
+        begin(plan(60), tmp_path / "whole")
+        [*work(tmp_path / "whole", 1, "inline")]
+    rng = random.Random(7)
+    for kill in range(5):
+        process = start(tmp_path / "c", 60, 1 + kill % 2, 0.02)
+        assert process.stdout is not None
+        process.stdout.readline()  # it has begun
+        workers = children(process.pid)
+        time.sleep(rng.random() * 0.2)
+        process.kill()
+        process.communicate()
+        gone(workers)
+    assert 0 < done_in(tmp_path / "c") < 60
+    process = start(tmp_path / "c", 60, 1)
+    said, errors = process.communicate(timeout=SOON)
+    assert process.returncode == 0, errors
+    assert said.splitlines()[-1] == "60"
+    for name in ("results.csv", "cells.csv"):
+        assert (tmp_path / "c" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def children(pid: int) -> list[int]:
+    """Processes that a process has started."""
+    told = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False
+    )
+    return [int(word) for word in told.stdout.split()]
+
+
+def gone(pids: list[int]) -> None:
+    """Wait until these have ended."""
+    until = time.monotonic() + SOON
+    while any(map(is_alive, pids)):
+        assert time.monotonic() < until
+        time.sleep(0.05)
+
+
+@unix
+def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path: Path) -> None:
+    words = ["campaign", "a road with 2 turns", "-n", "5000", "--reader", "grammar", "--no-drive", "--out"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", "from roadgpt.cli import main; main()", *words, str(tmp_path / "c")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    until = time.monotonic() + SOON
+    while not done_in(tmp_path / "c") and process.poll() is None and time.monotonic() < until:
+        time.sleep(0.1)
+    workers = children(process.pid)
+    process.send_signal(signal.SIGINT)
+    said, errors = process.communicate(timeout=SOON)
+    assert process.returncode == 130, errors
+    assert f"go on with: roadgpt resume {tmp_path / 'c'}" in errors
+    assert "Traceback" not in errors + said
+    gone(workers)
+    assert 0 < done_in(tmp_path / "c") < 5000
+    assert "interrupted" in roadgpt("status", tmp_path / "c").output or status_of(tmp_path / "c").is_running
+
+
+def done_in(folder: Path) -> int:
+    try:
+        with sqlite3.connect(f"file:{folder / 'campaign.sqlite'}?mode=ro", uri=True) as db:
+            count: int = db.execute("SELECT count(*) FROM tests WHERE outcome IS NOT NULL").fetchone()[0]
+        db.close()
+    except sqlite3.Error:
+        return 0
+    return count
+
+
+def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
+    said = roadgpt("status", driven)
+    assert "finished, 3 of 3 tests" in said.output
+    assert "a road with 2 turns (beamng_like, words, seed 7)" in said.output
+    told = json.loads(roadgpt("status", driven, "--json").output)
+    assert told["is_finished"]
+    assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3
+    assert told["cells"][0]["name"] == "c01"
+    assert "3 of 3 tests" in roadgpt("top", driven, "--once").output
+    again = roadgpt("resume", driven, "--json")
+    assert json.loads(again.output)["done"] == 3
+
+
+def test_status_tells_of_a_campaign_at_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    put_on_shelves(monkeypatch.setattr)
+    monkeypatch.setattr("roadgpt.campaign.office.GROUP_SECONDS", 0.0)
+    begin(plan(60), tmp_path)
+    steps = work(tmp_path, 2, "inline")
+    next(steps)
+    status = status_of(tmp_path)
+    assert status.is_running
+    assert not status.is_finished
+    assert status.total == 60
+    assert [(lease.cell, lease.worker) for lease in status.under_way] == [("c01", "me"), ("c01", "me")]
+    assert "at work" in roadgpt("status", tmp_path).output
+    assert "test" in roadgpt("top", tmp_path, "--once").output
+    steps.close()
+
+
+def test_a_test_is_driven_again_to_the_same_bytes(driven: Path, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        done = roadgpt("redrive", driven, "2", "c01/3", "--no-plot", "--out", tmp_path / name)
+        assert done.exit_code == 0, done.output
+        assert "was" not in done.stderr  # in the campaign, and now is something else
+    one, other = (tmp_path / name / "c01" / "runs" / "0002" for name in ("a", "b"))
+    files = sorted(path.name for path in one.iterdir() if path.name != "seconds.json")
+    assert "drive.npz" in files
+    for name in files:
+        assert (one / name).read_bytes() == (other / name).read_bytes()
+    run, kept = read_run(one), read_trace(driven, "c01", 2)
+    assert run.drive is not None
+    assert run.words == "a road with 2 turns"
+    assert len(kept) == len(run.drive)
+    assert np.abs(kept["x"] - run.drive["x"]).max() < 0.00051
+    with (driven / "results.csv").open() as file:
+        rows = [*csv.DictReader(file)]
+    assert float(rows[1]["margin_m"]) == run.verdict.margin if run.verdict else None
+    assert int(rows[1]["seed"]) == run.seed
+    assert "road with 2 turns" in roadgpt("show", one).output
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["redrive", "DIR", "99"], "holds no result of test 99 of c01"),
+        (["redrive", "DIR", "x"], "'x' is no test; give its number"),
+        (["redrive", "DIR", "c7/1"], "there is no cell 'c7'"),
+        (["status", "DIR/nowhere"], "there is no campaign in"),
+        (["top", "DIR/nowhere"], "there is no campaign in"),
+        (["resume", "DIR/nowhere"], "there is no campaign in"),
+        (["campaign", "a road"], "nothing says when to stop; give a number of tests"),
+        (["campaign", "a road", "-n", "3", "--generator", "nobody"], "no generator called 'nobody'"),
+        (
+            ["campaign", "a road", "-n", "3", "--executor", "nobody", "--out", "DIR/new"],
+            "no executor called 'nobody'",
+        ),
+        (["campaign", "a road", "-n", "3", "--out", "DIR"], "holds another campaign"),
+        (["campaign", "plan.toml", "--seed", "3"], "--seed has no place beside plan.toml"),
+        (["campaign", "a road", "-n", "3", "--max-cost", "1"], "is for language models"),
+    ],
+)
+def test_what_cannot_be_is_told_in_a_sentence(driven: Path, words: list[str], sentence: str) -> None:
+    done = roadgpt(*(word.replace("DIR", str(driven)) for word in words))
+    assert sentence in " ".join(done.output.split())
+    assert done.exit_code != 0
+
+
+def test_a_driver_that_kills_its_worker_costs_its_tests(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three workers ended over a test: it is in error, with a sentence, and the campaign goes on."""
+    from roadgpt.campaign.executors import Done
+
+    put_on_shelves(monkeypatch.setattr)
+    begin(plan(20), tmp_path)
+    real = Inline.done
+
+    def lossy(self: Inline, seconds: float) -> list[Done]:
+        return [
+            Done(done.key, lost="given up: 3 workers ended over it") if done.key % 7 == 0 else done
+            for done in real(self, seconds)
+        ]
+
+    monkeypatch.setattr(Inline, "done", lossy)
+    [*work(tmp_path, 1, "inline")]
+    with Record.opened(tmp_path) as record:
+        lost = [
+            result
+            for result in record.results()
+            if result.outcome == "ERROR" and "workers" in result.description
+        ]
+        assert len(lost) == 2
+        assert record.query("SELECT count(*) FROM tests WHERE outcome IS NULL") == [(0,)]
+
+
+def test_an_error_that_concerns_all_stops_the_campaign_and_keeps_the_rest(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from roadgpt.campaign.executors import Done
+    from roadgpt.errors import ChatError
+
+    put_on_shelves(monkeypatch.setattr)
+    begin(plan(20), tmp_path)
+    real = Inline.done
+
+    def failing(self: Inline, seconds: float) -> list[Done]:
+        made: Any = real(self, seconds)
+        return [Done(done.key, error=ChatError("nobody answers")) if done.key == 8 else done for done in made]
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Inline, "done", failing)
+        with pytest.raises(ChatError, match="nobody answers"):
+            [*work(tmp_path, 1, "inline")]
+    kept = status_of(tmp_path).done
+    assert 0 < kept < 20
+    [*work(tmp_path, 1, "inline")]
+    assert status_of(tmp_path).done == 20

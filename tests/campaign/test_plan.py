@@ -1,0 +1,114 @@
+"""Plans: every combination is a cell; every mistake is a sentence with its key."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from campaign.test_store import BRIEFS
+from roadgpt.campaign.model import Budget
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.plan_file import read_plan
+from roadgpt.errors import PartError, UsageError
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("tets = 5", "'tets' is no key of a campaign; did you mean 'tests'?"),
+        ("[world]\nfrction = 1", "'world.frction' is no key of a campaign; did you mean 'friction'?"),
+        ("[chat]\nmodl = 'x'", "'chat.modl' is no key of a campaign; did you mean 'model'?"),
+        ("qqq = 1", "'qqq' is no key of a campaign; keys are prompts, designers"),
+        ("tests = 0", "tests: 0 is not possible; give 1 or more"),
+        ("tests = 'many'", "tests: 'many' is not possible; give a whole number"),
+        ("tests = 1.5", "tests: 1.5 is not possible; give a whole number"),
+        ("tests = true", "tests: True is not possible; give a whole number"),
+        ("seconds = 0", "seconds: 0 is not possible; give more than 0"),
+        (
+            "goal = 'fail'",
+            "goal: 'fail' is not possible; give 'failures', 'coverage', 'hardest' or 'boundary'",
+        ),
+        ("prompts = []", "prompts: [] is not possible; give at least one"),
+        ("prompts = ['a', 3]", "prompts.2: 3 is not possible; give a text in quotes"),
+        ("drivers = ['']", "drivers.1: '' is not possible; give a text that is not empty"),
+        ("seeds = [1, -2]", "seeds.2: -2 is not possible; give 0 or more"),
+        ("world = 3", "world: 3 is not possible; give a table"),
+        ("[world]\nfriction = 9", "world.friction: 9 is not possible; give 2 or less"),
+        ("[chat]\ntemperature = 9", "chat.temperature: 9 is not possible; give 2 or less"),
+        ("drive = 'no'", "drive: 'no' is not possible; give true or false"),
+        ("prompts = ", "is no TOML"),
+        (f"reader = 3 # {'x' * 50}", "reader: 3 is not possible"),
+    ],
+)
+def test_a_mistake_is_told_with_its_key_and_what_to_do(tmp_path: Path, text: str, sentence: str) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(text)
+    with pytest.raises(UsageError, match=re.escape(sentence)) as told:
+        read_plan(path)
+    assert str(told.value).startswith(str(path))
+
+
+def test_a_file_that_is_none_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"cannot be read.*check the path"):
+        read_plan(tmp_path / "none.toml")
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(UsageError, match="is no TOML"):
+        read_plan(tmp_path / "bytes.toml")
+
+
+def test_every_combination_is_a_cell_in_order(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(
+        "prompts = ['two hairpins', 'a straight']\ndrivers = ['beamng_like', 'reference']\n"
+        "seeds = [3, 4, 5]\ntests = 9\n[world]\nspeed_limit_kmh = 36\nfriction = 0.6\n[settings]\nsize = 3\n"
+    )
+    plan = read_plan(path).plan
+    plan.check()
+    cells = plan.cells(BRIEFS)
+    told = [(cell.request.words, cell.request.setup.driver, cell.request.seed) for cell in cells]
+    prompts, drivers = ("two hairpins", "a straight"), ("beamng_like", "reference")
+    assert told == [(words, driver, seed) for words in prompts for driver in drivers for seed in (3, 4, 5)]
+    assert [cell.name for cell in cells] == [f"c{number:02d}" for number in range(1, 13)]
+    assert cells[0].brief == BRIEFS["two hairpins"]
+    assert cells[-1].brief is None
+    assert cells[0].request.world.speed_limit == pytest.approx(10.0)
+    assert cells[0].settings == {"size": 3}
+    assert plan.budget == Budget(tests=9)
+
+
+def test_names_of_many_cells_are_in_order_as_texts() -> None:
+    names = [cell.name for cell in Plan(seeds=tuple(range(1234))).cells({})]
+    assert names == sorted(names)
+    assert len({*names}) == 1234
+
+
+def test_a_goal_is_searched_for_by_the_usual_generator(tmp_path: Path) -> None:
+    (tmp_path / "plan.toml").write_text("prompts = 'two hairpins'\ngoal = 'failures'\ntests = 9\n")
+    assert read_plan(tmp_path / "plan.toml").plan.generators == ("quality_diversity",)
+    (tmp_path / "plan.toml").write_text("prompts = 'two hairpins'\ntests = 9\n")
+    assert read_plan(tmp_path / "plan.toml").plan.generators == ("words",)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"budget": Budget()}, "nothing says when to stop"),
+        ({"prompts": ("",)}, "needs a description"),
+        ({"seeds": tuple(range(100_001))}, "more than 100,000; make several plans"),
+    ],
+)
+def test_a_plan_that_cannot_be_is_told_before_anything_is_made(
+    changes: dict[str, object], sentence: str
+) -> None:
+    plan = Plan(prompts=("two hairpins",), budget=Budget(tests=3)).model_copy(update=changes)
+    with pytest.raises(UsageError, match=sentence):
+        plan.check()
+
+
+@pytest.mark.parametrize("shelf", ["designers", "simulators", "generators"])
+def test_parts_that_are_not_installed_are_told(shelf: str) -> None:
+    plan = Plan(prompts=("two hairpins",), budget=Budget(tests=3)).model_copy(update={shelf: ("nobody",)})
+    with pytest.raises(PartError, match=f"no {shelf[:-1]} called 'nobody'"):
+        plan.check()
