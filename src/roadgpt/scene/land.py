@@ -1,6 +1,7 @@
 """The land around a road: it follows the road and never covers it; beyond it lie gentle hills."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import ndimage
@@ -49,21 +50,31 @@ class Land:
 
     def height(self, x: Array, y: Array) -> Array:
         """Metres, between the rows and columns."""
+        return self._at(self.heights, x, y)
+
+    def light_at(self, x: Array, y: Array) -> Array:
+        """How light the land is there."""
+        return self._at(self.light, x, y)
+
+    def _at(self, h: Array, x: Array, y: Array) -> Array:
         i = np.clip(np.searchsorted(self.x, x) - 1, 0, len(self.x) - 2)
         j = np.clip(np.searchsorted(self.y, y) - 1, 0, len(self.y) - 2)
         u = np.clip((x - self.x[i]) / (self.x[i + 1] - self.x[i]), 0.0, 1.0)
         v = np.clip((y - self.y[j]) / (self.y[j + 1] - self.y[j]), 0.0, 1.0)
-        h = self.heights
         low = h[j, i] * (1 - u) + h[j, i + 1] * u
         return np.asarray(low * (1 - v) + (h[j + 1, i] * (1 - u) + h[j + 1, i + 1] * u) * v)
 
+    @cached_property
+    def light(self) -> Array:
+        """(rows, columns), by the slope of the land."""
+        slope_y, slope_x = np.gradient(ndimage.gaussian_filter(self.heights, 1.0), self.y, self.x)
+        normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
+        return daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
+
     def patches(self) -> list[Patch]:
         """Its surface."""
-        slope_y, slope_x = np.gradient(self.heights, self.y, self.x)
-        normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
-        light = daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
         x, y = np.meshgrid(self.x, self.y)
-        points, values = np.stack([x, y, self.heights], axis=-1), attributes(0.0, 0.0, light)
+        points, values = np.stack([x, y, self.heights], axis=-1), attributes(0.0, 0.0, self.light)
         rows, columns = self.heights.shape
         return [
             grid(part.swapaxes(0, 1), value.swapaxes(0, 1), GRASS)
@@ -87,6 +98,8 @@ def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple
     fixed = np.isfinite(lowest)
     away, nearest = ndimage.distance_transform_edt(~fixed, return_indices=True)
     heights = np.asarray(lowest[tuple(nearest)] - BELOW)
+    for _ in range(3):  # without terraces, and nowhere higher
+        heights = np.minimum(heights, ndimage.uniform_filter(heights, 3))
     kept = heights.copy()
     for _ in range(80):
         padded = np.pad(heights, 1, mode="edge")

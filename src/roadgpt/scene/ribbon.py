@@ -6,7 +6,7 @@ from roadgpt.export.edges import line, stations
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.scene.land import Land
-from roadgpt.scene.light import daylight
+from roadgpt.scene.light import daylight, level_light
 from roadgpt.scene.mesh import GRASS, POST, ROAD, Patch, attributes, grid
 from roadgpt.scene.paint import CONCRETE
 
@@ -71,26 +71,32 @@ def _banks(road: Road, rim: float, s: Array, land: Land) -> list[Patch]:
         drop = edge[:, 2] - np.minimum(land.height(foot[:, 0], foot[:, 1]), edge[:, 2]) + FOOT
         heading = road.heading(s)
         outward = side * np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
-        out += _slope(edge, outward, drop, is_left=side > 0)
+        out += _slope(edge, outward, drop, land, is_left=side > 0)
     for end, sign in ((0.0, -1.0), (road.length, 1.0)):
         across = np.linspace(rim, -rim, 7) * sign
         edge = np.stack([line(road, np.array([end]), t)[0] for t in across])
         to = float(road.heading(end))
         way = sign * np.array([np.cos(to), np.sin(to)])
         drop = edge[:, 2] - np.minimum(land.height(*(edge[:, :2] + 2 * way).T), edge[:, 2]) + FOOT
-        out += _slope(edge, np.repeat(way[None], len(edge), axis=0), drop, is_left=True)
+        out += _slope(edge, np.repeat(way[None], len(edge), axis=0), drop, land, is_left=True)
     return out
 
 
-def _slope(edge: Array, outward: Array, drop: Array, is_left: bool) -> list[Patch]:
-    """A slope from an edge outward and down; the edge runs with its slope to the left or to the right."""
+def _slope(edge: Array, outward: Array, drop: Array, land: Land, is_left: bool) -> list[Patch]:
+    """A slope from an edge outward and down; the edge runs with its slope to the left or to the right.
+
+    A low one has the light of the land that it runs into, so that nothing shows where they meet.
+    """
     foot = np.column_stack([edge[:, :2] + BANK * drop[:, None] * outward, edge[:, 2] - drop])
     rows = np.stack([edge, foot] if is_left else [foot, edge], axis=1)
     along = np.gradient(edge, axis=0)
     down = foot - edge
     normals = np.cross(along, down) if is_left else np.cross(down, along)
     normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-9)
-    return _blocks(rows, attributes(0.0, 0.0, np.repeat(daylight(normals)[:, None], 2, axis=1)), GRASS)
+    own, met = daylight(normals), land.light_at(foot[:, 0], foot[:, 1])
+    at_foot = met + (own - met) * np.clip((drop - FOOT - 1.5) / 4.0, 0.0, 1.0)
+    light = np.stack([np.full_like(own, level_light()), at_foot], axis=1)
+    return _blocks(rows, attributes(0.0, 0.0, light if is_left else light[:, ::-1]), GRASS)
 
 
 def _slab(road: Road, world: World, s: Array) -> list[Patch]:

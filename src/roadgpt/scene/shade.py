@@ -24,6 +24,7 @@ HAZE = 1000.0  # m
 AMBER = 0.69, 0.80  # m, of a post's reflector
 DARK = 0.62, 0.86  # m, of its dark band
 BLOCK = 4  # pixels
+LEAN = 0.6  # of the meadow's pattern with the height: else it would be drawn out on steep banks
 ALIKE = 0.08  # difference of depths of one ground
 RIDGES = 0.12  # upward part of a direction, below which the sky is drawn pixel by pixel
 REACH = 36.0  # m^2: farther from the car there is no shadow
@@ -99,7 +100,7 @@ def _ground(
         wide_t = max(length_of(tx, ty), THINNEST)
         r, g, b = road(tiles, s, t, wide_s, wide_t, x, y, level, numbers[0], numbers[1])
     else:
-        r, g, b = grass(tiles, x, y, level)
+        r, g, b = grass(tiles, x + LEAN * z, y - LEAN * z, level)
     if numbers[10] > 0.0:
         light *= _shadow(numbers[2:], x, y, z)
     return r * light, g * light, b * light

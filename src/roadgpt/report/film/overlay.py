@@ -88,7 +88,7 @@ class Overlay:
         badge = width_of(self.run.outcome, bold, "bold")
         wide = max(badge, *(width_of(row, text) for row in rows)) + 28 * u
         high = (52 + LINE * len(rows)) * u
-        x, y = (self.width - wide) / 2, self.height * 0.30
+        x, y = (self.width - wide) / 2, self.height * 0.155
         fill(frame, x, y, x + wide, y + high, (255, 255, 255))
         fill(frame, x, y, x + wide, y + 38 * u, _rgb(OUTCOMES.get(self.run.outcome, INK)))
         write(frame, x + (wide - badge) / 2, y + 29 * u, self.run.outcome, bold, WHITE, "bold")
