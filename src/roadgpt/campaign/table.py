@@ -5,15 +5,16 @@ cells.csv      one row per cell: what its tests share, and how many of them ende
 """
 
 import csv
+import json
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from roadgpt.campaign.model import Cell, Result
+from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.worker import seed_of_driver
+from roadgpt.run import seed_of
 from roadgpt.run.atomic import PART
 
 RESULTS, CELLS = "results.csv", "cells.csv"
@@ -32,6 +33,11 @@ COLUMNS = (
     "at_s_m",
     "description",
 )
+EVERY = (
+    "SELECT tests.cell, tests.number, batch, origin, seed, given, outcome, cause, side, length, margin, "
+    "max_oob, at_s, description, features FROM tests JOIN details USING (cell, number) "
+    "WHERE outcome IS NOT NULL ORDER BY tests.cell, tests.number"
+)
 OUTCOMES = {
     "PASS": "passed",
     "FAIL": "failed",
@@ -44,32 +50,17 @@ OUTCOMES = {
 def write_tables(record: Record, folder: Path) -> None:
     """Write both, row by row; raises OSError."""
     features = record.feature_names()
-    rows = (
-        _row(cell, result, features) for cell, result in record.results_by_cell()
-    )  # a million rows pass through here one by one
+    rows = (_row(row, features) for row in record.stream(EVERY))  # a million pass through here one by one
     _write(folder / RESULTS, (*COLUMNS, *features), rows)
     cells = [_cell_row(record, cell) for cell in record.cells()]
     _write(folder / CELLS, tuple(cells[0]), (tuple(row.values()) for row in cells))
 
 
-def _row(cell: str, result: Result, features: Iterable[str]) -> tuple[Any, ...]:
-    proposal = result.proposal
-    return (
-        cell,
-        result.number,
-        result.batch,
-        proposal.origin,
-        seed_of_driver(result.number, proposal),
-        result.outcome,
-        result.cause,
-        result.side,
-        result.length,
-        result.margin,
-        result.max_oob,
-        result.at_s,
-        result.description,
-        *(result.features.get(name) for name in features),
-    )
+def _row(row: tuple[Any, ...], features: list[str]) -> tuple[Any, ...]:
+    cell, number, batch, origin, seed, given, *rest, found = row
+    values = json.loads(found)
+    driver = seed if given else seed_of(seed, number)
+    return (cell, number, batch, origin, driver, *rest, *(values.get(name) for name in features))
 
 
 def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
