@@ -7,38 +7,19 @@ processes dies, all that it was given is lost.
 
 import threading
 import time
-from collections import deque
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeVar
 
-from roadgpt.campaign.executors import MOST_DEATHS, Doing, Done, Job, Staff
-from roadgpt.campaign.executors.processes.inside import READY, VALUE, Order, each
-from roadgpt.campaign.executors.processes.wire import frozen, thawed
+from roadgpt.campaign.executors import MOST_DEATHS, Doing, Staff
 from roadgpt.campaign.executors.processes.worker import Worker
+from roadgpt.campaign.hands.desk import Desk
+from roadgpt.campaign.hands.inside import READY, Order
+from roadgpt.campaign.hands.wire import frozen, thawed
 from roadgpt.errors import RoadGPTError
-
-T = TypeVar("T")
-U = TypeVar("U")
 
 SILENCE = 60.0  # s without a sign of life, after which a worker is given up; one comes every second
 ROUND = 0.5  # s between two looks at all workers
-CHUNKS = 4  # per worker, that ``map`` makes of its items: few messages, and nobody waits long for the last
 
 
-@dataclass(eq=False)
-class _Work:
-    """A job on its way."""
-
-    call: bytes
-    needs: tuple[str, ...]
-    key: int | None
-    """None for a part of a ``map``."""
-    deaths: int = 0
-    end: Done | None = None
-
-
-class Processes:
+class Processes(Desk):
     """Workers that are processes of this machine."""
 
     def __init__(self, staff: Staff) -> None:
@@ -47,15 +28,9 @@ class Processes:
         Raises:
             RoadGPTError: the system refuses.
         """
+        super().__init__(staff.workers)
         self._staff = staff
         self._prepare = frozen(staff.prepare)
-        self._changed = threading.Condition()
-        self._shared: dict[str, bytes] = {}
-        self._urgent: deque[_Work] = deque()
-        self._waiting: deque[_Work] = deque()
-        self._ended: deque[tuple[_Work, int, bytes]] = deque()
-        self._lost: deque[Done] = deque()
-        self._broken: Exception | None = None
         self._in_vain = 0  # workers that ended before they were ready, since the last that was
         self._started = 0
         self._stops = threading.Event()
@@ -69,37 +44,6 @@ class Processes:
             raise
         threading.Thread(target=self._watch, name="roadgpt-watch", daemon=True).start()
 
-    def share(self, name: str, value: Any) -> None:
-        """Keep a value for jobs that need it."""
-        self._shared[name] = frozen(value)
-
-    def forget(self, name: str) -> None:
-        """Let go of a shared value."""
-        with self._changed:
-            self._shared.pop(name, None)
-
-    def submit(self, jobs: Sequence[Job]) -> None:
-        """Have jobs done."""
-        works = [_Work(frozen((job.function, job.item, job.needs)), job.needs, job.key) for job in jobs]
-        with self._changed:
-            self._waiting.extend(works)
-            self._hand_out()
-
-    def done(self, seconds: float) -> list[Done]:
-        """What has ended; none where nothing did in that time.
-
-        Raises:
-            RoadGPTError: no worker could be made ready, or whatever prevented that.
-        """
-        with self._changed:
-            self._changed.wait_for(lambda: self._ended or self._lost or self._broken, seconds)
-            ended, lost = [*self._ended], [*self._lost]
-            self._ended.clear()
-            self._lost.clear()
-            if self._broken is not None and not ended and not lost:
-                raise self._broken
-        return [_told(work, kind, what) for work, kind, what in ended] + lost
-
     def under_way(self) -> list[Doing]:
         """What is being done now, by the workers' numbers."""
         now = time.monotonic()
@@ -109,31 +53,6 @@ class Processes:
                 for worker in self._workers
                 if worker.job is not None and worker.job.key is not None
             ]
-
-    def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """``function`` of every item, in their order; what it raises is raised here.
-
-        Raises:
-            RoadGPTError: it ended three workers.
-        """
-        size = max(1, -(-len(items) // (CHUNKS * self._staff.workers)))
-        parts = [items[first : first + size] for first in range(0, len(items), size)]
-        works = [_Work(frozen((each, (function, [*part]), ())), (), None) for part in parts]
-        with self._changed:
-            self._urgent.extend(works)
-            self._hand_out()
-            self._changed.wait_for(lambda: self._broken or all(work.end for work in works))
-            if self._broken is not None:
-                raise self._broken
-        found: list[U] = []
-        for work in works:
-            assert work.end is not None
-            if work.end.lost:
-                raise RoadGPTError(work.end.lost)
-            if work.end.error is not None:
-                raise work.end.error
-            found += work.end.value
-        return found
 
     def stop(self) -> None:
         """End every worker."""
@@ -173,12 +92,6 @@ class Processes:
                 self._next(worker)
             self._changed.notify_all()
 
-    def _end(self, work: _Work, kind: int, what: bytes) -> None:
-        if work.key is None:
-            work.end = _told(work, kind, what)
-        else:
-            self._ended.append((work, kind, what))
-
     def _hand_out(self) -> None:
         for worker in self._workers:
             if worker.is_ready and worker.job is None:
@@ -190,11 +103,7 @@ class Processes:
             return
         work = queue.popleft()
         worker.job, worker.begun = work, time.monotonic()
-        old = tuple(name for name in worker.has if name not in self._shared)
-        new = {name: self._shared[name] for name in work.needs if name not in worker.has}
-        worker.has.difference_update(old)
-        worker.has.update(new)
-        worker.give(Order(work.call, new, old))
+        worker.give(Order(work.call, *self._news(worker.has, [work])))
 
     def _bury(self, worker: Worker) -> None:
         """A worker is gone: its job is given to another, and another takes its place."""
@@ -218,17 +127,6 @@ class Processes:
                     self._broken = error
             self._changed.notify_all()
 
-    def _give_again(self, work: _Work, how: str) -> None:
-        work.deaths += 1
-        if work.deaths < MOST_DEATHS:
-            (self._waiting if work.key is not None else self._urgent).appendleft(work)
-            return
-        end = Done(work.key or 0, lost=f"given up: {MOST_DEATHS} workers ended over it (the last one {how})")
-        if work.key is None:
-            work.end = end
-        else:
-            self._lost.append(end)
-
     def _watch(self) -> None:
         """Ends workers that hang; takes no lock, for whoever writes to a worker that hangs holds it."""
         last = time.monotonic()
@@ -242,11 +140,3 @@ class Processes:
                 elif (worker.job or not worker.is_ready) and now - worker.begun > self._staff.patience:
                     worker.kill(f"took longer than {self._staff.patience:g} s")
             last = now
-
-
-def _told(work: _Work, kind: int, what: bytes) -> Done:
-    try:
-        value = thawed(what)
-    except Exception as error:  # of a class that cannot be made again
-        return Done(work.key or 0, error=RuntimeError(f"an answer cannot be read: {error}"))
-    return Done(work.key or 0, value=value) if kind == VALUE else Done(work.key or 0, error=value)

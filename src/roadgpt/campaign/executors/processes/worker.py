@@ -11,8 +11,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
-from roadgpt.campaign.executors.processes.inside import ALIVE, Order
-from roadgpt.campaign.executors.processes.wire import receive, send
+from roadgpt.campaign.hands.inside import ALIVE, Order
+from roadgpt.campaign.hands.wire import receive, send
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 FAREWELL = 10.0  # s for a process that was killed to be gone
@@ -47,7 +47,7 @@ class Worker:
                     sys.executable,
                     "-P",  # a module that lies where the user stands is not taken for one of ours
                     "-c",
-                    "from roadgpt.campaign.executors.processes.inside import main; main()",
+                    "from roadgpt.campaign.hands.inside import main; main()",
                 ],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,

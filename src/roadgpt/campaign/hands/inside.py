@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import IO, Any, NamedTuple
 
-from roadgpt.campaign.executors.processes.wire import frozen, receive, send, thawed
+from roadgpt.campaign.hands.wire import frozen, receive, send, thawed
 
 BEAT = 1.0  # s between signs of life
 ALIVE, READY, VALUE, ERROR = range(4)  # kinds of messages that go up
@@ -73,17 +73,18 @@ def main() -> None:
         try:
             thawed(receive(heard))()
         except Exception as error:  # whatever it is, the parent has to hear of it
-            mouth.say(ERROR, _portable(error))
+            mouth.say(ERROR, portable(error))
             return
         mouth.say(READY)
         shared: dict[str, Any] = {}
         while True:
-            mouth.say(*_answer(receive(heard), shared))
+            mouth.say(*answer(receive(heard), shared))
     except EOFError:
         return
 
 
-def _answer(order: Order, shared: dict[str, Any]) -> tuple[int, bytes]:
+def answer(order: Order, shared: dict[str, Any]) -> tuple[int, bytes]:
+    """What comes of a job, as kind of message and what belongs to it; keeps the shared values."""
     try:
         for name in order.old:
             shared.pop(name, None)
@@ -92,10 +93,10 @@ def _answer(order: Order, shared: dict[str, Any]) -> tuple[int, bytes]:
         function, item, needs = thawed(order.call)
         return VALUE, frozen(function(item, *(shared[name] for name in needs)))
     except Exception as error:
-        return ERROR, _portable(error)
+        return ERROR, portable(error)
 
 
-def _portable(error: Exception) -> bytes:
+def portable(error: Exception) -> bytes:
     """The error, or where it cannot travel, one that says the same."""
     try:
         data = frozen(error)
