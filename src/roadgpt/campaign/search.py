@@ -36,7 +36,7 @@ class Mapped(Searching):
     """Cells of a grid, or niches around evenly spread centres."""
     cells: Annotated[int, Field(ge=2, le=10_000)] = 25
     """Along each axis of a grid; niches altogether."""
-    candidates: Annotated[int, Field(ge=1, le=100)] = 10
+    candidates: Annotated[int, Field(ge=1, le=100)] = 8
     """Roads that are thought of for each that is driven."""
     apart: Annotated[float, Field(ge=0, le=1000)] = 5.5
     """Metres RMS, after the best shift, turn and mirror, that a road keeps from every tested one."""

@@ -1,6 +1,6 @@
 """The generator ``quality_diversity``: many roads to fail on, all over the map, and inside the Brief.
 
-    elites of the map --change--> ten candidates for each test --surrogate--> the most valuable are driven
+    elites of the map --change--> eight candidates for each test --surrogate--> the most valuable are driven
 
 MAP-Elites (Mouret, Clune 2015) with a surrogate in front (Gaier, Asteroth, Mouret 2018): a candidate costs
 milliseconds and a drive many times that, so most candidates are only looked at. The goal says what a drive is
