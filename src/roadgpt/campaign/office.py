@@ -69,6 +69,7 @@ class Office:
         self._oldest = self._looked = time.monotonic()
         self._error: Exception | None = None
         self._may_write = True
+        self._has_news = False
         self.executor = kind(staff)
 
     def run(self) -> Iterator[Progress]:
@@ -81,6 +82,8 @@ class Office:
             self._take(self.executor.done(WAIT))
             if self._is_due():
                 self._keep()
+            if self._has_news:
+                self._has_news = False
                 yield self.progress
             if self._error is not None:
                 raise self._error
@@ -228,6 +231,7 @@ class Office:
             course.seconds += now - self._looked
         self._looked = now
         self._pending = []
+        self._has_news = True
         self.progress.under_way = len(self._out)
         for course in [*self._courses]:
             self._drop_if_done(course)
