@@ -5,8 +5,9 @@ The frames depend on nothing but the Run and the settings; threads draw them, an
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -109,7 +110,7 @@ class Film:
         strips = [_beside([pane.draw(time) for pane in row], axis=1) for row in self.rows]
         return _beside(strips, axis=0)
 
-    def frames(self, threads: int | None = None) -> Iterator[Frame]:
+    def frames(self, threads: int | None = None) -> Generator[Frame]:
         """All frames in order, drawn by several threads a little ahead."""
         count = threads or os.cpu_count() or 1
         numbers = iter(range(len(self)))
@@ -157,9 +158,10 @@ def write(
     """Film one Run or two; ``watch`` is told of each frame."""
     encoder()  # before anything is drawn
     film = Film.of(runs, view, settings)  # type: ignore[arg-type]
-    frames = film.frames()
     title = " and ".join(dict.fromkeys(run.words or run.source or "a road that was given" for run in runs))
-    write_film(frames if watch is None else watch(frames, len(film)), Path(path), film.settings.fps, title)
+    with closing(film.frames()) as frames:
+        shown = frames if watch is None else watch(frames, len(film))
+        write_film(shown, Path(path), film.settings.fps, title)
     return Path(path)
 
 

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -50,7 +51,8 @@ def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -
     except OSError as error:
         raise RoadGPTError(f"cannot write {path}: {error.strerror or error}; name another --out") from error
     finally:
-        draft.unlink(missing_ok=True)
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
 
 
 def _encode(av: Any, file: Any, frames: Iterable[Frame], fps: int) -> None:

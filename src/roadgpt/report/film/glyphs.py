@@ -36,7 +36,7 @@ def glyph(letter: str, size: int, weight: Weight) -> Glyph:
     font.draw_glyphs_to_bitmap(antialiased=True)
     cover = np.array(font.get_image())
     left, _ = font.get_bitmap_offset()
-    top = len(cover) - int(np.ceil(font.get_descent() / 64))
+    top = len(cover) - 1 - int(np.ceil(font.get_descent() / 64))  # its last row is empty
     return Glyph(cover, top, int(np.floor(left / 64)), advance)
 
 
