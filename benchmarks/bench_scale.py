@@ -270,7 +270,7 @@ def _fill(folder: Path, tests: int) -> None:
         )  # fmt: skip
         db.executemany(
             "INSERT INTO details(cell, number, origin, design, description, features) "
-            "VALUES (?, ?, 'vary 17', ?, 'kept its lane to the goal after 226 m, never closer than 0.2 m', ?)",
+            "VALUES (?, ?, 'vary 17', ?, 'kept its lane to the goal after 226 m, never closer than 0 m', ?)",
             (
                 (name, at + 1, text, json.dumps(FEATURES | {"A": at % 997 / 100, "B": at % 89 / 10}))
                 for at in rows

@@ -203,6 +203,16 @@ def test_what_cannot_be_is_told_in_a_sentence(driven: Path, words: list[str], se
     assert done.exit_code != 0
 
 
+def test_a_campaign_that_cannot_be_leaves_no_folder(tmp_path: Path) -> None:
+    (tmp_path / "plan.toml").write_text(
+        "prompts = 'two hairpins'\ntests = 3\ngoal = 'failures'\n[settings]\naxes = ['NONE']\n"
+    )
+    done = roadgpt("campaign", tmp_path / "plan.toml", "--out", tmp_path / "c")
+    assert done.exit_code == 2
+    assert "there is no feature 'NONE'" in done.output
+    assert not (tmp_path / "c").exists()
+
+
 def test_a_driver_that_kills_its_worker_costs_its_tests(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -6,7 +6,7 @@ work      whatever the store lacks: resumed as often as it takes, it comes to th
 
 import sqlite3
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from roadgpt import plugins
@@ -40,7 +40,7 @@ def begin(plan: Plan, folder: Path) -> bool:
         ChatError: a language model that reads them could not be asked.
     """
     plan.check()
-    with _lone(folder):
+    with _lone(folder), _without_trace(folder):
         if (folder / STORE).is_file():
             _same(plan, folder)
             return True
@@ -48,9 +48,24 @@ def begin(plan: Plan, folder: Path) -> bool:
             raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
         briefs = _briefs(plan)
         cells = plan.cells(briefs)
+        for name in plan.generators:  # one that cannot use its settings says so now
+            plugins.find("generators", name)(next(cell for cell in cells if cell.generator == name))
         versions = versions_of(cells[0].request.setup)
         Store.new(folder, plan.model_dump_json(), cells, versions).close()
         return False
+
+
+@contextmanager
+def _without_trace(folder: Path) -> Iterator[None]:
+    """Where nothing comes of it, leave no folder behind that holds nothing."""
+    try:
+        yield
+    except BaseException:
+        if [path.name for path in folder.iterdir()] == [LOCK]:
+            with suppress(OSError):  # Windows removes no file that is open
+                (folder / LOCK).unlink()
+                folder.rmdir()
+        raise
 
 
 def _briefs(plan: Plan) -> dict[str, Brief]:

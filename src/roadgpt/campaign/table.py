@@ -1,7 +1,8 @@
 """The tables of a campaign: what is the same whoever worked on it, however often it was interrupted.
 
 results.csv    one row per test: what was asked for, what came of it, its features
-cells.csv      one row per cell: what its tests share, and how many of them ended how
+cells.csv      one row per cell: what its tests share, how many of them ended how, and in how many cells of
+               the map of behaviour (over the features of its search, or the usual ones) there are failures
 """
 
 import csv
@@ -12,8 +13,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
+
+from roadgpt.campaign.behaviour import cell_of
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.search import Mapped
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import PART
 
@@ -72,8 +77,8 @@ def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
             )
         )
     )
-    ((least, sides),) = record.query(
-        "SELECT min(margin), sum(side = 'left') FROM tests WHERE cell = ? AND outcome IN ('PASS', 'FAIL')",
+    ((least, left),) = record.query(
+        "SELECT min(margin), sum(outcome = 'FAIL' AND side = 'left') FROM tests WHERE cell = ?",
         (cell.name,),
     )
     setup = cell.request.setup
@@ -89,9 +94,26 @@ def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
         "tests": counts.total(),
         "valid": counts.total() - counts["INVALID"] - counts["ERROR"],
         **{name: counts[outcome] for outcome, name in OUTCOMES.items()},
+        "failed_left": left or 0,
+        "failing_cells": _failing_cells(record, cell),
         "least_margin_m": least,
-        "failed_left": sides or 0,
     }
+
+
+def _failing_cells(record: Record, cell: Cell) -> int:
+    """In how many cells of the map of behaviour a car failed: how widely the failures differ."""
+    told = {name: value for name, value in cell.settings.items() if name in ("axes", "cells")}
+    try:
+        search = Mapped.model_validate(told)
+    except ValidationError:  # another generator's settings mean something else
+        search = Mapped()
+    failures = record.stream(
+        "SELECT features FROM tests JOIN details USING (cell, number) "
+        "WHERE tests.cell = ? AND outcome = 'FAIL'",
+        (cell.name,),
+    )
+    places = {cell_of(json.loads(features), search.axes, search.cells) for (features,) in failures}
+    return len(places - {None})
 
 
 def _write(path: Path, head: tuple[str, ...], rows: Iterator[tuple[Any, ...]]) -> None:
