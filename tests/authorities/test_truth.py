@@ -1,4 +1,4 @@
-"""Truths that people write down: every key is judged as the project's referee judges it, where it is at hand."""
+"""Truths that people write down: every key is judged as the referee judges it, where it is at hand."""
 
 import json
 from types import ModuleType

@@ -9,7 +9,15 @@ from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.report.page import Block, Cell, Figure, Page, Section, Table, cell, linked, write
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.chapters.many import coverage, failures, margins
-from roadgpt.study.chapters.saying import decimal, p_value, percent, plural, share_cells, share_of
+from roadgpt.study.chapters.saying import (
+    decimal,
+    interval_cell,
+    p_value,
+    percent,
+    plural,
+    share_cells,
+    share_of,
+)
 from roadgpt.study.statistics import chi_squared, wilson
 
 MOST_CELLS = 12  # whose curves and shares are drawn
@@ -90,7 +98,7 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
                 cell(each.outcomes.get("INVALID", 0)),
                 cell(each.outcomes.get("ERROR", 0)),
                 *share_cells(failed, driven)[:3],
-                cell(None) if not driven else _interval(failed, driven),
+                cell(None) if not driven else interval_cell(wilson(failed, driven)),
                 decimal(each.least_margin),
                 decimal(seconds.get(each.name), 0),
             ]
@@ -118,11 +126,6 @@ def _listed(links: Sequence[Cell]) -> list[str | Cell]:
     for number, link in enumerate(links):
         out += [" and ", link] if number else [link]
     return out
-
-
-def _interval(k: int, n: int) -> Cell:
-    low, high = wilson(k, n)
-    return cell(f"{100 * low:.1f} to {100 * high:.1f} %")
 
 
 def _forest(cells: Sequence[CellStatus]) -> Figure:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from roadgpt.report.page import Block, Cell, Details, Figure, Section, Table, cell, linked
 from roadgpt.report.page.forest import Share, forest
-from roadgpt.study.chapters.saying import between, percent, plural
+from roadgpt.study.chapters.saying import interval_cell, percent, plural
 from roadgpt.study.criteria import ASKED, CRITERIA, Criterion
 from roadgpt.study.looking import LookedPart
 from roadgpt.study.statistics import Estimate, bootstrap, wilson
@@ -81,8 +81,8 @@ def _pooled(parts: Sequence[LookedPart], designers: Sequence[str]) -> Table:
                     cell(sum(good)),
                     cell(len(good)),
                     cell(round(found.value, 6), percent(found.value)),
-                    cell(between(wilson(sum(good), len(good)))),
-                    cell(between(found.interval)) if len(asking) > 1 else cell(None),
+                    interval_cell(wilson(sum(good), len(good))),
+                    interval_cell(found.interval) if len(asking) > 1 else cell(None),
                 ]
             )
     heads = [

@@ -44,9 +44,14 @@ def share_cells(k: int, n: int, href: str = "") -> list[Cell]:
         cell(k, href=href),
         cell(n),
         cell(round(k / n, 6), percent(k / n)),
-        cell(between(exact)),
-        cell(between(score)),
+        interval_cell(exact),
+        interval_cell(score),
     ]
+
+
+def interval_cell(interval: Interval) -> Cell:
+    """From and to, as shares in CSV and in percent for people."""
+    return cell(f"{interval.lo:.4f} to {interval.hi:.4f}", between(interval))
 
 
 SHARE_HEADS = ("of", "share", "Clopper-Pearson 95 %", "Wilson 95 %")

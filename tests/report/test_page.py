@@ -1,0 +1,184 @@
+"""Pages: one file that needs nothing else, the same tables in every form, charts that are to scale."""
+
+import csv
+import io
+import re
+import xml.etree.ElementTree as ET
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt.errors import RoadGPTError
+from roadgpt.report.page import (
+    Details,
+    Figure,
+    Page,
+    Section,
+    Table,
+    cell,
+    csv_of,
+    html_of,
+    latex_of,
+    linked,
+    markdown_of,
+    write,
+)
+from roadgpt.report.page.forest import Share, forest
+from roadgpt.report.page.gallery import Small, gallery
+from roadgpt.report.page.heat import SHADES, Axis, heat
+from roadgpt.report.page.lines import bars, lines
+from roadgpt.report.page.svg import ticks
+
+NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"
+TABLE = Table(
+    "counts",
+    NASTY,
+    ["what", "n"],
+    [[cell(NASTY, href="a b/c.png"), cell(3)], [cell(None), cell(0.25, "25 %")]],
+    "a note",
+    has_total=True,
+)
+
+
+def page(*blocks: object) -> Page:
+    return Page(NASTY, [NASTY, ["see ", linked("it", "x.png")]], [Section(NASTY, blocks)], {"command": NASTY})  # type: ignore[arg-type]
+
+
+class Reader(HTMLParser):
+    """Text and tags of a page; complains where tags do not close."""
+
+    EMPTY = ("meta", "br", "rect", "line", "circle", "path", "polyline")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[str] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def test_nothing_in_the_words_becomes_markup() -> None:
+    reader = Reader()
+    reader.feed(html_of(page(NASTY, TABLE, Details(NASTY, [TABLE, NASTY]))))
+    assert reader.open == []
+    assert "script" not in reader.tags
+    assert reader.text.count(NASTY) >= 6
+
+
+def test_a_page_asks_for_nothing() -> None:
+    text = html_of(page(TABLE, Figure("f", "c", gallery([], 250, "none"))))
+    assert "default-src 'none'" in text
+    assert not re.search(r"\b(src|href)=\"(https?:)?//", text)
+    assert "@import" not in text
+    assert "url(" not in text
+
+
+def test_every_form_of_a_table_has_its_numbers() -> None:
+    rows = list(csv.reader(io.StringIO(csv_of(TABLE))))
+    assert rows == [["what", "n"], [NASTY, "3"], ["", "0.25"]]
+    latex = latex_of(TABLE)
+    assert r"100 \%" in latex
+    assert r"\$x\_1\$ \textbackslash{} \{y\}" in latex
+    assert latex.count(r"\\") == 3
+    assert latex.index(r"\midrule", latex.index("3 ")) < latex.index(r"25 \%")
+    markdown = markdown_of(page(TABLE))
+    cells = next(line for line in markdown.splitlines() if "(a%20b/c.png)" in line)
+    assert len(re.findall(r"(?<!\\)\|", cells)) == 3
+
+
+def test_writing_puts_all_of_it_into_a_folder(tmp_path: Path) -> None:
+    told = page(TABLE, Details("more", [Table("inside", "x", ["a"], [[cell(1)]])]))
+    assert write(told, tmp_path / "new") == tmp_path / "new" / "report.html"
+    assert {path.name for path in (tmp_path / "new" / "tables").iterdir()} == {
+        "counts.csv",
+        "counts.tex",
+        "inside.csv",
+        "inside.tex",
+    }
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RoadGPTError, match="name another folder"):
+        write(told, tmp_path / "file")
+
+
+def parsed(svg: str) -> ET.Element:
+    return ET.fromstring(svg)
+
+
+def all_of(svg: str, tag: str) -> list[ET.Element]:
+    return parsed(svg).findall(f".//{{http://www.w3.org/2000/svg}}{tag}")
+
+
+@settings(max_examples=30)
+@given(low=st.floats(-1e5, 1e5), span=st.floats(1e-3, 1e5), most=st.integers(3, 10))
+def test_ticks_are_round_and_inside(low: float, span: float, most: int) -> None:
+    found = ticks(low, low + span, most)
+    assert 1 <= len(found) <= most + 1
+    assert all(low - 1e-6 * span <= tick <= low + span + 1e-6 * span for tick in found)
+    steps = np.diff(found)
+    if len(steps):
+        lead = steps[0] / 10 ** np.floor(np.log10(steps[0]) + 1e-9)
+        assert min(abs(lead - good) for good in (1, 2, 5, 10)) < 1e-6
+
+
+def test_shares_lie_where_they_should() -> None:
+    svg = forest([("a", [Share(0, 0.0, 0.0, 0.1, "0"), Share(1, 1.0, 0.9, 1.0, "1")])], ["x", "y"], "label")
+    first, second = (float(dot.get("cx", "nan")) for dot in all_of(svg, "circle"))
+    grid = [float(line.get("x1", "nan")) for line in all_of(svg, "line") if line.get("class") == "grid"]
+    assert (first, second) == (min(grid), max(grid))
+    assert parsed(svg).get("aria-label") == "label"
+
+
+def test_heat_fills_each_cell_with_its_shade() -> None:
+    values = np.array([[np.nan, 1.0, 2.0], [4.0, 0.0, 4.0]])
+    svg = heat(values, Axis("x", 0, 3), Axis("y", 0, 2), "n", "label")
+    cells = {float(path.get("fill-opacity", "nan")): path.get("d", "") for path in all_of(svg, "path")}
+    assert sorted(cells) == [pytest.approx(0.1 + 0.9 * share, abs=0.006) for share in (0.25, 0.5, 1.0)]
+    assert cells[1.0] == "M0 0h1v1h-1zM2 0h1v1h-1z"  # row 1 is on top
+    down = heat(values, Axis("x", 0, 3), Axis("y", 0, 2), "n", "label", downwards=True)
+    assert "M0 1h1v1h-1zM2 1h1v1h-1z" in down
+    assert SHADES >= 8
+    assert not all_of(heat(np.full((2, 2), np.nan), Axis("x", 0, 2), Axis("y", 0, 2), "n", "l"), "path")
+
+
+def test_bars_are_as_high_as_their_counts() -> None:
+    svg = bars([0, 1, 2, 3], [1, 0, 4], "x", "n", "label", mark=1.5)
+    high = [float(bar.get("height", "nan")) for bar in all_of(svg, "rect")]
+    assert high[1] == pytest.approx(4 * high[0], rel=0.01)
+    assert len(high) == 2
+
+
+def test_a_curve_goes_up_where_it_rises() -> None:
+    svg = lines([("a", [0, 1, 2], [0, 0, 5])], "x", "y", "label")
+    (points,) = (curve.get("points", "") for curve in all_of(svg, "polyline"))
+    heights = [float(point.split(",")[1]) for point in points.split()]
+    assert heights[0] == heights[1] > heights[2]
+    assert not all_of(lines([("none", [], [])], "x", "y", "label"), "polyline")
+
+
+def test_every_road_of_a_gallery_leads_somewhere() -> None:
+    road = np.array([[0.0, 0.0], [125.0, 125.0], [250.0, 250.0]])
+    small = [
+        Small(n, outcome, road if n else road[:0], (125.0, 125.0) if outcome == "FAIL" else None, f"r{n}.png")
+        for n, outcome in enumerate(("ERROR", "PASS", "FAIL", "INVALID", "VALID"))
+    ]
+    svg = gallery(small, 250.0, "label", columns=2)
+    assert [link.get("href") for link in all_of(svg, "a")] == [f"r{n}.png" for n in range(5)]
+    assert len(all_of(svg, "polyline")) == 4
+    assert len(all_of(svg, "path")) == 1

@@ -1,0 +1,65 @@
+"""Pages in a real browser: nothing is asked for, nothing sticks out, both colour schemes, phone and desk."""
+
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from chromium import FOUND, Page, browser
+from roadgpt.report.page import Figure, Section, Table, cell, write
+from roadgpt.report.page import Page as Report
+from roadgpt.report.page.forest import Share, forest
+from roadgpt.report.page.heat import Axis, heat
+
+pytestmark = pytest.mark.skipif(FOUND is None, reason="there is no chromium")
+SIDES = ((1100, 800, False), (360, 740, True))
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    chart = forest([("a road", [Share(0, 0.5, 0.3, 0.7, "5 of 10")])], ["planner"], "x")
+    matrix = heat(np.eye(9) + 1, Axis("road", 0, 9), Axis("road", 0, 9), "m", "x")
+    rows = [[cell("a description of many words " * 4), *(cell(n) for n in range(9))]]
+    table = Table("wide", "A wide table", ["prompt", *(f"number {n}" for n in range(9))], rows)
+    sections = [Section("One", [table, Figure("f", "A figure.", chart), Figure("h", "Another.", matrix)])]
+    return write(
+        Report("A report", ["The first line.", "word" * 60], sections, {"seed": "1"}),
+        tmp_path_factory.mktemp("r"),
+    )
+
+
+def opened(page: Page, path: Path) -> None:
+    page.send("Page.navigate", url=path.resolve().as_uri())
+    while page.run("document.readyState + location.protocol") != "completefile:":
+        time.sleep(0.02)
+
+
+def test_it_fits_every_screen_in_both_schemes(report: Path) -> None:
+    with browser() as page:
+        shades = set()
+        for wide, high, is_phone in SIDES:
+            for scheme in ("light", "dark"):
+                page.size(wide, high, is_phone)
+                feature = {"name": "prefers-color-scheme", "value": scheme}
+                page.send("Emulation.setEmulatedMedia", features=[feature])
+                opened(page, report)
+                assert page.run("document.documentElement.scrollWidth") <= wide
+                assert page.run("document.querySelectorAll('h2').length") == 2
+                colours = "(s => s.color + s.backgroundColor)(getComputedStyle(document.body))"
+                shades.add(page.run(colours))
+                sticks_out = """[...document.querySelectorAll('p, li, h1, h2, dd, figcaption')].filter(
+                    e => e.getBoundingClientRect().right > innerWidth + 1).map(e => e.textContent)"""
+                assert page.run(f"JSON.stringify({sticks_out})") == json.dumps([])
+        assert len(shades) == 2
+        assert page.told == []
+        assert {url.split(":")[0] for url in page.asked} <= {"file", "about"}
+
+
+def test_it_prints(report: Path) -> None:
+    with browser() as page:
+        opened(page, report)
+        page.send("Emulation.setEmulatedMedia", media="print")
+        assert page.run("getComputedStyle(document.querySelector('nav')).display") == "none"
+        assert page.send("Page.printToPDF")["data"]

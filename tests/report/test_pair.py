@@ -1,0 +1,57 @@
+"""Two roads one above the other: on the same scales, on either's axes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from roadgpt.cli import app
+from roadgpt.report.pair import pair
+from roadgpt.road import Road
+from roadgpt.run import Setup, prove
+
+LONG = [[20, 20, 0], [60, 30, 2], [100, 60, 4], [110, 110, 7], [150, 140, 30], [210, 200, 40]]
+SHORT = [[20, 20, 0], [60, 30, 2], [100, 60, 4]]
+
+
+def run_of(points: list[list[float]]) -> object:
+    return prove(Road.through(points), setup=Setup(drives=False))
+
+
+def test_both_roads_have_the_same_scales() -> None:
+    figure = pair(run_of(LONG), run_of(SHORT))  # type: ignore[arg-type]
+    above, beside, above2, beside2 = figure.axes
+    assert np.ptp(above.get_xlim()) == pytest.approx(np.ptp(above2.get_xlim()))
+    assert np.ptp(above.get_xlim()) == pytest.approx(np.ptp(above.get_ylim()))
+    assert beside.get_xlim() == beside2.get_xlim()
+    assert np.ptp(beside.get_ylim()) == pytest.approx(np.ptp(beside2.get_ylim()))
+    assert above.get_position().y0 > above2.get_position().y1
+
+
+def test_the_thesis_axes_say_what_they_do_not_show() -> None:
+    figure = pair(run_of(LONG), run_of(SHORT), "thesis")  # type: ignore[arg-type]
+    assert figure.axes[0].get_xlim() == (0, 220)
+    assert figure.axes[1].get_ylim() == (0, 20)
+    said = [text.get_text() for axes in figure.axes[:2] for text in axes.texts]
+    assert any("goes on to" in text and "m high" in text for text in said)
+    assert not any("goes on" in text.get_text() for text in figure.axes[3].texts)
+
+
+def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import json
+
+    monkeypatch.chdir(tmp_path)
+    for name, points in (("a.json", LONG), ("b.json", SHORT)):
+        Path(name).write_text(json.dumps(points))
+    result = CliRunner().invoke(app, ["compare", "a.json", "b.json"])
+    assert result.exit_code == 0, result.output
+    assert "number of turns" in result.output
+    first = Path("compared.png").read_bytes()
+    assert first[:4] == b"\x89PNG"
+    again = CliRunner().invoke(app, ["compare", "a.json", "a.json", "--json", "--out", "same.png"])
+    assert json.loads(again.stdout)["duplicate"] is True
+    wrong = CliRunner().invoke(app, ["compare", "a.json", "none.json"])
+    assert wrong.exit_code == 2
+    CliRunner().invoke(app, ["compare", "a.json", "b.json", "--out", "twice.png"])
+    assert Path("twice.png").read_bytes() == first

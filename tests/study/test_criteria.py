@@ -1,0 +1,87 @@
+"""Criteria: a road that does something else than was asked for fails in that criterion and in no other."""
+
+from typing import Any
+
+import pytest
+
+from roadgpt.brief import read
+from roadgpt.check.measures import Measures, measure
+from roadgpt.check.rules.promises import promises_of
+from roadgpt.road import Design, World, build, read_design
+from roadgpt.study.criteria import criteria_of_outline, criteria_of_truth
+from roadgpt.study.truth import Truth
+
+
+def road(*segments: tuple[str, float, float, float]) -> Measures:
+    """Of (direction, distance, turn, incline)."""
+    rows = [
+        {"direction": way, "distance": far, "turn_degrees": turn, "incline": up}
+        for way, far, turn, up in segments
+    ]
+    named = {f"road_segment{number}": row for number, row in enumerate(rows, 1)}
+    data = {"starting_point": [20, 20, 0], "theta": 45, **named}
+    design: Design = read_design(data)[0]
+    return measure(build(design).centreline())
+
+
+UP = road(
+    ("straight", 30, 0, 5), ("left", 40, 60, 5), ("straight", 30, 0, 5), ("right", 40, 60, 5),
+    ("straight", 30, 0, 5),
+)  # fmt: skip
+TWO = [{"kind": "turn", "dir": "left", "grade": "up"}, {"kind": "turn", "dir": "right", "grade": "up"}]
+
+
+@pytest.mark.parametrize(
+    ("truth", "broken"),
+    [
+        ({"turns": 2, "sequence": TWO}, set()),
+        ({"turns": 3}, {"turns"}),
+        ({"turns": 2, "grade": "down"}, {"incline"}),
+        ({"sequence": [{"kind": "turn", "dir": "right"}, {"kind": "turn", "dir": "left"}]}, {"order"}),
+        ({"sequence": [{"kind": "turn", "grade": "up"}, {"kind": "turn", "grade": "down"}]}, {"incline"}),
+        ({"sequence": [{"kind": "turn", "deg": [80, 100]}, {"kind": "turn"}]}, {"extent"}),
+        ({"left": 2, "length": [100, 300]}, {"turns"}),
+        ({"max_grade": [None, 3]}, {"incline"}),
+        ({"alternating": True, "length": [500, None]}, {"extent"}),
+        ({"ends": {"kind": "turn", "dir": "left"}}, {"order"}),
+        ({"starts": {"kind": "straight", "grade": "up"}}, set()),
+    ],
+)
+def test_one_thing_wrong(truth: dict[str, Any], broken: set[str]) -> None:
+    found = criteria_of_truth(UP, Truth.model_validate(truth))
+    assert {name for name, good in found.items() if not good} == broken | ({"general"} if broken else set())
+    assert "general" in found
+
+
+def test_what_nobody_asked_for_is_no_criterion() -> None:
+    assert {*criteria_of_truth(UP, Truth(turns=(2, 2)))} == {"turns", "general"}
+    found = criteria_of_truth(UP, Truth.model_validate({"sequence": TWO}))
+    assert {*found} == {"turns", "incline", "order", "general"}
+
+
+def test_a_wrong_number_of_turns_spoils_what_is_told_turn_by_turn() -> None:
+    found = criteria_of_truth(UP, Truth.model_validate({"sequence": [*TWO, {"kind": "turn"}]}))
+    assert found == {"turns": False, "incline": False, "order": False, "general": False}
+
+
+@pytest.mark.parametrize(
+    ("words", "broken"),
+    [
+        ("an uphill road with 2 turns", set()),
+        ("an uphill road with 3 turns", {"turns", "extent", "general"}),
+        ("a downhill road with 2 turns", {"incline", "general"}),
+        ("a left turn followed by a right turn", set()),
+        ("a right turn followed by a left turn", {"order", "general"}),
+        ("two turns of 90 degrees", {"extent", "general"}),
+    ],
+)
+def test_without_a_truth_the_reading_is_the_truth(words: str, broken: set[str]) -> None:
+    asked = promises_of(read(words, "grammar"), World())
+    found = criteria_of_outline(UP, asked)
+    assert {name for name, good in found.items() if not good} == broken
+
+
+def test_a_road_that_is_too_short_keeps_nothing() -> None:
+    stub = measure([[0, 0], [15, 0]])
+    found = criteria_of_truth(stub, Truth.model_validate({"turns": 0, "sequence": [], "grade": "flat"}))
+    assert not any(found.values())

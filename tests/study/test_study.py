@@ -1,0 +1,231 @@
+"""Studies: the same files for any number of processes, resumed, honest about designers that are silent."""
+
+import csv
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from fake_chat import FakeChat
+from roadgpt.chat import ChatError, ChatSettings
+from roadgpt.cli import app
+from roadgpt.design.designers import thesis as thesis_designer
+from roadgpt.errors import UsageError
+from roadgpt.run import Setup
+from roadgpt.study.plan import Plan, open_folder, read_plan
+from roadgpt.study.prompts import Prompt, thesis_prompts
+from roadgpt.study.reporting import keep_problems, write_campaign, write_study
+from roadgpt.study.truth import Truth
+from roadgpt.study.working import work
+
+GOLDEN = Path(__file__).parent / "golden"
+CLOCK = ("seconds.json", "generation_stats.csv")  # what the clock writes
+QUICK = Setup(reader="grammar", drives=False)
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    """All files of a study but for what the clock wrote."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file() and path.name not in CLOCK)
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def small(*words: str, roads: int = 1, **more: object) -> Plan:
+    prompts = tuple(Prompt(id=str(number), prompt=prompt) for number, prompt in enumerate(words, 1))
+    plan = Plan(kind="alignment", prompts=prompts, designers=("planner",), roads=roads, seed=3, setup=QUICK)
+    return plan.model_copy(update=more)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """``roadgpt study thesis --roads 2``, not driven."""
+    place = tmp_path_factory.mktemp("study")
+    words = ["study", "thesis", "--roads", "2", "--no-drive", "--no-plot", "--workers", "1", "--out", "study"]
+    here = Path.cwd()
+    os.chdir(place)
+    try:
+        result = CliRunner().invoke(app, words)
+    finally:
+        os.chdir(here)
+    assert result.exit_code == 0, result.output
+    assert result.output.splitlines()[-1] == str(Path("study", "report.html"))
+    return place / "study"
+
+
+def test_the_golden_study(study: Path) -> None:
+    """Tables of a small study; a change of them is a change of what users get."""
+    names = {path.name for path in GOLDEN.iterdir()}
+    assert names == {"alignment-planner.csv", "diversity.csv", "validity-shares.csv", "validity-thesis.csv"}
+    for name in names:
+        ours, theirs = (list(csv.reader((f / name).open())) for f in (study / "tables", GOLDEN))
+        assert len(ours) == len(theirs)
+        for row, other in zip(ours, theirs, strict=True):
+            for cell, golden in zip(row, other, strict=True):
+                try:
+                    assert float(cell) == pytest.approx(float(golden), abs=2e-3)
+                except ValueError:
+                    assert cell == golden
+
+
+def test_the_page_tells_what_the_tables_tell(study: Path) -> None:
+    page, text = (study / "report.html").read_text(), (study / "report.md").read_text()
+    for said in ("182 of 300 (60.7 %)", "55.35", "p = 9.6e-13", "z = −7.37", "Nobody drove these roads"):
+        assert said in page
+        assert said in text
+    assert "6 of 6 (100.0 %)" in page
+    assert "roadgpt study thesis --roads 2 --seed 1 --no-drive --out study" in page
+    assert re.search(r"encoder.onnx sha256 [0-9a-f]{16}", page)
+    for target in re.findall(r'href="([^"#]+)"', page):
+        assert (study / target).is_file(), target
+
+
+def test_the_report_is_written_again_from_the_folder_alone(study: Path) -> None:
+    before = (study / "report.html").read_bytes()
+    (study / "report.html").unlink()
+    result = CliRunner().invoke(app, ["report", str(study)])
+    assert result.exit_code == 0, result.output
+    assert (study / "report.html").read_bytes() == before
+
+
+def test_processes_and_a_pause_change_nothing(tmp_path: Path) -> None:
+    plan = small("a road", "two left turns", roads=2)
+    for name, workers in (("one", 1), ("two", 2)):
+        open_folder(plan, tmp_path / name)
+        heard: list[int] = []
+        assert work(plan, tmp_path / name, workers, tell=lambda _, done, h=heard: h.append(done)) == []
+        assert heard[-1] == 4
+        write_study(tmp_path / name)
+    assert content(tmp_path / "one") == content(tmp_path / "two")
+    halted = tmp_path / "three"
+    first = plan.model_copy(update={"roads": 1})
+    open_folder(first, halted)
+    work(first, halted)
+    open_folder(plan, halted)
+    work(plan, halted)
+    write_study(halted)
+    assert content(halted) == content(tmp_path / "one")
+
+
+def test_another_study_is_left_alone(tmp_path: Path) -> None:
+    plan = small("a road")
+    open_folder(plan, tmp_path)
+    before = content(tmp_path)
+    for other, says in (
+        (small("two turns"), "other prompts"),
+        (plan.model_copy(update={"seed": 4}), "other seed"),
+        (plan.model_copy(update={"designers": ("thesis",)}), "--designer planner"),
+    ):
+        with pytest.raises(UsageError, match=says):
+            open_folder(other, tmp_path)
+    more = plan.model_copy(update={"roads": 5})
+    open_folder(more, tmp_path)
+    with pytest.raises(UsageError, match="as many or more"):
+        open_folder(plan, tmp_path)
+    assert read_plan(tmp_path) == more
+    assert before.keys() == content(tmp_path).keys()
+    (tmp_path / "x").mkdir()
+    (tmp_path / "x" / "mine.txt").write_text("mine")
+    with pytest.raises(UsageError, match="holds no study"):
+        open_folder(plan, tmp_path / "x")
+
+
+def test_a_plan_survives_its_file(tmp_path: Path) -> None:
+    truth = Truth.model_validate(
+        {"sequence": [{"kind": "turn", "dir": "left", "deg": [80, None]}], "hilly": 2}
+    )
+    plan = small("a road").model_copy(update={"prompts": (Prompt(id="1", prompt="x", truth=truth),)})
+    open_folder(plan, tmp_path)
+    assert read_plan(tmp_path) == plan
+    (tmp_path / "study.json").write_text("{")
+    with pytest.raises(UsageError, match="cannot be read"):
+        read_plan(tmp_path)
+
+
+def test_a_designer_that_nobody_answers_is_said_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once; the other designer's roads are there, and the report says who is missing."""
+    chat = FakeChat(ChatError("the server does not answer; start it"))
+    monkeypatch.setattr(thesis_designer, "open_chat", lambda settings: chat)
+    setup = QUICK.model_copy(update={"chat": ChatSettings(model="fake")})
+    plan = small("a road", "two turns", designers=("thesis", "planner"), setup=setup)
+    open_folder(plan, tmp_path)
+    problems = work(plan, tmp_path)
+    assert [problem.is_of_chat for problem in problems] == [True, True]
+    assert len(chat.asked) == 1
+    page = (write_study(tmp_path)).read_text()
+    assert "planner: 2 of 2" in page
+    assert "thesis was not run" in page
+
+
+def test_the_thesis_method_stands_beside_the_planner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its answers are recorded ones here: one road that turns too sharply, and one that leaves the map."""
+    segment = {"direction": "left", "distance": 30, "incline": 2, "turn_degrees": 70}
+    sharp = {"starting_point": [100, 100, 0], "theta": 90, **{f"road_segment{n}": segment for n in (1, 2, 3)}}
+    outside = {**sharp, "starting_point": [5, 5, 0], "theta": 200}
+    chat = FakeChat(json.dumps(sharp), json.dumps(outside))
+    monkeypatch.setattr(thesis_designer, "open_chat", lambda settings: chat)
+    setup = QUICK.model_copy(update={"chat": ChatSettings(model="another")})
+    plan = Plan(
+        kind="thesis",
+        prompts=thesis_prompts()[:1],
+        designers=("planner", "thesis"),
+        roads=2,
+        seed=5,
+        setup=setup,
+    )
+    open_folder(plan, tmp_path)
+    assert work(plan, tmp_path) == []
+    write_study(tmp_path)
+    rows = list(csv.DictReader((tmp_path / "tables" / "validity-shares.csv").open()))
+    strict = {row["made by"]: row["valid"] for row in rows}
+    assert strict["planner, strict rules"] == "2"
+    assert strict["thesis, strict rules"] == "0"
+    assert strict["RoadGPT's thesis, its own checks"] in ("182", "88")
+
+
+def test_words_that_cannot_be_read_count_as_not_kept(tmp_path: Path) -> None:
+    plan = small("a road", "a road of 9000 metres")
+    open_folder(plan, tmp_path)
+    (problem,) = work(plan, tmp_path)
+    assert problem.part.endswith("02-a-road-of-9000-metres")
+    keep_problems(tmp_path, [problem])
+    text = write_study(tmp_path).with_name("report.md").read_text()
+    assert "1 of 2 (50.0 %) roads keep every word" in text
+    assert problem.sentence in text
+
+
+def test_alignment_by_the_command(tmp_path: Path) -> None:
+    file = tmp_path / "prompts.jsonl"
+    lines = [
+        {"id": "u", "prompt": "a U-turn", "truth": {"turns": 1}},
+        {"id": "w", "prompt": "two left turns", "truth": {"left": 3}},
+    ]
+    file.write_text("\n".join(map(json.dumps, lines)))
+    words = ["study", "alignment", str(file), "-n", "2", "--no-plot", "--workers", "1", "--reader", "grammar"]
+    result = CliRunner().invoke(app, [*words, "--out", str(tmp_path / "s"), "-q"])
+    assert result.exit_code == 0, result.output
+    rows = list(csv.DictReader((tmp_path / "s" / "tables" / "alignment-planner.csv").open()))
+    assert [(row["id"], float(row["general"])) for row in rows] == [("u", 1), ("w", 0)]
+    assert "written down by people" in (tmp_path / "s" / "report.html").read_text()
+
+
+def test_a_campaign_of_run_has_a_report_too(tmp_path: Path) -> None:
+    place = tmp_path / "runs"
+    words = ["run", "two left turns", "-n", "2", "--seed", "4", "--no-plot", "--reader", "grammar", "-q"]
+    assert CliRunner().invoke(app, [*words, "--out", str(place)]).exit_code == 0
+    result = CliRunner().invoke(app, ["report", str(place)])
+    assert result.exit_code == 0, result.output
+    page = (place / "report.html").read_text()
+    assert "two left turns" in page
+    assert "roadgpt run &#x27;two left turns&#x27; -n 2 --seed 4 --reader grammar" in page
+    for target in re.findall(r'href="([^"#]+)"', page):
+        assert (place / target).is_file(), target
+
+
+def test_folders_that_hold_nothing(tmp_path: Path) -> None:
+    result = CliRunner().invoke(app, ["report", str(tmp_path)])
+    assert result.exit_code == 2
+    assert "no campaign and no study" in result.stderr
+    with pytest.raises(UsageError):
+        write_campaign(tmp_path)
