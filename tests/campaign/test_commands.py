@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import random
+import re
 import signal
 import sqlite3
 import subprocess
@@ -175,6 +176,22 @@ def test_a_test_is_driven_again_to_the_same_bytes(driven: Path, tmp_path: Path) 
     assert float(rows[1]["margin_m"]) == run.verdict.margin if run.verdict else None
     assert int(rows[1]["seed"]) == run.seed
     assert "road with 2 turns" in roadgpt("show", one).output
+
+
+def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    guide = (TESTS.parent / "docs" / "guides" / "campaigns.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"^```python\n(.*?)^```", guide, re.MULTILINE | re.DOTALL)
+    for name, here in (
+        ('"study"', repr(str(driven))),
+        ('"c02"', '"c01"'),
+        ("17", "2"),
+        ("FAIL", "PASS"),
+        ("-0.5", "99"),
+    ):
+        assert name in code
+        code = code.replace(name, here)
+    exec(compile(code, "campaigns.md", "exec"), {})
+    assert "kept its lane" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from campaign.test_store import BRIEFS
 from roadgpt.campaign.model import Budget
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.plan_file import read_plan
+from roadgpt.campaign.plan_file import PlanTable, WorldTable, read_plan
 from roadgpt.errors import PartError, UsageError
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -76,6 +76,29 @@ def test_every_combination_is_a_cell_in_order(tmp_path: Path) -> None:
     assert cells[0].request.world.speed_limit == pytest.approx(10.0)
     assert cells[0].settings == {"size": 3}
     assert plan.budget == Budget(tests=9)
+
+
+def test_the_plan_in_the_guide_is_one(tmp_path: Path) -> None:
+    guide = (ROOT / "docs" / "guides" / "campaigns.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"^```toml\n(.*?)^```", guide, re.MULTILINE | re.DOTALL)
+    (tmp_path / "study.toml").write_text(block)
+    plan = read_plan(tmp_path / "study.toml").plan
+    plan.check()
+    assert len(plan.cells({})) == 12
+    keys = {
+        key
+        for row in re.findall(r"^\| (`[^|]+) \|", guide, re.MULTILINE)
+        for key in re.findall(r"`(\[?\w+\]?)`", row)
+    }
+    known = {name if kind not in (dict, WorldTable) else f"[{name}]" for name, kind in kinds().items()}
+    assert known <= keys
+
+
+def kinds() -> dict[str, object]:
+    return {
+        name: WorldTable if name == "world" else dict if name in ("chat", "settings") else str
+        for name in PlanTable.model_fields
+    }
 
 
 def test_names_of_many_cells_are_in_order_as_texts() -> None:
