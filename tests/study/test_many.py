@@ -1,0 +1,135 @@
+"""The report of a campaign of many tests says what stands in its store, counted by another way."""
+
+import csv
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from roadgpt.campaign.model import Budget, Cell, Proposal, Result
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.store import Store
+from roadgpt.campaign.worker import Ended
+from roadgpt.cli import app
+from roadgpt.run.model import Request, Seconds
+from roadgpt.study.many import write_many
+
+CELLS, TESTS = ("c01", "c02"), 300
+DRIVERS = ("beamng_like", "pure_pursuit")
+
+
+def drawn() -> Iterator[tuple[str, Result]]:
+    """Results as they might be: the second driver fails more often."""
+    rng = np.random.default_rng(3)
+    for cell in CELLS:
+        for number in range(1, TESTS + 1):
+            margin = float(rng.normal(0.8 if cell == "c01" else 0.3, 0.6))
+            outcome = "INVALID" if rng.random() < 0.1 else "FAIL" if margin < 0 else "PASS"
+            features = {"MAX_CURV": float(rng.uniform(0, 0.08)), "DIR_COV": float(rng.uniform(0, 0.5))}
+            yield (
+                cell,
+                Result(
+                    number=number,
+                    batch=0,
+                    proposal=Proposal(None, number, "draft"),
+                    outcome=outcome,  # type: ignore[arg-type]
+                    description=f"what happened in <{number}>",
+                    length=200.0,
+                    margin=None if outcome == "INVALID" else margin,
+                    cause="out of lane" if outcome == "FAIL" else None,
+                    side="left" if outcome == "FAIL" else None,
+                    at_s=50.0 if outcome == "FAIL" else None,
+                    features={} if outcome == "INVALID" else features,
+                ),
+            )
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("many")
+    plan = Plan(prompts=("a winding road",), drivers=DRIVERS, budget=Budget(tests=TESTS))
+    cells = []
+    for name, driver in zip(CELLS, DRIVERS, strict=True):
+        request = Request(words="a winding road")
+        request = request.model_copy(update={"setup": request.setup.model_copy(update={"driver": driver})})
+        cells.append(Cell(name, request, None, "words", None, budget=Budget(tests=TESTS)))
+    store = Store.new(folder, plan.model_dump_json(), cells, {"roadgpt": "1"})
+    with store:
+        store.begin_sitting(1)
+        results = list(drawn())
+        for cell in CELLS:
+            proposals = [result.proposal for name, result in results if name == cell]
+            store.add_batch(cell, 0, 1, proposals)
+        ended = [(cell, Ended(result, seconds=Seconds(0.01, 0.1))) for cell, result in results]
+        store.keep(ended, None, [], {"c01": 3.0, "c02": 4.0})
+        store.finish()
+    return folder
+
+
+def rows(folder: Path, name: str) -> list[dict[str, str]]:
+    return list(csv.DictReader((folder / "tables" / f"{name}.csv").open()))
+
+
+def test_counts_are_those_of_the_results(campaign: Path) -> None:
+    write_many(campaign)
+    found = rows(campaign, "outcomes")
+    for row in found:
+        own = [result for cell, result in drawn() if cell == row["cell"]]
+        failed = [result for result in own if result.outcome == "FAIL"]
+        driven = [result for result in own if result.outcome in ("PASS", "FAIL")]
+        assert (int(row["tests"]), int(row["failed"]), int(row["driven"])) == (
+            TESTS,
+            len(failed),
+            len(driven),
+        )
+        least = min(result.margin for result in driven if result.margin is not None)
+        assert float(row["least margin, m"]) == pytest.approx(least, abs=1e-4)
+    page = (campaign / "report.html").read_text()
+    total = sum(result.outcome == "FAIL" for _, result in drawn())
+    assert f"{total} FAIL" in page
+    assert "Most fail in c02" in page
+    assert "&lt;" in page
+    assert not re.search(r"<\d+>", page)
+
+
+def test_the_worst_come_first_and_lead_to_their_runs(campaign: Path) -> None:
+    every = sorted((r.margin, f"{c}/{r.number}") for c, r in drawn() if r.outcome == "FAIL" and r.margin)
+    cell, number = every[0][1].split("/")
+    there = campaign / "again" / cell / "runs" / f"{int(number):04d}"
+    there.mkdir(parents=True)
+    (there / "birds_eye.png").write_bytes(b"")
+    write_many(campaign)
+    found = rows(campaign, "worst")
+    assert [row["test"] for row in found] == [name for _, name in every[: len(found)]]
+    page = (campaign / "report.html").read_text()
+    assert re.findall(r'href="(again[^"]+)"', page) == [f"again/{cell}/runs/{int(number):04d}/birds_eye.png"]
+    assert f"roadgpt redrive {campaign} {every[0][1]}" in page
+
+
+def test_the_command_writes_it(campaign: Path) -> None:
+    result = CliRunner().invoke(app, ["report", str(campaign)])
+    assert result.exit_code == 0, result.output
+    assert f"roadgpt resume {campaign}" in (campaign / "report.html").read_text()
+
+
+def test_bars_and_cells_hold_every_test(campaign: Path) -> None:
+    """The curve ends at all failures, and maps hold all tests that have features."""
+    from roadgpt.campaign.record import Record
+    from roadgpt.study.chapters.many import _map, coverage
+
+    with Record.opened(campaign) as record:
+        sums = _map(record, "MAX_CURV", "DIR_COV", 1)
+        figures = coverage(record, 2 * TESTS)
+    told = [r for _, r in drawn() if r.features]
+    assert sums.sum() == len(told)
+    theirs, _, _ = np.histogram2d(
+        [r.features["DIR_COV"] for r in told],
+        np.clip([r.features["MAX_CURV"] for r in told], 0, 0.07 - 1e-9),
+        25,
+        ((0, 1), (0, 0.07)),
+    )
+    assert np.abs(sums - theirs).sum() <= 2  # rounding at the border of a cell
+    assert len(figures) == 1
