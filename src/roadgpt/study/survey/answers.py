@@ -8,7 +8,7 @@ from typing import Literal
 
 from roadgpt.study.survey.order import pages_for
 from roadgpt.study.survey.questions import CHECK, MATCHES, Part
-from roadgpt.study.survey.store import Store
+from roadgpt.study.survey.store import Store, code_of
 from roadgpt.study.survey.survey import Survey
 
 Source = Literal["people", "synthetic"]
@@ -98,7 +98,7 @@ def _rows(survey: Survey, digest: str, given: Mapping[str, str], source: Source)
     return [
         Row(
             source=source,
-            rater=digest[:8],
+            rater=code_of(digest),
             attention=attention,
             part=page.part,
             item=page.item.id if page.item else "",

@@ -118,7 +118,7 @@ def about_bars(
     high = sum(heights) + 0.4
     figure = new_figure(WIDE, high)
     figure.patch.set_alpha(0)
-    most = max((count for _, answers in counts for _, count in answers), default=1)
+    most = max(1, *(count for _, answers in counts for _, count in answers))
     top = high - 0.35
     for number, (text, answers) in enumerate(counts):
         row, column = divmod(number, 2)

@@ -1,27 +1,34 @@
 """Films for raters, by ``report.film``; where its libraries are missing a survey goes without."""
 
 from collections.abc import Sequence
-from importlib.util import find_spec
 from pathlib import Path
 
+from roadgpt.errors import UsageError
+from roadgpt.report.film import Settings, film_of, split_film
+from roadgpt.report.film.encoding import encoder
 from roadgpt.run import Run
 
+BEFORE_THE_END = 0.1  # s; at the end of a drive films tell its outcome, which raters should not know
 WHY_NONE = (
-    "there are no films, because the libraries for them are not installed; raters see plots and the 3-D "
-    "view. For films: python -m pip install 'roadgpt[film]', and make the survey again"
+    "there are no films, because the library for them is not installed; raters see plots and the 3-D view. "
+    "For films say python -m pip install 'roadgpt[film]' and make the survey again"
 )
 
 
 def are_possible() -> bool:
     """Is there what films need?"""
-    return find_spec("av") is not None and find_spec("roadgpt.report.film") is not None
+    try:
+        encoder()
+    except UsageError:
+        return False
+    return True
 
 
-def make_film(runs: Sequence[Run], path: Path, camera: str) -> None:
+def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
     """Film one drive, or two in a split screen."""
-    from roadgpt.report.film import film_of, split_film
-
+    longest = max(run.drive.duration for run in runs if run.drive is not None)
+    settings = Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
     if len(runs) == 1:
-        film_of(runs[0], path, camera)
+        film_of(runs[0], path, view, settings)
     else:
-        split_film(runs[0], runs[1], path, camera)
+        split_film(runs[0], runs[1], path, view, settings)

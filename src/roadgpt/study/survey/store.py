@@ -48,7 +48,7 @@ class Rater:
     @property
     def code(self) -> str:
         """What they are called in tables."""
-        return self.digest[:8]
+        return code_of(self.digest)
 
 
 NOBODY = Rater("0" * 64, "invited")
@@ -169,6 +169,11 @@ class Store:
                 if self._file.in_transaction:
                     self._file.execute("ROLLBACK")
                 raise
+
+
+def code_of(digest: str) -> str:
+    """A short name: among 10,000 raters two are called alike once in five million surveys."""
+    return digest[:12]
 
 
 def digest_of(token: str) -> str:

@@ -31,7 +31,7 @@
       if (answer.ok) {
         wait = 500;
         if (waiting.get(question) === value) waiting.delete(question);
-        if (waiting.size === 0) say("Saved.");
+        if (waiting.size === 0 && pauses.size === 0) say("Saved.");
       } else if (answer.status === 503) {
         throw new Error("busy");
       } else {
@@ -59,9 +59,19 @@
   form.addEventListener("input", ({ target }) => {
     if (target.type !== "textarea") return;
     clearTimeout(pauses.get(target.name));
+    say("Saving ...");
     pauses.set(target.name, setTimeout(() => keep(target.name, target.value), 800));
   });
-  form.addEventListener("submit", () => waiting.clear()); // the form itself brings all answers of the page
+  // whoever leaves in the middle of a word loses none of it
+  document.addEventListener("visibilitychange", () => {
+    if (document.visibilityState !== "hidden") return;
+    for (const name of [...pauses.keys()]) keep(name, form.elements[name].value);
+  });
+  form.addEventListener("submit", () => { // the form itself brings all answers of the page
+    waiting.clear();
+    pauses.forEach((timer) => clearTimeout(timer));
+    pauses.clear();
+  });
   window.addEventListener("beforeunload", (event) => {
     if (waiting.size > 0) event.preventDefault();
   });

@@ -1,0 +1,272 @@
+"""Surveys are made of runs: what raters are shown, what they are not told, and what is refused."""
+
+import io
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from matplotlib.image import imread
+
+from roadgpt.brief import read
+from roadgpt.cli.commands.survey_ import command
+from roadgpt.errors import UsageError
+from roadgpt.report.film import Film, Settings
+from roadgpt.road import Design, Segment
+from roadgpt.run import Run, Setup, perform, prove, write_run
+from roadgpt.run.card import CARD as CAMPAIGN
+from roadgpt.run.card import Card
+from roadgpt.study.survey import films, making
+from roadgpt.study.survey.picking import picked
+from roadgpt.study.survey.plan import plan_text, read_plan
+from roadgpt.study.survey.plots import Axes
+from roadgpt.study.survey.spoken import criteria_of
+from roadgpt.study.survey.survey import Survey, read_survey
+
+SETUP = Setup(reader="grammar", drives=False)
+NAMES = ("path", "view", "settings")
+PROMPTS = ("an uphill road with 3 turns", "a serpentine road")
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two campaigns of two roads each, nobody drove."""
+    folder = tmp_path_factory.mktemp("study")
+    for number, words in enumerate(PROMPTS, 1):
+        campaign = folder / "planner" / f"{number:02d}"
+        made = [perform(words, 5, setup=SETUP, index=index) for index in (1, 2)]
+        for run in made:
+            assert run.is_valid
+            write_run(run, campaign)
+        card = Card(request=made[0].request, roads=2, is_finished=True)
+        (campaign / CAMPAIGN).write_text(card.model_dump_json())
+    return folder
+
+
+@pytest.fixture(scope="module")
+def made(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Survey]:
+    out = tmp_path_factory.mktemp("made") / "survey"
+    told: list[str] = []
+    survey = making.make(picked(runs, "Jane", "jane@x.example", 1), Path(), out, told.append)
+    assert len(told) == 4
+    return out, survey
+
+
+def test_a_survey_drawn_from_a_study_asks_what_its_descriptions_speak_of(
+    made: tuple[Path, Survey], runs: Path
+) -> None:
+    out, survey = made
+    assert read_survey(out) == survey
+    assert [item.prompt for item in survey.of_part("alignment")] == list(PROMPTS)
+    assert [item.criteria for item in survey.of_part("alignment")] == [("number of turns", "incline"), ()]
+    assert [item.prompt for item in survey.of_part("similarity")] == list(PROMPTS)
+    for item in survey.of_part("similarity"):
+        assert item.roads[0] != item.roads[1]
+        assert set(item.machine) == {
+            "overall",
+            "number of turns",
+            "incline",
+            "order of turns",
+            "length of the road",
+        }
+    assert survey.items[0].machine == {"overall": 1.0, "number of turns": 1.0, "incline": 1.0}, (
+        "the planner keeps its words"
+    )
+    assert picked(runs, "Jane", "j", 1) == picked(runs, "Jane", "j", 1)
+
+
+def test_every_medium_is_there_and_nothing_else(made: tuple[Path, Survey]) -> None:
+    out, survey = made
+    assert {path.name for path in (out / "media").iterdir()} == set(survey.media)
+    shapes = set()
+    for name, medium in survey.media.items():
+        data = (out / "media" / name).read_bytes()
+        if medium.kind == "picture":
+            picture = np.asarray(imread(io.BytesIO(data), format="png"))
+            shapes.add(picture.shape)
+            assert len(np.unique((picture[::3, ::3, :3] * 255).round() @ [65536, 256, 1])) > 20
+        else:
+            assert medium.kind == "view"
+    assert len(shapes) == 1, "all plots are drawn alike"
+
+
+def test_the_view_tells_raters_no_verdict_and_no_measures(made: tuple[Path, Survey]) -> None:
+    out, survey = made
+    for name, medium in survey.media.items():
+        if medium.kind == "view":
+            page = (out / "media" / name).read_text("utf-8")
+            found = re.search(r'<script id="data" type="application/json">(.*?)</script>', page)
+            assert found
+            for scene in json.loads(found[1]):
+                assert {scene[key] for key in ("outcome", "description", "about", "told")} == {""}
+                assert scene["places"] == []
+    raters_see = survey.model_dump_json(exclude={"items": {"__all__": {"machine", "roads"}}})
+    assert "VALID" not in raters_see
+
+
+def straight(length: float, start: tuple[float, float, float] = (10, 10, 0)) -> Run:
+    segment = Segment(distance=length, direction="straight", incline=10)
+    return prove(Design(starting_point=start, theta=45, segments=(segment,)), setup=Setup(drives=False))
+
+
+def test_axes_are_the_thesis_where_all_roads_fit_and_one_for_all_where_not() -> None:
+    short, long = straight(150).road, straight(280).road
+    assert short is not None
+    assert long is not None
+    thesis = Axes.of([short])
+    assert (thesis.frame.x0, thesis.frame.x1, thesis.along, thesis.height) == (0, 220, 200, 20)
+    both = Axes.of([short, long])
+    assert both.along >= 280
+    assert both.height >= 28 - 0.5
+    corners = np.concatenate([short.at(np.array([0.0, short.length])), long.at(np.array([0.0, long.length]))])
+    assert all(both.frame.holds(x, y) for x, y, _ in corners)
+    assert both.frame.width == pytest.approx(both.frame.height)
+
+
+@pytest.mark.parametrize(
+    ("words", "criteria"),
+    [
+        ("a serpentine road", ()),
+        ("an uphill road with 3 turns", ("turns", "incline")),
+        ("a road going uphill for 3 turns and downhill for 2 turns", ("turns", "incline", "order")),
+        (
+            "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn",
+            ("turns", "incline", "order"),
+        ),
+    ],
+)  # fmt: skip
+def test_criteria_are_those_that_the_thesis_asked_for(words: str, criteria: tuple[str, ...]) -> None:
+    """Its figures 6.9, 6.12, 6.15 and 6.18."""
+    assert criteria_of(read(words, "grammar")) == criteria
+
+
+def test_a_file_may_name_texts_criteria_and_questions_of_its_own(runs: Path, tmp_path: Path) -> None:
+    run = next(runs.glob("planner/01/runs/0001"))
+    (tmp_path / "S.toml").write_text(
+        f"""title = "Own"\nasks = "Me"\ncontact = "me@x.example"\nattention_check = false\nviews = false
+[[about]]\ntext = "Do you like roads?"\nanswers = ["yes", "no"]
+[[alignment]]\nrun = "{run.as_posix()}"\nprompt = "something <else>"\ncriteria = ["turns", "beauty"]\n"""
+    )
+    plan = read_plan(tmp_path / "S.toml")
+    survey = making.make(plan, tmp_path, tmp_path / "out")
+    assert [page.part for page in survey.pages] == ["about", "alignment", "end"]
+    assert survey.about[0].answers == ("yes", "no")
+    assert survey.items[0].criteria == ("number of turns", "beauty")
+    assert survey.items[0].machine == {}, "the road was not made from these words"
+    (tmp_path / "again.toml").write_text(plan_text(plan))
+    again = read_plan(tmp_path / "again.toml")
+    assert again.model_copy(update={"purpose": ""}) == plan
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("title = ", "is no TOML"),
+        ('asks = "x"\ncontact = "y"', "names no road"),
+        ('contact = "y"\n[[alignment]]\nrun = "x"', "asks: field required"),
+        ('asks = "x"\ncontact = "y"\ncolour = "red"\n[[alignment]]\nrun = "x"', "colour: extra inputs"),
+        ('asks = "x"\ncontact = "y"\n[[similarity]]\nruns = ["x"]', r"similarity\.1\.runs"),
+        ('asks = "x"\ncontact = "y"\n[[alignment]]\nrun = "nowhere"', "there is no run in"),
+    ],
+)
+def test_what_a_file_says_wrongly_is_told_in_a_sentence(tmp_path: Path, text: str, says: str) -> None:
+    (tmp_path / "S.toml").write_text(text)
+    with pytest.raises(UsageError, match=says):
+        making.make(read_plan(tmp_path / "S.toml"), tmp_path, tmp_path / "out")
+    with pytest.raises(UsageError, match="cannot be read"):
+        read_plan(tmp_path / "nothing.toml")
+
+
+def test_a_survey_to_which_people_were_invited_is_never_replaced(
+    made: tuple[Path, Survey], runs: Path, tmp_path: Path
+) -> None:
+    plan = picked(runs, "Jane", "j")
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "answers.sqlite").write_bytes(b"answers")
+    with pytest.raises(UsageError, match="people were invited"):
+        making.make(plan, Path(), tmp_path / "a")
+    assert (tmp_path / "a" / "answers.sqlite").read_bytes() == b"answers"
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "thesis.docx").write_bytes(b"years of work")
+    with pytest.raises(UsageError, match="holds something else"):
+        making.make(plan, Path(), tmp_path / "b")
+
+
+def test_films_are_made_once_and_where_none_can_be_that_is_said(
+    runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    driven = replace(
+        prove(
+            Design(
+                starting_point=(60, 60, 0),
+                theta=0,
+                segments=(Segment(distance=60, direction="straight", incline=0),),
+            ),
+            7,
+        ),
+        index=1,
+    )
+    campaign = tmp_path / "campaign"
+    write_run(driven, campaign)
+    where = (campaign / "runs" / "0001").as_posix()
+    words = f'asks = "x"\ncontact = "y"\n[[alignment]]\nrun = "{where}"\nprompt = "a road"'
+    (tmp_path / "S.toml").write_text(words)
+    made: list[Path] = []
+
+    def record(runs: list[Run], path: Path, view: str) -> None:
+        made.append(path)
+        path.write_bytes(view.encode())
+
+    monkeypatch.setattr(making, "are_possible", lambda: True)
+    monkeypatch.setattr(making, "make_film", record)
+    plan = read_plan(tmp_path / "S.toml")
+    survey = making.make(plan, tmp_path, tmp_path / "out")
+    assert [medium.kind for medium in survey.items[0].media] == ["picture", "picture", "film", "film", "view"]
+    assert survey.lacks == ""
+    making.make(plan, tmp_path, tmp_path / "out")
+    assert [path.read_bytes() for path in made] == [b"chase", b"bonnet"], "what is there is not made again"
+    monkeypatch.setattr(making, "are_possible", lambda: False)
+    without = making.make(plan, tmp_path, tmp_path / "out")
+    assert "there are no films" in without.lacks
+    assert not list((tmp_path / "out" / "media").glob("*.mp4"))
+
+
+def test_a_film_for_raters_ends_before_its_outcome_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every frame is of a second before the drive is over, when films tell how it went."""
+    segment = Segment(distance=30, direction="straight", incline=0)
+    run = prove(Design(starting_point=(60, 60, 0), theta=0, segments=(segment,)), 7)
+    last: list[float] = []
+
+    def plan(*runs: Run, path: Path, view: str, settings: Settings) -> None:
+        last.append(Film.of(runs, "chase", settings).times[-1])
+
+    monkeypatch.setattr(films, "film_of", lambda a, *rest: plan(a, **dict(zip(NAMES, rest, strict=True))))
+    monkeypatch.setattr(
+        films, "split_film", lambda a, b, *rest: plan(a, b, **dict(zip(NAMES, rest, strict=True)))
+    )
+    films.make_film([run], Path("one.mp4"), "chase")
+    films.make_film([run, run], Path("two.mp4"), "chase")
+    assert run.drive is not None
+    assert len(last) == 2
+    assert all(run.drive.duration - 0.2 < time < run.drive.duration for time in last)
+
+
+def test_the_commands_make_and_analyse_a_survey(runs: Path, tmp_path: Path) -> None:
+    out, runner = str(tmp_path / "s"), CliRunner()
+    alone = runner.invoke(command, ["new", "--out", out])
+    assert isinstance(alone.exception, UsageError)
+    assert "SURVEY.toml" in str(alone.exception)
+    nobody = runner.invoke(command, ["new", "--from", str(runs), "--out", out])
+    assert "say who asks" in str(nobody.exception)
+    done = runner.invoke(
+        command,
+        ["new", "--from", str(runs), "--out", out, "--asks", "J", "--contact", "j@x.example", "--pairs", "0"],
+    )
+    assert done.exit_code == 0, done.output
+    assert read_plan(tmp_path / "s" / "SURVEY.toml").asks == "J"
+    tried = runner.invoke(command, ["analyse", out, "--synthetic", "5", "--seed", "2"])
+    assert tried.output.strip().endswith("analysis-synthetic/report.html")
+    assert "nobody was invited" in str(runner.invoke(command, ["analyse", out]).exception)
