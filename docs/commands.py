@@ -24,9 +24,18 @@ def page() -> str:
         if command is not None:
             parts += [f"## roadgpt {name}\n", help_of(command, name, group)]
         if isinstance(command, click.Group):
-            inside = click.Context(command, group, name)
-            parts += [help_of(its, own, inside) for own, its in command.commands.items()]
+            parts += inside(command, click.Context(command, group, name))
     return "\n".join(parts)
+
+
+def inside(command: click.Group, context: click.Context) -> list[str]:
+    """The help of all commands in a group, groups in it included."""
+    parts: list[str] = []
+    for own, its in command.commands.items():
+        parts.append(help_of(its, own, context))
+        if isinstance(its, click.Group):
+            parts += inside(its, click.Context(its, context, own))
+    return parts
 
 
 if __name__ == "__main__":

@@ -143,7 +143,7 @@ def test_every_command_line_in_the_docs_is_understood() -> None:
         name, *rest = line.removeprefix("roadgpt ").split(" ")
         command = app.get_command(click.Context(app), name)
         assert command is not None, line
-        if isinstance(command, click.Group):
+        while isinstance(command, click.Group):
             command, rest = command.commands[rest[0]], rest[1:]
         known = {option for parameter in command.params for option in parameter.opts}
         assert {word for word in rest if re.match(r"--?[a-z]", word)} <= known, line
