@@ -27,7 +27,9 @@ BLOCK = 4  # pixels
 LEAN = 0.6  # of the meadow's pattern with the height: else it would be drawn out on steep banks
 ALIKE = 0.08  # difference of depths of one ground
 RIDGES = 0.12  # upward part of a direction, below which the sky is drawn pixel by pixel
-REACH = 36.0  # m^2: farther from the car there is no shadow
+REACH = 20.0  # m^2: farther from the car's middle there is no shadow
+HIGHEST = 1.6  # m: the sun stands high enough that no shadow is longer than this
+SLICES = 5
 
 
 @inlined
@@ -40,15 +42,17 @@ def _box(x: float, y: float, long: float, wide: float, soft: float) -> float:
 def _shadow(car: Array, x: float, y: float, z: float) -> float:
     """How much light is left at a place on the ground: the car hides the sun, and the sky under it."""
     dx, dy, dz = x - car[0], y - car[1], z - car[2]
-    if dx * dx + dy * dy > REACH or abs(dz) > 1.6:
+    if dx * dx + dy * dy > REACH or abs(dz) > HIGHEST:
         return 1.0
     ahead, left = dx * car[3] + dy * car[4] - car[7], dy * car[3] - dx * car[4]
     long, wide = car[5] / 2, car[6] / 2
+    if abs(ahead) > long + HIGHEST or abs(left) > wide + HIGHEST:
+        return 1.0
     under = _box(ahead, left, long - 0.05, wide - 0.02, 0.5)
     along, across = (SUN_X * car[3] + SUN_Y * car[4]) / SUN_Z, (SUN_Y * car[3] - SUN_X * car[4]) / SUN_Z
     cast = 0.0
-    for k in range(7):  # slices of the car, the cabin being shorter and narrower
-        up = 0.18 + 0.2 * k
+    for k in range(SLICES):  # of the car, the cabin being shorter and narrower
+        up = 0.2 + 1.2 / (SLICES - 1) * k
         cabin = max(up - 0.85, 0.0)
         back = 0.35 * min(cabin * 4.0, 1.0)
         slice_long = long - 2.0 * cabin - 0.25 * min(cabin * 20.0, 1.0)
