@@ -104,4 +104,5 @@ def analyse(directory: Path, out: Path | None, synthetic: int | None, agreement:
 
     answers = collected(directory, synthetic, seed, agreement)
     target = out or directory / ("analysis-synthetic" if synthetic else "analysis")
-    click.echo(str(analyse_into(answers, target)))
+    made_up = f" --synthetic {synthetic} --agreement {agreement:g} --seed {seed}" if synthetic else ""
+    click.echo(str(analyse_into(answers, target, f"roadgpt study survey analyse {directory}{made_up}")))

@@ -19,6 +19,7 @@ from urllib.parse import parse_qsl
 
 from roadgpt.study.survey import pages
 from roadgpt.study.survey.order import pages_for
+from roadgpt.study.survey.questions import clean
 from roadgpt.study.survey.store import MOST_RATERS, Rater, Store
 from roadgpt.study.survey.survey import MEDIA, Page, Survey
 
@@ -145,7 +146,7 @@ class Desk:
         if asked.kind != FORM:
             return self._notice(415, "Not taken", "Answers come as a form; files are not taken.")
         page, fields = own[number - 1], _fields(asked)
-        answers = {q.id: _clean(fields[q.id]) for q in page.questions if q.id in fields}
+        answers = {q.id: clean(fields[q.id]) for q in page.questions if q.id in fields}
         by_id = self.survey.questions
         if any(not by_id[id_].takes(value) for id_, value in answers.items()):
             return self._notice(
@@ -171,7 +172,7 @@ class Desk:
             return _said(400, error="this is not JSON")
         match data:
             case {"question": str(id_), "value": str(value)} if len(data) == 2:
-                question, value = self.survey.questions.get(id_), _clean(value)
+                question, value = self.survey.questions.get(id_), clean(value)
             case _:
                 return _said(400, error="an answer has a question and a value")
         if question is None:
@@ -240,11 +241,3 @@ def _fields(asked: Asked) -> dict[str, str]:
         )
     except ValueError:
         return {}
-
-
-def _clean(text: str) -> str:
-    """Without control characters, halves of letters and spaces at the ends; lines end with a newline."""
-    text = text.replace("\r\n", "\n").replace("\r", "\n").encode("utf-8", "ignore").decode()
-    return "".join(
-        letter for letter in text if letter in "\n\t" or letter.isprintable() or letter == "\u200d"
-    ).strip()

@@ -174,7 +174,7 @@ def mine(survey: Survey, base: str, given: Mapping[str, str], agreed_on: str) ->
     )
     body = fill(
         """<h1>My answers</h1>
-<p>You agreed to take part on {agreed_on}. This is all else that is kept:</p>
+<p>You agreed to take part on {agreed_on}. Besides that, this is all that is kept:</p>
 {table}
 <p class="go"><a class="button" href="{base}">Back to the survey</a></p>
 <h2>Withdraw</h2>
@@ -186,7 +186,7 @@ def mine(survey: Survey, base: str, given: Mapping[str, str], agreed_on: str) ->
 </form>""",
         base=base,
         agreed_on=agreed_on,
-        table=table if rows else Markup("<p>There are none yet.</p>"),
+        table=table if rows else Markup("<p>(no answers yet)</p>"),
     )
     return layout(survey, "My answers", body)
 

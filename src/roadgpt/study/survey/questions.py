@@ -161,3 +161,16 @@ def check_question() -> Question:
 END = Question(
     id="end.remarks", text="Is there anything else that you want to tell us? (if you like)", is_needed=False
 )
+
+
+def clean(text: str) -> str:
+    """Without control characters, halves of letters and spaces at the ends; lines end with a newline."""
+    text = text.replace("\r\n", "\n").replace("\r", "\n").encode("utf-8", "ignore").decode()
+    return "".join(map(_letter, text)).strip()
+
+
+def _letter(letter: str) -> str:
+    """As it is kept: all spaces alike, joiners of letters as they are, nothing else that cannot be seen."""
+    if letter in "\n\t\u200c\u200d" or letter.isprintable():
+        return letter
+    return " " if letter.isspace() else ""

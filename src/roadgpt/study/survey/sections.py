@@ -136,6 +136,8 @@ class Told:
                 f"{paired.pairs} raters, p {_p(paired.p)}, rank-biserial correlation {paired.effect:.2f}."
             ]
         test = friedman(scores)
+        if test.people < 2:
+            return ["Fewer than two raters rated all of them, so they cannot be compared."]
         line = (
             f"The items differ{_verdict(test.p)} in general: Friedman's test of the {test.people} raters who "
             f"rated all, chi-squared({test.freedom}) = {test.statistic:.2f}, p {_p(test.p)}, "

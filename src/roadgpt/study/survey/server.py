@@ -17,8 +17,8 @@ from roadgpt.study.survey.desk import JSON, Asked, Desk, Told
 
 MOST_BYTES = 64 * 1024  # of a body: a page of remarks in any alphabet, many times over
 MOST_ADDRESS = 2048  # bytes
-MOST_AT_ONCE = 200  # connections
-PATIENCE = 30.0  # s that a connection may say nothing
+MOST_AT_ONCE = 600  # connections; a browser opens up to six
+PATIENCE = 15.0  # s that a connection may say nothing
 PIECE = 64 * 1024  # bytes of a file that are sent at once
 BUSY = b"HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 2\r\nContent-Length: 0\r\n\r\n"
 HEADERS = {
@@ -47,9 +47,9 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     request_queue_size = 128
 
-    def __init__(self, desk: Desk, host: str = "127.0.0.1", port: int = 0) -> None:
+    def __init__(self, desk: Desk, host: str = "127.0.0.1", port: int = 0, most: int = MOST_AT_ONCE) -> None:
         self.desk = desk
-        self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
+        self._free = threading.BoundedSemaphore(most)
         try:
             self.address_family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
             super().__init__((host, port), Handler)
