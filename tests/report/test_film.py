@@ -1,6 +1,9 @@
 """Films: what PyAV reads back, what stands in the frames, and sentences where there can be none."""
 
 import hashlib
+import os
+import re
+import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -267,3 +270,9 @@ def test_the_command_films_a_run_two_runs_and_a_campaign(
         done = CliRunner().invoke(app, ["film", *map(str, words)])
         assert done.exit_code != 0
         assert said in done.output + str(done.exception)
+
+
+def test_the_code_of_the_guide_runs() -> None:
+    guide = (Path(__file__).parents[2] / "docs" / "guides" / "films.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"^```python\n(.*?)^```", guide, flags=re.MULTILINE | re.DOTALL)
+    subprocess.run([sys.executable, "-c", code], check=True, env={**os.environ, "DISPLAY": ""})
