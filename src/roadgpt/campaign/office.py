@@ -75,7 +75,7 @@ class Office:
     def run(self) -> Iterator[Progress]:
         """Work until nothing is left to do; tells how far it is after every group of results."""
         self._store.begin_sitting(self._staff.workers)
-        while True:
+        while self._error is None:
             self._fill()
             if not self._out and not self._poor:
                 break
@@ -85,8 +85,8 @@ class Office:
             if self._has_news:
                 self._has_news = False
                 yield self.progress
-            if self._error is not None:
-                raise self._error
+        if self._error is not None:
+            raise self._error
         self._keep()
         yield self.progress
 
@@ -100,6 +100,7 @@ class Office:
                 self._error = None  # it was told already
         if self._may_write:
             self._keep()
+            self._store.end_sitting()
 
     # Handing out
 

@@ -98,7 +98,7 @@ def status_of(folder: Path) -> Status:
         for cell in cells:
             outcomes.update(cell.outcomes)
         ((seconds, seen),) = record.query(
-            "SELECT coalesce(sum(seen - begun), 0), coalesce(max(seen), 0) FROM sittings"
+            "SELECT coalesce(sum(seen - begun), 0), coalesce(max(seen * (1 - is_over)), 0) FROM sittings"
         )
         is_finished = bool(record.meta("finished"))
         is_running = not is_finished and time.time() - seen < FRESH

@@ -50,7 +50,7 @@ CREATE TABLE traces(trace INTEGER PRIMARY KEY, file TEXT NOT NULL);
 CREATE TABLE leases(cell TEXT, number INTEGER, worker TEXT NOT NULL, until REAL NOT NULL,
   PRIMARY KEY(cell, number)) WITHOUT ROWID;
 CREATE TABLE sittings(begun REAL NOT NULL, seen REAL NOT NULL, workers INTEGER NOT NULL,
-  tokens INTEGER NOT NULL DEFAULT 0, cost REAL NOT NULL DEFAULT 0);
+  is_over INTEGER NOT NULL DEFAULT 0, tokens INTEGER NOT NULL DEFAULT 0, cost REAL NOT NULL DEFAULT 0);
 CREATE TABLE features(name TEXT PRIMARY KEY) WITHOUT ROWID;
 CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 """
@@ -128,6 +128,11 @@ class Store(Record):
                 "INSERT INTO sittings(begun, seen, workers) VALUES (?, ?, ?)", (now, now, workers)
             )
             self._sitting = done.lastrowid or 0
+
+    def end_sitting(self) -> None:
+        """Nobody works on it any more."""
+        with self._whole() as db:
+            db.execute("UPDATE sittings SET is_over = 1 WHERE rowid = ?", (self._sitting,))
 
     def add_batch(self, cell: str, batch: int, first: int, proposals: Sequence[Proposal]) -> None:
         """A batch with all its tests."""
