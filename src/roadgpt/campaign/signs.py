@@ -19,6 +19,7 @@ ENDING = 8.0  # m, that are not driven
 WINDOWS = (3, 7, 13, 21, 35)  # samples, about 1 m apart, that a curvature lasts for
 TIGHTEST = 0.2  # 1 + 2k is kept above this
 STRAIGHT = 0.01  # 1/m: less is straight enough to gain speed
+SHORTEST = 5  # m of straight that count as one
 LONGEST = 120.0  # m of straight: speed is gained no further
 AROUND = 10  # samples to either side of the tightest place, whose slopes and crests count
 
@@ -84,7 +85,8 @@ def _mean(values: Array, window: int) -> Array:
 
 
 def _run_up(size: Array, tight: int) -> float:
-    """Metres of straight that end nearest before the tightest place."""
+    """Metres of the last straight before the tightest place."""
     bends = np.flatnonzero(size[: tight + 1] >= STRAIGHT)
-    gaps = np.diff(np.concatenate([[-1], bends, [tight]])) - 1
-    return float(min(gaps[-8:].max(initial=0), LONGEST)) if len(gaps) else 0.0
+    gaps = np.diff(bends, prepend=-1) - 1
+    straights = gaps[gaps >= SHORTEST]
+    return float(min(straights[-1], LONGEST)) if len(straights) else 0.0

@@ -35,10 +35,9 @@ class Surrogate:
         self._mean, scale = known.mean(axis=0), known.std(axis=0)
         self._scale = np.where(scale > 0, scale, 1.0)
         forest = ExtraTreesRegressor(TREES, min_samples_leaf=LEAF, random_state=0)
-        self._trees = forest.fit(np.asarray(signs[-MOST:], float), self._scaled(known)).estimators_
-
-    def _scaled(self, outcomes: Array) -> Array:
-        return np.asarray((outcomes - self._mean) / self._scale)
+        targets = (known - self._mean) / self._scale
+        targets = targets[:, 0] if targets.shape[1] == 1 else targets
+        self._trees = forest.fit(np.asarray(signs[-MOST:], float), targets).estimators_
 
     def opinions(self, signs: Sequence[Array]) -> Array:
         """What every tree expects of roads: ``(TREES, n, k)``."""

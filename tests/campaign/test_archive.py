@@ -1,0 +1,185 @@
+"""The map of a search, its choice of what is driven, and its pairs: each beside a slow way to the same."""
+
+import itertools
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt.campaign.archive import Archive
+from roadgpt.campaign.behaviour import cell_of
+from roadgpt.campaign.genome import Gene
+from roadgpt.campaign.pairs import distance, paired
+from roadgpt.campaign.picking import ANYWHERE, Expected, far_from, picked, spread, stacked, unlike
+from roadgpt.campaign.vary import Candidate
+from roadgpt.design.variety import Shape, apart, shape_of
+from roadgpt.road import Design, Segment
+
+AXES = ("MAX_CURV", "STD_SA")
+TESTS = st.lists(
+    st.tuples(st.floats(0, 0.08), st.floats(0, 160), st.floats(-2, 0.3), st.booleans()),
+    min_size=1,
+    max_size=40,
+)
+
+
+@settings(max_examples=40)
+@given(TESTS, st.integers(2, 30))
+def test_the_grid_keeps_the_best_of_every_cell(tests: list, cells: int) -> None:
+    archive = Archive(AXES, cells)
+    best: dict[tuple[int, ...], int] = {}
+    seen, failed = Counter(), Counter()
+    for number, (curvature, angle, quality, fails) in enumerate(tests, 1):
+        features = {"MAX_CURV": curvature, "STD_SA": angle}
+        archive.add(number, features, quality, fails)
+        cell = cell_of(features, AXES, cells)
+        # a value on the border may fall to either side of it, by rounding
+        shares = curvature / 0.07 * cells, angle / 150 * cells
+        if any(abs(share - round(share)) < 1e-3 for share in shares):
+            return
+        seen[cell] += 1
+        failed[cell] += fails
+        if cell not in best or quality > tests[best[cell] - 1][2]:
+            best[cell] = number
+    assert sorted(archive.elites()) == sorted(best.values())
+    assert sorted(archive.tests.values()) == sorted(seen.values())
+    assert archive.failures.total() == failed.total()
+    places = np.array([test[:2] for test in tests])
+    same = archive.cells(places)
+    for i, j in itertools.combinations(range(len(tests)), 2):
+        one, other = ({"MAX_CURV": tests[k][0], "STD_SA": tests[k][1]} for k in (i, j))
+        assert (same[i] == same[j]) == (cell_of(one, AXES, cells) == cell_of(other, AXES, cells))
+
+
+def test_niches_are_the_neighbourhoods_of_their_centres() -> None:
+    archive = Archive((*AXES, "GRADE"), 40, "cvt")
+    centres = np.asarray(archive._map.centroids)
+    rng = np.random.default_rng(3)
+    low, high = np.array([0.0, 0.0, 0.0]), np.array([0.07, 150.0, 15.0])
+    places = low + rng.random((60, 3)) * (high - low)
+    scaled = (places - low) / (high - low)
+    middle = (centres - low) / (high - low)
+    plain = ((centres - places[:, None]) ** 2).sum(axis=2).argmin(axis=1)
+    even = ((middle - scaled[:, None]) ** 2).sum(axis=2).argmin(axis=1)
+    found = archive.cells(places)
+    assert np.array_equal(found, plain) or np.array_equal(found, even)
+    for number, place in enumerate(places, 1):
+        archive.add(number, dict(zip((*AXES, "GRADE"), place, strict=True)), -float(number), False)
+    firsts = {int(cell): number for number, cell in reversed([*enumerate(found, 1)])}
+    assert archive.elites() == [firsts[cell] for cell in sorted(firsts)]
+
+
+def test_what_has_no_place_is_left_out() -> None:
+    archive = Archive(AXES, 5)
+    archive.add(1, {"MAX_CURV": 0.01}, 0.0, True)
+    assert archive.elites() == []
+    assert not archive.failures
+
+
+DESIGN = Design(starting_point=(0, 0, 0), theta=0, segments=(Segment(distance=50, direction="straight"),))
+
+
+def line(bend: float) -> Shape:
+    """A road of 100 m with that curvature."""
+    s = np.linspace(0.0, 100.0, 101)
+    return shape_of(s, np.concatenate([[0j], np.cumsum(np.exp(1j * bend * s[:-1]))]))
+
+
+def some(n: int, seed: int) -> list[Candidate]:
+    rng = np.random.default_rng(seed)
+    return [Candidate(DESIGN, str(i), {}, rng.random(4), line(rng.uniform(0, 0.05))) for i in range(n)]
+
+
+@settings(max_examples=25)
+@given(st.integers(1, 12), st.integers(1, 6), st.integers(0, 99), st.sampled_from(["failures", "coverage"]))
+def test_what_is_driven_is_what_a_slow_choice_would_drive(n: int, wanted: int, seed: int, goal: str) -> None:
+    rng = np.random.default_rng(seed)
+    trees = 5
+    expected = Expected(rng.normal(0.2, 0.5, (trees, n)), rng.integers(0, 4, (trees, n)))
+    counts = Counter({0: 3, 1: 1})
+    candidates = some(n, seed)
+    found = picked(goal, wanted, candidates, expected, Counter(counts), 2.0)  # type: ignore[arg-type]
+    known = {cell: float(counts[cell]) for cell in range(4)}
+    left, slow = list(range(n)), []
+    while len(slow) < wanted and left:
+
+        def worth(i: int) -> float:
+            total = 0.0
+            for tree in range(trees):
+                weight = 1.0 if goal == "coverage" else float(expected.margins[tree, i] <= 0)
+                floor = 0.0 if goal == "coverage" else ANYWHERE
+                total += weight * (floor + 1 / (1 + known[int(expected.cells[tree, i])]))
+            return round(total / trees, 12)
+
+        best = max(left, key=lambda i: (worth(i), -i))
+        slow.append(best)
+        for tree in range(trees):
+            weight = 1.0 if goal == "coverage" else float(expected.margins[tree, best] <= 0)
+            known[int(expected.cells[tree, best])] += weight / trees
+        shape = candidates[best].shape
+        left = [i for i in left if i != best and apart(shape, stacked([candidates[i].shape]))[0] >= 2.0]
+    assert [int(one.origin) for one in found] == slow
+
+
+def test_the_hardest_is_the_smallest_margin_that_is_likely() -> None:
+    margins = np.array([[0.5, 0.1, 1.0], [0.5, 0.3, 0.0]])
+    expected = Expected(margins, np.zeros((2, 3), int))
+    found = picked("hardest", 3, some(3, 1), expected, Counter(), 0.0)
+    assert [one.origin for one in found] == ["2", "1", "0"]
+
+
+def test_roads_like_known_ones_are_left_out() -> None:
+    candidates = some(20, 4)
+    known = [candidates[3].shape, candidates[11].shape]
+    kept = unlike(candidates, known, 1.0)
+    for one in candidates:
+        near = min(float(apart(one.shape, stacked([shape]))[0]) for shape in known)
+        assert (one in kept) == (near >= 1.0)
+    assert unlike(candidates, [], 1.0) == candidates
+    assert far_from(candidates, candidates[0].shape, 0.0).all()
+
+
+@given(st.integers(1, 15), st.integers(1, 20), st.integers(0, 50))
+def test_what_is_spread_comes_from_the_harder_half(n: int, wanted: int, seed: int) -> None:
+    candidates = some(n, seed)
+    hazard = np.random.default_rng(seed).random(n)
+    found = spread(candidates, wanted, hazard)
+    assert len(found) == min(n, wanted)
+    assert len({one.origin for one in found}) == len(found)
+    ranks = [int((hazard > hazard[int(one.origin)]).sum()) for one in found]
+    assert max(ranks) < max(wanted, math.ceil(n / 2))
+    assert min(ranks) == 0
+
+
+LENGTHS = st.floats(1, 60)
+
+
+@settings(max_examples=50)
+@given(st.lists(st.tuples(LENGTHS, st.floats(15, 40), st.booleans(), st.booleans()), min_size=1, max_size=9))
+def test_pairs_are_the_nearest_relatives(roads: list) -> None:
+    genes = {
+        number: (Gene(length=length), Gene(turn=40.0 if left else -40.0, radius=radius, ramp=4.0))
+        for number, (length, radius, left, _) in enumerate(roads, 1)
+    }
+    kept = [number for number, road in enumerate(roads, 1) if road[3]]
+    lost = [number for number, road in enumerate(roads, 1) if not road[3]]
+    found = paired(genes, kept, lost)
+    rest = {(a, b) for a in kept for b in lost if roads[a - 1][2] == roads[b - 1][2]}
+    for pair in found:
+        nearest = min(
+            math.hypot((roads[a - 1][0] - roads[b - 1][0]) / 10, (roads[a - 1][1] - roads[b - 1][1]) / 2)
+            for a, b in rest
+        )
+        assert pair.distance == pytest.approx(nearest)
+        rest = {(a, b) for a, b in rest if a != pair.kept and b != pair.lost}
+    assert not rest
+
+
+def test_roads_of_another_row_are_no_relatives() -> None:
+    one = (Gene(length=20.0), Gene(turn=40.0, radius=20.0, ramp=4.0))
+    assert distance(one, one[:1]) == math.inf
+    assert distance(one, (one[0], one[1]._replace(turn=-40.0))) == math.inf
+    assert distance(one, one) == 0.0

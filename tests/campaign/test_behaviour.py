@@ -1,0 +1,115 @@
+"""Features of roads against figures known from elsewhere, and the map's cells against a slow search."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadgpt.brief import read
+from roadgpt.campaign.behaviour import BOUNDS, behaviour_of, bounds_of, cell_of, directions, turns_asked
+from roadgpt.campaign.changes import mirrored
+from roadgpt.campaign.genome import design_of, genes_of
+from roadgpt.design import draft
+from roadgpt.design.layout import Place
+from roadgpt.road import Design, Segment, World, build
+
+WORLD = World()
+
+
+def bend(turn: float, radius: float, incline: float = 0.0) -> Segment:
+    """A turn of a known radius, in degrees and metres."""
+    ramp = 4.0
+    return Segment(
+        distance=radius * math.radians(abs(turn)) + ramp,
+        direction="left" if turn > 0 else "right",
+        turn_degrees=turn,
+        radius=radius,
+        transition=ramp,
+        incline=incline,
+    )
+
+
+def straight(length: float, incline: float = 0.0) -> Segment:
+    return Segment(distance=length, direction="straight", incline=incline)
+
+
+def road_of(*segments: Segment):
+    return build(Design(starting_point=(60, 60, 5), theta=10, segments=segments))
+
+
+def test_a_road_has_the_features_that_it_was_drawn_with() -> None:
+    road = road_of(straight(40, 5), bend(60, 30, 5), straight(40, 5), bend(-45, 50, 5), straight(30, 5))
+    found = behaviour_of(road, None)
+    assert found["RADIUS"] == pytest.approx(30, rel=0.03)
+    assert found["TURNS"] == 2
+    assert found["LEFT"] == 0.5
+    assert found["TURNED"] == pytest.approx(105, abs=1)
+    assert found["LENGTH"] == pytest.approx(road.length, abs=0.5)
+    assert found["GRADE"] == pytest.approx(5, abs=0.2)
+    assert found["CLIMB"] == pytest.approx(0.05 * road.length, abs=0.3)
+    assert set(found) <= set(BOUNDS)
+
+
+@given(st.floats(0, 6.28), st.integers(1, 72))
+def test_directions_are_counted_all_round(start: float, tens: int) -> None:
+    """Turning on by so many times 5 degrees passes that many times two half directions."""
+    heading = start + np.radians(np.arange(0.0, 5.0 * tens, 0.25))
+    slow = {int(math.degrees(h) % 360 // 10) for h in heading}
+    assert directions(heading) == pytest.approx(len(slow) / 36)
+    if tens == 72:
+        assert directions(heading) == 1.0  # the field's own DIR_COV gives a circle 0.5
+
+
+def test_a_straight_road_goes_one_way() -> None:
+    assert behaviour_of(road_of(straight(100)), None)["DIR_COV_360"] == pytest.approx(1 / 36, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_mirror_swaps_left_and_right_and_nothing_else(seed: int) -> None:
+    genes = genes_of(draft(read("a winding road", reader="grammar"), WORLD, seed=seed))
+    place = Place(120.0, 120.0, 30.0)
+    one = behaviour_of(build(design_of(genes, place, WORLD)), None)
+    rng = np.random.default_rng(0)
+    other = behaviour_of(build(design_of(mirrored(genes, rng, WORLD), place, WORLD)), None)
+    assert other.pop("LEFT") == pytest.approx(1 - one.pop("LEFT"))
+    for name in ("DIR_COV_360",):  # a mirrored road looks elsewhere
+        one.pop(name), other.pop(name)
+    assert other == pytest.approx(one, abs=1e-4)
+
+
+def test_turns_that_were_asked_for_have_features_of_their_own() -> None:
+    brief = read("an uphill road with 3 turns", reader="grammar")
+    assert turns_asked(brief) == 3
+    found = behaviour_of(build(draft(brief, WORLD, seed=3)), brief)
+    radii = [found[f"RADIUS_{number}"] for number in (1, 2, 3)]
+    assert min(radii) == pytest.approx(found["RADIUS"])
+    assert sum(found[f"DEGREES_{number}"] for number in (1, 2, 3)) == pytest.approx(found["TURNED"], abs=3)
+    assert turns_asked(read("a road", reader="grammar")) == 0
+    assert turns_asked(None) == 0
+
+
+@given(st.floats(-1, 2), st.floats(-500, 500), st.integers(2, 40))
+def test_a_cell_is_the_one_whose_borders_enclose_the_value(
+    curvature: float, angle: float, cells: int
+) -> None:
+    found = cell_of({"MAX_CURV": curvature, "STD_SA": angle}, ("MAX_CURV", "STD_SA"), cells)
+    assert found is not None
+    for axis, value, at in zip(("MAX_CURV", "STD_SA"), (curvature, angle), found, strict=True):
+        low, high = BOUNDS[axis]
+        borders = np.linspace(low, high, cells + 1)
+        inside = min(max(value, low), high)
+        assert 0 <= at < cells
+        assert borders[at] - 1e-9 <= inside <= borders[at + 1] + 1e-9
+
+
+def test_what_was_not_driven_has_no_cell() -> None:
+    assert cell_of({"MAX_CURV": 0.05}, ("MAX_CURV", "STD_SA"), 25) is None
+
+
+def test_axes_of_single_turns_have_bounds_too() -> None:
+    assert bounds_of("RADIUS_2") == BOUNDS["RADIUS"]
+    assert bounds_of("DEGREES_1")[1] > 90
+    with pytest.raises(KeyError):
+        bounds_of("RADIUS_9")

@@ -1,0 +1,230 @@
+"""Searches ask for the same whatever happened to them, keep the Brief, and find more than drafts do.
+
+Nobody drives here: the margin is a law of the road's curvature, known to the test and not to the search.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from roadgpt import check, plugins
+from roadgpt.brief import read
+from roadgpt.brief.model import Brief
+from roadgpt.campaign import Budget, Cell, Goal, Proposal, Result
+from roadgpt.campaign.behaviour import behaviour_of, cell_of
+from roadgpt.campaign.genome import genes_of
+from roadgpt.campaign.pairs import distance, pairs_of
+from roadgpt.design import draft
+from roadgpt.errors import UsageError
+from roadgpt.road import World, build
+from roadgpt.run import Request, Setup
+from roadgpt.run.features import features_of
+
+WORLD = World(map_size=200)
+SMALL = {"batch": 5}
+FEW = {"batch": 5, "candidates": 2}
+SEARCHES = ("random", "genetic", "quality_diversity")
+UPHILL = "an uphill road with 3 turns"
+
+
+class Here:
+    def map(self, function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
+        return [function(item) for item in items]
+
+
+class Backwards(Here):
+    """Workers that end in another order."""
+
+    def map(self, function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
+        return [function(item) for item in reversed(items)][::-1]
+
+
+@cache
+def brief_of(words: str) -> Brief:
+    return read(words, reader="grammar")
+
+
+def cell_for(
+    generator: str, words: str = UPHILL, goal: Goal = "failures", seed: int = 1, **settings: Any
+) -> Cell:
+    usual = FEW if generator == "quality_diversity" else SMALL
+    request = Request(words=words, seed=seed, world=WORLD, setup=Setup(reader="grammar"))
+    brief = brief_of(words) if words else None
+    return Cell("c01", request, brief, generator, goal, usual | settings, Budget(tests=100))
+
+
+def driven(cell: Cell, proposal: Proposal, number: int, batch: int) -> Result:
+    """The car fails where the road's right turns are tight for 10 m and more."""
+    design = proposal.design or draft(cell.brief or Brief(), WORLD, seed=proposal.seed)
+    road = build(design)
+    bend = road.sample().curvature
+    tight = -np.convolve(bend, np.full(11, 1 / 11), "same").min()
+    margin = float(1.2 - 24 * tight)
+    features = features_of(road.centreline()) | behaviour_of(road, cell.brief)
+    features["STD_SA"] = float(1500 * np.sqrt((bend**2).mean()))
+    outcome = "FAIL" if margin <= 0 else "PASS"
+    return Result(
+        number, batch, proposal, outcome, "", design, road.length, max(margin, -0.001), features=features
+    )  # type: ignore[arg-type]
+
+
+def searched(cell: Cell, batches: int, pool: Any = None) -> tuple[list[Result], list[list[Proposal]]]:
+    """A campaign of so many batches: a batch is thought out before the one before it is known."""
+    generator = plugins.find("generators", cell.generator)(cell)
+    results: list[list[Result]] = []
+    asked: list[list[Proposal]] = []
+    number = 1
+    for batch in range(batches):
+        if batch >= 2:
+            generator.tell(results[batch - 2])
+        asked.append(generator.ask(batch, number, generator.batch_size, pool or Here()))
+        results.append([driven(cell, one, at, batch) for at, one in enumerate(asked[-1], number)])
+        number += len(asked[-1])
+    return [result for batch in results for result in batch], asked
+
+
+@pytest.mark.parametrize("name", SEARCHES)
+def test_the_same_seed_asks_for_the_same_and_another_for_something_else(name: str) -> None:
+    _, one = searched(cell_for(name), 4)
+    _, again = searched(cell_for(name), 4, Backwards())
+    assert one == again
+    _, other = searched(cell_for(name, seed=2), 1)
+    assert one[0] != other[0]
+    assert all(len(batch) == 5 for batch in one)
+
+
+@pytest.mark.parametrize(
+    ("name", "goal"),
+    [("random", "failures"), ("genetic", "hardest")]
+    + [("quality_diversity", goal) for goal in ("failures", "coverage", "hardest", "boundary")],
+)
+def test_told_again_it_goes_on_as_if_nothing_had_happened(name: str, goal: Goal) -> None:
+    """What the campaign does after a crash: a new generator hears the old results, and was never asked."""
+    cell = cell_for(name, goal=goal)
+    results, asked = searched(cell, 5)
+    fresh = plugins.find("generators", name)(cell)
+    for batch in range(3):
+        fresh.tell([result for result in results if result.batch == batch])
+    first = next(result.number for result in results if result.batch == 4)
+    assert fresh.ask(4, first, 5, Here()) == asked[4]
+
+
+@pytest.mark.parametrize("name", SEARCHES)
+def test_every_road_that_is_asked_for_keeps_the_brief(name: str) -> None:
+    for words in (UPHILL, "a flat road"):
+        cell = cell_for(name, words)
+        for proposal in (one for batch in searched(cell, 3)[1] for one in batch if one.design):
+            assert proposal.design is not None
+            road = build(proposal.design)
+            assert not check.inspect(road, cell.brief, WORLD)
+            heights = road.centreline()[:, 2]
+            if words == UPHILL:
+                assert heights[-1] > heights[0]
+            else:
+                assert np.ptp(heights) < 0.011 * road.length
+
+
+def test_a_search_finds_more_failures_in_more_cells_than_drafts_do() -> None:
+    found = {}
+    for name in SEARCHES:
+        results, _ = searched(cell_for(name, "a flat road", batch=8), 8)
+        cells = {cell_of(r.features, ("MAX_CURV", "STD_SA"), 25) for r in results if r.failed}
+        found[name] = sum(result.failed for result in results), len(cells)
+    assert found["quality_diversity"][0] > 2 * found["random"][0]
+    assert found["quality_diversity"][1] > 1.5 * found["random"][1]
+    assert found["genetic"][0] > found["random"][0]
+
+
+def test_no_road_is_like_one_that_was_driven_before() -> None:
+    _, asked = searched(cell_for("quality_diversity", "a flat road", apart=8.0), 5)
+    designs = [one.design for batch in asked for one in batch]
+    assert len({str(design) for design in designs}) == len(designs)
+
+
+def test_the_boundary_is_closed_in_on() -> None:
+    cell = cell_for("quality_diversity", "a flat road", goal="boundary", batch=8)
+    results, _ = searched(cell, 10)
+    between = [result for result in results if result.proposal.origin.startswith("between")]
+    assert between
+    early = pairs_of([result for result in results if not result.proposal.origin.startswith("between")])
+    pairs = pairs_of(results)
+    assert pairs[0].distance < 0.7 * early[0].distance
+    by_number = {result.number: result for result in results}
+    kept, lost = by_number[pairs[0].kept], by_number[pairs[0].lost]
+    assert (kept.outcome, lost.outcome) == ("PASS", "FAIL")
+    assert kept.design is not None
+    assert lost.design is not None
+    assert pairs[0].distance == distance(genes_of(kept.design), genes_of(lost.design))
+
+
+def test_coverage_fills_the_map_faster_than_failures_do() -> None:
+    reached = {}
+    for goal in ("coverage", "failures"):
+        results, _ = searched(cell_for("quality_diversity", "a flat road", goal=goal, batch=8), 8)
+        reached[goal] = len({cell_of(r.features, ("MAX_CURV", "STD_SA"), 25) for r in results})
+    assert reached["coverage"] > reached["failures"]
+
+
+def test_other_axes_and_niches_can_be_asked_for() -> None:
+    axes = ("RADIUS_1", "RADIUS_2", "LENGTH")
+    cell = cell_for("quality_diversity", axes=list(axes), archive="cvt", cells=50)
+    results, asked = searched(cell, 4)
+    assert len(asked[3]) == 5
+    assert all(axis in result.features for axis in axes for result in results)
+
+
+def test_tests_without_words_are_searched_too() -> None:
+    for name in SEARCHES:
+        _, asked = searched(cell_for(name, ""), 3)
+        assert all(one.design is not None for batch in asked for one in batch)
+
+
+def test_results_that_came_to_nothing_do_no_harm() -> None:
+    cell = cell_for("quality_diversity")
+    generator = plugins.find("generators", cell.generator)(cell)
+    results, _ = searched(cell, 1)
+    lost = [Result(r.number, 0, r.proposal, "ERROR", "it broke") for r in results]
+    generator.tell(lost)
+    assert len(generator.ask(2, 11, 5, Here())) == 5
+    assert len(generator.ask(3, 16, 2, Here())) == 2
+
+
+def test_being_told_is_quick() -> None:
+    """Under a millisecond each, as a campaign of millions needs it; here, by the processor's clock."""
+    import time
+
+    cell = cell_for("quality_diversity")
+    results, _ = searched(cell, 1)
+    many = [Result(n, 0, r.proposal, r.outcome, "", r.design, r.length, r.margin, features=r.features)
+            for n, r in zip(range(1, 301), results * 60, strict=False)]  # fmt: skip
+    for name in SEARCHES:
+        generator = plugins.find("generators", name)(cell_for(name))
+        begun = time.process_time()
+        generator.tell(many)
+        assert time.process_time() - begun < 3e-3 * len(many)
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"axes": ["HEIGHT"]}, "no feature 'HEIGHT'"),
+        ({"cells": 1}, "cells"),
+        ({"batch": 0}, "batch"),
+        ({"axis": ["MAX_CURV"]}, "is unknown; there are batch, axes, archive"),
+        ({"archive": "heap"}, "archive"),
+    ],
+)
+def test_settings_that_cannot_be_are_told_of(settings: dict[str, Any], said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        plugins.find("generators", "quality_diversity")(cell_for("quality_diversity", **settings))
+
+
+def test_splines_are_not_searched() -> None:
+    cell = cell_for("genetic")
+    setup = Setup(reader="grammar", geometry="spline")
+    request = cell.request.model_copy(update={"setup": setup})
+    with pytest.raises(UsageError, match="arcs"):
+        plugins.find("generators", "genetic")(Cell("c01", request, cell.brief, "genetic", "failures"))
