@@ -161,6 +161,15 @@ def test_a_file_may_name_texts_criteria_and_questions_of_its_own(runs: Path, tmp
     assert again.model_copy(update={"purpose": ""}) == plan
 
 
+def test_the_file_in_the_guide_is_one(tmp_path: Path) -> None:
+    guide = (Path(__file__).parents[3] / "docs" / "guides" / "survey.md").read_text("utf-8")
+    (text,) = re.findall(r"^```toml\n(.*?)^```", guide, re.M | re.S)
+    (tmp_path / "S.toml").write_text(text)
+    plan = read_plan(tmp_path / "S.toml")
+    assert (len(plan.alignment), len(plan.similarity)) == (1, 1)
+    assert plan.alignment[0].criteria == ("turns", "incline")
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [

@@ -148,7 +148,7 @@ class _Work:
             return []
         made = []
         for camera, said in CAMERAS.items():
-            title = said[0].upper() + said[1:] + (", road 1 and road 2 side by side" if len(runs) > 1 else "")
+            title = said[0].upper() + said[1:] + (", road 1 left, road 2 right" if len(runs) > 1 else "")
             path = self.folder / f"{name}-{camera}-{_mark(runs)}.mp4"
             if not path.is_file():
                 self.tell(f"{name}: {said}")
