@@ -154,8 +154,10 @@ def _kept_line(designer: str, parts: Sequence[LookedPart]) -> str:
     counts = [value for part in parts for value in kept(part, "turns")]
     sure = pooled(parts, designer, "general")
     text = f"{designer}: {share_of(sum(good), len(good))} roads keep every word"
-    if len(parts) > 1:
+    if 0 < sure.value < 1 and len(parts) > 1:
         text += f" (95 % interval by prompt {between(sure.interval)})"
+    else:
+        text += f" (95 % interval {between(wilson(sum(good), len(good)))})"
     return text + (
         f"; the number of turns is right on {percent(sum(counts) / len(counts))}." if counts else "."
     )

@@ -82,7 +82,7 @@ def _pooled(parts: Sequence[LookedPart], designers: Sequence[str]) -> Table:
                     cell(len(good)),
                     cell(round(found.value, 6), percent(found.value)),
                     interval_cell(wilson(sum(good), len(good))),
-                    interval_cell(found.interval) if len(asking) > 1 else cell(None),
+                    interval_cell(found.interval) if 0 < found.value < 1 and len(asking) > 1 else cell(None),
                 ]
             )
     heads = [
@@ -90,7 +90,8 @@ def _pooled(parts: Sequence[LookedPart], designers: Sequence[str]) -> Table:
     ]  # fmt: skip
     note = (
         "Roads of one prompt are alike, so Wilson's interval says how sure the share is for these prompts; "
-        "the last column, a bootstrap that draws whole prompts, how sure it is for others like them."
+        "the last column, a bootstrap that draws whole prompts, how sure it is for others like them; it "
+        "cannot tell where all or none are kept."
     )
     return Table("alignment", "What was asked for and kept, by criterion", heads, rows, note)
 

@@ -10,6 +10,13 @@ from roadgpt.run import Setup
 from roadgpt.study.looking import LookedPart
 
 DIGITS = 16  # of a hash
+UNITS = {
+    "speed_limit": (3.6, " km/h"),
+    "max_grade": (100.0, " %"),
+    "friction": (1.0, ""),
+    "oob_tolerance": (1.0, ""),
+}
+"""Factor and unit; metres for all others."""
 WEIGHTS = (".onnx", ".npz", ".safetensors", ".bin")
 
 
@@ -24,7 +31,7 @@ def card_of(
         out["driven by"] = f"{setup.driver} in {setup.simulator}"
     if setup.chat is not None and setup.chat.model:
         out["language model"] = setup.chat.model
-    out["world"] = ", ".join(f"{name.replace('_', ' ')} {value:g}" for name, value in _numbers(world))
+    out["world"] = ", ".join(_said(name, value) for name, value in world.model_dump().items())
     return out | {"versions": _versions(parts)}
 
 
@@ -32,8 +39,10 @@ def _designers(parts: Sequence[LookedPart]) -> str:
     return ", ".join(dict.fromkeys(part.part.designer for part in parts))
 
 
-def _numbers(world: World) -> list[tuple[str, float]]:
-    return [(name, value) for name, value in world.model_dump().items() if isinstance(value, (int, float))]
+def _said(name: str, value: float) -> str:
+    """A field of a World in the units in which people give it."""
+    factor, unit = UNITS.get(name, (1.0, " m"))
+    return f"{name.replace('_', ' ')} {value * factor:.4g}{unit}"
 
 
 def _versions(parts: Sequence[LookedPart]) -> str:

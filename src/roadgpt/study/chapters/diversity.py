@@ -128,6 +128,6 @@ def _matrix(part: LookedPart, roads: list[Looked], own: Spread) -> Figure | None
     axis = Axis("road", 0.5, len(roads) + 0.5)
     caption = (
         f"{part.part.designer}, “{part.part.prompt.prompt}”: distance between every two roads, metres; "
-        "the paler, the more alike."
+        "the fainter, the more alike."
     )
     return Figure(f"distances-{part.part.number}", caption, heat(lower, axis, axis, "metres", caption, True))
