@@ -1,10 +1,11 @@
 """What a campaign costs beside its tests, and how it grows.
 
-    python benchmarks/bench_scale.py            # all; or: overhead workers memory million
+    python benchmarks/bench_scale.py            # all; or: overhead workers leaks memory million
 
 overhead   a test that does nothing: through the store and two workers, against the bare function
 workers    tests that are drafted, driven and judged: two workers against one, and bytes on the disk
-memory     20,000 tests with drives to be kept: memory of the process that writes; of workers that drive
+leaks      800 such tests: memory of the workers that drive
+memory     20,000 tests that cost nothing, with drives to be kept: memory of the process that writes
 million    a store of 1,000,000 synthetic tests: status, what a report asks for, the table of results
 """
 
@@ -191,8 +192,8 @@ def curve(steps: Iterator[Any], tests: int, points: int = 8) -> None:
             nexts = [at for at in nexts if at > progress.done]
 
 
-def memory() -> None:
-    """Many tests, one after another: does anything grow?"""
+def leaks() -> None:
+    """Many real tests, one after another: do workers grow?"""
     real = 800
     print("\nReal tests: drafted, driven, judged.\n")
     with tempfile.TemporaryDirectory() as name:
@@ -200,6 +201,10 @@ def memory() -> None:
             Plan(prompts=(WORDS,), reader="grammar", budget=Budget(tests=real), seeds=(7,)), Path(name) / "c"
         )
         curve(work(Path(name) / "c", 2), real)
+
+
+def memory() -> None:
+    """Very many tests with drives: does the process that writes grow?"""
     tests = 20_000
     plan, ready = of_no_cost(tests, with_drive)
     ready()
@@ -285,7 +290,7 @@ def _fill(folder: Path, tests: int) -> None:
     db.close()
 
 
-PARTS = {"overhead": overhead, "workers": workers, "memory": memory, "million": million}
+PARTS = {"overhead": overhead, "workers": workers, "leaks": leaks, "memory": memory, "million": million}
 
 
 def main() -> None:
