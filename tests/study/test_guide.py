@@ -1,0 +1,34 @@
+"""The guide to studies: its code runs, its prompt is one, and its table names every key of a truth."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from roadgpt.study.prompts import Prompt
+from roadgpt.study.truth import Truth
+
+GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "guides" / "study.md").read_text(encoding="utf-8")
+
+
+def block(language: str) -> str:
+    (code,) = re.findall(rf"^```{language}\n(.*?)^```", GUIDE, flags=re.MULTILINE | re.DOTALL)
+    return str(code)
+
+
+def test_the_python_runs() -> None:
+    done = subprocess.run([sys.executable, "-c", block("python")], capture_output=True, text=True, check=True)
+    assert 0 < float(done.stdout) < 1
+
+
+def test_the_prompt_is_one() -> None:
+    prompt = Prompt.model_validate(json.loads(block("json")))
+    assert prompt.truth is not None
+    assert prompt.truth.given() == ("left", "sequence")
+
+
+def test_every_key_is_told() -> None:
+    rows = re.findall(r"^\| (`.*?`) \|", GUIDE, flags=re.MULTILINE)
+    told = {key for row in rows for key in re.findall(r"`(\w+)`", row)}
+    assert told == set(Truth.model_fields)
