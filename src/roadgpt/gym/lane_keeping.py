@@ -7,7 +7,9 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
+from roadgpt.brief import sentence
 from roadgpt.drive.eyes import Eyes
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE
 from roadgpt.drive.simulators.mujoco.course import Course
@@ -44,7 +46,10 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
     for rough steering; +10 at the goal, -10 where the car leaves its lane, falls or gets stuck. An episode
     ends (``terminated``) as a drive does; where time runs out it is ``truncated``.
 
-    ``info`` has s, t, outside, speed (m/s), prompt, and at the end ``ended``.
+    ``info`` has s, t (m, of the car on its road), outside (share of the car outside its lane), speed (m/s),
+    progress (m gained in this step), prompt, and at the end ``ended``: "goal", "out_of_lane", "fell", "stuck"
+    or "timeout"; from ``reset`` also ``understood``, the description as it was read. ``env.unwrapped.road`` is
+    the road.
 
     Args:
         prompt: one description, or several that take turns by the seed.
@@ -75,7 +80,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         if render_mode is not None and render_mode not in WAYS:
             raise UsageError(f"there is no render_mode '{render_mode}'; there are: {', '.join(WAYS)}")
         self.render_mode = render_mode
-        self._world = World(**(world or {}))
+        self._world = _world_of(world or {})
         self._setup = Setup(reader=reader, drives=False)
         self._camera = None if observation == "state" else (camera or Camera(every=1))
         self.set_prompts([prompt] if isinstance(prompt, str) else prompt)
@@ -85,7 +90,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         else:
             shape = (self._camera.height, self._camera.width, 3)
             self.observation_space = spaces.Box(0, 255, shape, np.uint8)
-        self._road: Road | None = None
+        self.road: Road | None = None
 
     def set_prompts(self, prompts: Sequence[str]) -> None:
         """Other descriptions, from the next ``reset`` on.
@@ -107,16 +112,16 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         if options and "prompt" in options:
             brief = brief_of(str(options["prompt"]), self._world, self._setup)
         self._words = brief.words
-        self._road = road = self._drawn(brief)
+        self.road = road = self._drawn(brief)
         self._vehicle = Vehicle.on(road, self._world, ETK_LIKE)
         self._course = Course(road, self._world.oob_tolerance)
         self._vehicle.put(self._course.start, -self._world.lane_width / 2)
         self._preview = Preview(road)
         self._eyes = None if self._camera is None else Eyes(self._camera, road, self._world)
         self._scene: Any = None
-        self._step, self._row = 0, self._vehicle.see()
+        self._step, self._row, self._gain = 0, self._vehicle.see(), 0.0
         self._ended = self._course.ended(self._vehicle.row, 0, self._vehicle.has_fallen)
-        return self._seen(), self._info()
+        return self._seen(), {**self._info(), "understood": sentence(brief)}
 
     def _drawn(self, brief: Any) -> Road:
         """A valid road of the Brief, by the next seeds of this environment."""
@@ -134,11 +139,15 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         raise DesignError(f"no road of '{brief.words}' could be drawn: {said}")
 
     def step(self, action: NDArray[np.float32]) -> tuple[State, float, bool, bool, dict[str, Any]]:
-        """Two control steps (40 ms) with an action; a drive that is over stays so."""
-        if self._road is None:
+        """Two control steps (40 ms) with an action; a drive that is over stays so, and rewards nothing more.
+
+        Raises:
+            UsageError: no road yet, or an action that is not two finite numbers; beyond 1 they are cut.
+        """
+        if self.road is None:
             raise UsageError("the environment has no road yet; call reset() first")
-        turn, pedal = np.clip(np.nan_to_num(np.asarray(action, float)), -1.0, 1.0).tolist()
-        before, steer = self._row["s"], self._row["steer"]
+        turn, pedal = _checked(action)
+        was_over, before, steer = self._ended is not None, self._row["s"], self._row["steer"]
         for _ in range(STEPS):
             if self._ended is not None:
                 break
@@ -147,8 +156,10 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
             self._ended = self._course.ended(self._vehicle.row, self._step, self._vehicle.has_fallen)
         self._row = row = self._vehicle.see()
         aside = abs(row["t"] + self._world.lane_width / 2)
-        reward = row["s"] - before - ASIDE * aside - ROUGH * abs(row["steer"] - steer) / (STEPS * CONTROL)
+        self._gain = row["s"] - before
+        reward = self._gain - ASIDE * aside - ROUGH * abs(row["steer"] - steer) / (STEPS * CONTROL)
         reward += {None: 0.0, "goal": ARRIVED, "timeout": 0.0}.get(self._ended, FAILED)
+        reward = 0.0 if was_over else reward
         is_over = self._ended not in (None, "timeout")
         return self._seen(), float(reward), is_over, self._ended == "timeout", self._info()
 
@@ -159,17 +170,38 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
 
     def _info(self) -> dict[str, Any]:
         told: dict[str, Any] = {name: self._row[name] for name in ("s", "t", "outside", "speed")}
-        told["prompt"] = self._words
+        told |= {"progress": self._gain, "prompt": self._words}
         return told if self._ended is None else {**told, "ended": self._ended}
 
     def render(self) -> Any:
         """What a camera behind the car sees, (360, 640, 3); None without a render mode."""
-        if self.render_mode is None or self._road is None:
+        if self.render_mode is None or self.road is None:
             return None
         from roadgpt.scene import Camera as Pinhole
         from roadgpt.scene import Pose, Scene
 
         if self._scene is None:
-            self._scene = Scene.of(self._road, self._world)
+            self._scene = Scene.of(self.road, self._world)
         pose = Pose(**{name: self._row[name] for name in Pose._fields if name in self._row})
         return self._scene.render(Pinhole(*FILM, mount="chase"), pose, car=pose)
+
+
+def _world_of(fields: Mapping[str, Any]) -> World:
+    """The world with these fields."""
+    try:
+        return World(**fields)
+    except ValidationError as error:
+        wrong = error.errors()[0]
+        name = ".".join(map(str, wrong["loc"]))
+        raise UsageError(f"the world cannot have {name} = {wrong['input']!r}: {wrong['msg']}") from None
+
+
+def _checked(action: Any) -> list[float]:
+    """Steering and pedals, -1 to 1 each."""
+    try:
+        numbers = np.asarray(action, float)
+    except (TypeError, ValueError):
+        numbers = np.array(np.nan)
+    if numbers.shape != (2,) or not np.isfinite(numbers).all():
+        raise UsageError(f"an action is two finite numbers from -1 to 1, steering and pedals, not {action!r}")
+    return [*map(float, np.clip(numbers, -1.0, 1.0))]
