@@ -1,0 +1,107 @@
+"""What a search can know of a road before it is driven: the surrogate beside plainer ways.
+
+    python benchmarks/bench_surrogate.py           150 roads
+    python benchmarks/bench_surrogate.py 500 -j 2  as in docs/explanation/search.md
+
+Roads of "a flat road", drafts changed three times, are driven by beamng_like. Some teach, the rest are the
+test: Spearman's rho of margins, AUC of failures, and the share of failures among the 20 that look hardest;
+the mean over 8 ways to part them.
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+
+import numpy as np
+from scipy.stats import rankdata, spearmanr
+from sklearn.linear_model import RidgeCV
+from sklearn.preprocessing import StandardScaler
+
+from roadgpt.campaign.signs import hazard_of
+from roadgpt.campaign.surrogate import Surrogate, target_of
+from roadgpt.campaign.vary import Setting, Task, varied
+from roadgpt.road import World
+from roadgpt.run import Setup, brief_of, prove
+
+WORLD = World(map_size=200.0, oob_tolerance=0.85, z_floor=0.0)
+SPLITS = 8
+HARDEST = 20
+Predict = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+
+
+def driven(seed: int) -> tuple[np.ndarray, float, bool] | None:
+    """Signs of a road, its margin in metres, and whether the car failed."""
+    brief = brief_of("a flat road", WORLD, Setup(reader="grammar"))
+    road = varied(Task("wild", (), "", (seed,), Setting(brief, WORLD, "sbft")))
+    if road is None:
+        return None
+    run = prove(road.design, 0, WORLD, Setup())
+    return (road.signs, run.verdict.margin, run.outcome == "FAIL") if run.verdict else None
+
+
+def curvature(known: np.ndarray, targets: np.ndarray, fresh: np.ndarray) -> np.ndarray:
+    return -hazard_of([*fresh])
+
+
+def ridge(known: np.ndarray, targets: np.ndarray, fresh: np.ndarray) -> np.ndarray:
+    scaler = StandardScaler().fit(np.c_[known, known**2])
+    model = RidgeCV(np.logspace(-1, 3, 9)).fit(scaler.transform(np.c_[known, known**2]), targets)
+    return np.asarray(model.predict(scaler.transform(np.c_[fresh, fresh**2])))
+
+
+def trees(known: np.ndarray, targets: np.ndarray, fresh: np.ndarray) -> np.ndarray:
+    return Surrogate([*known], targets[:, None].tolist()).opinions([*fresh])[..., 0].mean(axis=0)
+
+
+WAYS: dict[str, Predict] = {
+    "largest lane curvature over 13 m, nothing learnt": curvature,
+    "ridge regression on signs and their squares": ridge,
+    "trees (the surrogate)": trees,
+}
+
+
+def auc(score: np.ndarray, failed: np.ndarray) -> float:
+    positive = failed.sum()
+    if positive in (0, len(failed)):
+        return float("nan")
+    ranks = rankdata(score)[failed].sum()
+    return float((ranks - positive * (positive + 1) / 2) / (positive * (len(failed) - positive)))
+
+
+def main(roads: int, workers: int) -> None:
+    with ProcessPoolExecutor(workers) as pool:
+        found = [one for one in pool.map(driven, range(roads), chunksize=5) if one]
+    signs = np.array([one[0] for one in found])
+    margins = np.array([one[1] for one in found])
+    failed = np.array([one[2] for one in found])
+    targets = np.array([target_of(*one[1:]) for one in found])
+    print(f"{len(found)} roads, {100 * failed.mean():.1f} % failed\n")
+    print(f"| learnt from | way | rho of margins | AUC of failures | failures among the {HARDEST} | ms |")
+    print("|---|---|---|---|---|---|")
+    for n in (20, 50, 100, 200):
+        if n > len(found) / 2:
+            break
+        for name, way in WAYS.items():
+            rows = []
+            for split in range(SPLITS):
+                order = np.random.default_rng(split).permutation(len(found))
+                a, b = order[:n], order[n:]
+                begun = time.process_time()
+                expected = way(signs[a], targets[a], signs[b])
+                spent = 1000 * (time.process_time() - begun)
+                hardest = np.argsort(expected, kind="stable")[:HARDEST]
+                rho = spearmanr(expected, margins[b])[0]
+                rows.append((rho, auc(-expected, failed[b]), failed[b][hardest].mean(), spent))
+            rho, area, share, spent = np.nanmean(rows, axis=0)
+            print(f"| {n} | {name} | {rho:.2f} | {area:.3f} | {100 * share:.0f} % | {spent:.0f} |")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("roads", type=int, nargs="?", default=150)
+    parser.add_argument("-j", "--jobs", type=int, default=2)
+    asked = parser.parse_args()
+    main(asked.roads, asked.jobs)
