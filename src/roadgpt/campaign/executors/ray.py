@@ -1,0 +1,242 @@
+"""The executor ``ray``: workers that are actors on a Ray cluster, each on a core of any of its machines.
+
+A worker is given several short jobs with one message, since messages cross a network. When a worker ends,
+all jobs of its message are done again, one by one, so that the one to blame is found and no other is given
+up. Machines that die cost no job anything. Results come back here, to the one process that writes.
+
+Ray's own retries are off: it cannot tell a job that kills its workers from a machine that was switched off.
+"""
+
+import os
+import queue
+import socket
+import threading
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Any
+
+from roadgpt.campaign.executors import MOST_DEATHS, Doing, Staff
+from roadgpt.campaign.hands.actor import Actor
+from roadgpt.campaign.hands.desk import Desk, Work
+from roadgpt.campaign.hands.inside import READY, Order
+from roadgpt.campaign.hands.wire import frozen, thawed
+from roadgpt.errors import RoadGPTError, UsageError
+
+ROUND = 0.5  # s between two looks at all workers
+TOGETHER = 16  # jobs in one message, at most
+PER_WORKER = 3  # messages that the jobs that wait are shared out in, so that nobody waits long for the last
+ANSWER = 10.0  # s for the head of a cluster to take a call
+PATIENCE = 600.0  # s for the cluster to find room for one worker
+
+
+@dataclass(eq=False)
+class _Worker:
+    """A worker, as we see it."""
+
+    actor: Any
+    name: str
+    is_ready: bool = False
+    works: list[Work] = field(default_factory=list)
+    begun: float = 0.0
+    has: set[str] = field(default_factory=set)
+    node: str = ""
+    fault: str = ""
+    """Why it was ended; empty for one that ended by itself."""
+
+
+class Ray(Desk):
+    """Workers on a Ray cluster."""
+
+    def __init__(self, staff: Staff) -> None:
+        """Asks the cluster for them; ``staff.address`` is its head's, empty for a cluster on this machine.
+
+        Raises:
+            UsageError: Ray is not installed.
+            RoadGPTError: no cluster answers.
+        """
+        super().__init__(staff.workers)
+        self._staff = staff
+        self._prepare = frozen(staff.prepare)
+        self._ray, self._is_ours = _connected(staff)
+        self._alone: set[Work] = set()  # done singly, since a worker ended over them and others
+        self._in_vain = 0  # workers that ended before they were ready, since the last that was
+        self._started = 0
+        self._since = time.monotonic()  # nobody was ready
+        self._events: queue.SimpleQueue[tuple[_Worker, Any]] = queue.SimpleQueue()
+        self._stops = threading.Event()
+        self._workers: list[_Worker] = []
+        with self._changed:
+            for _ in range(staff.workers):
+                self._hire()
+        self._thread = threading.Thread(target=self._listen, name="roadgpt-ray", daemon=True)
+        self._thread.start()
+
+    def under_way(self) -> list[Doing]:
+        """What has been handed to workers; the seconds are those of the whole message."""
+        now = time.monotonic()
+        with self._changed:
+            return [
+                Doing(work.key, worker.name, now - worker.begun)
+                for worker in self._workers
+                for work in worker.works
+                if work.key is not None
+            ]
+
+    def stop(self) -> None:
+        """End every worker, and a cluster that was started for them."""
+        if self._stops.is_set():
+            return
+        self._stops.set()
+        self._thread.join()
+        for worker in self._workers:
+            self._ray.kill(worker.actor)
+        if self._is_ours:
+            self._ray.shutdown()
+
+    def _hire(self) -> None:
+        from roadgpt import __version__
+
+        self._started += 1
+        kind = self._ray.remote(num_cpus=1, max_restarts=0, max_task_retries=0)(Actor)
+        worker = _Worker(kind.remote(self._staff.patience), f"worker {self._started}")
+        self._workers.append(worker)
+        self._expect(worker, worker.actor.begin.remote(__version__, self._prepare))
+
+    def _expect(self, worker: _Worker, answer_to_come: Any) -> None:
+        answer_to_come.future().add_done_callback(lambda future: self._events.put((worker, future)))
+
+    def _listen(self) -> None:
+        """Hears workers, in the order in which they speak."""
+        while not self._stops.is_set():
+            try:
+                worker, future = self._events.get(timeout=ROUND)
+            except queue.Empty:
+                self._look_round()
+                continue
+            error = future.exception()
+            with self._changed:
+                if worker not in self._workers:
+                    continue
+                if error is None:
+                    self._hear(worker, future.result())
+                else:
+                    self._bury(worker, worker.fault or _reason(error))
+                self._changed.notify_all()
+
+    def _hear(self, worker: _Worker, told: Any) -> None:
+        if worker.is_ready:
+            works, worker.works = worker.works, []
+            for work, (kind, what) in zip(works, told, strict=True):
+                self._alone.discard(work)
+                self._end(work, kind, what)
+        elif told[0] == READY:
+            worker.is_ready, self._in_vain = True, 0
+            worker.node, where = thawed(told[1])
+            worker.name += f" ({where})"
+        else:
+            self._broken = thawed(told[1])
+            return
+        self._next(worker)
+
+    def _hand_out(self) -> None:
+        for worker in self._workers:
+            if worker.is_ready and not worker.works:
+                self._next(worker)
+
+    def _next(self, worker: _Worker) -> None:
+        works = self._some(self._urgent or self._waiting)
+        if not works:
+            return
+        worker.works, worker.begun = works, time.monotonic()
+        new, old = self._news(worker.has, works)
+        first, *more = works
+        orders = [Order(first.call, new, old), *(Order(work.call, {}, ()) for work in more)]
+        self._expect(worker, worker.actor.work.remote(orders))
+
+    def _some(self, waiting: deque[Work]) -> list[Work]:
+        """Jobs for one message: a share of those that wait, or one that may be to blame, alone."""
+        most = min(TOGETHER, -(-len(waiting) // (PER_WORKER * self._size)))
+        works: list[Work] = []
+        while waiting and len(works) < most and not (works and waiting[0] in self._alone):
+            works.append(waiting.popleft())
+            if works[0] in self._alone:
+                break
+        return works
+
+    def _bury(self, worker: _Worker, how: str) -> None:
+        """A worker is gone: its jobs are given to others, and another takes its place."""
+        self._workers.remove(worker)
+        is_nodes_fault = bool(worker.node) and worker.node not in self._nodes()
+        for work in reversed(worker.works):
+            if is_nodes_fault:
+                (self._waiting if work.key is not None else self._urgent).appendleft(work)
+            else:
+                self._alone.add(work)
+                self._give_again(work, how)
+        self._in_vain += not worker.is_ready
+        if self._in_vain >= MOST_DEATHS:
+            self._broken = RoadGPTError(
+                f"workers end before they begin (the last one {how}); Ray's log has what they said"
+            )
+        if self._broken is None:
+            if not any(other.is_ready for other in self._workers):
+                self._since = time.monotonic()
+            self._hire()
+            self._hand_out()
+
+    def _nodes(self) -> set[str]:
+        return {node["NodeID"] for node in self._ray.nodes() if node["Alive"]}
+
+    def _look_round(self) -> None:
+        """Ends workers that hang, and the wait for a cluster that has no room."""
+        now = time.monotonic()
+        with self._changed:
+            for worker in self._workers:
+                patience = self._staff.patience * max(len(worker.works), 1)
+                if worker.works and now - worker.begun > patience and not worker.fault:
+                    worker.fault = f"took longer than {patience:g} s"
+                    self._ray.kill(worker.actor)
+            is_idle = not any(worker.is_ready for worker in self._workers)
+            if is_idle and now - self._since > PATIENCE and self._broken is None:
+                self._broken = RoadGPTError(
+                    f"Ray found no free core for a worker in {PATIENCE:g} s; see ray status, or ask later"
+                )
+                self._changed.notify_all()
+
+
+def _connected(staff: Staff) -> tuple[Any, bool]:
+    """Ray, and whether we connected to it ourselves."""
+    try:
+        import ray
+    except ImportError as error:
+        raise UsageError("the executor 'ray' needs Ray; say python -m pip install 'roadgpt[ray]'") from error
+    if ray.is_initialized():
+        return ray, False
+    address = staff.address or os.environ.get("RAY_ADDRESS", "")
+    quiet: dict[str, Any] = {"log_to_driver": False, "logging_level": "ERROR"}
+    try:
+        if address:
+            _knock(address)
+            ray.init(address=address, **quiet)
+        else:
+            ray.init(address="local", num_cpus=staff.workers, include_dashboard=False, **quiet)
+    except (ray.exceptions.RayError, OSError, RuntimeError, ValueError) as error:
+        said = str(error).strip().partition("\n")[0]
+        raise RoadGPTError(
+            f"no Ray cluster answers at {address or 'this machine'} ({said}); start one with ray start --head"
+        ) from error
+    return ray, True
+
+
+def _knock(address: str) -> None:
+    """Ray itself tries for minutes where nobody listens."""
+    host, _, port = address.rpartition(":")
+    if host and port.isdecimal() and "/" not in host:
+        socket.create_connection((host.strip("[]"), int(port)), ANSWER).close()
+
+
+def _reason(error: BaseException) -> str:
+    """Why Ray says that a worker ended, in its first line."""
+    said = str(error).strip().partition("\n")[0]
+    return f"ended: {said}" if said else "ended"

@@ -1,0 +1,111 @@
+"""A real Ray cluster of two nodes, one of which is killed in the middle: nothing is lost, nothing doubled."""
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from campaign import jobs, quick
+from campaign.jobs import TESTS
+from roadgpt.campaign.executors import Done, Job, Staff
+from roadgpt.campaign.launch import begin, work
+from roadgpt.errors import RoadGPTError, UsageError
+
+ray = pytest.importorskip("ray", reason="Ray is not installed: pip install 'roadgpt[ray]'")
+SOON = 120.0  # s: far more than anything here takes
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    """A head without cores and one node with two of them; a test may kill nodes and add others."""
+    from ray.cluster_utils import Cluster
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(TESTS))  # for the nodes' workers
+        patch.setenv("RAY_health_check_period_ms", "500")
+        patch.setenv("RAY_health_check_failure_threshold", "3")
+        small = {"object_store_memory": 80_000_000, "include_dashboard": False}
+        made = Cluster(initialize_head=True, head_node_args={"num_cpus": 0, **small})
+        try:
+            made.node = made.add_node(num_cpus=2, **small)
+            made.small = small
+            yield made
+        finally:
+            made.shutdown()
+
+
+@pytest.fixture
+def hands(cluster: Any, tmp_path: Path) -> Iterator[Any]:
+    from roadgpt.campaign.executors.ray import Ray
+
+    made = Ray(Staff(2, jobs.nothing, 3.0, tmp_path / "log", cluster.address))
+    yield made
+    made.stop()
+    assert not ray.is_initialized()
+
+
+def ended(workers: Any, count: int) -> list[Done]:
+    """What becomes of so many jobs."""
+    found: list[Done] = []
+    until = time.monotonic() + SOON
+    while len(found) < count and time.monotonic() < until:
+        found += workers.done(0.5)
+    return found
+
+
+def test_results_values_and_errors_come_back_and_who_kills_is_found(hands: Any) -> None:
+    assert hands.map(jobs.square, range(50)) == [number * number for number in range(50)]
+    with pytest.raises(ValueError, match="no number 3"):
+        hands.map(jobs.fails_at_three, range(5))
+    hands.share("hundred", 100)
+    hands.submit([Job(key, jobs.plus, key, ("hundred",)) for key in range(40)])
+    assert {done.key: done.value for done in ended(hands, 40)} == {key: key + 100 for key in range(40)}
+    hands.forget("hundred")
+    hands.share("seven", 7)
+    odd = {1: jobs.fails_at_three, 2: jobs.unanswerable, 3: jobs.raises_what_cannot_travel, 4: jobs.dies}
+    rest = [Job(key, jobs.plus, 3, ("seven",)) for key in range(5, 40)]
+    hands.submit([*(Job(key, function, 3) for key, function in odd.items()), *rest])
+    found = {done.key: done for done in ended(hands, 39)}
+    assert isinstance(found[1].error, ValueError)
+    assert found[2].error is not None
+    assert "cannot travel" in str(found[3].error)
+    assert found[4].lost.startswith("given up: 3 workers ended over it")
+    assert {found[job.key].value for job in rest} == {10}  # those in company of who kills are done
+
+
+def test_a_node_is_killed_in_the_middle_and_the_table_is_that_of_processes(
+    cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    quick.put_on_shelves(monkeypatch.setattr, seconds=0.05)
+    monkeypatch.setattr("roadgpt.campaign.office.GROUP_SECONDS", 0.2)
+    tables = []
+    for executor in ("processes", "ray"):
+        folder = tmp_path / executor
+        begin(quick.plan(80, seconds=0.05), folder)
+        second = cluster.add_node(num_cpus=2, **cluster.small) if executor == "ray" else None
+        address = cluster.address if second else ""
+        counts = []
+        for progress in work(folder, 4, executor, address):
+            counts.append(progress.done)
+            if second and progress.done >= 20:
+                cluster.remove_node(second, allow_graceful=False)
+                second = None
+        assert counts[-1] == 80
+        tables.append((folder / "results.csv").read_bytes())
+    assert tables[0] == tables[1]
+
+
+def test_what_prevents_the_work_is_said_in_one_sentence(cluster: Any, tmp_path: Path) -> None:
+    from roadgpt.campaign.executors.ray import Ray
+
+    workers = Ray(Staff(1, jobs.refuses, 3.0, tmp_path / "log", cluster.address))
+    try:
+        workers.submit([Job(1, jobs.square, 1)])
+        with pytest.raises(UsageError, match="there is no driver of that name"):
+            ended(workers, 1)
+    finally:
+        workers.stop()
+    with pytest.raises(RoadGPTError, match=r"no Ray cluster answers at 127\.0\.0\.1:1 .*ray start --head"):
+        Ray(Staff(1, jobs.nothing, 3.0, tmp_path / "log", "127.0.0.1:1"))
