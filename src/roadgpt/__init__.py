@@ -41,6 +41,7 @@ _ROOMS = {
     "perform": "run",
     "prove": "run",
     "draw": "report",
+    "compare": "study",
 }
 
 __all__ = ["__version__", *sorted(_ROOMS)]
