@@ -1,6 +1,7 @@
 """The analysis: made-up raters whose agreement is known, and the same numbers reached in other ways."""
 
 import csv
+import math
 import re
 import statistics
 import xml.etree.ElementTree as ET
@@ -66,6 +67,7 @@ def test_two_raters_who_never_agree_have_a_negative_alpha(asked: Survey) -> None
         "b" * 64: {id_: MATCHES[4 if n % 2 else 0] for n, id_ in enumerate(overall)},
     }
     found = tally(gathered(asked, given, "people", 2), "alignment")
+    assert math.isnan(agreement(found.overall[:1])), "one road alone tells nothing of agreement"
     # 5 units, each with one 1 and one 5: observed 1, by chance 50/90
     assert agreement(found.overall) == pytest.approx(1 - 1 / (50 / 90))
 

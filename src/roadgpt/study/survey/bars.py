@@ -22,7 +22,7 @@ from roadgpt.study.survey.tally import Tally, Unit
 
 # from orange to blue, told apart by colour-blind people too; every piece has its number in it
 SHADES = ("#c2510a", "#efb184", "#c9ccd1", "#8fc1e3", "#0a69a8")
-ON_SHADES = ("white", "#1b1e23", "#1b1e23", "#1b1e23", "white")
+ON_SHADES = ("white", "#101216", "#101216", "#101216", "white")  # on paper of any colour
 WIDE, LEFT, RIGHT = 9.6, 3.1, 0.75  # inches
 ROW, GAP, HEAD = 0.33, 0.22, 0.34  # inches: of a bar, before an item, of its description
 TOP, BOTTOM = 0.95, 0.62  # inches

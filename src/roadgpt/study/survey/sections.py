@@ -30,8 +30,8 @@ def summary(answers: Answers, match: Tally, alike: Tally) -> list[str]:
         if scores:
             share = sum(score >= 4 for score in scores) / len(scores)
             lines.append(
-                f"In general {share:.0%} of {len(scores)} ratings say {says} (one of the upper two answers); "
-                f"Krippendorff's alpha is {_number(agreement(found.overall))}."
+                f"In general {share:.0%} of {len(scores)} ratings say {says} (one of the upper two answers)"
+                f"{_told_alpha(agreement(found.overall))}."
             )
     return lines
 
@@ -231,6 +231,10 @@ class Told:
         return self.table("remarks", f"{len(rows)} remarks", ("item", "description", "remark"), rows)
 
 
+def _told_alpha(alpha: float) -> str:
+    return f"; Krippendorff's alpha is {_number(alpha)}" if isfinite(alpha) else ""
+
+
 def _verdict(p: float) -> str:
     return "" if p < LEVEL else " not significantly"
 
@@ -240,7 +244,8 @@ def _finite(value: float) -> float | None:
 
 
 def _number(value: float, digits: int = 2) -> str:
-    return f"{value:.{digits}f}" if isfinite(value) else "–"
+    # adding 0 makes minus nothing nothing
+    return f"{round(value, digits) + 0.0:.{digits}f}" if isfinite(value) else "–"
 
 
 def _p(value: float) -> str:

@@ -20,8 +20,8 @@ def synthetic(
 ) -> Answers:
     """Answers of raters who do not exist.
 
-    Every rating has a hidden truth. With the probability ``agreement`` a rater says it, else any answer of
-    the scale: 1 gives an alpha of 1, and 0 one near 0.
+    Every rating has a hidden truth, another one for the next road. With the probability ``agreement`` a rater
+    says it, else any answer of the scale: 1 gives an alpha of 1, and 0 one near 0.
 
     Args:
         survey: what is asked.
@@ -36,17 +36,29 @@ def synthetic(
     if not 1 <= number <= MOST or not 0 <= agreement <= 1 or not 0 <= failing <= 1:
         raise UsageError(f"made-up raters are 1 to {MOST:,}, and shares lie between 0 and 1")
     rng = np.random.default_rng(seed)
-    truth = {
-        id_: int(rng.integers(len(question.answers)))
-        for id_, question in survey.questions.items()
-        if question.answers
-    }
+    truth = _truths(survey, rng)
     given = {}
     for rater in range(number):
         digest = hashlib.sha256(f"synthetic {seed} {rater}".encode()).hexdigest()
         is_awake = bool(rng.random() >= failing)
         given[digest] = _answers(survey, truth, agreement if is_awake else 0.0, is_awake, rng)
     return gathered(survey, given, "synthetic", number)
+
+
+def _truths(survey: Survey, rng: np.random.Generator) -> dict[str, int]:
+    """Of every rating, the index of an answer: drawn for each criterion, then one further from road to road.
+
+    Were all roads alike, raters could not show that they agree.
+    """
+    start: dict[tuple[str, str], int] = {}
+    truth: dict[str, int] = {}
+    for item in survey.items:
+        for question in item.questions:
+            if question.is_rating:
+                key, size = (item.part, question.criterion), len(question.answers)
+                truth[question.id] = start.setdefault(key, int(rng.integers(size))) % size
+                start[key] += 1
+    return truth
 
 
 def _answers(
@@ -62,4 +74,5 @@ def _answer(question: Question, truth: Mapping[str, int], agreement: float, rng:
     if not question.answers:
         return REMARK if rng.random() < 0.1 else ""
     says_truth = question.is_rating and rng.random() < agreement
-    return question.answers[truth[question.id] if says_truth else int(rng.integers(len(question.answers)))]
+    place = truth[question.id] if says_truth else int(rng.integers(len(question.answers)))
+    return question.answers[place]

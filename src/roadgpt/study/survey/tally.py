@@ -123,5 +123,7 @@ def matrix(units: Sequence[Unit]) -> Array:
 
 
 def agreement(units: Sequence[Unit]) -> float:
-    """Krippendorff's alpha of ordinal ratings; NaN where it cannot be told."""
-    return krippendorff(matrix(units), "ordinal") if units and len(units[0].scores) else float("nan")
+    """Krippendorff's alpha of ordinal ratings; NaN where it cannot be told, as of one road alone."""
+    if len(units) < 2 or not len(units[0].scores):
+        return float("nan")
+    return krippendorff(matrix(units), "ordinal")
