@@ -6,7 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from roadgpt.campaign import status_of
+from roadgpt.campaign.record import STORE
 from roadgpt.chat import Spent
+from roadgpt.cli.campaigns import told
 from roadgpt.cli.replay import replay_lines
 from roadgpt.cli.rows import metres, row_of, spending
 from roadgpt.errors import UsageError
@@ -28,6 +31,9 @@ def show(path: Path | str) -> str:
     path = Path(path)
     if not is_run(path) and (path / CARD).is_file():
         return "\n".join(_campaign_lines(path))
+    if (path / STORE).is_file():
+        again = f"one test as the folder of a run: roadgpt redrive {path} NUMBER"
+        return "\n".join([*told(status_of(path)), again])
     run = read_run(path)
     folder = path if path.is_dir() else run_folder(path.parent, run.index)
     return "\n".join(_run_lines(run, folder))
