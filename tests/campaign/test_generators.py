@@ -217,9 +217,11 @@ def test_being_told_is_quick() -> None:
         ({"archive": "heap"}, "archive"),
     ],
 )
-def test_settings_that_cannot_be_are_told_of(settings: dict[str, Any], said: str) -> None:
+@pytest.mark.parametrize("name", SEARCHES)
+def test_settings_that_cannot_be_are_told_of(name: str, settings: dict[str, Any], said: str) -> None:
+    """By every search: a plan has one table of settings for all its generators."""
     with pytest.raises(UsageError, match=said):
-        plugins.find("generators", "quality_diversity")(cell_for("quality_diversity", **settings))
+        plugins.find("generators", name)(cell_for(name, **settings))
 
 
 def test_splines_are_not_searched() -> None:

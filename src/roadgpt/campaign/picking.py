@@ -17,8 +17,7 @@ from roadgpt.campaign.vary import Candidate
 from roadgpt.design.variety import Shape, apart, nearest
 from roadgpt.geometry.curve import Array
 
-ANYWHERE = 0.3  # of a first failure in a cell, that one counts in a cell with many
-CELLS_MOST = 10_000_000
+ANYWHERE = 0.05  # of a first failure in a cell: what one in a cell with many counts
 
 
 class Expected(NamedTuple):

@@ -1,7 +1,7 @@
 """What searching generators share: settings, tasks for candidates, and proposals made of them."""
 
-from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, Literal, TypeVar
+from collections.abc import Sequence
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, ValidationError, field_validator
@@ -17,19 +17,13 @@ MOST_AXES = 4
 DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")
 """Features that a road has only once somebody drove it."""
 
-S = TypeVar("S", bound=Frozen)
 
-
-class Searching(Frozen):
-    """Settings of every generator that searches."""
+class Mapped(Frozen):
+    """Settings of searches. A plan has one table of them for all its generators, so all know the names, and
+    leave alone what they do not need: only ``batch`` is for all, the rest is ``quality_diversity``'s."""
 
     batch: Annotated[int, Field(ge=1, le=1000)] = 10
     """Tests in a batch."""
-
-
-class Mapped(Searching):
-    """Settings of ``quality_diversity``."""
-
     axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = ("MAX_CURV", "STD_SA")
     """Features that span the map."""
     archive: Literal["grid", "cvt"] = "grid"
@@ -55,7 +49,7 @@ class Mapped(Searching):
         return axes
 
 
-def settings_of(cell: Cell, kind: type[S]) -> S:
+def settings_of(cell: Cell) -> Mapped:
     """A generator's settings.
 
     Raises:
@@ -64,12 +58,12 @@ def settings_of(cell: Cell, kind: type[S]) -> S:
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")
     try:
-        return kind.model_validate(dict(cell.settings))
+        return Mapped.model_validate(dict(cell.settings))
     except ValidationError as error:
         first = error.errors()[0]
         name = ".".join(str(part) for part in first["loc"])
         if first["type"] == "extra_forbidden":
-            known = ", ".join(kind.model_fields)
+            known = ", ".join(Mapped.model_fields)
             said = f"is unknown; there are {known}"
         else:
             said = str(first["msg"]).removeprefix("Value error, ")
@@ -106,9 +100,5 @@ def proposed(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]) ->
 
 def is_usable(result: Result) -> bool:
     """Was the road driven, so that something can be learnt of it?"""
-    return result.design is not None and result.margin is not None and bool(result.features)
-
-
-def outcomes_of(result: Result, axes: Sequence[str]) -> Mapping[str, Any]:
-    """The features of the drive among the axes."""
-    return {axis: result.features.get(axis, 0.0) for axis in axes if axis in DRIVEN}
+    is_judged = result.margin is not None and np.isfinite(result.margin)
+    return result.design is not None and is_judged and bool(result.features)

@@ -10,7 +10,6 @@ import numpy as np
 
 from roadgpt.campaign.model import Cell, Pool, Proposal, Result
 from roadgpt.campaign.search import (
-    Searching,
     is_usable,
     made,
     proposed,
@@ -36,7 +35,7 @@ class Genetic:
             UsageError: a setting cannot be.
         """
         self._cell, self._setting = cell, setting_of(cell)
-        self.batch_size = settings_of(cell, Searching).batch
+        self.batch_size = settings_of(cell).batch
         self._fittest: list[tuple[float, int, Design]] = []
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:

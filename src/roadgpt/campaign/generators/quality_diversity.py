@@ -19,7 +19,6 @@ from roadgpt.campaign.pairs import paired
 from roadgpt.campaign.picking import Expected, picked, spread, unlike
 from roadgpt.campaign.search import (
     DRIVEN,
-    Mapped,
     is_usable,
     made,
     proposed,
@@ -50,7 +49,7 @@ class QualityDiversity:
             UsageError: a setting cannot be.
         """
         self._cell, self._setting = cell, setting_of(cell)
-        self._wanted = settings_of(cell, Mapped)
+        self._wanted = settings_of(cell)
         self._goal: Goal = cell.goal or "failures"
         self.batch_size = self._wanted.batch
         self._archive = Archive(self._wanted.axes, self._wanted.cells, self._wanted.archive)
@@ -58,6 +57,7 @@ class QualityDiversity:
         self._results: dict[int, Result] = {}
         self._looks: dict[int, Candidate] = {}
         self._genes: dict[int, Genes] = {}
+        self._elites: list[int] = []
 
     def tell(self, results: Sequence[Result]) -> None:
         """Takes results into the map; all else waits until it is asked."""
@@ -71,6 +71,7 @@ class QualityDiversity:
         """The candidates that are worth most for the goal."""
         rng = source(self._cell, batch)
         self._look(pool)
+        self._elites = self._archive.elites() or list(self._results)
         found = self._bisected(batch, n, pool) if self._goal == "boundary" else []
         missing = n - len(found)
         tasks = [self._task(rng) for _ in range(missing * self._wanted.candidates)]
@@ -98,7 +99,7 @@ class QualityDiversity:
         return Task(kind, parents, f"{kind} {'+'.join(map(str, numbers))}", seed, self._setting)
 
     def _parent(self, rng: np.random.Generator) -> int:
-        elites = self._archive.elites() or list(self._results)
+        elites = self._elites
         failed = [number for number in elites if self._results[number].failed]
         if self._goal != "coverage" and failed and rng.random() < FAILED_PARENTS:
             elites = failed

@@ -6,7 +6,7 @@ What searches are measured against: it keeps the Brief as they do, and learns no
 from collections.abc import Sequence
 
 from roadgpt.campaign.model import Cell, Pool, Proposal, Result
-from roadgpt.campaign.search import Searching, made, proposed, setting_of, settings_of, source
+from roadgpt.campaign.search import made, proposed, setting_of, settings_of, source
 from roadgpt.campaign.vary import Task
 
 
@@ -20,7 +20,7 @@ class Random:
             UsageError: a setting cannot be.
         """
         self._cell = cell
-        self.batch_size = settings_of(cell, Searching).batch
+        self.batch_size = settings_of(cell).batch
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """The next drafts."""
