@@ -13,12 +13,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
-from roadgpt.campaign.behaviour import cell_of
+from roadgpt.campaign.behaviour import BOUNDS, cell_of
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.search import Mapped
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import PART
 
@@ -38,6 +35,8 @@ COLUMNS = (
     "at_s_m",
     "description",
 )
+AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
+"""The map of behaviour, where a search names no other: its features, and cells along each."""
 EVERY = (
     "SELECT tests.cell, tests.number, batch, origin, seed, given, outcome, cause, side, length, margin, "
     "max_oob, at_s, description, features FROM tests JOIN details USING (cell, number) "
@@ -102,17 +101,15 @@ def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
 
 def _failing_cells(record: Record, cell: Cell) -> int:
     """In how many cells of the map of behaviour a car failed: how widely the failures differ."""
-    told = {name: value for name, value in cell.settings.items() if name in ("axes", "cells")}
-    try:
-        search = Mapped.model_validate(told)
-    except ValidationError:  # another generator's settings mean something else
-        search = Mapped()
+    axes, cells = cell.settings.get("axes", AXES), cell.settings.get("cells", PER_AXIS)
+    if not isinstance(axes, (list, tuple)) or not isinstance(cells, int) or not {*axes} <= {*BOUNDS}:
+        axes, cells = AXES, PER_AXIS  # another generator's settings mean something else
     failures = record.stream(
         "SELECT features FROM tests JOIN details USING (cell, number) "
         "WHERE tests.cell = ? AND outcome = 'FAIL'",
         (cell.name,),
     )
-    places = {cell_of(json.loads(features), search.axes, search.cells) for (features,) in failures}
+    places = {cell_of(json.loads(features), axes, cells) for (features,) in failures}
     return len(places - {None})
 
 
