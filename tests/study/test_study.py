@@ -184,6 +184,21 @@ def test_the_thesis_method_stands_beside_the_planner(tmp_path: Path, monkeypatch
     assert strict["RoadGPT's thesis, its own checks"] in ("182", "88")
 
 
+def test_recorded_answers_stand_beside_the_planner(tmp_path: Path) -> None:
+    """Those that lie in examples/: no server, no key."""
+    file = tmp_path / "prompts.jsonl"
+    file.write_text('{"prompt": "a road", "truth": {"turns": [1, null]}}')
+    replay = Path(__file__).resolve().parents[2] / "examples" / "chat-replay"
+    words = ["study", "alignment", str(file), "-n", "1", "--seed", "1", "--reader", "grammar", "--no-plot"]
+    words += ["--designer", "planner", "--designer", "chat", "--max-completion", "400", "--rounds", "1"]
+    words += ["--replay", str(replay), "--workers", "1", "--out", str(tmp_path / "s"), "-q"]
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == 0, result.output
+    text = (tmp_path / "s" / "report.md").read_text()
+    assert "planner: 1 of 1" in text
+    assert "chat: 1 of 1" in text
+
+
 def test_words_that_cannot_be_read_count_as_not_kept(tmp_path: Path) -> None:
     plan = small("a road", "a road of 9000 metres")
     open_folder(plan, tmp_path)

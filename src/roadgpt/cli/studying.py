@@ -119,8 +119,8 @@ def _study(
     tell = None if quiet else _teller(total)
     if not quiet:
         click.echo(
-            f"{len(prompts)} descriptions, {roads} roads each, by {' and '.join(plan.designers)}, "
-            f"into {place}"
+            f"{_many(len(prompts), 'description')}, {_many(roads, 'road')} each, "
+            f"by {' and '.join(plan.designers)}, into {place}"
         )
     begun = time.perf_counter()
     try:
@@ -135,6 +135,10 @@ def _study(
     _complain(problems)
     click.echo(str(page))
     return NOT_ASKED if any(problem.is_of_chat for problem in problems) else 0
+
+
+def _many(n: int, what: str) -> str:
+    return f"{n:,} {what}{'s' * (n != 1)}"
 
 
 def _plan(
