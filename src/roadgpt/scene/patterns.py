@@ -32,7 +32,7 @@ def fine_noise(tiles: Tiles, tile: int, u: float, v: float, level: float) -> flo
     """A tile at (u, v) in texels, where a pixel is 2**level of them wide."""
     if level <= 0.0:
         return plain_noise(tiles, tile, 0, SIDE, u, v)
-    if level >= COARSEST:
+    if not level < COARSEST:
         return 0.0
     k = int(level)
     side = SIDE >> k

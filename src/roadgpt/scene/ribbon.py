@@ -1,5 +1,7 @@
 """The road itself: carriageway and verges as one surface, its banks, and the posts beside it."""
 
+from functools import cache
+
 import numpy as np
 
 from roadgpt.export.edges import line, stations
@@ -7,7 +9,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.scene.land import Land
 from roadgpt.scene.light import daylight, level_light
-from roadgpt.scene.mesh import GRASS, POST, ROAD, Patch, attributes, grid
+from roadgpt.scene.mesh import GRASS, POST, ROAD, Mesh, Patch, attributes, grid
 from roadgpt.scene.paint import CONCRETE
 
 CHORD = 0.004  # m
@@ -125,32 +127,32 @@ def _posts(road: Road, world: World) -> list[Patch]:
     count = max(1, int(road.length / POST_EVERY))
     s = np.asarray((np.arange(count) + 0.5) * (road.length / count), np.float64)
     t = world.lane_width + world.verge - POST_FROM_RIM
+    model, facing = _post()
     out = []
     for side in (-t, t):
         for place, heading in zip(line(road, s, side), road.heading(s), strict=True):
-            out.append(_post(place, float(heading)))
+            c, n = np.cos(heading), np.sin(heading)
+            turn = np.array([[c, n, 0.0], [-n, c, 0.0], [0.0, 0.0, 1.0]])
+            values = model.attributes.copy()
+            values[:, 2] = daylight(facing @ turn)
+            out.append(Patch(model.points @ turn + place, values, model.triangles, model.kinds))
     return out
 
 
-def _post(place: Array, heading: float) -> Patch:
+@cache
+def _post() -> tuple[Patch, Array]:
+    """One that stands at the origin, and where its sides face."""
     half = POST_WIDE / 2
-    turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
-    ring = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * [half, half * 0.8] @ turn
-    outward = np.array([[0, -1], [1, 0], [0, 1], [-1, 0]]) @ turn
-    parts = []
+    ring = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * [half, half * 0.8]
+    outward = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    heights = np.array([[-0.1], [POST_HIGH]])
+    parts, facing = [], []
     for k in range(4):
-        foot = np.column_stack([ring[k : k + 2] + place[:2], np.full(2, place[2] - 0.1)])
-        net = np.stack([foot + [0, 0, h] for h in (0.0, POST_HIGH + 0.1)])
-        light = float(daylight(np.array([*outward[k], 0.0])))
-        heights = np.array([[-0.1], [POST_HIGH]])
-        parts.append(grid(net[:, ::-1], attributes(k, heights, np.full((2, 2), light)), POST))
-    top = np.column_stack([ring[:4] + place[:2], np.full(4, place[2] + POST_HIGH)])
-    lid = top[[0, 3, 1, 2]].reshape(2, 2, 3)
-    parts.append(grid(lid.swapaxes(0, 1), attributes(0.0, POST_HIGH, np.full((2, 2), 1.0)), POST))
-    starts = np.cumsum([0, *(len(p.points) for p in parts)])
-    return Patch(
-        np.concatenate([p.points for p in parts]),
-        np.concatenate([p.attributes for p in parts]),
-        np.concatenate([p.triangles + n for p, n in zip(parts, starts, strict=False)]),
-        np.concatenate([p.kinds for p in parts]),
-    )
+        net = np.stack([np.column_stack([ring[k : k + 2], np.full(2, h)]) for h in (-0.1, POST_HIGH)])
+        parts.append(grid(net[:, ::-1], attributes(k, heights, np.zeros((2, 2))), POST))
+        facing += [outward[k]] * 4
+    lid = np.column_stack([ring[[0, 3, 1, 2]], np.full(4, POST_HIGH)]).reshape(2, 2, 3)
+    parts.append(grid(lid.swapaxes(0, 1), attributes(0.0, POST_HIGH, np.zeros((2, 2))), POST))
+    facing += [np.array([0.0, 0.0, 1.0])] * 4
+    whole = Mesh.of(parts)
+    return Patch(whole.points, whole.attributes, whole.triangles, whole.kinds), np.array(facing)

@@ -24,6 +24,9 @@ from roadgpt.scene.trees import Trees, pictures, plant
 Image = NDArray[np.uint8]
 
 
+FARTHEST = 1e7  # m, and rad
+
+
 @dataclass(eq=False)
 class Sheet:
     """Room for one picture; each thread has its own, so that pictures can be drawn side by side."""
@@ -70,8 +73,8 @@ class Scene:
         Raises:
             UsageError: a number of a pose is not finite, or ``out`` has another shape.
         """
-        if not np.isfinite(pose).all() or (car is not None and not np.isfinite(car).all()):
-            raise UsageError("a pose has a number that is not finite; a camera cannot be there")
+        if not all(np.abs(each).max() <= FARTHEST for each in (pose, car) if each is not None):
+            raise UsageError("a pose has a number that is not finite, or lies beyond 10,000 km")
         shape = (camera.height, camera.width, 3)
         if out is None:
             out = np.empty(shape, np.uint8)

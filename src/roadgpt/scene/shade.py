@@ -224,4 +224,4 @@ def to_screen(picture: NDArray[np.float32], table: NDArray[np.uint8], out: NDArr
                 c = picture[row, i, k]
                 if c > 0.7:
                     c = 0.7 + 0.3 * (1.0 - 1.0 / (1.0 + (c - 0.7) / 0.3))
-                out[row, i, k] = table[int(min(max(c, 0.0), 1.0) * (STEPS - 1) + 0.5)]
+                out[row, i, k] = table[int(min(c, 1.0) * (STEPS - 1) + 0.5)] if c > 0.0 else table[0]
