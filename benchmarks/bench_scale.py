@@ -143,27 +143,29 @@ def overhead() -> None:
 
 
 def workers() -> None:
-    """Real tests with one worker and with two."""
+    """Real tests with one worker and with two; what the process that writes has to do for each."""
     tests = 96
     rates = []
-    print("\n| workers | tests | tests/s | times | bytes per test on the disk |")
-    print("|---|---|---|---|---|")
+    print("\n| workers | tests | tests/s | times | main process, CPU per test | bytes per test on the disk |")
+    print("|---|---|---|---|---|---|")
     for count in (1, 2):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name) / "c"
             begin(Plan(prompts=(WORDS,), reader="grammar", budget=Budget(tests=tests), seeds=(7,)), folder)
+            before = time.process_time()
             for _ in work(folder, count):
                 pass
+            busy = (time.process_time() - before) / tests
             with Record.opened(folder) as record:
                 # from when all workers were warm to the last test
                 ended = sorted(when for (when,) in record.query("SELECT ended FROM tests"))
-            size = sum(
-                path.stat().st_size for path in folder.rglob("*") if path.suffix in (".sqlite", ".parquet")
-            )
+            files = [path for path in folder.rglob("*") if path.suffix in (".sqlite", ".parquet")]
+            size = sum(path.stat().st_size for path in files) / tests
             first = next(at for at, when in enumerate(ended) if when > ended[0] + 2.0)
             rates.append((len(ended) - first) / (ended[-1] - ended[first - 1]))
+            times = rates[-1] / rates[0]
             print(
-                f"| {count} | {tests} | {rates[-1]:.2f} | {rates[-1] / rates[0]:.2f} | {size / tests:,.0f} |"
+                f"| {count} | {tests} | {rates[-1]:.2f} | {times:.2f} | {1e3 * busy:.1f} ms | {size:,.0f} |"
             )
 
 
