@@ -40,10 +40,10 @@ class Overlay:
         return max(7, round(pixels * self.scale))
 
     def lay(self, frame: Frame, told: Told, is_over: bool) -> None:
-        """Write into a frame; ``is_over``: the drive has ended, and its outcome is told."""
+        """Write into a frame; ``is_over``: the drive has ended, and the outcome is told."""
         self._title(frame)
         self._numbers(frame, told)
-        if is_over and self.run.drive is not None:
+        if is_over:
             self._outcome(frame)
 
     def _rows(self, text: str, size: int, room: float, lines: int, bold: bool = False) -> list[str]:
@@ -65,13 +65,14 @@ class Overlay:
         wide, high = 148 * u, (78 if told.margin is not None else 52) * u
         x, y = edge, self.height - edge - high
         shade(frame, x, y, x + wide, y + high)
+        write(frame, x + 8 * u, y + 45 * u, f"at {told.s:.0f} of {self.run.length:.0f} m", text, PALE)
+        if told.margin is None:  # the camera's speed says nothing
+            write(frame, x + 8 * u, y + 24 * u, "not driven", self._size(TITLE), WHITE, "bold")
+            return
         speed = f"{told.speed * 3.6:.0f}"
         right = x + 62 * u
         write(frame, right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
         write(frame, right + 6 * u, y + 29 * u, "km/h", text, PALE)
-        write(frame, x + 8 * u, y + 45 * u, f"at {told.s:.0f} of {self.run.length:.0f} m", text, PALE)
-        if told.margin is None:
-            return
         colour = _rgb(GREEN if told.margin >= AMPLE else ORANGE if told.margin > 0 else VERMILLION)
         said = f"margin {told.margin:.1f} m" if told.margin > 0 else "out of its lane"
         write(frame, x + 8 * u, y + 61 * u, said, text if told.margin > 0 else small, WHITE)
