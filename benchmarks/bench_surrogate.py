@@ -1,17 +1,19 @@
 """What a search can know of a road before it is driven: the surrogate beside plainer ways.
 
     python benchmarks/bench_surrogate.py           150 roads
-    python benchmarks/bench_surrogate.py 500 -j 2  as in docs/explanation/search.md
+    python benchmarks/bench_surrogate.py 500 -j 2 [--wet]  as in docs/explanation/search.md
 
-Roads of "a flat road", drafts changed three times, are driven by beamng_like. Some teach, the rest are the
-test: Spearman's rho of margins, AUC of failures, and the share of failures among the 20 that look hardest;
-the mean over 8 ways to part them.
+Roads of "a flat road", drafts changed three times, are driven by beamng_like, or with --wet by assumes_dry
+at a friction of 0.572. Some teach, the rest are the test: Spearman's rho of margins, AUC of failures, and the
+share of failures among the 20 that look hardest; the mean over 8 ways to part them.
 """
 
 import argparse
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 from scipy.stats import rankdata, spearmanr
@@ -30,13 +32,15 @@ HARDEST = 20
 Predict = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
-def driven(seed: int) -> tuple[np.ndarray, float, bool] | None:
+def driven(seed: int, wet: bool) -> tuple[np.ndarray, float, bool] | None:
     """Signs of a road, its margin in metres, and whether the car failed."""
     brief = brief_of("a flat road", WORLD, Setup(reader="grammar"))
     road = varied(Task("wild", (), "", (seed,), Setting(brief, WORLD, "sbft")))
     if road is None:
         return None
-    run = prove(road.design, 0, WORLD, Setup())
+    world = WORLD.model_copy(update={"friction": 0.572}) if wet else WORLD
+    driver = f"{Path(__file__).resolve().parent / 'assumes_dry.py'}:AssumesDry" if wet else "beamng_like"
+    run = prove(road.design, 0, world, Setup(driver=driver))
     return (road.signs, run.verdict.margin, run.outcome == "FAIL") if run.verdict else None
 
 
@@ -69,9 +73,9 @@ def auc(score: np.ndarray, failed: np.ndarray) -> float:
     return float((ranks - positive * (positive + 1) / 2) / (positive * (len(failed) - positive)))
 
 
-def main(roads: int, workers: int) -> None:
+def main(roads: int, workers: int, wet: bool) -> None:
     with ProcessPoolExecutor(workers) as pool:
-        found = [one for one in pool.map(driven, range(roads), chunksize=5) if one]
+        found = [one for one in pool.map(partial(driven, wet=wet), range(roads), chunksize=5) if one]
     signs = np.array([one[0] for one in found])
     margins = np.array([one[1] for one in found])
     failed = np.array([one[2] for one in found])
@@ -103,5 +107,6 @@ if __name__ == "__main__":
     )
     parser.add_argument("roads", type=int, nargs="?", default=150)
     parser.add_argument("-j", "--jobs", type=int, default=2)
+    parser.add_argument("--wet", action="store_true")
     asked = parser.parse_args()
-    main(asked.roads, asked.jobs)
+    main(asked.roads, asked.jobs, asked.wet)

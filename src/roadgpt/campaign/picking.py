@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from roadgpt.campaign.model import Goal
 from roadgpt.campaign.vary import Candidate
-from roadgpt.design.variety import Shape, apart, nearest
+from roadgpt.design.variety import Shape, apart
 from roadgpt.geometry.curve import Array
 
 ANYWHERE = 0.05  # of a first failure in a cell: what one in a cell with many counts
@@ -79,7 +79,7 @@ def unlike(candidates: Sequence[Candidate], known: Sequence[Shape], least: float
     if not known or not least:
         return list(candidates)
     others = stacked(known)
-    return [one for one in candidates if nearest(one.shape, others, by_metres=False) >= least]
+    return [one for one in candidates if apart(one.shape, others).min() >= least]
 
 
 def stacked(shapes: Sequence[Shape]) -> Shape:
