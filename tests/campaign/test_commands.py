@@ -180,7 +180,7 @@ def test_a_test_is_driven_again_to_the_same_bytes(driven: Path, tmp_path: Path) 
 
 
 def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    guide = (TESTS.parent / "docs" / "guides" / "campaigns.md").read_text(encoding="utf-8")
+    guide = (TESTS.parent / "docs" / "how-to" / "run-campaigns.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"^```python\n(.*?)^```", guide, re.MULTILINE | re.DOTALL)
     for name, here in (
         ('"study"', repr(str(driven))),

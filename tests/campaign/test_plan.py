@@ -79,7 +79,7 @@ def test_every_combination_is_a_cell_in_order(tmp_path: Path) -> None:
 
 
 def test_the_plan_in_the_guide_is_one(tmp_path: Path) -> None:
-    guide = (ROOT / "docs" / "guides" / "campaigns.md").read_text(encoding="utf-8")
+    guide = (ROOT / "docs" / "how-to" / "run-campaigns.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"^```toml\n(.*?)^```", guide, re.MULTILINE | re.DOTALL)
     (tmp_path / "study.toml").write_text(block)
     plan = read_plan(tmp_path / "study.toml").plan

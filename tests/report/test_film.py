@@ -273,6 +273,6 @@ def test_the_command_films_a_run_two_runs_and_a_campaign(
 
 
 def test_the_code_of_the_guide_runs() -> None:
-    guide = (Path(__file__).parents[2] / "docs" / "guides" / "films.md").read_text(encoding="utf-8")
+    guide = (Path(__file__).parents[2] / "docs" / "how-to" / "film-a-drive.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"^```python\n(.*?)^```", guide, flags=re.MULTILINE | re.DOTALL)
     subprocess.run([sys.executable, "-c", code], check=True, env={**os.environ, "DISPLAY": ""})

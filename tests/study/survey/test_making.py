@@ -162,7 +162,7 @@ def test_a_file_may_name_texts_criteria_and_questions_of_its_own(runs: Path, tmp
 
 
 def test_the_file_in_the_guide_is_one(tmp_path: Path) -> None:
-    guide = (Path(__file__).parents[3] / "docs" / "guides" / "survey.md").read_text("utf-8")
+    guide = (Path(__file__).parents[3] / "docs" / "how-to" / "ask-people.md").read_text("utf-8")
     (text,) = re.findall(r"^```toml\n(.*?)^```", guide, re.M | re.S)
     (tmp_path / "S.toml").write_text(text)
     plan = read_plan(tmp_path / "S.toml")
