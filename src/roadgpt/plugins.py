@@ -9,7 +9,9 @@ from typing import Any
 
 from roadgpt.errors import PartError
 
-SHELVES = ("providers", "readers", "designers", "rules", "exporters", "simulators", "drivers", "generators", "executors")
+SHELVES = (
+    "providers", "readers", "designers", "rules", "exporters", "simulators", "drivers", "generators", "executors",
+)  # fmt: skip
 
 
 @cache

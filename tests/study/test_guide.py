@@ -9,7 +9,9 @@ from pathlib import Path
 from roadgpt.study.prompts import Prompt
 from roadgpt.study.truth import Truth
 
-GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "evaluate-roads.md").read_text(encoding="utf-8")
+GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "evaluate-roads.md").read_text(
+    encoding="utf-8"
+)
 
 
 def block(language: str) -> str:
