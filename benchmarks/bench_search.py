@@ -287,6 +287,8 @@ def table(setting: str, results: dict[Job, dict[str, Any]]) -> list[str]:
     ]
     for method in what.methods:
         rows = [one for job, one in own.items() if job.method == method]
+        if not rows:
+            continue
         cells = [
             method,
             *(said([row[key] for row in rows], base.get(key), method == what.methods[0])
@@ -311,7 +313,7 @@ def said(values: Sequence[float], base: Sequence[float] | None, is_base: bool) -
             (np.array(values),), np.median, method="percentile", rng=np.random.default_rng(0)
         ).confidence_interval
         text += f" [{interval.low:g}, {interval.high:g}]"
-    if base is None or is_base:
+    if not base or is_base:
         return text
     p = mannwhitneyu(values, base, alternative="greater").pvalue
     usual = float(np.median(base))
