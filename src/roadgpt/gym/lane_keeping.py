@@ -48,8 +48,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
 
     ``info`` has s, t (m, of the car on its road), outside (share of the car outside its lane), speed (m/s),
     progress (m gained in this step), prompt, and at the end ``ended``: "goal", "out_of_lane", "fell", "stuck"
-    or "timeout"; from ``reset`` also ``understood``, the description as it was read. ``env.unwrapped.road`` is
-    the road.
+    or "timeout"; from ``reset`` also ``understood``, the description as it was read. The road itself is
+    ``env.unwrapped.road``.
 
     Args:
         prompt: one description, or several that take turns by the seed.
