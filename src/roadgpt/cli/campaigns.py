@@ -19,6 +19,7 @@ MOST_WORKERS = 4096
 MOST_CELLS = 40  # that are shown one by one
 HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
 LINE = "{:<6} {:>9} {:>7} {:>7} {:>7} {:>13}  {}"
+LONGEST = 60  # letters of a description, in a line of a table
 
 worker_options = together(
     click.option(
@@ -118,10 +119,18 @@ def cell_columns(cell: "CellStatus") -> tuple[str, ...]:
     """What ``HEAD`` names, of one cell."""
     passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
     margin = "-" if cell.least_margin is None else metres(cell.least_margin)
-    what = f"{cell.words or 'any road'} ({cell.driver}, {cell.generator}, seed {cell.seed})"
-    why = f"; {cell.closed}" if cell.closed else ""
+    words = one_line(cell.words, LONGEST) or "any road"
+    what = f"{words} ({one_line(cell.driver)}, {cell.generator}, seed {cell.seed})"
+    why = f"; {one_line(cell.closed)}" if cell.closed else ""
     counts = (cell.done, passed, failed, cell.done - passed - failed)
     return (cell.name, *(f"{count:,}" for count in counts), margin, what + why)
+
+
+def one_line(text: str, most: int = 300) -> str:
+    """A text of other people as it may stand in a line: no breaks, nothing that a terminal obeys, cut."""
+    from roadgpt.chat.strict import plain
+
+    return plain(text, most)
 
 
 def duration(seconds: float) -> str:

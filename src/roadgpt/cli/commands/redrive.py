@@ -4,8 +4,11 @@ from pathlib import Path
 
 import click
 
+from roadgpt.cli.campaigns import one_line
 from roadgpt.cli.options import axes_option, folder
 from roadgpt.errors import UsageError
+
+DIGITS = 18  # of a number that a store can look for
 
 
 @click.command()
@@ -32,11 +35,12 @@ def command(campaign: Path, tests: tuple[str, ...], out: Path | None, no_plot: b
     for cell, number in [_named(campaign, test) for test in tests]:
         run, result = run_again(campaign, cell, number)
         written = write_run(run, _made(out / cell), None if no_plot else drawing(axes))  # type: ignore[arg-type]
-        click.echo(f"{run.outcome:<8} {cell}/{number}  {written}  {run.description}")
+        click.echo(f"{run.outcome:<8} {cell}/{number}  {written}  {one_line(run.description)}")
         if not is_same(run, result):
+            said = f"{result.outcome} in the campaign ({one_line(result.description)})"
             click.echo(
-                f"roadgpt: test {number} of {cell} was {result.outcome} in the campaign "
-                f"({result.description}); another version of roadgpt or another machine drove it then",
+                f"roadgpt: test {number} of {cell} was {said}; another version of roadgpt or another machine "
+                "drove it then",
                 err=True,
             )
 
@@ -54,8 +58,8 @@ def _named(campaign: Path, test: str) -> tuple[str, int]:
     from roadgpt.campaign.record import Record
 
     cell, _, number = test.rpartition("/")
-    if not number.isdecimal():
-        raise UsageError(f"'{test}' is no test; give its number, as 17 or c02/17")
+    if not number.isdecimal() or len(number) > DIGITS:
+        raise UsageError(f"'{one_line(test, 40)}' is no test; give its number, as 17 or c02/17")
     with Record.opened(campaign) as record:
         names = [name for (name,) in record.query("SELECT name FROM cells ORDER BY name LIMIT 3")]
         if not cell and len(names) > 1:

@@ -41,14 +41,15 @@ def _written(folder: Path) -> Path:
     if (folder / STORE).is_file():
         from roadgpt.study.many import write_many
 
-        return write_many(folder, _command_of_many(folder))
+        return write_many(folder, command_of_many(folder))
     if (folder / CARD).is_file():
         return reporting.write_campaign(folder, _command(read_card(folder), folder))
     raise UsageError(f"there is no campaign and no study in {folder}; give the folder of one")
 
 
-def _command_of_many(folder: Path) -> str:
+def command_of_many(folder: Path) -> str:
     """What makes a campaign of many tests again, or goes on with one that a file describes."""
+    from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL
     from roadgpt.campaign.record import Record
     from roadgpt.cli.replay import request_words
 
@@ -59,7 +60,9 @@ def _command_of_many(folder: Path) -> str:
         return shlex.join(["roadgpt", "resume", str(folder)])
     words = request_words(only.request, n)
     words += ["--goal", only.goal] if only.goal else []
-    words += ["--generator", only.generator] if only.generator != "words" else []
+    if only.generator != (WITH_GOAL if only.goal else WITHOUT_GOAL):
+        words += ["--generator", only.generator]
+    words += ["--seconds", f"{only.budget.seconds:g}"] if only.budget.seconds else []
     return shlex.join(["roadgpt", "campaign", *words, "--out", str(folder)])
 
 

@@ -7,6 +7,7 @@ import click
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.flags import CHAT
 from roadgpt.cli.options import together
+from roadgpt.errors import UsageError
 
 LIMITS = [flag for flag in CHAT if flag.field in ("max_tokens", "max_cost")]
 
@@ -38,6 +39,8 @@ def command(
     with Record.opened(campaign) as record:
         plan = plan_of(record)
     given = {name: value for name, value in limits.items() if value is not None}
+    if given and plan.chat is None:
+        raise UsageError(f"--max-tokens and --max-cost are for language models; {campaign} asks none")
     if given and plan.chat is not None:
         plan = plan.model_copy(update={"chat": plan.chat.model_copy(update=given)})
     watch(campaign, work(campaign, workers, executor, address, plan), as_json, quiet)

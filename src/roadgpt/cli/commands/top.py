@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from roadgpt.campaign.status import CellStatus, Status
 
 MOST_CELLS, MOST_WORKERS = 12, 16  # rows of the screen
+GAP = 2  # between columns
+LEAST = 12  # letters of a description, below which it is left out
 
 
 @click.command()
@@ -29,18 +31,18 @@ def command(campaign: Path, once: bool) -> None:
 
     console = Console(file=sys.stdout)
     if once or not sys.stdout.isatty():
-        console.print(_picture(status_of(campaign)))
+        console.print(_picture(status_of(campaign), console.width))
         return
     with Live(console=console, auto_refresh=False, screen=False) as live:
         while True:
             status = status_of(campaign)
-            live.update(_picture(status), refresh=True)
+            live.update(_picture(status, console.width), refresh=True)
             if status.is_finished:
                 return
             time.sleep(1.0)
 
 
-def _picture(status: "Status") -> "RenderableType":
+def _picture(status: "Status", width: int) -> "RenderableType":
     from rich.console import Group
     from rich.progress_bar import ProgressBar
     from rich.table import Table
@@ -52,20 +54,35 @@ def _picture(status: "Status") -> "RenderableType":
     head = Text(f"{status.folder}: {state}", style="bold")
     pace = Text(f"{status.done:,}{of} tests, {status.rate:.1f} tests/s, {duration(status.seconds)}{left}")
     bar = ProgressBar(total=status.total or max(status.done, 1), completed=status.done)
-    cells = Table(box=None, pad_edge=False)
-    rows = [cell_columns(cell) for cell in _chosen(status)]
-    for name, *texts in zip(HEAD, *rows, strict=True):
-        if name == "what":  # it gives way where the screen is narrow
-            cells.add_column(name, no_wrap=True, overflow="ellipsis")
-        else:
-            wide = max(map(len, [name, *texts]))
-            cells.add_column(name, justify="left" if name == "cell" else "right", min_width=wide)
-    for row in rows:
-        cells.add_row(*row)
     workers = Table(box=None, pad_edge=False, show_header=False)
     for lease in status.under_way[:MOST_WORKERS]:
-        workers.add_row(lease.worker, f"test {lease.number} of {lease.cell}")
-    return Group(head, pace, bar, Text(outcomes_line(status.outcomes)), Text(""), cells, Text(""), workers)
+        workers.add_row(Text(lease.worker), f"test {lease.number} of {lease.cell}")
+    outcomes = Text(outcomes_line(status.outcomes))
+    return Group(head, pace, bar, outcomes, Text(""), _cells(status, width), Text(""), workers)
+
+
+def _cells(status: "Status", width: int) -> "RenderableType":
+    """As many columns as the screen is wide; the last one is cut where it does not fit."""
+    from rich.table import Table
+    from rich.text import Text
+
+    cells = Table(box=None, pad_edge=False)
+    rows = [cell_columns(cell) for cell in _chosen(status)]
+    shown = 0
+    for name, *texts in zip(HEAD, *rows, strict=True):
+        wide = max(map(len, [name, *texts]))
+        is_words = name == "what"
+        if is_words:
+            wide = min(wide, width)
+        if width < (LEAST if is_words else wide):
+            break
+        cells.add_column(
+            name, justify="left" if name in ("cell", "what") else "right", width=wide, no_wrap=True
+        )
+        width, shown = width - wide - GAP, shown + 1
+    for row in rows:
+        cells.add_row(*(Text(text, overflow="ellipsis") for text in row[:shown]))
+    return cells
 
 
 def _chosen(status: "Status") -> "list[CellStatus]":

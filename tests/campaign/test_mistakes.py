@@ -1,0 +1,201 @@
+"""What people give to the commands of campaigns by mistake or in jest: they are told, and nothing breaks."""
+
+import shlex
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from campaign.quick import plan, put_on_shelves
+from roadgpt.brief import Brief, read
+from roadgpt.campaign.launch import begin, work
+from roadgpt.campaign.model import Budget
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.plan_file import read_plan
+from roadgpt.campaign.record import STORE, Record
+from roadgpt.campaign.status import status_of
+from roadgpt.chat import Meter, Spent, Usage
+from roadgpt.cli import app
+from roadgpt.cli.commands.report import command_of_many
+from roadgpt.road import World
+from roadgpt.run import Setup
+
+HOSTILE = "a road [/red] [bold]<b>\n\x1b[31m " + "very " * 60 + "long"
+
+
+def roadgpt(*words: object) -> Result:
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def begin_quickly(folder: Path, patch: pytest.MonkeyPatch, wanted: Plan) -> None:
+    """A campaign whose tests cost nothing."""
+    put_on_shelves(patch.setattr)
+    patch.setattr("roadgpt.campaign.launch.brief_of", lambda *_: read("two hairpins", "grammar"))
+    begin(wanted, folder)
+
+
+@pytest.fixture
+def hostile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    begin_quickly(tmp_path / "c", monkeypatch, plan(5).model_copy(update={"prompts": (HOSTILE,)}))
+    [*work(tmp_path / "c", 1, "inline")]
+    return tmp_path / "c"
+
+
+def test_a_description_takes_one_line_whatever_is_in_it(hostile: Path) -> None:
+    said = roadgpt("status", hostile)
+    assert said.exit_code == 0
+    (line,) = [line for line in said.output.splitlines() if line.startswith("c01")]
+    assert "a road [/red] [bold]<b> [31m very" in line
+    assert len(line) < 160
+    assert "\x1b" not in said.output
+
+
+@pytest.mark.parametrize("width", [12, 30, 44, 60, 80, 200])
+def test_top_fits_every_screen_and_takes_no_word_for_markup(hostile: Path, width: int) -> None:
+    said = CliRunner(env={"COLUMNS": str(width)}).invoke(app, ["top", str(hostile), "--once"])
+    assert said.exit_code == 0, said.output
+    lines = said.output.splitlines()
+    assert max(map(len, lines)) <= width
+    (line,) = [line for line in lines if line.startswith("c01")]
+    assert line.split()[1] == "5"
+    assert ("a road [/re" in line) == (width >= 60)
+
+
+@pytest.mark.parametrize("number", ["9" * 30, "c01/" + "9" * 5000])
+def test_a_number_that_no_store_can_hold_is_no_test(hostile: Path, number: str) -> None:
+    said = roadgpt("redrive", hostile, number)
+    assert said.exit_code == 2
+    assert "is no test; give its number" in said.output
+    assert len(said.output) < 200
+
+
+def test_a_limit_of_money_where_no_model_is_asked_is_told(hostile: Path) -> None:
+    said = roadgpt("resume", hostile, "--max-cost", "3")
+    assert said.exit_code == 2
+    assert "are for language models" in said.output
+
+
+def journal(folder: Path) -> str:
+    with closing(sqlite3.connect(folder / STORE)) as db:
+        return str(db.execute("PRAGMA journal_mode").fetchone()[0])
+
+
+def test_a_finished_campaign_stays_one_file_when_somebody_goes_on_with_it(hostile: Path) -> None:
+    assert journal(hostile) == "delete"
+    assert roadgpt("resume", hostile).exit_code == 0
+    assert journal(hostile) == "delete"
+
+
+@pytest.mark.parametrize("driver", ["nobody", "nofile.py:Mine", "{here}:Other", "{here}:Raises"])
+def test_a_mistyped_driver_leaves_nothing_behind(tmp_path: Path, driver: str) -> None:
+    mine = tmp_path / "mine.py"
+    mine.write_text(
+        "class Raises:\n    def __init__(self): raise ValueError('no')\n    def steer(self, view): ..."
+    )
+    words = ["a road with 2 turns", "-n", 2, "--reader", "grammar", "--driver", driver.format(here=mine)]
+    said = roadgpt("campaign", *words, "--out", tmp_path / "c")
+    assert said.exit_code == 2
+    assert not (tmp_path / "c").exists()
+
+
+def test_what_a_driver_prints_when_it_is_made_is_no_part_of_the_json(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text("print('made')\nclass Mine:\n    def steer(self, view): ...")
+    words = ["a road", "-n", 1, "--generator", "nobody", "--driver", f"{tmp_path / 'mine.py'}:Mine", "--json"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("roadgpt.campaign.plan.Plan.check", lambda *_: None)  # so that it comes as far as that
+        said = roadgpt("campaign", *words, "--out", tmp_path / "c")
+    assert "made" in said.stderr
+    assert "made" not in said.stdout
+
+
+def test_files_of_other_people_beside_the_drives_are_left_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begin_quickly(tmp_path / "c", monkeypatch, plan(5))
+    (tmp_path / "c" / "traces").mkdir()
+    for name in ("notes.txt", "mine.parquet", "0000009.parquet"):
+        (tmp_path / "c" / "traces" / name).write_text("x")
+    (tmp_path / "c" / "traces" / "folder").mkdir()
+    [*work(tmp_path / "c", 1, "inline")]
+    left = sorted(path.name for path in (tmp_path / "c" / "traces").iterdir())
+    assert left == ["folder", "mine.parquet", "notes.txt"]
+
+
+def test_what_reading_has_cost_counts_for_the_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def dear(words: str, world: World, setup: Setup, meter: Meter) -> Brief:
+        meter.add(Spent(calls=1, usage=Usage(prompt=70, completion=30), seconds=1.0, cost=0.25))
+        return read(words, "grammar")
+
+    put_on_shelves(monkeypatch.setattr)
+    monkeypatch.setattr("roadgpt.campaign.launch.brief_of", dear)
+    begin(plan(5), tmp_path / "c")
+    with Record.opened(tmp_path / "c") as record:
+        assert record.spent() == (100, 0.25)
+    told = status_of(tmp_path / "c")
+    assert (told.tokens, told.cost_usd, told.is_running, told.seconds) == (100, 0.25, False, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("goal = 'failures'\ndrive = false", "a search (--goal failures) learns from drives"),
+        ("seeds = [1, 2, 1]", "1 stands there twice"),
+        ("drivers = ['reference', 'reference']", "'reference' stands there twice"),
+    ],
+)
+def test_a_plan_that_makes_no_sense_is_told(tmp_path: Path, text: str, sentence: str) -> None:
+    (tmp_path / "plan.toml").write_text(f"prompts = 'two hairpins'\ntests = 3\nreader = 'grammar'\n{text}\n")
+    said = roadgpt("campaign", tmp_path / "plan.toml", "--out", tmp_path / "c")
+    assert said.exit_code == 2
+    assert sentence in said.output
+    assert not (tmp_path / "c").exists()
+
+
+def test_a_plan_that_was_saved_by_a_windows_editor_is_read(tmp_path: Path) -> None:
+    (tmp_path / "plan.toml").write_text("prompts = 'two hairpins'\r\ntests = 3\r\n", encoding="utf-8-sig")
+    assert read_plan(tmp_path / "plan.toml").plan.prompts == ("two hairpins",)
+
+
+@pytest.mark.parametrize(
+    ("given", "wanted"),
+    [
+        (
+            {"goal": "failures", "drives": True, "generators": ("words",)},
+            ["--goal failures", "--generator words"],
+        ),
+        (
+            {"goal": "failures", "drives": True, "generators": ("quality_diversity",)},
+            ["--goal failures --out"],
+        ),
+        ({"generators": ("words",), "budget": Budget(tests=5, seconds=60)}, ["--seconds 60", "--no-drive"]),
+    ],
+)
+def test_the_command_on_the_card_makes_the_same_campaign(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, given: dict[str, Any], wanted: list[str]
+) -> None:
+    plain = plan(5).model_copy(update={"settings": {}, **given})
+    begin_quickly(tmp_path / "c", monkeypatch, plain)
+    words = command_of_many(tmp_path / "c")
+    assert all(word in words for word in wanted), words
+    monkeypatch.setattr("roadgpt.campaign.launch.work", lambda *_: iter(()))
+    again = CliRunner().invoke(app, shlex.split(words)[1:])
+    assert again.exit_code == 0, again.output
+    assert "going on in" in again.output
+
+
+def test_the_pace_counts_tests_of_cells_that_were_done_a_moment_ago(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("roadgpt.campaign.office.GROUP_SECONDS", 0.0)
+    begin_quickly(tmp_path / "c", monkeypatch, plan(5, cells=8))
+    steps = work(tmp_path / "c", 1, "inline")
+    while next(steps).cells < 6:
+        pass
+    told = status_of(tmp_path / "c")
+    assert told.is_running
+    assert told.rate == pytest.approx(told.done / told.seconds, rel=0.5) or told.seconds < 1
+    assert told.rate * max(told.seconds, 1.0) > 20
+    steps.close()
