@@ -138,7 +138,7 @@ def test_time_closes_a_cell_and_what_is_asked_is_finished(tmp_path: Path) -> Non
 def test_another_plan_in_the_same_folder_is_refused_and_the_same_goes_on(tmp_path: Path) -> None:
     table = worked(tmp_path / "c", tests=10)
     assert begin(plan(10), tmp_path / "c")
-    with pytest.raises(UsageError, match=r"another campaign \(other budget"):
+    with pytest.raises(UsageError, match=r"another campaign \(other number of tests"):
         begin(plan(11), tmp_path / "c")
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "letter.txt").write_text("mine")

@@ -17,9 +17,10 @@ from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Record
 from roadgpt.campaign.store import Store, refused
 from roadgpt.campaign.table import CELLS, RESULTS, write_tables
-from roadgpt.campaign.traces import TRACES
+from roadgpt.campaign.traces import SUFFIX, TRACES
 from roadgpt.campaign.worker import Ready
-from roadgpt.chat import Meter
+from roadgpt.chat import Meter, Spent
+from roadgpt.drive.custom import load_in_time
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup, brief_of
 from roadgpt.run.atomic import held, sweep
@@ -27,6 +28,12 @@ from roadgpt.run.versions import versions_of
 
 LOCK = "campaign.lock"
 LOG = "workers.log"
+TOLD = {
+    "prompts": "descriptions",
+    "budget": "number of tests or seconds",
+    "drives": "choice whether to drive",
+}
+"""Fields of a Plan, where people call them something else."""
 
 
 def begin(plan: Plan, folder: Path) -> bool:
@@ -36,6 +43,7 @@ def begin(plan: Plan, folder: Path) -> bool:
 
     Raises:
         UsageError: the plan cannot be carried out, or the folder holds something else.
+        DriverError: a driver hung while it was made.
         BriefError: a description cannot be read.
         ChatError: a language model that reads them could not be asked.
     """
@@ -46,12 +54,13 @@ def begin(plan: Plan, folder: Path) -> bool:
             return True
         if any(path.name != LOCK and not path.name.startswith(STORE) for path in folder.iterdir()):
             raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
-        briefs = _briefs(plan)
+        _drivers_come(plan)
+        briefs, spent = _briefs(plan)
         cells = plan.cells(briefs)
         for name in plan.generators:  # one that cannot use its settings says so now
             plugins.find("generators", name)(next(cell for cell in cells if cell.generator == name))
         versions = versions_of(cells[0].request.setup)
-        Store.new(folder, plan.model_dump_json(), cells, versions).close()
+        Store.new(folder, plan.model_dump_json(), cells, versions, spent).close()
         return False
 
 
@@ -68,22 +77,30 @@ def _without_trace(folder: Path) -> Iterator[None]:
         raise
 
 
-def _briefs(plan: Plan) -> dict[str, Brief]:
-    """What is read out of each description."""
+def _drivers_come(plan: Plan) -> None:
+    """A driver whose name is mistyped is told of before anything is kept or paid for."""
+    if plan.drives:
+        for driver in dict.fromkeys(plan.drivers):
+            load_in_time(driver)
+
+
+def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
+    """What is read out of each description, and what that has cost."""
     request, _ = next(plan.requests())
     meter = Meter.of(plan.chat)
     words = dict.fromkeys(text for text in plan.prompts if text.strip())
-    return {text: brief_of(text, plan.world, request.setup, meter) for text in words}
+    return {text: brief_of(text, plan.world, request.setup, meter) for text in words}, meter.spent
 
 
 def _same(plan: Plan, folder: Path) -> None:
     with Store.opened(folder) as store:
         there = plan_of(store)
-        other = [name for name, value in plan.essence() if getattr(there.essence(), name) != value]
+        kept = there.essence()
+        other = [TOLD.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
         if other:
             raise UsageError(
-                f"{folder} holds another campaign (other {' and '.join(other)}); name another folder, "
-                f"or go on with it: roadgpt resume {folder}"
+                f"{folder} holds another campaign (other {', '.join(other)}); name another folder, "
+                f"or go on with it as it is: roadgpt resume {folder}"
             )
         store.set_plan(plan.model_dump_json())
 
@@ -175,7 +192,7 @@ def _sweep(folder: Path, store: Store) -> None:
         sweep(folder / TRACES)
         known = {name for (name,) in store.query("SELECT file FROM traces")}
         for path in (folder / TRACES).iterdir():
-            if path.name not in known:
+            if path.name not in known and path.suffix == SUFFIX and path.stem.isdecimal():
                 path.unlink()
 
 

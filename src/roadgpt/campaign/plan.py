@@ -4,6 +4,7 @@ Each combination is a cell, with a budget of its own; all else is the same for a
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from itertools import product
 from typing import Annotated, Any, Literal
@@ -91,7 +92,8 @@ class Plan(Frozen):
         """Look at what need not be tried out.
 
         Raises:
-            UsageError: a part is not installed, cells are too many, or nothing says when to stop.
+            UsageError: a part is not installed, cells are too many or the same, nothing says when to stop,
+            or a search may not drive.
         """
         lists = (self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds)
         cells = math.prod(map(len, lists))
@@ -101,6 +103,16 @@ class Plan(Frozen):
             )
         if self.budget == UNLIMITED:
             raise UsageError("nothing says when to stop; give a number of tests (-n 200) or --seconds")
+        if self.goal is not None and not self.drives:
+            raise UsageError(
+                f"a search (--goal {self.goal}) learns from drives; leave out the goal, or drive the roads"
+            )
+        for values in lists:
+            twice = [value for value, count in Counter(values).items() if count > 1]
+            if twice:
+                raise UsageError(
+                    f"{twice[0]!r} stands there twice, which gives the same tests twice; once will do"
+                )
         for name in self.generators:
             plugins.find("generators", name)
             if name == WITHOUT_GOAL and not all(words.strip() for words in self.prompts):

@@ -125,11 +125,20 @@ def _rate(record: Record, done: int, seconds: float, is_running: bool) -> float:
         return done / seconds if seconds else 0.0
     ((begun,),) = record.query("SELECT max(begun) FROM sittings")
     since = max(begun, time.time() - LATELY)
-    # the clock's columns have no index, which every result would pay for: the last ones are at the end
+    return _ended_since(record, float(since)) / max(time.time() - float(since), 1.0)
+
+
+def _ended_since(record: Record, since: float) -> int:
+    """Tests. The clock's columns have no index, which every result would pay for: cells are begun in their
+    order, and the last tests of each are at its end, so it looks back until there is nothing new."""
     last = "SELECT ended FROM tests WHERE cell = ? AND ended IS NOT NULL ORDER BY number DESC LIMIT 20000"
-    open_cells = [cell for (cell,) in record.query("SELECT DISTINCT cell FROM batches WHERE left > 0")]
-    lately = [ended for cell in open_cells for (ended,) in record.query(last, (cell,)) if ended >= since]
-    return len(lately) / max(time.time() - float(since), 1.0)
+    count = 0
+    for cell, left in record.stream("SELECT cell, sum(left) FROM batches GROUP BY cell ORDER BY cell DESC"):
+        lately = sum(ended >= since for (ended,) in record.query(last, (cell,)))
+        if not lately and not left:
+            break
+        count += lately
+    return count
 
 
 def _cells(record: Record) -> tuple[CellStatus, ...]:

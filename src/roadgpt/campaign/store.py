@@ -65,8 +65,15 @@ class Store(Record):
         self._sitting = 0
 
     @classmethod
-    def new(cls, folder: Path, plan: str, cells: Sequence[Cell], versions: Mapping[str, str]) -> Self:
-        """A store that holds a plan and no tests.
+    def new(
+        cls,
+        folder: Path,
+        plan: str,
+        cells: Sequence[Cell],
+        versions: Mapping[str, str],
+        spent: Spent | None = None,
+    ) -> Self:
+        """A store that holds a plan and no tests, and what language models were paid for reading the words.
 
         Raises:
             RoadGPTError: it cannot be written.
@@ -83,6 +90,11 @@ class Store(Record):
             db.executemany(
                 "INSERT INTO cells(name, cell) VALUES (?, ?)", [(c.name, cell_text(c)) for c in cells]
             )
+            if spent is not None and spent.calls:
+                db.execute(
+                    "INSERT INTO sittings VALUES (?, ?, 0, 1, ?, ?)",
+                    (now := time.time(), now, spent.usage.total, spent.cost or 0.0),
+                )
             db.execute(f"PRAGMA user_version = {FORMAT}")
             db.execute("COMMIT")
             db.close()
@@ -118,6 +130,13 @@ class Store(Record):
                 if self._db.in_transaction:
                     self._db.execute("ROLLBACK")
                 raise
+
+    def close(self) -> None:
+        """Let go of the file; that of a finished campaign may then be copied and made read-only."""
+        with suppress(sqlite3.Error):  # somebody reads it at this moment
+            if self.meta("finished"):
+                self._db.execute("PRAGMA journal_mode = DELETE")
+        super().close()
 
     def begin_sitting(self, workers: int) -> None:
         """Somebody begins to work; leases of earlier sittings are over."""
@@ -155,11 +174,9 @@ class Store(Record):
             db.execute("UPDATE cells SET closed = ? WHERE name = ?", (why, cell))
 
     def finish(self) -> None:
-        """Everything is done: the store becomes one file again, which may be copied and made read-only."""
+        """Everything is done."""
         with self._whole() as db:
             db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
-        with suppress(sqlite3.OperationalError):  # somebody reads it at this moment
-            self._db.execute("PRAGMA journal_mode = DELETE")
 
     def set_plan(self, plan: str) -> None:
         """Another plan, which differs in limits only."""

@@ -20,7 +20,7 @@ from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import UsageError
 from roadgpt.run.atomic import write_whole
 
-TRACES = "traces"
+TRACES, SUFFIX = "traces", ".parquet"
 FORMAT = 1
 FINE, COARSE = 1e-4, 1e-2
 STEPS = {
@@ -103,7 +103,7 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
     ) as writer:
         writer.write_table(table)
         writer.add_key_value_metadata({"roadgpt": json.dumps(told)})
-    name = f"{number:07d}.parquet"
+    name = f"{number:07d}{SUFFIX}"
     path = folder / TRACES / name
     path.parent.mkdir(exist_ok=True)
     write_whole(path, data.getvalue())

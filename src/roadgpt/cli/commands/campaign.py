@@ -1,5 +1,7 @@
 """``roadgpt campaign``: thousands of tests, by many workers, that nothing interrupts for good."""
 
+import sys
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -90,7 +92,8 @@ def command(
     plugins.find("executors", executor)
     if out is None:
         out = new_folder(Path(text).stem if text.endswith(".toml") else text, plan.seeds[0])
-    was_there = begin(plan, out)
+    with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
+        was_there = begin(plan, out)
     if not quiet and not as_json:
         _tell(out, plan, was_there)
     watch(out, work(out, workers, executor, address, plan), as_json, quiet)

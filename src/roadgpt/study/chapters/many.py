@@ -91,7 +91,7 @@ def margins(record: Record) -> Figure:
     n = round((high - low) / width)
     found: Mapping[int, int] = dict(
         record.query(
-            "SELECT CAST(floor((max(min(margin, ?), ?) - ?) / ?) AS INTEGER), count(*) FROM tests "
+            "SELECT CAST((max(min(margin, ?), ?) - ?) / ? AS INTEGER), count(*) FROM tests "
             "WHERE margin IS NOT NULL GROUP BY 1",
             (high - width / 2, low, low, width),
         )
