@@ -266,6 +266,38 @@ def test_ranks_are_scipys_with_their_effects(seed, whole) -> None:
     assert (found.rho, found.p) == pytest.approx((other.statistic, other.pvalue))
 
 
+@settings(max_examples=25)
+@given(seed=st.integers(0, 10**6), pairs=st.integers(1, 9))
+def test_few_tied_ratings_are_signed_in_every_way(seed, pairs) -> None:
+    """By the definition: of all ways to sign the ranks, those that are as one-sided as this one."""
+    difference = np.random.default_rng(seed).integers(-3, 4, pairs)
+    assume(difference.any())
+    moved = difference[difference != 0]
+    ranks = stats.rankdata(np.abs(moved))
+    sums = [abs((ranks * signs).sum()) for signs in itertools.product((1, -1), repeat=len(moved))]
+    own = abs((ranks * np.sign(moved)).sum())
+    assert wilcoxon(difference, np.zeros(pairs)).p == pytest.approx(np.mean(np.array(sums) >= own - 1e-9))
+
+
+def test_what_few_people_cannot_show() -> None:
+    """Of five raters 2 in 32 ways to sign are as one-sided; of three roads 2 in 6 orders as strict."""
+    assert wilcoxon([2] * 5, [1] * 5).p == pytest.approx(2 / 32)
+    assert wilcoxon([2] * 60, [1] * 60).p < 1e-10
+    assert spearman([1, 2, 3], [4, 5, 6]).p == pytest.approx(2 / 6)
+    assert spearman([1, 2, 3, 4], [8, 7, 6, 5]).p == pytest.approx(2 / 24)
+
+
+@settings(max_examples=15)
+@given(seed=st.integers(0, 10**6), pairs=st.integers(3, 6))
+def test_few_pairs_are_put_in_every_order(seed, pairs) -> None:
+    rng = np.random.default_rng(seed)
+    x, y = rng.integers(1, 5, (2, pairs)).astype(float)
+    assume(np.ptp(x) > 0 and np.ptp(y) > 0)
+    rhos = [stats.spearmanr(x, order).statistic for order in itertools.permutations(y)]
+    found = spearman(x, y)
+    assert found.p == pytest.approx(np.mean(np.abs(rhos) >= abs(found.rho) - 1e-9))
+
+
 def test_wilcoxons_own_example_and_darwins_corn() -> None:
     """Cross- and self-fertilised corn (Darwin 1876), as in Siegel and in R's documentation of the test."""
     difference = [49, -67, 8, 16, 6, 23, 28, 41, 14, 29, 56, 24, 75, 60, -48]

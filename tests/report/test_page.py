@@ -82,6 +82,28 @@ def test_nothing_in_the_words_becomes_markup() -> None:
     assert reader.text.count(NASTY) >= 6
 
 
+def test_words_are_no_tags_in_markdown_and_no_letters_that_latex_lacks() -> None:
+    text = markdown_of(page(NASTY, TABLE, Details(NASTY, [NASTY]), Figure("f", NASTY, "")))
+    outside = "\n".join(line for line in text.splitlines() if not line.startswith("- command: `"))
+    assert "<script" not in outside
+    assert outside.count("&lt;script>alert(1)&lt;/script> &amp;") == 9
+    assert "# two lines" in markdown_of(Page("two\nlines", [], []))
+    assert r"\textless{}script\textgreater{}" in latex_of(TABLE)
+    assert r"\textbar{} \$x" in latex_of(TABLE)
+
+
+@pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t"])
+def test_words_are_no_formulas_in_a_spreadsheet(start: str) -> None:
+    told = Table("t", "", ["a", "b"], [[cell(f"{start}cmd|' /C calc'!A0"), cell(-0.25)]])
+    rows = list(csv.reader(io.StringIO(csv_of(told), newline="")))
+    assert rows[1] == [f"'{start}cmd|' /C calc'!A0", "-0.25"]
+
+
+def test_words_of_several_lines_are_one_cell() -> None:
+    told = Table("t", "", ["a", "b"], [[cell("one\rtwo\r\nthree"), cell(4)]])
+    assert list(csv.reader(io.StringIO(csv_of(told), newline=""))) == [["a", "b"], ["one\ntwo\nthree", "4"]]
+
+
 def test_a_page_asks_for_nothing() -> None:
     text = html_of(page(TABLE, Figure("f", "c", gallery([], 250, "none"))))
     assert "default-src 'none'" in text

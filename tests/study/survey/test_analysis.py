@@ -162,7 +162,7 @@ def test_who_agrees_with_the_machine_correlates_with_it(asked: Survey, tmp_path:
         return {f"a{n}.overall": MATCHES[min(4, n - 1 + (rater == 2 and n == 1))] for n in range(1, 6)}
 
     analyse(gathered(asked, {f"{n:x}" * 64: said(n) for n in range(5)}, "people", 5), tmp_path)
-    assert "Spearman's rho is 1.00 over 5 ratings" in (tmp_path / "report.md").read_text("utf-8")
+    assert "Spearman's rho is 1.00 over 5 questions" in (tmp_path / "report.md").read_text("utf-8")
 
 
 def test_bars_are_as_long_as_the_shares_they_show(asked: Survey, tmp_path: Path) -> None:
@@ -197,6 +197,20 @@ def test_hostile_remarks_are_words_in_every_form(asked: Survey, tmp_path: Path) 
     assert "alert(1)" in page
     assert [row["answer"] for row in rows(tmp_path / "answers.csv") if row["item"] == "a2"] == ["'" + formula]
     assert [row["remark"] for row in table(tmp_path, "remarks")] == [EVIL, "'" + formula]
+
+
+def test_pairs_are_compared_only_where_roads_differ_at_all(asked: Survey, tmp_path: Path) -> None:
+    """Two raters of one mind: Conover's p is 0 for every pair, while Friedman's is far from 0.05."""
+    given = {
+        rater * 64: {f"a{n}.overall": MATCHES[n - 1] for n in (1, 2, 3, 4, 5)} | {"check": MATCHES[CHECK]}
+        for rater in "12345"
+    }
+    for raters, is_told in ((2, False), (5, True)):
+        some = {rater: said for rater, said in given.items() if rater[0] <= str(raters)}
+        out = tmp_path / str(raters)
+        text = analyse(gathered(asked, some, "people", raters), out).with_suffix(".md").read_text("utf-8")
+        assert (out / "tables" / "alignment-pairs.csv").exists() == is_told
+        assert ("pairs of them are not compared" in text) != is_told
 
 
 def test_a_survey_that_nobody_answered_is_told(tmp_path: Path) -> None:

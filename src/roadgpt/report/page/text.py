@@ -4,7 +4,7 @@ import csv
 import io
 from collections.abc import Sequence
 
-from roadgpt.report.page.model import Block, Cell, Details, Figure, Line, Page, Table, pieces_of
+from roadgpt.report.page.model import Block, Cell, Details, Figure, Line, Page, Raw, Table, pieces_of
 
 LATEX = {
     "\\": r"\textbackslash{}",
@@ -17,6 +17,9 @@ LATEX = {
     "}": r"\}",
     "~": r"\textasciitilde{}",
     "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
     "²": r"\textsuperscript{2}",
     "χ": r"$\chi$",
     "–": "--",
@@ -24,20 +27,28 @@ LATEX = {
     "×": r"$\times$",
 }
 
+FORMULA = ("=", "+", "-", "@", "\t")  # with what a spreadsheet takes a cell for a formula
+HTML = str.maketrans({"<": "&lt;", "&": "&amp;"})  # readers of Markdown let tags through
+
 
 def markdown_of(page: Page) -> str:
     """The words and tables of a page; figures as their captions."""
-    parts = [f"# {page.title}", *([page.lead] if page.lead else [])]
+    parts = [f"# {_told(page.title)}", *([_told(page.lead)] if page.lead else [])]
     parts.append("\n".join(f"- {_line(line)}" for line in page.summary))
     for section in page.sections:
-        parts += [f"## {section.title}", *_blocks(section.blocks)]
+        parts += [f"## {_told(section.title)}", *_blocks(section.blocks)]
     if page.card:
         parts += ["## How this was made", "\n".join(f"- {k}: {_code(k, v)}" for k, v in page.card.items())]
     return "\n\n".join(parts) + "\n"
 
 
 def _code(name: str, value: str) -> str:
-    return f"`{value}`" if name.startswith("command") else value
+    return f"`{value}`" if name.startswith("command") else _told(value)
+
+
+def _told(words: str) -> str:
+    """Words that are no markup, in one line."""
+    return " ".join(words.translate(HTML).splitlines())
 
 
 def _blocks(blocks: Sequence[Block]) -> list[str]:
@@ -46,39 +57,47 @@ def _blocks(blocks: Sequence[Block]) -> list[str]:
         if isinstance(block, Table):
             out.append(_table(block))
         elif isinstance(block, Figure):
-            out.append(f"*{block.caption}* (figure: see report.html)")
+            out.append(f"*{_told(block.caption)}* (figure: see report.html)")
         elif isinstance(block, Details):
-            out += [f"**{block.title}**", *_blocks(block.blocks)]
+            out += [f"**{_told(block.title)}**", *_blocks(block.blocks)]
         else:
             out.append(_line(block))
     return out
 
 
 def _line(line: Line) -> str:
-    return "".join(piece if isinstance(piece, str) else _linked(piece) for piece in pieces_of(line))
+    return "".join(_told(piece) if isinstance(piece, str) else _linked(piece) for piece in pieces_of(line))
 
 
 def _linked(cell: Cell) -> str:
-    text = cell.text.replace("|", "\\|").replace("\n", " ")
+    text = _told(cell.text).replace("|", "\\|")
     return f"[{text}]({cell.href.replace(' ', '%20')})" if cell.href else text
 
 
 def _table(table: Table) -> str:
-    heads = " | ".join(head.replace("|", "\\|") for head in table.heads)
+    heads = " | ".join(_told(head).replace("|", "\\|") for head in table.heads)
     rows = [f"| {heads} |", f"|{'---|' * len(table.heads)}"]
     rows += [f"| {' | '.join(_linked(each) for each in row)} |" for row in table.rows]
-    note = f"\n\n{table.note}" if table.note else ""
-    return f"**{table.caption}**\n\n" + "\n".join(rows) + note
+    note = f"\n\n{_told(table.note)}" if table.note else ""
+    return f"**{_told(table.caption)}**\n\n" + "\n".join(rows) + note
 
 
 def csv_of(table: Table) -> str:
-    """Heads and raw values; what is not there is empty."""
+    """Heads and raw values; what is not there is empty, and words are no formulas."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.heads)
     for row in table.rows:
-        writer.writerow(["" if each.value is None else each.value for each in row])
+        writer.writerow(["" if each.value is None else unformulated(each.value) for each in row])
     return text.getvalue()
+
+
+def unformulated(value: Raw) -> Raw:
+    """What no spreadsheet takes for a formula: such words begin with an apostrophe, numbers stay numbers."""
+    if not isinstance(value, str):
+        return value
+    words = value.replace("\r\n", "\n").replace("\r", "\n")  # csv would end the row there
+    return f"'{words}" if words.startswith(FORMULA) else words
 
 
 def latex_of(table: Table) -> str:

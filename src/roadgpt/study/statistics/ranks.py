@@ -1,6 +1,7 @@
 """Do ratings or measures differ, by their ranks: paired, unpaired, and of many columns at once."""
 
 from dataclasses import dataclass
+from itertools import permutations
 from typing import Literal
 
 import numpy as np
@@ -8,6 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
 Array = NDArray[np.float64]
+
+FEW_SIGNS = 50  # pairs that differ, up to which every way to sign their ranks is counted
+FEW_ORDERS = 8  # pairs of a correlation, up to which every order is counted: 8! are 40,320
 
 
 @dataclass(frozen=True)
@@ -120,7 +124,9 @@ def _holm(p: Array) -> Array:
 def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
     """Wilcoxon's signed-rank test of two columns ``(people,)``, two-sided.
 
-    Exact for few pairs without ties, else normal. Equal pairs are left out of the ranks.
+    Exact for up to 50 pairs that differ, ties included, as ratings have many of them: among five raters
+    the normal approximation finds a difference where no five can show one. Normal beyond. Equal pairs are
+    left out of the ranks.
     """
     x, y = _both(one, other)
     difference = x - y
@@ -129,10 +135,18 @@ def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
         return Paired(0.0, 1.0, 0.0, len(x))
     ranks = stats.rankdata(np.abs(moved))
     up, down = float(ranks[moved > 0].sum()), float(ranks[moved < 0].sum())
-    has_ties = len(np.unique(np.abs(moved))) < len(moved)
-    method: Literal["exact", "approx"] = "exact" if len(moved) <= 50 and not has_ties else "approx"
-    found = stats.wilcoxon(moved, method=method)
-    return Paired(min(up, down), float(found.pvalue), (up - down) / (up + down), len(x))
+    is_few = len(moved) <= FEW_SIGNS
+    p = _signed(ranks, min(up, down)) if is_few else float(stats.wilcoxon(moved, method="approx").pvalue)
+    return Paired(min(up, down), p, (up - down) / (up + down), len(x))
+
+
+def _signed(ranks: Array, smaller: float) -> float:
+    """Twice the share of all ways to sign the ranks whose positive ones sum up to this or less."""
+    halves = np.rint(2 * ranks).astype(int)  # tied ranks are halves
+    ways = np.ones(1)  # that lead to each sum
+    for rank in halves:
+        ways = np.r_[ways, np.zeros(rank)] + np.r_[np.zeros(rank), ways]
+    return min(1.0, float(2 * ways[: round(2 * smaller) + 1].sum() / ways.sum()))
 
 
 def mann_whitney(one: ArrayLike, other: ArrayLike) -> Unpaired:
@@ -147,12 +161,23 @@ def mann_whitney(one: ArrayLike, other: ArrayLike) -> Unpaired:
 
 
 def spearman(one: ArrayLike, other: ArrayLike) -> Correlation:
-    """Spearman's rank correlation of two columns; NaN where one of them does not vary."""
+    """Spearman's rank correlation of two columns, two-sided; NaN where one of them does not vary.
+
+    Exact for up to 8 pairs, ties included, by every order of the second column; Student's t beyond.
+    """
     x, y = _both(one, other)
     if len(x) < 3 or len(np.unique(x)) < 2 or len(np.unique(y)) < 2:
         return Correlation(float("nan"), 1.0, len(x))
     found = stats.spearmanr(x, y)
-    return Correlation(float(found.statistic), float(found.pvalue), len(x))
+    p = _ordered(x, y) if len(x) <= FEW_ORDERS else float(found.pvalue)
+    return Correlation(float(found.statistic), p, len(x))
+
+
+def _ordered(x: Array, y: Array) -> float:
+    """The share of all orders of y that correlate with x as much as this one, whichever way, or more."""
+    one, other = (ranks - ranks.mean() for ranks in (stats.rankdata(x), stats.rankdata(y)))
+    orders = np.array(list(permutations(range(len(y)))))
+    return float((np.abs(other[orders] @ one) >= abs(other @ one) - 1e-9).mean())
 
 
 def _complete(ratings: ArrayLike) -> Array:

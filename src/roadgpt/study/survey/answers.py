@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from roadgpt.report.page.text import unformulated
 from roadgpt.study.survey.order import pages_for
 from roadgpt.study.survey.questions import CHECK, MATCHES, Part
 from roadgpt.study.survey.store import Store, code_of
@@ -129,10 +130,5 @@ def csv_of(rows: Sequence[Row]) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(HEADS)
     for row in rows:
-        writer.writerow([safe(getattr(row, head)) for head in HEADS])
+        writer.writerow([unformulated(getattr(row, head)) for head in HEADS])
     return text.getvalue()
-
-
-def safe(value: str | int | None) -> str | int | None:
-    """What no spreadsheet takes for a formula."""
-    return f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t") else value

@@ -6,7 +6,7 @@ from math import isfinite
 
 from roadgpt.report.page import Block, Cell, Details, Figure, Table, cell
 from roadgpt.study.statistics import conover, friedman, spearman, wilcoxon
-from roadgpt.study.survey.answers import Answers, safe
+from roadgpt.study.survey.answers import Answers
 from roadgpt.study.survey.bars import Drawn
 from roadgpt.study.survey.questions import REMARKS
 from roadgpt.study.survey.tally import Tally, Unit, agreement, matrix
@@ -143,6 +143,8 @@ class Told:
             f"rated all, chi-squared({test.freedom}) = {test.statistic:.2f}, p {_p(test.p)}, "
             f"Kendall's W = {test.kendalls_w:.2f}."
         )
+        if test.p >= LEVEL:  # pairs are compared only where the items differ at all (Conover 1999, 5.8)
+            return [f"{line} So pairs of them are not compared."]
         p = conover(scores)
         rows = [
             [
@@ -209,7 +211,10 @@ class Told:
             ]
             line = f"{NAMES[found.part].capitalize()}: "
             if isfinite(told.rho):
-                line += f"Spearman's rho is {told.rho:.2f} over {told.pairs} ratings (p {_p(told.p)})."
+                line += (
+                    f"Spearman's rho is {told.rho:.2f} over {told.pairs} questions, each with people's mean "
+                )
+                line += f"(p {_p(told.p)}, as if they were independent; those on one road are not)."
             else:
                 line += "scores of the machine or of people are all alike, or too few to be correlated."
             heads = ("item", "description", "criterion", "people, mean of 1 to 5", "machine, 0 to 1")
@@ -222,7 +227,7 @@ class Told:
     def remarks(self, answers: Answers) -> Block:
         """What raters wrote."""
         rows = [
-            [cell(row.item or "at the end"), cell(row.prompt), cell(safe(row.answer), row.answer)]
+            [cell(row.item or "at the end"), cell(row.prompt), cell(row.answer)]
             for row in sorted(answers.used, key=lambda row: (row.item, row.rater))
             if row.question.endswith(f".{REMARKS}")
         ]
