@@ -15,6 +15,7 @@ from roadgpt.cli import app
 from roadgpt.design.designers import thesis as thesis_designer
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup
+from roadgpt.study.chapters.significance import Count, Source, worked_out
 from roadgpt.study.plan import Plan, open_folder, read_plan
 from roadgpt.study.prompts import Prompt, thesis_prompts
 from roadgpt.study.reporting import keep_problems, write_campaign, write_study
@@ -208,6 +209,15 @@ def test_words_that_cannot_be_read_count_as_not_kept(tmp_path: Path) -> None:
     text = write_study(tmp_path).with_name("report.md").read_text()
     assert "1 of 2 (50.0 %) roads keep every word" in text
     assert problem.sentence in text
+
+
+def test_one_prompt_with_roads_is_not_compared_with_none() -> None:
+    half = Source("ours", (Count("a", 3, 5), Count("b", 0, 0)), "ours")
+    said = worked_out(half, "left", "kept", "departures")[1]
+    assert "only one prompt" in str(said)
+    assert "all roads" not in str(said)
+    full = Source("ours", (Count("a", 5, 5), Count("b", 4, 4)), "ours")
+    assert "all roads are valid" in str(worked_out(full, "valid", "invalid", "validity")[1])
 
 
 def test_alignment_by_the_command(tmp_path: Path) -> None:
