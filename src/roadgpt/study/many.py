@@ -8,7 +8,7 @@ from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.report.page import Block, Cell, Figure, Page, Section, Table, cell, linked, write
 from roadgpt.report.page.forest import Share, forest
-from roadgpt.study.chapters.many import coverage, failures, margins
+from roadgpt.study.chapters.many import coverage, failures, faults, margins
 from roadgpt.study.chapters.saying import (
     decimal,
     interval_cell,
@@ -49,7 +49,8 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     lead += "" if status.is_finished else "; the campaign goes on"
     sections = [Section("Outcomes", _outcomes(record, status, fields))]
     if any(c.outcomes.get("PASS") or c.outcomes.get("FAIL") for c in fields):
-        sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS])))
+        blocks = [*failures(folder, record, fields[:MOST_CELLS]), *faults(folder, fields)]
+        sections.append(Section("Failures", blocks))
         sections.append(Section("How near to failing", [margins(record)]))
     covered = coverage(record, status.done)
     sections += [Section("Coverage", covered)] if covered else []

@@ -13,11 +13,11 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from roadgpt.campaign.faults.distinct import Surroundings, faults_of, surroundings
 from roadgpt.campaign.faults.disturbed import Disturbance
-from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
+from roadgpt.campaign.faults.stability import STABLE, Repeated, Stability, repeated
 from roadgpt.campaign.faults.why import Why, why
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.run import Run
@@ -92,10 +92,12 @@ def look_into(
         around = surroundings(run.road, run.world, reason.station, f"{run.verdict.cause} {run.verdict.side}")
         path = place / f"{run.index:04d}.json"
         stability = _read(path, run, times)
-        if stability is None:
-            stability = repeated(run, times, spread)
-            if draw is not None:
-                draw(run, reason, stability.sentence, path.with_suffix(".png"))
+        is_new = stability is None
+        stability = stability or repeated(run, times, spread)
+        picture = path.with_suffix(".png")
+        if draw is not None and (is_new or not picture.is_file()):
+            draw(run, reason, stability.sentence, picture)
+        if is_new:
             write_whole(path, json_text(_written(run, reason, stability)))
         yield Failure(run.index, reason, stability, around)
 
@@ -132,6 +134,33 @@ def write_table(lines: Sequence[Line], place: Path) -> Path:
     path = place / TABLE
     write_whole(path, text.getvalue())
     return path
+
+
+class Counted(NamedTuple):
+    """What ``faults.csv`` comes to."""
+
+    failures: int
+    stable: int
+    """Of them, that fail every second time or oftener."""
+    faults: int
+
+
+def counted(place: Path) -> Counted | None:
+    """What ``place/faults.csv`` comes to; None where there is none.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    try:
+        with (place / TABLE).open(encoding="utf-8", newline="") as file:
+            rows = [(int(row["fault"]), float(row["share"])) for row in csv.DictReader(file)]
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise UsageError(
+            f"{place / TABLE} cannot be read ({error}); remove it, and make it again with roadgpt faults"
+        ) from error
+    return Counted(len(rows), sum(share >= STABLE for _, share in rows), len({fault for fault, _ in rows}))
 
 
 def _written(run: Run, reason: Why, stability: Stability) -> dict[str, Any]:

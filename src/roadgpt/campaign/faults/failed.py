@@ -1,6 +1,6 @@
 """The failed Runs of a folder, whoever made it."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from pathlib import Path
 
 from roadgpt.campaign.again import run_again
@@ -25,10 +25,15 @@ def cells_of(folder: Path) -> list[str]:
     raise UsageError(f"there are no roads in {folder}; give the folder of a run or of a campaign")
 
 
-def failed_runs(folder: Path, cell: str = "") -> Iterator[Run]:
+def failed_runs(folder: Path, cell: str = "", only: Container[int] | None = None) -> Iterator[Run]:
     """Those of one run, of a folder of runs, or of a cell of a campaign, one after another.
 
     A campaign keeps no whole Runs, so its failures are driven again, which gives the same.
+
+    Args:
+        folder: of any of these.
+        cell: of a campaign.
+        only: numbers of the roads that are wanted; None: all.
 
     Raises:
         UsageError: a file cannot be read.
@@ -37,9 +42,10 @@ def failed_runs(folder: Path, cell: str = "") -> Iterator[Run]:
         with Record.opened(folder) as record:
             numbers = [result.number for result in record.results(cell, "outcome = 'FAIL'")]
         for number in numbers:
-            yield run_again(folder, cell, number)[0]
+            if only is None or number in only:
+                yield run_again(folder, cell, number)[0]
         return
     for each in [folder] if is_run(folder) else [run_folder(folder, index) for index in finished(folder)]:
         run = read_run(each)
-        if run.outcome == "FAIL":
+        if run.outcome == "FAIL" and (only is None or run.index in only):
             yield run

@@ -15,6 +15,7 @@ from roadgpt.run import Run
 from roadgpt.verdict import Verdict, judge
 
 SURE = 0.95  # of the interval
+STABLE = 0.5  # share of drives that fail, from which a failure counts as stable
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,11 @@ class Stability:
     def share(self) -> float:
         """Of drives that failed; 1 means that it always does."""
         return self.failed / len(self.drives)
+
+    @property
+    def is_stable(self) -> bool:
+        """Does it fail every second time or oftener?"""
+        return self.share >= STABLE
 
     @property
     def interval(self) -> tuple[float, float]:

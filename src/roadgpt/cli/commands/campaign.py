@@ -11,6 +11,7 @@ from click.core import ParameterSource
 from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.dashes import DescribedCommand
+from roadgpt.cli.failing import asked, fault_options, look_into_failures
 from roadgpt.cli.flags import CHAT, measure
 from roadgpt.cli.options import (
     SEED,
@@ -55,6 +56,7 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "as_json", "q
 @click.option("--no-drive", is_flag=True, help="Design and check only.")
 @chat_options
 @beamng_options
+@fault_options
 @screen_options
 @click.pass_context
 def command(
@@ -65,6 +67,9 @@ def command(
     workers: int,
     executor: str,
     address: str,
+    faults: bool,
+    minimise: bool,
+    repeat: int | None,
     as_json: bool,
     quiet: bool,
     **rest: Any,
@@ -97,6 +102,8 @@ def command(
     if not quiet and not as_json:
         _tell(out, plan, was_there)
     watch(out, work(out, workers, executor, address, plan), as_json, quiet)
+    if look := asked(faults, minimise, repeat, workers, quiet, as_json):
+        look_into_failures(out, look)
 
 
 def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
+from roadgpt.cli.failing import asked, fault_options, look_into_failures
 from roadgpt.cli.flags import CHAT
 from roadgpt.cli.options import together
 from roadgpt.errors import UsageError
@@ -16,12 +17,16 @@ LIMITS = [flag for flag in CHAT if flag.field in ("max_tokens", "max_cost")]
 @click.argument("campaign", metavar="CAMPAIGN", type=click.Path(path_type=Path))
 @worker_options
 @together(*(flag.option() for flag in LIMITS))
+@fault_options
 @screen_options
 def command(
     campaign: Path,
     workers: int,
     executor: str,
     address: str,
+    faults: bool,
+    minimise: bool,
+    repeat: int | None,
     as_json: bool,
     quiet: bool,
     **limits: float | None,
@@ -44,3 +49,5 @@ def command(
     if given and plan.chat is not None:
         plan = plan.model_copy(update={"chat": plan.chat.model_copy(update=given)})
     watch(campaign, work(campaign, workers, executor, address, plan), as_json, quiet)
+    if look := asked(faults, minimise, repeat, workers, quiet, as_json):
+        look_into_failures(campaign, look)

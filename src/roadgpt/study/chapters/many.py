@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.campaign.behaviour import BOUNDS
+from roadgpt.campaign.faults.book import FOLDER, TABLE, counted
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
 from roadgpt.report.page import Block, Figure, Table, cell
@@ -49,6 +50,20 @@ def failures(folder: Path, record: Record, cells: Sequence[CellStatus]) -> list[
         heads = ["test", "margin, m", "cause", "side", "at, m", "what happened"]
         blocks.append(Table("worst", f"The {len(rows)} worst failures", heads, rows, note))
     return blocks
+
+
+def faults(folder: Path, cells: Sequence[CellStatus]) -> list[Block]:
+    """How many faults the failures are, of the cells that ``roadgpt faults`` has looked into."""
+    rows = []
+    for each in cells:
+        found = counted(folder / FOLDER / each.name)
+        if found is not None:
+            name = cell(each.name, href=f"{FOLDER}/{each.name}/{TABLE}")
+            failed = cell(each.outcomes.get("FAIL", 0))
+            rows.append([name, failed, cell(found.failures), cell(found.stable), cell(found.faults)])
+    heads = ["cell", "failures", "looked into", "fail again every second time", "faults"]
+    caption = "Faults: failures that are alike are one"
+    return [Table("faults", caption, heads, rows)] if rows else []
 
 
 def _again(folder: Path, name: str, number: int) -> str:
