@@ -199,3 +199,11 @@ def test_the_pace_counts_tests_of_cells_that_were_done_a_moment_ago(
     assert told.rate == pytest.approx(told.done / told.seconds, rel=0.5) or told.seconds < 1
     assert told.rate * max(told.seconds, 1.0) > 20
     steps.close()
+
+
+def test_a_folder_that_holds_something_else_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    said = roadgpt("campaign", "a road", "-n", 1, "--out", tmp_path)
+    assert said.exit_code == 2
+    assert "is not empty and holds no campaign" in said.output
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]

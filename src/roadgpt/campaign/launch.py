@@ -48,12 +48,11 @@ def begin(plan: Plan, folder: Path) -> bool:
         ChatError: a language model that reads them could not be asked.
     """
     plan.check()
+    _is_free(folder)
     with _lone(folder), _without_trace(folder):
         if (folder / STORE).is_file():
             _same(plan, folder)
             return True
-        if any(path.name != LOCK and not path.name.startswith(STORE) for path in folder.iterdir()):
-            raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
         _drivers_come(plan)
         briefs, spent = _briefs(plan)
         cells = plan.cells(briefs)
@@ -62,6 +61,14 @@ def begin(plan: Plan, folder: Path) -> bool:
         versions = versions_of(cells[0].request.setup)
         Store.new(folder, plan.model_dump_json(), cells, versions, spent).close()
         return False
+
+
+def _is_free(folder: Path) -> None:
+    """A folder that holds something else is left alone."""
+    if not folder.is_dir() or (folder / STORE).is_file():
+        return
+    if any(path.name != LOCK and not path.name.startswith(STORE) for path in folder.iterdir()):
+        raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
 
 
 @contextmanager
