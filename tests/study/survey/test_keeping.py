@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.study.survey import serving
 from roadgpt.study.survey.questions import ALIKE, MATCHES
 from roadgpt.study.survey.serving import LINKS, opened
 from roadgpt.study.survey.store import ANSWERS, Store, digest_of
@@ -181,6 +182,33 @@ def test_answers_come_all_or_none_and_only_from_raters_who_agreed(tmp_path: Path
     store.withdraw(rater)
     store.agree(rater)
     assert not store.save(rater, {"s1.overall": ALIKE[0]}), "who withdrew stays withdrawn"
+    store.close()
+
+
+def test_links_that_cannot_be_written_are_not_used_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = folder_of(survey(), tmp_path / "s")
+
+    def full(path: Path, content: str) -> None:
+        raise OSError(28, "No space left on device")
+
+    told: list[str] = []
+    with monkeypatch.context() as patch:
+        patch.setattr(serving, "write_whole", full)
+        with pytest.raises(RoadGPTError, match="make room there"):
+            serving.serve(folder, told.append, raters=3)
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(serving.Server, "serve_forever", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        serving.serve(folder, told.append, raters=3)
+    tokens = [line.rpartition("/")[2] for line in (folder / LINKS).read_text().splitlines()]
+    store = Store(folder / ANSWERS)
+    assert len(tokens) == store.links() == 3
+    assert all(store.rater_of(token) for token in tokens)
     store.close()
 
 

@@ -9,7 +9,7 @@ from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey.desk import Desk
 from roadgpt.study.survey.server import Server
-from roadgpt.study.survey.store import ANSWERS, MOST_RATERS, Store
+from roadgpt.study.survey.store import ANSWERS, MOST_RATERS, Store, new_token
 from roadgpt.study.survey.survey import read_survey
 
 LINKS = "links.txt"
@@ -89,7 +89,8 @@ def _invited(folder: Path, store: Store, wanted: int, base: str) -> list[str]:
     there = store.links()
     if wanted > MOST_RATERS:
         raise UsageError(f"{wanted} raters are too many; a survey takes {MOST_RATERS:,}")
-    tokens += [store.add_rater() for _ in range(wanted - there)]
+    new = [new_token() for _ in range(wanted - there)]
+    tokens += new
     if not tokens:
         return [f"{there} links were made earlier; {path}, which held them, is gone"] if there else []
     links = [f"{base}/r/{token}" for token in tokens]
@@ -98,6 +99,8 @@ def _invited(folder: Path, store: Store, wanted: int, base: str) -> list[str]:
         path.chmod(0o600)
     except OSError as error:
         raise RoadGPTError(f"cannot write {path}: {error.strerror or error}; make room there") from error
+    for token in new:  # last: a link that stands nowhere is lost, one that opens nothing is made again
+        store.add_rater(token=token)
     return [*links, f"one link for each rater; they stand in {path}, too"]
 
 

@@ -75,9 +75,9 @@ class Store:
         with self._lock:
             self._file.close()
 
-    def add_rater(self, joined: bool = False) -> str:
+    def add_rater(self, joined: bool = False, token: str = "") -> str:
         """Invite somebody, or let somebody join; gives their token, which is kept nowhere here."""
-        token = secrets.token_urlsafe(TOKEN_BYTES)
+        token = token or new_token()
         with self._writing() as file:
             file.execute("INSERT INTO raters (digest, joined) VALUES (?, ?)", (digest_of(token), joined))
         return token
@@ -96,7 +96,7 @@ class Store:
         """The token of the shared link; the same whenever it is asked for."""
         with self._writing() as file:
             row = file.execute("SELECT token FROM doors").fetchone()
-            token = str(row[0]) if row else secrets.token_urlsafe(TOKEN_BYTES)
+            token = str(row[0]) if row else new_token()
             if not row:
                 file.execute("INSERT INTO doors VALUES (?)", (token,))
         return token
@@ -169,6 +169,11 @@ class Store:
                 if self._file.in_transaction:
                     self._file.execute("ROLLBACK")
                 raise
+
+
+def new_token() -> str:
+    """A secret that nobody can guess, of letters that stand in addresses."""
+    return secrets.token_urlsafe(TOKEN_BYTES)
 
 
 def code_of(digest: str) -> str:
