@@ -12,6 +12,7 @@ from click.testing import CliRunner
 from matplotlib.image import imread
 
 from roadgpt.brief import read
+from roadgpt.brief.model import Amount
 from roadgpt.cli.commands.survey_ import command
 from roadgpt.errors import UsageError
 from roadgpt.report.film import Film, Settings
@@ -141,6 +142,14 @@ def test_axes_are_the_thesis_where_all_roads_fit_and_one_for_all_where_not() -> 
 def test_criteria_are_those_that_the_thesis_asked_for(words: str, criteria: tuple[str, ...]) -> None:
     """Its figures 6.9, 6.12, 6.15 and 6.18."""
     assert criteria_of(read(words, "grammar")) == criteria
+
+
+def test_that_there_are_turns_is_no_number_of_turns() -> None:
+    """The reader by default reads one turn or more out of "a road"; raters are not asked about that."""
+    brief = read("a road", "grammar")
+    assert criteria_of(brief.model_copy(update={"turns": Amount(lo=1)})) == ()
+    assert criteria_of(brief.model_copy(update={"turns": Amount(lo=1, hi=1)})) == ("turns",)
+    assert criteria_of(brief.model_copy(update={"turns": Amount(lo=4)})) == ("turns",)
 
 
 def test_a_file_may_name_texts_criteria_and_questions_of_its_own(runs: Path, tmp_path: Path) -> None:

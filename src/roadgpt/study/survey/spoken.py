@@ -1,6 +1,6 @@
 """What a description speaks of, and therefore what raters are asked about: turns, incline, order."""
 
-from roadgpt.brief.model import Brief, Clause
+from roadgpt.brief.model import Amount, Brief, Clause
 
 STRAIGHTS = frozenset({"straight", "crest", "dip"})
 HAVE_NO_NUMBER = frozenset({"serpentine", "zigzag", "slalom", "winding"})
@@ -12,7 +12,9 @@ def criteria_of(brief: Brief | None) -> tuple[str, ...]:
     if brief is None:
         return ()
     clauses = [*brief.clauses, *filter(None, (brief.starts, brief.ends))]
-    counts = bool(brief.turns or brief.left or brief.right) or any(map(_has_a_number, clauses))
+    counts = any(map(_is_a_number, (brief.turns, brief.left, brief.right))) or any(
+        map(_has_a_number, clauses)
+    )
     rises = bool(brief.slope or brief.incline or brief.steepest or brief.climb or brief.hills) or any(
         clause.slope or clause.incline or clause.kind in RISES for clause in clauses
     )
@@ -21,6 +23,11 @@ def criteria_of(brief: Brief | None) -> tuple[str, ...]:
         *(["incline"] if rises else []),
         *(["order"] if len(clauses) > 1 else []),
     )
+
+
+def _is_a_number(turns: Amount | None) -> bool:
+    """Is it more than that there are turns, as any road has them?"""
+    return turns is not None and (turns.lo, turns.hi) != (1, None)
 
 
 def _has_a_number(clause: Clause) -> bool:
