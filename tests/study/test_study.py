@@ -220,6 +220,13 @@ def test_one_prompt_with_roads_is_not_compared_with_none() -> None:
     assert "all roads are valid" in str(worked_out(full, "valid", "invalid", "validity")[1])
 
 
+def test_words_that_cannot_be_read_weigh_as_much_as_others(tmp_path: Path) -> None:
+    plan = small("a road", "a road of 9000 metres", roads=3)
+    open_folder(plan, tmp_path)
+    keep_problems(tmp_path, work(plan, tmp_path))
+    assert "3 of 6 (50.0 %) roads keep every word" in write_study(tmp_path).with_name("report.md").read_text()
+
+
 def test_alignment_by_the_command(tmp_path: Path) -> None:
     file = tmp_path / "prompts.jsonl"
     lines = [

@@ -78,6 +78,8 @@ class LookedPart:
     problem: str = ""
     """Why there are none, or not all."""
     has_pictures: bool = False
+    wanted: int = 1
+    """Roads that were asked for."""
 
     def count(self, which: str) -> int:
         """Roads with a property: is_valid, is_sound, is_sbft, has_left, is_driven."""
@@ -106,7 +108,7 @@ def look_at_parts(plan: Plan, folder: Path, problems: Mapping[str, str]) -> Iter
         UsageError: a run cannot be read.
     """
     for part in plan.parts():
-        yield _looked(folder / part.name, part, part.name, problems.get(part.name, ""))
+        yield _looked(folder / part.name, part, part.name, problems.get(part.name, ""), plan.roads)
 
 
 def look_at_campaign(place: Path, part: Part) -> LookedPart:
@@ -118,12 +120,12 @@ def look_at_campaign(place: Path, part: Part) -> LookedPart:
     return _looked(place, part, "", "")
 
 
-def _looked(place: Path, part: Part, home: str, problem: str) -> LookedPart:
+def _looked(place: Path, part: Part, home: str, problem: str, wanted: int = 1) -> LookedPart:
     indices = finished(place) if place.is_dir() else []
     roads = tuple(
         look(read_run(run_folder(place, n)), part, home, _features(place / test_name(n))) for n in indices
     )
-    return LookedPart(part, roads, home, problem, (place / "overview.png").is_file())
+    return LookedPart(part, roads, home, problem, (place / "overview.png").is_file(), wanted)
 
 
 def look(run: Run, part: Part, home: str, features: Mapping[str, float]) -> Looked:

@@ -14,9 +14,9 @@ MOST_NAMED = 100
 
 def kept(part: LookedPart, criterion: Criterion) -> list[bool]:
     """Of every road of a part whose description asks for this: was it kept? A road that is missing keeps
-    nothing, and a prompt that makes no road counts as one that was not kept."""
+    nothing, and a prompt that makes no road counts with all that were asked for, like any other prompt."""
     found = [road.kept[criterion] for road in part.roads if criterion in road.kept]
-    return found if part.roads or criterion != "general" else [False]
+    return found if part.roads or criterion != "general" else [False] * part.wanted
 
 
 def pooled(parts: Sequence[LookedPart], designer: str, criterion: Criterion) -> Estimate:
