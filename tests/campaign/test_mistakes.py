@@ -89,6 +89,25 @@ def test_a_finished_campaign_stays_one_file_when_somebody_goes_on_with_it(hostil
     assert journal(hostile) == "delete"
 
 
+def test_an_interrupted_campaign_is_read_where_nothing_may_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begin_quickly(tmp_path, monkeypatch, plan(5))
+    assert journal(tmp_path) == "wal"
+    real = sqlite3.connect
+
+    def refusing(place: str, *rest: Any, **more: Any) -> sqlite3.Connection:
+        """As SQLite does on a read-only disk, where it cannot make the files beside a log."""
+        return real(place if "immutable" in place else f"file:{tmp_path}/gone?mode=ro", *rest, **more)
+
+    monkeypatch.setattr("roadgpt.campaign.record.sqlite3.connect", refusing)
+    assert status_of(tmp_path).total == 5
+    (tmp_path / f"{STORE}-wal").write_text("what is not in the store yet")
+    said = roadgpt("status", tmp_path)
+    assert said.exit_code == 2
+    assert "copy this to where you may write" in " ".join(said.output.split())
+
+
 @pytest.mark.parametrize("driver", ["nobody", "nofile.py:Mine", "{here}:Other", "{here}:Raises"])
 def test_a_mistyped_driver_leaves_nothing_behind(tmp_path: Path, driver: str) -> None:
     mine = tmp_path / "mine.py"

@@ -15,6 +15,30 @@ FORMAT = 1
 PATIENCE = 30.0  # s for another process
 
 
+def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
+    """A store's file and the number of its format; raises sqlite3.Error."""
+    try:
+        return _opened(path, mode)
+    except sqlite3.OperationalError as error:
+        log = path.with_name(f"{path.name}-wal")
+        is_whole = not log.exists() or not log.stat().st_size
+        if mode == "ro" and is_whole and error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_CANTOPEN:
+            # an interrupted campaign on a disk that takes no log: nobody can be writing it
+            return _opened(path, "ro&immutable=1")
+        raise
+
+
+def _opened(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
+    db = sqlite3.connect(f"{path.resolve().as_uri()}?mode={mode}", PATIENCE, isolation_level=None, uri=True)
+    try:
+        version = db.execute("PRAGMA user_version").fetchone()[0]
+        db.execute("SELECT count(*) FROM meta").fetchone()
+    except sqlite3.Error:
+        db.close()
+        raise
+    return db, version
+
+
 @dataclass
 class Batch:
     """One batch of a cell, and how many of its tests have not ended."""
@@ -47,17 +71,11 @@ class Record:
         if not path.is_file():
             raise UsageError(f"there is no campaign in {folder}; give the folder of one")
         try:
-            db = sqlite3.connect(
-                f"{path.resolve().as_uri()}?mode={mode}", PATIENCE, isolation_level=None, uri=True
-            )
-            try:
-                version = db.execute("PRAGMA user_version").fetchone()[0]
-                db.execute("SELECT count(*) FROM meta").fetchone()
-            except sqlite3.Error:
-                db.close()
-                raise
+            db, version = _connected(path, mode)
         except sqlite3.Error as error:
-            raise UsageError(f"{path} cannot be read ({error}); name another folder") from error
+            raise UsageError(
+                f"{path} cannot be read ({error}); name another folder, or copy this to where you may write"
+            ) from error
         if version != FORMAT:
             db.close()
             raise UsageError(f"{path} was written by another version of roadgpt; start the campaign anew")
