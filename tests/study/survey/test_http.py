@@ -356,6 +356,28 @@ def test_broken_requests_are_answered_or_dropped_and_hurt_nobody_else(server: Se
     assert client.get(f"/r/{token}/1").status == 200
 
 
+def _hangs_up(connection: socket.socket) -> bool:
+    """Has the other side closed it, a tenth of a second later?"""
+    connection.settimeout(0.1)
+    try:
+        return connection.recv(4096) == b""
+    except TimeoutError:
+        return False
+    except OSError:
+        return True
+
+
+def test_a_request_that_drips_in_for_ever_is_cut_off(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("roadgpt.study.survey.server.SLOWEST", 0.3)
+    with socket.create_connection(("127.0.0.1", port_of(server)), timeout=20) as drip:
+        drip.sendall(b"GET / HT")
+        for _ in range(200):
+            if _hangs_up(drip):
+                return
+            drip.sendall(b"x")
+    pytest.fail("it went on for 20 s")
+
+
 def test_more_connections_than_there_is_room_for_are_told_to_come_again(server: Server) -> None:
     small = Server(server.desk, most=2)
     thread = threading.Thread(target=small.serve_forever, args=(0.02,))

@@ -19,8 +19,8 @@ def summary(answers: Answers, match: Tally, alike: Tally) -> list[str]:
     """What a reader wants to know, in a few lines."""
     used = len({row.rater for row in answers.used})
     lines = [
-        f"{used} raters are analysed ({answers.finished} rated everything); {len(answers.failed)} failed the "
-        "attention check and are left out."
+        f"Raters whose answers count: {used} ({answers.finished} rated everything). Left out, as they failed "
+        f"the attention check: {len(answers.failed)}."
     ]
     for found, says in (
         (match, "that roads match their descriptions"),
@@ -132,14 +132,14 @@ class Told:
         if len(units) == 2:
             paired = wilcoxon(scores[:, 0], scores[:, 1])
             return [
-                f"The two differ{_verdict(paired.p)} in general: Wilcoxon's signed-rank test of "
+                f"The two{_verdict(paired.p)} in general: Wilcoxon's signed-rank test of "
                 f"{paired.pairs} raters, p {_p(paired.p)}, rank-biserial correlation {paired.effect:.2f}."
             ]
         test = friedman(scores)
         if test.people < 2:
             return ["Fewer than two raters rated all of them, so they cannot be compared."]
         line = (
-            f"The items differ{_verdict(test.p)} in general: Friedman's test of the {test.people} raters who "
+            f"The items{_verdict(test.p)} in general: Friedman's test of the {test.people} raters who "
             f"rated all, chi-squared({test.freedom}) = {test.statistic:.2f}, p {_p(test.p)}, "
             f"Kendall's W = {test.kendalls_w:.2f}."
         )
@@ -241,7 +241,7 @@ def _told_alpha(alpha: float) -> str:
 
 
 def _verdict(p: float) -> str:
-    return "" if p < LEVEL else " not significantly"
+    return " differ" if p < LEVEL else " do not differ significantly"
 
 
 def _finite(value: float) -> float | None:

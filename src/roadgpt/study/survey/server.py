@@ -19,6 +19,7 @@ MOST_BYTES = 64 * 1024  # of a body: a page of remarks in any alphabet, many tim
 MOST_ADDRESS = 2048  # bytes
 MOST_AT_ONCE = 600  # connections; a browser opens up to six
 PATIENCE = 15.0  # s that a connection may say nothing
+SLOWEST = 60.0  # s in which a whole request must have come, however slowly it drips in
 PIECE = 64 * 1024  # bytes of a file that are sent at once
 BUSY = b"HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 2\r\nContent-Length: 0\r\n\r\n"
 HEADERS = {
@@ -82,12 +83,27 @@ class Server(ThreadingHTTPServer):
             sys.stderr.write(f"roadgpt: a request could not be answered ({error!r})\n")
 
 
+def _stop_listening(connection: socket.socket) -> None:
+    with suppress(OSError):  # it is closed already
+        connection.shutdown(socket.SHUT_RD)
+
+
 class Handler(BaseHTTPRequestHandler):
     """One connection."""
 
     server: Server
     protocol_version = "HTTP/1.1"
     timeout = PATIENCE
+
+    def handle_one_request(self) -> None:
+        """The next request; one that drips in for longer than ``SLOWEST`` is cut off, what is sent is not."""
+        cut = threading.Timer(SLOWEST, _stop_listening, [self.connection])
+        cut.daemon = True
+        cut.start()
+        try:
+            super().handle_one_request()
+        finally:
+            cut.cancel()
 
     def version_string(self) -> str:
         """No versions: nobody needs to know them."""
