@@ -112,3 +112,14 @@ def test_without_limits_nobody_is_held_back() -> None:
     assert not purse.is_bounded
     assert purse.share(7) == purse.all() == (None, None)
     assert not Purse(None, 0, 0.0).is_bounded
+
+
+@pytest.mark.parametrize("tests", [1, 4, 50])
+def test_a_first_round_leaves_half_for_the_next(tests: int) -> None:
+    purse = Purse(ChatSettings(model="m", max_cost=2.0, max_tokens=8_000), 0, 0.0)
+    each = purse.share(tests)
+    for number in range(tests):
+        purse.give(number, each)
+    tokens, cost = purse.all()
+    assert cost == pytest.approx(1.0)
+    assert tokens == pytest.approx(4_000, abs=tests)
