@@ -234,9 +234,17 @@ def figures(
         out["x".join(axes)] = len({c for c, (result, _) in zip(cells, tried, strict=True) if result.failed})
         out["all " + "x".join(axes)] = len(set(cells))
     if judge and truth and cell.generator != "walk":
-        kept = [all(judge.check(road.centreline().round(4), truth)[0].values()) for _, road in tried]
-        out["kept"] = sum(kept)
+        judged = [judged_by(judge, road, truth) for _, road in tried]
+        out["kept"], out["unjudged"] = judged.count(True), judged.count(None)
     return out
+
+
+def judged_by(judge: ModuleType, road: Road, truth: dict[str, Any]) -> bool | None:
+    """Does a road keep its Brief? None where the judge itself breaks down."""
+    try:
+        return all(judge.check(road.centreline().round(4), truth)[0].values())
+    except Exception:  # of somebody else's file nothing is known
+        return None
 
 
 def judge_of(path: str) -> ModuleType:
@@ -296,12 +304,21 @@ def table(setting: str, results: dict[Job, dict[str, Any]]) -> list[str]:
             middle([row["sparseness"] for row in rows]),
             middle([row["first"] for row in rows], "{:.0f}"),
             f"{100 * sum(r['valid'] for r in rows) / sum(r['tests'] for r in rows):.1f} %",
-            f"{100 * sum(r['kept'] for r in rows) / sum(r['tests'] for r in rows):.1f} %"
-            if all("kept" in row for row in rows) else "-",
+            kept(rows),
             f"{np.mean([row['length'] for row in rows]):.0f} m",
         ]  # fmt: skip
         lines.append("| " + " | ".join(cells) + " |")
     return [*lines, ""]
+
+
+def kept(rows: Sequence[dict[str, Any]]) -> str:
+    """'2,000 of 2,000', by the outside judge; roads on which it broke down itself are named."""
+    if not all("kept" in row for row in rows):
+        return "-"
+    broke = sum(row.get("unjudged", 0) for row in rows)
+    judged = sum(row["tests"] for row in rows) - broke
+    text = f"{sum(row['kept'] for row in rows):,} of {judged:,}"
+    return text + (f", {broke} not judged" if broke else "")
 
 
 def said(values: Sequence[float], base: Sequence[float] | None, is_base: bool) -> str:

@@ -214,6 +214,16 @@ def test_between_two_roads_lies_every_number(genes: Genes, seed: int, share: flo
     assert blended(genes, (*genes, Gene(length=5.0)), share) is None
 
 
+@given(ROWS)
+def test_no_slope_lies_at_the_edge_of_flat(genes: Genes) -> None:
+    """1 % is up and 0.9 % is flat: what is written as 1.0 % is measured as either."""
+    for gene in genes:
+        segment = segments_of((gene,))[0]
+        assert abs(abs(segment.incline) - 1) > 0.19
+        assert round(segment.incline, 1) == segment.incline
+        assert abs(segment.incline - gene.incline) < 0.26
+
+
 def test_segments_of_a_wide_turn_are_cut_as_the_format_asks() -> None:
     segments = segments_of((Gene(turn=-170.0, radius=20.0, ramp=5.0, incline=2.0), Gene(length=30.0)))
     assert [segment.direction for segment in segments] == ["right"] * 3 + ["straight"]

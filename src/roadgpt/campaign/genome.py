@@ -9,7 +9,10 @@ from itertools import pairwise
 from math import ceil, inf, radians
 from typing import NamedTuple
 
+import numpy as np
+
 from roadgpt.check.extremes import lowest
+from roadgpt.design.heights import rounded
 from roadgpt.design.layout import Place
 from roadgpt.design.spans import Span, cut, turn_span
 from roadgpt.road import Design, Segment, World
@@ -19,7 +22,7 @@ from roadgpt.road.grades import profile_of
 SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn between two straights
 SHORTEST = 0.5  # m, of a straight that is written
 ABOVE_GROUND = 1.0  # m from the ground to the lowest place of a road
-TENTH, CENTIMETRE = 10.0, 100.0  # per percent, per metre: how inclines and heights are written
+CENTIMETRE = 100.0  # per metre: how heights are written
 
 
 class Gene(NamedTuple):
@@ -102,11 +105,11 @@ def spans_of(genes: Genes) -> list[Span]:
 
 
 def segments_of(genes: Genes) -> tuple[Segment, ...]:
-    """RoadGPT's segments."""
+    """RoadGPT's segments; no slope lies so near to where flat ends that rounding would decide what it is."""
     out: list[Segment] = []
     for gene in genes:
         span = gene.span
-        out += cut(span, [(span.length, round(gene.incline * TENTH) / TENTH + 0.0)])
+        out += cut(span, [(span.length, float(rounded(np.array(gene.incline))) + 0.0)])
     return tuple(out)
 
 

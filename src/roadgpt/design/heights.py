@@ -131,10 +131,10 @@ def drawn_heights(
         values = _with_steepest(values, lengths, limits, outline.steepest, rng)
     if outline.climb:
         values = _with_climb(values, lengths, limits, outline.climb, rng)
-    return _shared_out(spans, owners, _rounded(values))
+    return _shared_out(spans, owners, rounded(values))
 
 
-def _rounded(values: np.ndarray) -> np.ndarray:
+def rounded(values: np.ndarray) -> np.ndarray:
     """To a tenth of a percent, and clearly on one side of what is called flat."""
     steep = np.abs(values)
     near = np.abs(steep - LEVEL) < UNCLEAR
