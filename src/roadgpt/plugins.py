@@ -10,8 +10,16 @@ from typing import Any
 from roadgpt.errors import PartError
 
 SHELVES = (
-    "providers", "readers", "designers", "rules", "exporters", "simulators", "drivers", "generators", "executors",
-)  # fmt: skip
+    "providers",
+    "readers",
+    "designers",
+    "rules",
+    "exporters",
+    "simulators",
+    "drivers",
+    "generators",
+    "executors",
+)
 
 
 @cache
