@@ -14,6 +14,7 @@ from click.testing import CliRunner
 
 from roadgpt.cli import app
 from roadgpt.road import build, read_design
+from roadgpt.run.naming import slug
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -128,6 +129,25 @@ def test_links_lead_to_pages_that_exist(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
         if "://" not in target:
             assert (page.parent / target).exists(), target
+
+
+def test_the_first_page_leads_to_every_page() -> None:
+    docs = ROOT / "docs"
+    linked = set(re.findall(r"\]\(([^)#]+)\)", (docs / "index.md").read_text(encoding="utf-8")))
+    pages = {str(page.relative_to(docs)) for page in PAGES if docs in page.parents}
+    assert {page for page in pages if not page.startswith("decisions/")} - linked == {"index.md"}
+    listed = (docs / "decisions" / "index.md").read_text(encoding="utf-8")
+    assert [page for page in pages if page.startswith("decisions/0") and Path(page).name not in listed] == []
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/how-to/run-campaigns.md"])
+def test_folders_that_a_page_opens_are_made_by_a_line_before(page: str) -> None:
+    """So that the lines can be typed one after the other."""
+    made = set()
+    for line in re.findall(r"^roadgpt .*", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE):
+        assert set(re.findall(r"roadgpt-runs/([\w-]+)", line)) <= made, line
+        if found := re.match(r'roadgpt (?:run|campaign) "(.*?)".* --seed (\d+)', line):
+            made.add(f"{slug(found[1])}-{found[2]}")
 
 
 def test_every_command_line_in_the_docs_is_understood() -> None:
