@@ -45,6 +45,11 @@ def test_the_first_sentence_may_span_lines() -> None:
     assert parts._first_sentence(Part) == "Drives as a person does"
 
 
+def test_what_parts_say_has_no_marks_of_documentation() -> None:
+    """Nor a formula: the line is for people who choose a part by it."""
+    assert [part.name for part in parts.installed() if "`" in part.about or "*" in part.about] == []
+
+
 def test_doctor_finds_this_installation_well() -> None:
     result = CliRunner().invoke(app, ["doctor"])
     assert result.exit_code == 0, result.output

@@ -39,7 +39,7 @@ def _part(shelf: str, name: str) -> Part:
 def _first_sentence(part: Any) -> str:
     """Of the part's documentation; a part without any is spoken for by its module."""
     text = inspect.getdoc(part) or inspect.getdoc(inspect.getmodule(part)) or "Says nothing about itself."
-    paragraph = " ".join(text.strip().split("\n\n")[0].split())
+    paragraph = " ".join(text.strip().split("\n\n")[0].replace("``", "").split())
     return re.split(r"(?<=[.;:]) ", paragraph)[0].rstrip(".;:")
 
 

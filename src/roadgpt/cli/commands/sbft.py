@@ -130,11 +130,12 @@ def _watched(work: "Competition", screen: Screen, has_overview: bool) -> int:
                 screen.detail(f"  {run.description}")
     finally:
         screen.close()
-        if work.ending is not None:
-            screen.say(f"the generator: {work.ending.sentence}")
-        if screen.rows and has_overview:
-            _overview(work.folder)
-        screen.say(f"tests and tables: {work.folder}")
+        if work.ending is None or work.ending.how != "unloadable":  # of that the error speaks
+            if work.ending is not None:
+                screen.say(f"the generator: {work.ending.sentence}")
+            if screen.rows and has_overview:
+                _overview(work.folder)
+            screen.say(f"tests and tables: {work.folder}")
     return 0 if work.ending is None or work.ending.is_fine else FAILED
 
 

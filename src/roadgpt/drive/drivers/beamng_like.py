@@ -24,7 +24,9 @@ TIGHTEST = 0.2  # 1 + 2k of the lane is kept above this, where the centre line t
 
 
 class BeamngLike:
-    """Drives a line that cuts inside by ``cut * tanh(k / sharpness)`` metres, k the curvature of the right
+    """Cuts the inside of every bend, as BeamNG's AI was recorded to do.
+
+    It drives a line that lies inside by ``cut * tanh(k / sharpness)`` metres, k the curvature of the right
     lane's middle; aims at a point of it ahead; takes bends at a share of gravity.
 
     What it imitates: BeamNG's AI at aggression 0.7 under a limit of 70 km/h, as the SBFT tool competition

@@ -16,7 +16,7 @@ DRIVE = "time_s,x_m,y_m,z_m,heading_rad,pitch_rad,roll_rad,speed_mps"
 
 
 class Csv:
-    """Tables: the centre line every metre with heading, curvature, grade and widths; the drive beside it."""
+    """Tables of the centre line every metre, with heading, curvature, grade and widths, and of the drive."""
 
     name = "csv"
     suffix = ".csv"
