@@ -159,6 +159,24 @@ def test_ticks_are_round_and_inside(low: float, span: float, most: int) -> None:
         assert min(abs(lead - good) for good in (1, 2, 5, 10)) < 1e-6
 
 
+def test_what_is_counted_has_whole_numbers_at_its_axes() -> None:
+    svgs = [
+        heat(np.ones((3, 3)), Axis("road", 0.5, 3.5, 1), Axis("road", 0.5, 3.5, 1), "n", "label"),
+        lines([("a", [0, 1, 2], [0, 0, 1])], "tests", "failures", "label"),
+        bars([0, 10, 20, 30], [1, 0, 2], "x", "tests", "label"),
+    ]
+    for svg in svgs:
+        shown = [text.text or "" for text in all_of(svg, "text") if text.get("class") == "soft"]
+        assert {"1", "2"} <= set(shown)
+        assert [number for number in shown if "." in number] == []
+
+
+def test_a_gallery_of_one_road_is_a_small_picture() -> None:
+    road = [Small(1, "PASS", np.array([[0.0, 0.0], [125.0, 125.0]]))]
+    assert "narrow" in parsed(gallery(road, 250.0, "label")).get("class", "")
+    assert "narrow" not in parsed(gallery(road * 20, 250.0, "label")).get("class", "")
+
+
 def test_shares_lie_where_they_should() -> None:
     svg = forest([("a", [Share(0, 0.0, 0.0, 0.1, "0"), Share(1, 1.0, 0.9, 1.0, "1")])], ["x", "y"], "label")
     first, second = (float(dot.get("cx", "nan")) for dot in all_of(svg, "circle"))

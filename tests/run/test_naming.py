@@ -24,7 +24,7 @@ def test_a_slug_is_a_safe_name_whatever_the_words(words: str) -> None:
         ("An uphill road, with 3 turns!", "an-uphill-road-with-3-turns"),
         ("../../etc/passwd", "etc-passwd"),
         ("C:\\Windows\x00", "c-windows"),
-        ("Straße über Höhen", "strae-uber-hohen"),
+        ("Straße über Höhen", "strasse-uber-hohen"),
         ("道路", "road"),
         ("", "road"),
     ],

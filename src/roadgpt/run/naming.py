@@ -12,8 +12,8 @@ LONGEST = 40  # letters of a description
 
 def slug(words: str) -> str:
     """A description as a part of a path: only a-z, 0-9 and '-', at most 40 of them."""
-    plain = unicodedata.normalize("NFKD", words[:1000]).encode("ascii", "ignore").decode().lower()
-    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:LONGEST].strip("-") or "road"
+    plain = unicodedata.normalize("NFKD", words[:1000].casefold()).encode("ascii", "ignore").decode()
+    return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:LONGEST].strip("-") or "road"
 
 
 def new_folder(words: str, seed: int, home: Path = HOME) -> Path:

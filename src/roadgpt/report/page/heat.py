@@ -12,11 +12,12 @@ SIDE, LEFT, BOTTOM, TOP, BAR = 380.0, 74.0, 46.0, 12.0, 96.0
 
 
 class Axis(NamedTuple):
-    """What an axis shows, and from where to where."""
+    """What an axis shows, from where to where, and how far apart its ticks are at least."""
 
     name: str
     lo: float
     hi: float
+    apart: float = 0.0
 
 
 def heat(
@@ -72,7 +73,7 @@ def _opacity(share: float) -> float:
 def _across(axis: Axis) -> str:
     y = TOP + SIDE
     out = [line(LEFT, y, LEFT + SIDE, y, "axis")]
-    for tick in ticks(axis.lo, axis.hi):
+    for tick in ticks(axis.lo, axis.hi, least=axis.apart):
         x = LEFT + SIDE * (tick - axis.lo) / max(axis.hi - axis.lo, 1e-12)
         out += [line(x, y, x, y + 4, "axis"), words(x, y + 17, tick_text(tick), 11.5, "middle", is_soft=True)]
     return "".join(out) + words(LEFT + SIDE / 2, y + 36, axis.name, 12, "middle")
@@ -80,7 +81,7 @@ def _across(axis: Axis) -> str:
 
 def _upwards(axis: Axis, downwards: bool) -> str:
     out = [line(LEFT, TOP, LEFT, TOP + SIDE, "axis")]
-    for tick in ticks(axis.lo, axis.hi):
+    for tick in ticks(axis.lo, axis.hi, least=axis.apart):
         share = (tick - axis.lo) / max(axis.hi - axis.lo, 1e-12)
         y = TOP + SIDE * (share if downwards else 1 - share)
         out += [

@@ -12,7 +12,7 @@ MOST_POINTS = 400  # of a line; more cannot be seen
 
 
 def lines(curves: Sequence[tuple[str, ArrayLike, ArrayLike]], across: str, upwards: str, label: str) -> str:
-    """Curves (name, x, y) that rise or fall, over linear axes from 0 or below."""
+    """Curves (name, x, y) that rise or fall, over linear axes from 0 or below; both axes count things."""
     names = [name for name, _, _ in curves]
     told, below = legend(names, LEFT, 16.0, WIDTH - LEFT - RIGHT) if len(names) > 1 else ("", 0.0)
     top = below + 14
@@ -20,7 +20,7 @@ def lines(curves: Sequence[tuple[str, ArrayLike, ArrayLike]], across: str, upwar
     x1 = max((float(x.max()) for x, _ in every if x.size), default=1.0) or 1.0
     y1 = max((float(y.max()) for _, y in every if y.size), default=1.0) or 1.0
     place = _Place((0.0, x1), (0.0, y1 * 1.05), top)
-    out = [told, place.axes(across, upwards)]
+    out = [told, place.axes(across, upwards, apart=1.0)]
     for series, (x, y) in enumerate(every):
         if not x.size:
             continue
@@ -73,15 +73,16 @@ class _Place:
         foot = HEIGHT - BOTTOM
         return foot - (foot - self._top) * (value - low) / max(high - low, 1e-12)
 
-    def axes(self, across: str, upwards: str) -> str:
+    def axes(self, across: str, upwards: str, apart: float = 0.0) -> str:
+        """Both axes; upwards things are counted, and across ticks are at least so far apart."""
         foot, out = HEIGHT - BOTTOM, []
-        for tick in ticks(*self._y, 5):
+        for tick in ticks(*self._y, 5, least=1.0):
             y = self.y(tick)
             out += [
                 line(LEFT, y, WIDTH - RIGHT, y),
                 words(LEFT - 8, y + 4, tick_text(tick), 11.5, "end", is_soft=True),
             ]
-        for tick in ticks(*self._x, 8):
+        for tick in ticks(*self._x, 8, least=apart):
             x = self.x(tick)
             out += [
                 line(x, foot, x, foot + 4, "axis"),

@@ -5,6 +5,7 @@ from html import escape
 from math import ceil, floor, log10
 
 SERIES = 6  # colours of the page that tell series apart
+NARROW = 384.0  # px; a chart that is meant to be narrower is not widened on any screen
 
 
 def tag(name: str, content: str = "", /, **attributes: object) -> str:
@@ -55,7 +56,7 @@ def chart(width: float, height: float, content: str, label: str) -> str:
         viewBox=f"0 0 {number(width)} {number(height)}",
         width=width,
         height=height,
-        class_="chart",
+        class_="chart" if width >= NARROW else "chart narrow",
         role="img",
         aria_label=label,
     )
@@ -79,11 +80,11 @@ def legend(names: Sequence[str], x: float, y: float, room: float) -> tuple[str, 
     return "".join(out), y
 
 
-def ticks(low: float, high: float, most: int = 6) -> list[float]:
-    """Round numbers from low to high, at most so many and one more."""
+def ticks(low: float, high: float, most: int = 6, least: float = 0.0) -> list[float]:
+    """Round numbers from low to high, at most so many and one more; ``least``: 1 where things are counted."""
     span = max(high - low, 1e-12)
     step = 10 ** floor(log10(span / most))
-    step = next(step * by for by in (1, 2, 5, 10) if span / (step * by) <= most)
+    step = max(next(step * by for by in (1, 2, 5, 10) if span / (step * by) <= most), least)
     first, last = ceil(low / step - 1e-9), floor(high / step + 1e-9)
     return [n * step for n in range(first, last + 1)]
 

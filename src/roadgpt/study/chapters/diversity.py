@@ -30,10 +30,8 @@ def diversity(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], S
         "shares of their lengths; their distance is the root mean square in metres. Near duplicates are "
         "pairs less than 5.5 m and 2 percentage points of grade apart with as many turns. Similarity, from 0 "
         "to 1, is the mean of number, sequence and direction of turns, length, incline and shape.",
-        _within(parts, found),
     ]
-    pairs = _between(parts)
-    blocks += [pairs] if pairs.rows else []
+    blocks += [table for table in (_within(parts, found), _between(parts)) if table.rows]
     twins = _twins(parts, found)
     if twins:
         blocks.append(Details(f"Near duplicates ({plural(len(twins), 'pair')})", twins[:MOST_NAMED]))
@@ -125,7 +123,7 @@ def _matrix(part: LookedPart, roads: list[Looked], own: Spread) -> Figure | None
     if len(roads) < 3:
         return None
     lower = np.where(np.tri(len(roads), k=-1, dtype=bool), own.metres, np.nan)
-    axis = Axis("road", 0.5, len(roads) + 0.5)
+    axis = Axis("road", 0.5, len(roads) + 0.5, 1.0)
     caption = (
         f"{part.part.designer}, “{part.part.prompt.prompt}”: distance between every two roads, metres; "
         "the fainter, the more alike."
