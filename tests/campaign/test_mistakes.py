@@ -182,8 +182,8 @@ def test_a_plan_that_was_saved_by_a_windows_editor_is_read(tmp_path: Path) -> No
     ("given", "wanted"),
     [
         (
-            {"goal": "failures", "drives": True, "generators": ("words",)},
-            ["--goal failures", "--generator words"],
+            {"goal": "failures", "drives": True, "generators": ("genetic",)},
+            ["--goal failures", "--generator genetic"],
         ),
         (
             {"goal": "failures", "drives": True, "generators": ("quality_diversity",)},

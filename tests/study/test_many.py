@@ -21,8 +21,8 @@ CELLS, TESTS = ("c01", "c02"), 300
 DRIVERS = ("beamng_like", "pure_pursuit")
 
 
-def drawn() -> Iterator[tuple[str, Result]]:
-    """Results as they might be: the second driver fails more often."""
+def drawn(goes_on: bool = False) -> Iterator[tuple[str, Result]]:
+    """Results as they might be: the second driver fails more often; drives end where they fail, or go on."""
     rng = np.random.default_rng(3)
     for cell in CELLS:
         for number in range(1, TESTS + 1):
@@ -38,7 +38,8 @@ def drawn() -> Iterator[tuple[str, Result]]:
                     outcome=outcome,  # type: ignore[arg-type]
                     description=f"what happened in <{number}>",
                     length=200.0,
-                    margin=None if outcome == "INVALID" else margin,
+                    margin=None if outcome == "INVALID" else margin if goes_on else max(margin, -1e-5),
+                    max_oob=None if outcome == "INVALID" else 0.96 if margin < 0 else 0.1,
                     cause="out of lane" if outcome == "FAIL" else None,
                     side="left" if outcome == "FAIL" else None,
                     at_s=50.0 if outcome == "FAIL" else None,
@@ -49,17 +50,22 @@ def drawn() -> Iterator[tuple[str, Result]]:
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("many")
+    return written(tmp_path_factory.mktemp("many"))
+
+
+def written(folder: Path, goes_on: bool = False) -> Path:
+    """A campaign of such results."""
     plan = Plan(prompts=("a winding road",), drivers=DRIVERS, budget=Budget(tests=TESTS))
     cells = []
     for name, driver in zip(CELLS, DRIVERS, strict=True):
         request = Request(words="a winding road")
-        request = request.model_copy(update={"setup": request.setup.model_copy(update={"driver": driver})})
+        setup = request.setup.model_copy(update={"driver": driver, "keep_driving": goes_on})
+        request = request.model_copy(update={"setup": setup})
         cells.append(Cell(name, request, None, "words", None, budget=Budget(tests=TESTS)))
     store = Store.new(folder, plan.model_dump_json(), cells, {"roadgpt": "1"})
     with store:
         store.begin_sitting(1)
-        results = list(drawn())
+        results = list(drawn(goes_on))
         for cell in CELLS:
             proposals = [result.proposal for name, result in results if name == cell]
             store.add_batch(cell, 0, 1, proposals)
@@ -85,8 +91,8 @@ def test_counts_are_those_of_the_results(campaign: Path) -> None:
             len(failed),
             len(driven),
         )
-        least = min(result.margin for result in driven if result.margin is not None)
-        assert float(row["least margin, m"]) == pytest.approx(least, abs=1e-4)
+        least = min(result.margin for result in driven if result.outcome == "PASS" and result.margin)
+        assert float(row["nearest when kept, m"]) == pytest.approx(least, abs=1e-4)
     page = (campaign / "report.html").read_text()
     total = sum(result.outcome == "FAIL" for _, result in drawn())
     assert f"{total} FAIL" in page
@@ -95,18 +101,50 @@ def test_counts_are_those_of_the_results(campaign: Path) -> None:
     assert not re.search(r"<\d+>", page)
 
 
-def test_the_worst_come_first_and_lead_to_their_runs(campaign: Path) -> None:
-    every = sorted((r.margin, f"{c}/{r.number}") for c, r in drawn() if r.outcome == "FAIL" and r.margin)
+def test_failures_stand_in_order_and_lead_to_their_runs(campaign: Path) -> None:
+    every = [(r.max_oob, f"{c}/{r.number}") for c, r in drawn() if r.outcome == "FAIL"]
     cell, number = every[0][1].split("/")
     there = campaign / "again" / cell / "runs" / f"{int(number):04d}"
     there.mkdir(parents=True)
     (there / "birds_eye.png").write_bytes(b"")
     write_many(campaign)
-    found = rows(campaign, "worst")
-    assert [row["test"] for row in found] == [name for _, name in every[: len(found)]]
+    found = rows(campaign, "failures")
+    assert [row["test"] for row in found] == [name for _, name in every[:30]]
+    assert [float(row["outside at most"]) for row in found] == pytest.approx(
+        [share for share, _ in every[:30]], abs=1e-4
+    )
     page = (campaign / "report.html").read_text()
     assert re.findall(r'href="(again[^"]+)"', page) == [f"again/{cell}/runs/{int(number):04d}/birds_eye.png"]
     assert f"roadgpt redrive {campaign} {every[0][1]}" in page
+
+
+def test_a_drive_that_ended_where_it_failed_has_no_margin_to_tell(campaign: Path) -> None:
+    """It ends within a step of its lane's edge, whatever would have come: a number of no meaning."""
+    write_many(campaign)
+    text = (campaign / "report.md").read_text(encoding="utf-8")
+    assert not re.search(r"[-−]0\.0+\b", text)
+    kept = [(r.margin, f"{c}/{r.number}") for c, r in drawn() if r.outcome == "PASS"]
+    least, where = min(kept)  # type: ignore[type-var]
+    assert f"Of the drives that kept their lane, test {where} came nearest to failing" in text
+    assert least is not None
+    assert (f"{least:.2f} m" if least >= 0.01 else "less than 1 cm") in text
+    assert "Farthest out" not in text
+    assert "96 %" in text
+
+
+def test_a_drive_that_goes_on_tells_how_far_out_it_went(tmp_path: Path) -> None:
+    write_many(written(tmp_path, goes_on=True))
+    every = sorted((r.margin, f"{c}/{r.number}") for c, r in drawn(True) if r.outcome == "FAIL" and r.margin)
+    found = rows(tmp_path, "failures")
+    assert [row["test"] for row in found] == [name for _, name in every[:30]]
+    assert [float(row["farthest out, m"]) for row in found] == pytest.approx(
+        [-margin for margin, _ in every[:30]], abs=1e-4
+    )
+    text = (tmp_path / "report.md").read_text(encoding="utf-8")
+    assert f"Farthest out went test {every[0][1]}: {-every[0][0]:.2f} m beyond what is allowed." in text
+    assert max(float(row["farthest out, m"]) for row in rows(tmp_path, "causes")) == pytest.approx(
+        -every[0][0], abs=1e-4
+    )
 
 
 def test_the_command_writes_it(campaign: Path) -> None:

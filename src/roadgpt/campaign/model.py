@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal, Protocol, TypeVar
+from typing import Annotated, Any, Literal, Protocol, TypeVar, get_args
 
 from pydantic import Field
 
@@ -13,6 +13,7 @@ from roadgpt.verdict.verdict import Cause, Side
 
 Goal = Literal["failures", "coverage", "hardest", "boundary"]
 """What a search is after; a cell without a goal makes so many roads and looks for nothing."""
+GOALS: tuple[Goal, ...] = get_args(Goal)
 
 MOST_TESTS = 10_000_000  # of one cell; numbers of tests have seven digits
 
@@ -117,6 +118,9 @@ class Generator(Protocol):
     nothing else. Its state follows from its cell and from what it was told; its random numbers in a batch
     come from ``np.random.default_rng([cell.request.seed, k])``. So the same campaign gives the same table
     however many workers there are and however often it is interrupted.
+
+    A class that searches says so: ``goals`` names what it can search for. One without the name searches for
+    nothing, and its cells have no goal.
     """
 
     batch_size: int

@@ -68,6 +68,12 @@ class Plan(Frozen):
         parts = (("readers", self.reader.partition(":")[0]), ("designers", designer))
         return any(asks_a_model(plugins.find(shelf, name)) for shelf, name in parts)
 
+    def _searches(self, generator: str) -> bool:
+        """Does a generator search for the goal? Others may stand beside it, to be compared with."""
+        if self.goal is None:
+            return False
+        return self.goal in getattr(plugins.find("generators", generator), "goals", ())
+
     def requests(self) -> Iterator[tuple[Request, str]]:
         """Of each cell its request and generator, in order."""
         every = product(
@@ -93,7 +99,7 @@ class Plan(Frozen):
 
         Raises:
             UsageError: a part is not installed, cells are too many or the same, nothing says when to stop,
-            or a search may not drive.
+            a search may not drive, or nobody searches for the goal.
         """
         lists = (self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds)
         cells = math.prod(map(len, lists))
@@ -117,6 +123,11 @@ class Plan(Frozen):
             plugins.find("generators", name)
             if name == WITHOUT_GOAL and not all(words.strip() for words in self.prompts):
                 raise UsageError("the generator 'words' needs a description; give one, or another generator")
+        if self.goal is not None and not any(self._searches(name) for name in self.generators):
+            raise UsageError(
+                f"the generator {self.generators[0]!r} does not search for {self.goal!r}; leave out the "
+                f"goal, or take another generator, such as {WITH_GOAL!r}"
+            )
         for shelf, names in (("designers", self.designers), ("simulators", self.simulators)):
             for name in names:
                 plugins.find(shelf, name)
@@ -132,7 +143,7 @@ class Plan(Frozen):
                 request=request,
                 brief=briefs.get(request.words),
                 generator=generator,
-                goal=self.goal,
+                goal=self.goal if self._searches(generator) else None,
                 settings=self.settings,
                 budget=self.budget,
             )

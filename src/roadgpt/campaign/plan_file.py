@@ -11,11 +11,13 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from roadgpt.campaign.model import MOST_TESTS, Budget, Goal
 from roadgpt.campaign.plan import PATIENCE, WITH_GOAL, WITHOUT_GOAL, Plan, Seed
 from roadgpt.chat import ChatSettings
+from roadgpt.drive.custom import located
 from roadgpt.errors import UsageError
 from roadgpt.road import Geometry, World
 from roadgpt.road.world import NotNegative, Positive
 
 LARGEST = 4_000_000  # bytes of a file
+FOLDERS = ("record", "replay")  # keys of [chat] that name one
 
 ADVICE = {
     "greater_than_equal": "give {ge:g} or more",
@@ -117,21 +119,25 @@ def read_plan(path: Path) -> Written:
     except ValidationError as error:
         within = ("chat",) if error.title == ChatSettings.__name__ else ()
         raise UsageError(f"{path}: {_sentence(error, within)}") from error
-    return Written(plan=_plan(table), chat=table.chat)
+    folder = path.parent.absolute()
+    chat = {name: str(folder / value) if name in FOLDERS else value for name, value in table.chat.items()}
+    return Written(plan=_plan(table, folder), chat=chat)
 
 
-def _plan(table: PlanTable) -> Plan:
+def _plan(table: PlanTable, folder: Path) -> Plan:
+    """The plan of a file in a folder, where its relative paths begin."""
+    reader, colon, weights = table.reader.partition(":")
     return Plan(
         prompts=table.prompts or ("",),
         designers=table.designers,
-        drivers=table.drivers,
+        drivers=tuple(located(driver, folder) for driver in table.drivers),
         simulators=table.simulators,
         generators=table.generators or (WITH_GOAL if table.goal else WITHOUT_GOAL,),
         seeds=table.seeds,
         goal=table.goal,
         settings=table.settings,
         budget=Budget(tests=table.tests, seconds=table.seconds),
-        reader=table.reader,
+        reader=f"{reader}:{folder / weights}" if colon else reader,
         rules=table.rules,
         geometry=table.geometry,
         keep_driving=table.keep_driving,

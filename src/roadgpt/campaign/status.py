@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.campaign.launch import plan_of
+from roadgpt.campaign.model import Goal
 from roadgpt.campaign.record import Record
 
 FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
+ONE_SIDED = 0.05  # share of driven roads that ended otherwise, below which there is hardly a boundary
 LATELY = 60.0  # s over which the speed of the moment is taken
 
 
@@ -26,6 +28,8 @@ class CellStatus:
     asked: int
     outcomes: Mapping[str, int]
     least_margin: float | None
+    """Metres, of drives that kept their lane; one that leaves it ends there, within centimetres of 0."""
+    goal: Goal | None
     closed: str | None
     """Why nothing more is asked for, where that is not that all were."""
 
@@ -33,6 +37,21 @@ class CellStatus:
     def done(self) -> int:
         """Tests that have ended."""
         return sum(self.outcomes.values())
+
+    @property
+    def remark(self) -> str:
+        """What has to be said of its result: a search for the boundary that finds one side only."""
+        kept, failed = self.outcomes.get("PASS", 0), self.outcomes.get("FAIL", 0)
+        driven = kept + failed
+        if self.goal != "boundary" or not self.done or (driven and min(kept, failed) >= ONE_SIDED * driven):
+            return ""
+        if not driven:
+            return f"{self.name}: no road was driven, so nothing is known of a boundary."
+        did = f"kept its lane on {kept or 'none'}" if kept < failed else f"failed on {failed or 'none'}"
+        return (
+            f"{self.name}: of {driven:,} driven roads the car {did}, so there is hardly a boundary to find; "
+            f"make it {'easier' if kept < failed else 'harder'} for the car (friction, speed limit, driver)."
+        )
 
 
 @dataclass(frozen=True)
@@ -81,6 +100,7 @@ class Status:
         """Plain data."""
         return {
             **asdict(self),
+            "remarks": [cell.remark for cell in self.cells if cell.remark],
             "done": self.done,
             "seconds_left": self.seconds_left,
         }
@@ -147,8 +167,8 @@ def _cells(record: Record) -> tuple[CellStatus, ...]:
     grouped = "SELECT cell, outcome, count(*), min(margin) FROM tests WHERE outcome IS NOT NULL GROUP BY 1, 2"
     for cell, outcome, count, margin in record.stream(grouped):
         counts.setdefault(cell, {})[outcome] = count
-        if margin is not None:
-            least[cell] = min(margin, least.get(cell, margin))
+        if outcome == "PASS" and margin is not None:
+            least[cell] = margin
     asked = dict(record.query("SELECT cell, sum(n) FROM batches GROUP BY cell"))
     closed = dict(record.query("SELECT name, closed FROM cells"))
     return tuple(
@@ -161,6 +181,7 @@ def _cells(record: Record) -> tuple[CellStatus, ...]:
             asked=asked.get(cell.name, 0),
             outcomes=counts.get(cell.name, {}),
             least_margin=least.get(cell.name),
+            goal=cell.goal,
             closed=closed[cell.name],
         )
         for cell in record.cells()

@@ -105,6 +105,7 @@ def told(status: "Status") -> Iterator[str]:
         yield LINE.format(*cell_columns(cell))
     if len(status.cells) > MOST_CELLS:
         yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"
+    yield from [cell.remark for cell in status.cells[:MOST_CELLS] if cell.remark]
 
 
 def _pace(status: "Status") -> str:

@@ -26,13 +26,33 @@ def load_driver(spec: str) -> Any:
         PartError: no driver of that name on the shelf.
         UsageError: the file or the class is missing, the file cannot be run, or the class makes no driver.
     """
-    path, colon, wanted = spec.rpartition(":")
-    if spec.endswith(".py"):
-        path, wanted = spec, ""
-    elif not (colon and path.endswith(".py")):
+    path, wanted = _parted(spec)
+    if not path:
         return _made(plugins.find("drivers", spec), spec)
     module = _run(Path(path))
     return _made(_class(module, wanted, path), spec)
+
+
+def located(spec: str, folder: Path) -> str:
+    """The same driver, named so that it is found from anywhere.
+
+    Args:
+        spec: as ``load_driver`` has it; the name of a driver on the shelf stays as it is.
+        folder: where the path of a driver's file begins, if it is a relative one.
+    """
+    path, wanted = _parted(spec)
+    if not path:
+        return spec
+    whole = (folder / path).absolute()
+    return f"{whole}:{wanted}" if wanted else str(whole)
+
+
+def _parted(spec: str) -> tuple[str, str]:
+    """Path and class of a driver in a file; no path where it is the name of one on the shelf."""
+    if spec.endswith(".py"):
+        return spec, ""
+    path, _, wanted = spec.rpartition(":")
+    return (path, wanted) if path.endswith(".py") else ("", "")
 
 
 def load_in_time(spec: str, limit: float = BEFORE_START) -> Any:

@@ -12,6 +12,7 @@ from roadgpt.study.chapters.many import coverage, failures, faults, margins
 from roadgpt.study.chapters.saying import (
     decimal,
     interval_cell,
+    near_and_far,
     p_value,
     percent,
     plural,
@@ -49,9 +50,10 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     lead += "" if status.is_finished else "; the campaign goes on"
     sections = [Section("Outcomes", _outcomes(record, status, fields))]
     if any(c.outcomes.get("PASS") or c.outcomes.get("FAIL") for c in fields):
-        blocks = [*failures(folder, record, fields[:MOST_CELLS]), *faults(folder, fields)]
+        goes_on = _drives_on(record)
+        blocks = [*failures(folder, record, fields[:MOST_CELLS], goes_on), *faults(folder, fields)]
         sections.append(Section("Failures", blocks))
-        sections.append(Section("How near to failing", [margins(record)]))
+        sections.append(Section("How near to failing", [margins(record, goes_on)]))
     covered = coverage(record, status.done)
     sections += [Section("Coverage", covered)] if covered else []
     return Page(title, _summary(record, status, fields), sections, _card(command, record, status), lead)
@@ -68,14 +70,29 @@ def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> lis
         best = max(cells, key=_failing)
         if len(cells) > 1:
             out.append(f"Most fail in {best.name}: {percent(_failing(best))} of its driven roads.")
-        least = record.query("SELECT cell, number, margin FROM tests WHERE margin IS NOT NULL "
-                             "ORDER BY margin LIMIT 1")  # fmt: skip
-        out.append(f"The least margin is {least[0][2]:+.2f} m, in test {least[0][0]}/{least[0][1]}.")
+        out += near_and_far(_least(record, "PASS"), _least(record, "FAIL") if _drives_on(record) else None)
+    out += [sentence for each in cells if (sentence := each.remark)]
     wrong = counts.get("INVALID", 0) + counts.get("ERROR", 0)
     out.append(f"Of all tests {share_of(wrong, status.done)} were invalid or ended in an error.")
     if status.seconds:
         out.append(f"It took {status.seconds:,.0f} s, {status.done / status.seconds:.1f} tests a second.")
     return out
+
+
+def _drives_on(record: Record) -> bool:
+    """Do cars drive on where they have left their lane?"""
+    ((name,),) = record.query("SELECT name FROM cells ORDER BY name LIMIT 1")
+    return record.cell(name).request.setup.keep_driving
+
+
+def _least(record: Record, outcome: str) -> tuple[float, str] | None:
+    """The least margin of tests that ended so, and where."""
+    found = record.query(
+        "SELECT margin, cell, number FROM tests WHERE outcome = ? AND margin IS NOT NULL "
+        "ORDER BY margin, cell, number LIMIT 1",
+        (outcome,),
+    )
+    return (found[0][0], f"test {found[0][1]}/{found[0][2]}") if found else None
 
 
 def _failing(of: CellStatus) -> float:
@@ -105,7 +122,7 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
             ]
         )
     heads = ["cell", "description", "generator", "driver", "tests", "invalid", "error", "failed", "driven",
-             "share", "Wilson 95 %", "least margin, m", "s"]  # fmt: skip
+             "share", "Wilson 95 %", "nearest when kept, m", "s"]  # fmt: skip
     blocks: list[Block] = [Table("outcomes", "Outcomes, cell by cell", heads, rows)]
     counts = [[c.outcomes.get("FAIL", 0), c.outcomes.get("PASS", 0)] for c in cells]
     if len(cells) > 1:

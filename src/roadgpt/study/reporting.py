@@ -25,7 +25,7 @@ from roadgpt.study.chapters.counting import (
 )
 from roadgpt.study.chapters.diversity import diversity, spread_of
 from roadgpt.study.chapters.maps import coverage, roads
-from roadgpt.study.chapters.saying import between, p_value, percent, plural, share_of
+from roadgpt.study.chapters.saying import between, near_and_far, p_value, percent, plural, share_of
 from roadgpt.study.looking import Looked, LookedPart, look_at_campaign, look_at_parts
 from roadgpt.study.plan import Part, Plan, read_plan
 from roadgpt.study.prompts import Prompt
@@ -208,10 +208,16 @@ def write_campaign(folder: Path, command: str = "") -> Path:
 def _campaign_summary(part: LookedPart, setup: Setup, found: Found) -> list[str]:
     own = setup.designer
     lines = [*_valid_lines(own, [part], is_thesis=False), *_left_lines(own, [part], is_thesis=False)]
-    margins = [(road.margin, road) for road in part.roads if road.margin is not None]
-    if margins:
-        least, road = min(margins, key=lambda pair: pair[0])
-        lines.append(f"The smallest margin is {least:+.2f} m, on road {road.index}.")
+    near, far = (_least(part.roads, outcome) for outcome in ("PASS", "FAIL"))
+    lines += near_and_far(near, far if setup.keep_driving else None)
     if any(road.kept for road in part.roads):
         lines.append(_kept_line(own, [part]))
     return [*lines, _different_line(own, found)]
+
+
+def _least(roads: Sequence[Looked], outcome: str) -> tuple[float, str] | None:
+    """The least margin of roads that ended so, and which that was."""
+    found = [
+        (road.margin, road.index) for road in roads if road.outcome == outcome and road.margin is not None
+    ]
+    return (min(found)[0], f"road {min(found)[1]}") if found else None

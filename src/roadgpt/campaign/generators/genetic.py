@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from roadgpt.campaign.model import Cell, Pool, Proposal, Result
+from roadgpt.campaign.model import Cell, Goal, Pool, Proposal, Result
 from roadgpt.campaign.search import (
     is_usable,
     made,
@@ -27,6 +27,8 @@ CROSSED = 0.6  # of the children; the others take after one parent
 
 class Genetic:
     """Tournaments, crossing, changes."""
+
+    goals: tuple[Goal, ...] = ("failures", "hardest")  # it knows only how near a road came to failing
 
     def __init__(self, cell: Cell) -> None:
         """An empty population.

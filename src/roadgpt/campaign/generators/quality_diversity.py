@@ -14,7 +14,7 @@ import numpy as np
 
 from roadgpt.campaign.archive import Archive
 from roadgpt.campaign.genome import Genes, genes_of
-from roadgpt.campaign.model import Cell, Goal, Pool, Proposal, Result
+from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
 from roadgpt.campaign.pairs import paired
 from roadgpt.campaign.picking import Expected, picked, spread, unlike
 from roadgpt.campaign.search import (
@@ -41,6 +41,8 @@ CLOSE = 0.05  # apart, a pair is near enough (see pairs.distance)
 
 class QualityDiversity:
     """A map of elites, a surrogate, and a goal."""
+
+    goals = GOALS
 
     def __init__(self, cell: Cell) -> None:
         """An empty map.

@@ -127,6 +127,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
 def _described(text: str, rest: dict[str, Any]) -> "Plan":
     from roadgpt.campaign.model import Budget
     from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL, Plan
+    from roadgpt.drive.custom import located
 
     goal, seconds, tests = rest["goal"], rest["seconds"], rest["tests"]
     world = world_of(rest)
@@ -134,7 +135,7 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
     return Plan(
         prompts=(text,),
         designers=(rest["designer"],),
-        drivers=(rest["driver"],),
+        drivers=(located(rest["driver"], Path.cwd()),),
         simulators=(rest["simulator"],),
         generators=(rest["generator"] or (WITH_GOAL if goal else WITHOUT_GOAL),),
         seeds=(rest["seed"],),

@@ -11,12 +11,12 @@ from roadgpt.campaign.behaviour import BOUNDS
 from roadgpt.campaign.faults.book import FOLDER, TABLE, counted
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
-from roadgpt.report.page import Block, Figure, Table, cell
+from roadgpt.report.page import Block, Cell, Figure, Table, cell
 from roadgpt.report.page.heat import Axis, heat
 from roadgpt.report.page.lines import bars, lines
-from roadgpt.study.chapters.saying import decimal
+from roadgpt.study.chapters.saying import decimal, percent
 
-WORST = 30  # failures that are named
+NAMED = 30  # failures, one by one
 STEPS = 200  # of a curve
 SAMPLE = 100_000  # tests whose features are read, evenly spread
 SIDE = 25  # cells of a map along each axis
@@ -24,21 +24,32 @@ MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is i
 MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))
 
 
-def failures(folder: Path, record: Record, cells: Sequence[CellStatus]) -> list[Block]:
-    """When failures were found, why, and the worst by name."""
-    blocks: list[Block] = [_curves(record, cells), _causes(record)]
-    worst = record.query(
-        "SELECT cell, number, margin, cause, side, at_s, description FROM (SELECT * FROM tests WHERE "
-        "outcome = 'FAIL' ORDER BY margin IS NULL, margin, cell, number LIMIT ?) JOIN details "
-        "USING (cell, number) ORDER BY margin IS NULL, margin, cell, number",
-        (WORST,),
+def failures(
+    folder: Path, record: Record, cells: Sequence[CellStatus], drives_on: bool = False
+) -> list[Block]:
+    """When failures were found, why, and some by name: the worst, or the first where a drive ends as the car
+    leaves its lane, for then none is worse than another.
+
+    Args:
+        folder: of the campaign.
+        record: of it.
+        cells: whose curves are drawn.
+        drives_on: do cars drive on where they have left their lane?
+    """
+    blocks: list[Block] = [_curves(record, cells), _causes(record, drives_on)]
+    order = "margin IS NULL, margin, cell, number" if drives_on else "cell, number"
+    some = record.query(
+        "SELECT cell, number, margin, max_oob, cause, side, at_s, description FROM "  # noqa: S608 - our words
+        f"(SELECT * FROM tests WHERE outcome = 'FAIL' ORDER BY {order} LIMIT ?) JOIN details "
+        f"USING (cell, number) ORDER BY {order}",
+        (NAMED,),
     )
     rows = []
-    for name, number, margin, cause, side, at_s, says in worst:
+    for name, number, margin, outside, cause, side, at_s, says in some:
         rows.append(
             [
                 cell(f"{name}/{number}", href=_again(folder, name, number)),
-                decimal(margin),
+                *_how_far(margin, outside, drives_on),
                 cell(cause or ""),
                 cell(side or ""),
                 decimal(at_s, 0),
@@ -47,8 +58,9 @@ def failures(folder: Path, record: Record, cells: Sequence[CellStatus]) -> list[
         )
     if rows:
         note = f"To see one: {shlex.join(['roadgpt', 'redrive', str(folder), str(rows[0][0].value)])}"
-        heads = ["test", "margin, m", "cause", "side", "at, m", "what happened"]
-        blocks.append(Table("worst", f"The {len(rows)} worst failures", heads, rows, note))
+        heads = ["test", *_far_heads(drives_on), "cause", "side", "at, m", "what happened"]
+        caption = f"The {len(rows)} {'worst' if drives_on else 'first'} failures"
+        blocks.append(Table("failures", caption, heads, rows, note))
     return blocks
 
 
@@ -88,19 +100,31 @@ def _curves(record: Record, cells: Sequence[CellStatus]) -> Figure:
     return Figure("found", caption, lines(curves, "tests", "failures found", caption))
 
 
-def _causes(record: Record) -> Table:
+def _far_heads(drives_on: bool) -> list[str]:
+    return ["outside at most", *(["farthest out, m"] if drives_on else [])]
+
+
+def _how_far(margin: float | None, outside: float | None, drives_on: bool) -> list[Cell]:
+    """What ``_far_heads`` names: the largest share of the car outside its lane, and, where it drove on, how
+    many metres beyond what is allowed; a drive that ends there ends within centimetres of it."""
+    share = cell(None) if outside is None else cell(round(outside, 4), percent(outside, 0))
+    far = None if margin is None or margin >= 0 else -margin
+    return [share, *([decimal(far)] if drives_on else [])]
+
+
+def _causes(record: Record, drives_on: bool) -> Table:
     found = record.query(
-        "SELECT cause, side, count(*), min(margin) FROM tests WHERE outcome = 'FAIL' GROUP BY 1, 2 "
-        "ORDER BY 3 DESC, 1, 2"
+        "SELECT cause, side, count(*), min(margin), max(max_oob) FROM tests WHERE outcome = 'FAIL' "
+        "GROUP BY 1, 2 ORDER BY 3 DESC, 1, 2"
     )
     rows = [
-        [cell(cause or "other"), cell(side or "–"), cell(count), decimal(least)]
-        for cause, side, count, least in found
+        [cell(cause or "other"), cell(side or "–"), cell(count), *_how_far(least, outside, drives_on)]
+        for cause, side, count, least, outside in found
     ]
-    return Table("causes", "How the car failed", ["cause", "side", "tests", "least margin, m"], rows)
+    return Table("causes", "How the car failed", ["cause", "side", "tests", *_far_heads(drives_on)], rows)
 
 
-def margins(record: Record) -> Figure:
+def margins(record: Record, drives_on: bool = False) -> Figure:
     """A histogram of how near tests came to failing."""
     low, high, width = MARGINS
     n = round((high - low) / width)
@@ -116,6 +140,10 @@ def margins(record: Record) -> Figure:
         "Margins: how far sideways the car still was from failing where it came closest; negative where it "
         "failed. The outermost bars hold what lies beyond."
     )
+    if not drives_on:
+        caption += (
+            " A drive ends where the car leaves its lane, so such failures lie within centimetres of 0."
+        )
     edges = np.linspace(low, high, n + 1)
     return Figure("margins", caption, bars(edges, counts, "margin, m", "tests", caption, 0.0))
 

@@ -32,7 +32,30 @@ def decimal(value: float | None, digits: int = 2, href: str = "") -> Cell:
     """A cell with a rounded number; a dash where there is none."""
     if value is None or not math.isfinite(value):
         return cell(None)
-    return cell(round(value, digits + 3), f"{value:.{digits}f}".replace("-", "−"), href)
+    return cell(round(value, digits + 3), f"{value:z.{digits}f}".replace("-", "−"), href)
+
+
+def metres(value: float) -> str:
+    """'0.18 m'; what would be rounded to nothing is 'less than 1 cm'."""
+    return f"{value:.2f} m" if value >= 0.01 else "less than 1 cm"
+
+
+def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) -> list[str]:
+    """What margins say of drives: how near the kept ones came, and how far out the others went.
+
+    Args:
+        near: least margin of a drive that kept its lane, in metres, and where; None: there is none.
+        far: least margin of one that left it and drove on; None: there is none, or a drive ends where it
+            leaves its lane, and then so does what can be said of it.
+    """
+    out = []
+    if near is not None:
+        out.append(
+            f"Of the drives that kept their lane, {near[1]} came nearest to failing: {metres(near[0])}."
+        )
+    if far is not None and far[0] < 0:
+        out.append(f"Farthest out went {far[1]}: {metres(-far[0])} beyond what is allowed.")
+    return out
 
 
 def share_cells(k: int, n: int, href: str = "") -> list[Cell]:
