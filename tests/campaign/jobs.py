@@ -60,6 +60,10 @@ def prints(number: int) -> int:
     return number
 
 
+def talks(number: int) -> None:
+    print(f"{number} says so\n" * 200, end="", flush=True)
+
+
 def dies(status: int) -> None:
     os._exit(status)
 

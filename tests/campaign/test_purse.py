@@ -83,6 +83,8 @@ def test_a_limit_is_never_passed_and_hardly_anything_is_left(
             pass
         assert status_of(folder).done == 30
         assert status_of(folder).tokens >= TOKENS * needed
+        with Record.opened(folder) as record:
+            assert plan_of(record) == free  # the next sitting has the limits of this one
 
 
 @given(

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.brief.model import Brief, exactly
+from roadgpt.design import variety
 from roadgpt.design.designers.planner import Planner
 from roadgpt.design.variety import ENOUGH, Shape, Shapes, apart, apart_by_metres, nearest, shape_of
 from roadgpt.road import Design, World, build, read_design
@@ -82,6 +83,18 @@ def test_shapes_are_remembered_by_design_and_do_not_depend_on_what_came_before()
     used.of(designs[::-1])
     for one, other in zip(fresh.of(designs), used.of(designs), strict=True):
         assert np.array_equal(one, other)
+
+
+def test_what_is_forgotten_is_let_go_and_the_row_is_not_grown_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    planner, shapes, grown = Planner(), Shapes(), list[Design]()
+    designs = [planner.draft(Brief(), World(), (), (), seed) for seed in range(8)]
+    monkeypatch.setattr(variety, "REMEMBERED", 3)
+    monkeypatch.setattr(variety, "build", lambda design: grown.append(design) or build(design))
+    shapes.of(designs[:7])
+    shapes.of(designs[5:7])  # the oldest five are forgotten
+    for one, other in zip(shapes.of(designs[5:]), Shapes().of(designs[5:]), strict=True):
+        assert np.array_equal(one, other)
+    assert grown == [*designs, *designs[5:]]  # of each one road, and those of the second opinion
 
 
 @settings(max_examples=20, deadline=None)

@@ -108,5 +108,5 @@ def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> t
     for axis in axes:
         low, high = bounds_of(axis)
         share = (features[axis] - low) / (high - low)
-        place.append(int(np.clip(np.floor(share * cells), 0, cells - 1)))
+        place.append(int(min(max(share * cells, 0), cells - 1)))
     return tuple(place)

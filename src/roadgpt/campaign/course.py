@@ -10,8 +10,10 @@ from roadgpt.campaign.store import Store
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Design
 
-REMEMBERED = 4096  # designs that a draft is not to repeat, at most; older ones are forgotten
-STRIDE = 1024  # of them at a time, so that what designers remember of the others stays of use
+REMEMBERED = (
+    2048  # designs that a draft is not to repeat, at most: 50 MB in each worker; older ones are forgotten
+)
+STRIDE = 512  # of them at a time, so that what designers remember of the others stays of use
 LAG = 2  # batches: number k knows results up to k - 2
 
 

@@ -8,8 +8,9 @@ cells.csv      one row per cell: what its tests share, how many of them ended ho
 import csv
 import json
 import os
+import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -54,17 +55,40 @@ OUTCOMES = {
 def write_tables(record: Record, folder: Path) -> None:
     """Write both, row by row; raises OSError."""
     features = record.feature_names()
-    rows = (_row(row, features) for row in record.stream(EVERY))  # a million pass through here one by one
-    _write(folder / RESULTS, (*COLUMNS, *features), rows)
+    _write(folder / RESULTS, _lines(record.stream(EVERY), features))
     cells = [_cell_row(record, cell) for cell in record.cells()]
-    _write(folder / CELLS, tuple(cells[0]), (tuple(row.values()) for row in cells))
+    _write(folder / CELLS, map(_line, [tuple(cells[0]), *(tuple(row.values()) for row in cells)]))
 
 
-def _row(row: tuple[Any, ...], features: list[str]) -> tuple[Any, ...]:
-    cell, number, batch, origin, seed, given, *rest, found = row
-    values = json.loads(found)
-    driver = seed if given else seed_of(seed, number)
-    return (cell, number, batch, origin, driver, *rest, *(values.get(name) for name in features))
+class _Echo:
+    """Stands in for a file: hands back what is written into it."""
+
+    def write(self, text: str) -> str:
+        """The same."""
+        return text
+
+
+_line = csv.writer(_Echo(), lineterminator="\n").writerow
+
+
+def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator[str]:
+    """The table of results; a million rows pass here, so numbers are handed on as they are written."""
+    yield _line((*COLUMNS, *features))
+    written = _written(features)
+    for cell, number, batch, origin, seed, given, *rest, found in rows:
+        row = (cell, number, batch, origin, seed if given else seed_of(seed, number), *rest)
+        told = written.fullmatch(found)
+        if told is not None:
+            yield ",".join((_line(row)[:-1], *told.groups(""))) + "\n"
+        else:
+            values = json.loads(found)
+            yield _line((*row, *(values.get(name) for name in features)))
+
+
+def _written(features: Sequence[str]) -> re.Pattern[str]:
+    """Features as the store has them, in JSON and in order: of each its number, or nothing."""
+    each = (rf"(?:{re.escape(json.dumps(name))}: ([-+.\de]+)(?:, |(?=\}})))?" for name in features)
+    return re.compile(rf"\{{{''.join(each)}\}}")
 
 
 def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
@@ -77,7 +101,8 @@ def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
         )
     )
     ((least, left),) = record.query(
-        "SELECT min(margin), sum(outcome = 'FAIL' AND side = 'left') FROM tests WHERE cell = ?",
+        "SELECT min(margin) FILTER (WHERE outcome = 'PASS'), sum(outcome = 'FAIL' AND side = 'left') "
+        "FROM tests WHERE cell = ?",
         (cell.name,),
     )
     setup = cell.request.setup
@@ -113,13 +138,11 @@ def _failing_cells(record: Record, cell: Cell) -> int:
     return len(places - {None})
 
 
-def _write(path: Path, head: tuple[str, ...], rows: Iterator[tuple[Any, ...]]) -> None:
+def _write(path: Path, lines: Iterator[str]) -> None:
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
         with draft.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(head)
-            writer.writerows(rows)
+            file.writelines(lines)
         draft.replace(path)
     except BaseException:
         draft.unlink(missing_ok=True)

@@ -19,7 +19,7 @@ POINTS = 80  # at equal shares of the length
 STEP = 6.0  # m between points at equal distances
 MOST = 60  # of those: 360 m
 ENOUGH = 5.5  # m RMS: two roads further apart than this are not alike
-REMEMBERED = 5000  # designs whose shape is kept at hand
+REMEMBERED = 1000  # designs whose shape is kept at hand, besides those of the row: 18 kB each
 FIRST_ROOM = 64  # designs for which there is room at first
 
 Complex = NDArray[np.complex128]
@@ -128,7 +128,8 @@ class Shapes:
     def of(self, designs: Sequence[Design]) -> Shape:
         """Shapes of designs, in their order, stacked; a row that only grows is not stacked anew."""
         if len(self._known) > REMEMBERED + len(designs):
-            self._known.clear()
+            own = {id(design) for design in designs}
+            self._known = {key: known for key, known in self._known.items() if key in own}
         same = _alike(self._row, designs)
         if same < len(self._row) or len(designs) > len(
             self._stack.reach

@@ -12,6 +12,7 @@ from roadgpt.campaign.executors import MOST_DEATHS, Doing, Staff
 from roadgpt.campaign.executors.processes.worker import Worker
 from roadgpt.campaign.hands.desk import Desk
 from roadgpt.campaign.hands.inside import READY, Order
+from roadgpt.campaign.hands.log import shorten
 from roadgpt.campaign.hands.wire import frozen, thawed
 from roadgpt.errors import RoadGPTError
 
@@ -63,6 +64,7 @@ class Processes(Desk):
             worker.kill()
         for worker in leaving:
             worker.join()
+        shorten(self._staff.log)
 
     def _hire(self) -> None:
         self._started += 1
@@ -128,7 +130,10 @@ class Processes(Desk):
             self._changed.notify_all()
 
     def _watch(self) -> None:
-        """Ends workers that hang; takes no lock, for whoever writes to a worker that hangs holds it."""
+        """Ends workers that hang, and keeps what they print short.
+
+        Takes no lock, for whoever writes to a worker that hangs holds it.
+        """
         last = time.monotonic()
         while not self._stops.wait(ROUND):
             now = time.monotonic()
@@ -139,4 +144,5 @@ class Processes(Desk):
                     worker.kill(f"gave no sign of life for {SILENCE:g} s")
                 elif (worker.job or not worker.is_ready) and now - worker.begun > self._staff.patience:
                     worker.kill(f"took longer than {self._staff.patience:g} s")
+            shorten(self._staff.log)
             last = now

@@ -1,0 +1,25 @@
+"""The file of what workers print: however much that is, it does not grow for ever."""
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+MOST = 4_000_000  # bytes; then only the end is kept
+KEPT = 1_000_000  # bytes of it
+NOTE = b"[what was printed before is left out]\n"
+
+
+def shorten(log: Path) -> None:
+    """Keep the end of a log that has become too long; workers may go on writing, for they append.
+
+    What cannot be shortened stays as it is: no campaign stops over what its drivers print.
+    """
+    with suppress(OSError):
+        if log.stat().st_size <= MOST:
+            return
+        with log.open("rb") as file:
+            file.seek(-KEPT, os.SEEK_END)
+            _, _, end = file.read(KEPT).partition(b"\n")
+        os.truncate(log, 0)
+        with log.open("ab") as file:
+            file.write(NOTE + end)

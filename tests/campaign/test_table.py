@@ -1,0 +1,121 @@
+"""The tables, written fast, against the same written slowly; and what they count."""
+
+import csv
+import io
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from campaign.quick import a_design, plan
+from campaign.test_store import BRIEFS, a_store, proposals, results
+from roadgpt.campaign.model import Proposal, Result
+from roadgpt.campaign.record import Record
+from roadgpt.campaign.store import Store
+from roadgpt.campaign.table import COLUMNS, write_tables
+from roadgpt.campaign.worker import Ended, seed_of_driver
+
+
+def slowly(record: Record) -> str:
+    """results.csv by Python's own csv module, from whole results."""
+    features = record.feature_names()
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow([*COLUMNS, *features])
+    for cell, one in record.results_by_cell():
+        asked = (one.batch, one.proposal.origin, seed_of_driver(one.number, one.proposal))
+        came = (one.outcome, one.cause, one.side, one.length, one.margin, one.max_oob, one.at_s)
+        known = [one.features.get(name) for name in features]
+        table.writerow([cell, one.number, *asked, *came, one.description, *known])
+    return text.getvalue()
+
+
+@settings(max_examples=25)
+@given(st.data())
+def test_the_table_is_that_of_a_slow_writer(data: st.DataObject) -> None:
+    asked = data.draw(st.lists(proposals(), min_size=1, max_size=5))
+    done = [data.draw(results(number, made)) for number, made in enumerate(asked, 1)]
+    with TemporaryDirectory() as name, a_store(Path(name)) as store:
+        store.begin_sitting(1)
+        store.add_batch("c01", 0, 1, asked)
+        store.keep([("c01", Ended(result)) for result in done], None, [], {})
+        write_tables(store, Path(name))
+        assert (Path(name) / "results.csv").read_bytes().decode() == slowly(store)
+
+
+def test_numbers_are_handed_on_as_they_are_in_the_store(tmp_path: Path) -> None:
+    """Some rows have all features, some a few, one none; numbers of every length."""
+    values = (0.1 + 0.2, 1e-7, -2.5e300, 1e16, -0.0, 5e-324)
+    known = [
+        {"A": values[0], "B": values[1], "B_2": values[2]},
+        {"B": values[3]},
+        {},
+        {"A": values[4], "B_2": values[5]},
+    ]
+    made = [Proposal(a_design(number), number, "vary, 'so'") for number in range(4)]
+    done = [
+        Result(number, 0, one, "PASS", 'said "x",\ny', one.design, margin=0.25, features=its)
+        for number, (one, its) in enumerate(zip(made, known, strict=True), 1)
+    ]
+    with a_store(tmp_path) as store:
+        store.begin_sitting(1)
+        store.add_batch("c01", 0, 1, made)
+        store.keep([("c01", Ended(result)) for result in done], None, [], {})
+        write_tables(store, tmp_path)
+        told = (tmp_path / "results.csv").read_bytes().decode()
+        assert told == slowly(store)
+    rows = list(csv.DictReader(io.StringIO(told)))
+    assert [row["B"] for row in rows] == ["1e-07", "1e+16", "", ""]
+    assert [row["description"] for row in rows] == ['said "x",\ny'] * 4
+
+
+def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
+    """Failing cells are those of failures alone; the least margin is that of drives that kept their lane."""
+    places = [("FAIL", 0.01, -0.02), ("FAIL", 0.011, -0.5), ("FAIL", 0.05, -0.03), ("PASS", 0.03, 0.4)]
+    places += [("PASS", 0.06, 0.2), ("INVALID", 0.02, None)]
+    made = [Proposal(a_design(number), number, "draft") for number in range(len(places))]
+    done = [
+        Result(
+            number,
+            0,
+            one,
+            outcome,  # type: ignore[arg-type]
+            "",
+            one.design,
+            margin=margin,
+            side="left" if outcome == "FAIL" else None,
+            features={"MAX_CURV": curvature, "STD_SA": 3.0},
+        )
+        for number, (one, (outcome, curvature, margin)) in enumerate(zip(made, places, strict=True), 1)
+    ]
+    with a_store(tmp_path) as store:
+        store.begin_sitting(1)
+        store.add_batch("c01", 0, 1, made)
+        store.keep([("c01", Ended(result)) for result in done], None, [], {})
+        write_tables(store, tmp_path)
+    (row,) = csv.DictReader((tmp_path / "cells.csv").open())
+    assert (row["failing_cells"], row["least_margin_m"], row["failed_left"]) == ("2", "0.2", "3")
+    assert (row["tests"], row["valid"], row["passed"], row["failed"], row["invalid"]) == (
+        "6",
+        "5",
+        "2",
+        "3",
+        "1",
+    )
+
+
+def test_rows_stand_in_the_order_of_cells_and_tests(tmp_path: Path) -> None:
+    """Whichever ended first."""
+    wanted = plan(12, cells=2)
+    made = [Proposal(a_design(number), number, "draft") for number in range(1, 13)]
+    with Store.new(tmp_path, wanted.model_dump_json(), wanted.cells(BRIEFS), {}) as store:
+        store.begin_sitting(1)
+        for cell in ("c02", "c01"):
+            store.add_batch(cell, 0, 1, made)
+            done = [Result(number, 0, one, "VALID", "", one.design) for number, one in enumerate(made, 1)]
+            store.keep([(cell, Ended(result)) for result in reversed(done)], None, [], {})
+        write_tables(store, tmp_path)
+    rows = csv.DictReader((tmp_path / "results.csv").open())
+    every = [(cell, number) for cell in ("c01", "c02") for number in range(1, 13)]
+    assert [(row["cell"], int(row["test"])) for row in rows] == every
