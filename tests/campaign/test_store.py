@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from campaign.quick import a_design, plan
 from roadgpt.brief.model import Brief
+from roadgpt.campaign.executors import Doing
 from roadgpt.campaign.model import Proposal, Result
 from roadgpt.campaign.record import STORE, Record
 from roadgpt.campaign.store import Store
@@ -90,6 +91,17 @@ def test_a_batch_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
             store.result("c01", 2)
         with pytest.raises(UsageError, match=r"there is no cell 'c9'.*cells are c01"):
             store.cell("c9")
+
+
+def test_who_was_at_which_test_is_forgotten_by_the_next_sitting(tmp_path: Path) -> None:
+    with a_store(tmp_path) as store:
+        store.begin_sitting(1)
+        store.add_batch("c01", 0, 1, [Proposal(None, 1, "draft")] * 3)
+        store.keep([], None, [("c01", 2, Doing(7, "worker 1", 3.0), 1e12)], {})
+        assert store.query("SELECT cell, number, worker FROM leases") == [("c01", 2, "worker 1")]
+    with Store.opened(tmp_path) as store:  # the process was killed, and another one goes on
+        store.begin_sitting(1)
+        assert not store.query("SELECT * FROM leases")
 
 
 def test_numbers_that_are_none_are_left_out(tmp_path: Path) -> None:
