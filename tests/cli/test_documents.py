@@ -124,6 +124,15 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     assert statuses == {0, 2, 3, *stopped, cli_app.REFUSED, cli_app.INTERNAL}
 
 
+def test_the_columns_of_results_in_the_docs_are_those_of_the_table() -> None:
+    from roadgpt.campaign.table import COLUMNS
+
+    text = (ROOT / "docs" / "reference" / "campaign-folder.md").read_text(encoding="utf-8")
+    (table,) = re.findall(r"^\| columns of `results.csv`.*?\n\n", text, flags=re.MULTILINE | re.DOTALL)
+    named = re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in table.strip().splitlines()[2:]))
+    assert sorted(named) == sorted(COLUMNS)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_to_pages_that_exist(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):

@@ -92,8 +92,6 @@ class _Source:
             self._warn()
             run = read_run(file)
             return replace(run, description=f"{file}: {run.description}")
-        if path.is_dir() and not (path / "road.json").exists():
-            raise UsageError(f"{file} is a folder without a run; name the folder of a run or of a campaign")
         if path.suffix.lower() == OPENDRIVE:
             found = read_opendrive(path)
             self._tell(file, found.remarks)
