@@ -11,14 +11,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import binomtest
 
-from roadgpt.campaign.faults import Repeated, Stability, faults_of, repeated, simplest, smallest_change, why
+from roadgpt.campaign.faults import (
+    Repeated,
+    Stability,
+    faults_of,
+    repeated,
+    simplest,
+    smallest_change,
+    stability,
+    why,
+)
 from roadgpt.campaign.faults import minimise as minimising
 from roadgpt.campaign.faults.distinct import BEND, GRADE, SHIFT, Surroundings, distances, surroundings
 from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
 from roadgpt.campaign.faults.stability import drive_disturbed
+from roadgpt.check import inspect
 from roadgpt.cli.app import app
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
-from roadgpt.errors import UsageError
+from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Request, Run, prove, write_run
 from roadgpt.verdict import Verdict, judge
@@ -230,8 +240,20 @@ def test_the_same_failure_is_repeated_alike(slid: Run) -> None:
     assert len({each.at_s for each in first.drives}) == 3
 
 
-def _proved_by(fails: object, monkeypatch: pytest.MonkeyPatch) -> list[Design]:
-    """Instead of driving: a road fails where ``fails`` says so."""
+def test_a_driver_that_breaks_down_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def breaks(run: Run, disturbance: Disturbance) -> Verdict:
+        raise DriverError("it cannot see so late")
+
+    monkeypatch.setattr(stability, "drive_disturbed", breaks)
+    found = repeated(failed(build(design(straight(60), bend(-80, 20))), 72.0, t=1.5), 3)
+    assert (found.failed, found.is_stable) == (3, True)
+    assert all(math.isnan(drive.margin) for drive in found.drives)
+
+
+def _proved_by(
+    fails: object, monkeypatch: pytest.MonkeyPatch, goes_left: object = lambda road: False
+) -> list[Design]:
+    """Instead of driving: a road fails where ``fails`` says so, to the left where ``goes_left`` does."""
     asked: list[Design] = []
 
     def proved(blueprint: Design, seed: int, world: World, setup: object, index: int) -> Run:
@@ -239,7 +261,7 @@ def _proved_by(fails: object, monkeypatch: pytest.MonkeyPatch) -> list[Design]:
         bad = fails(blueprint)  # type: ignore[operator]
         verdict = Verdict(
             "FAIL" if bad else "PASS", "out of lane" if bad else None, "", "", 1.0, -0.1, 1,
-            at_s=10.0 if bad else None, side="right" if bad else None,
+            at_s=10.0 if bad else None, side=("left" if goes_left(blueprint) else "right") if bad else None,  # type: ignore[operator]
         )  # fmt: skip
         return Run(
             Request(),
@@ -280,6 +302,29 @@ def test_the_simplest_road_has_what_fails_and_nothing_else(monkeypatch: pytest.M
         assert not rest or not fails(left.model_copy(update={"segments": rest}))
     assert found.drives <= len(asked)
     assert len(set(asked)) == len(asked), "nothing is driven twice"
+
+
+def test_the_simplest_road_fails_to_the_same_side(monkeypatch: pytest.MonkeyPatch) -> None:
+    def goes_left(road: Design) -> bool:
+        return not any(segment.direction == "right" for segment in road.segments)
+
+    _proved_by(lambda road: True, monkeypatch, goes_left)
+    found = simplest(minimising.prove(LONG, 1, WORLD, None, 5))  # type: ignore[arg-type]
+    assert found.run.verdict is not None
+    assert found.run.verdict.side == "right"
+    assert found.run.design is not None
+    assert len(found.run.design.segments) <= 2
+
+
+def test_only_roads_that_the_rules_allow_are_driven(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A radius of 14.6 m would be rounded to 10 m, which is too tight."""
+    asked = _proved_by(lambda road: any(s.radius and s.radius < 20 for s in road.segments), monkeypatch)
+    tight = design(straight(40), bend(-90, 14.6), straight(30))
+    found = simplest(minimising.prove(tight, 1, WORLD, None, 5))  # type: ignore[arg-type]
+    assert len(asked) > 5
+    assert all(not inspect(build(one), None, WORLD) for one in asked[1:])  # the first is the failure itself
+    assert found.run.design is not None
+    assert all((segment.radius or 99) > 14 for segment in found.run.design.segments)
 
 
 def test_a_search_that_runs_out_of_drives_gives_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
