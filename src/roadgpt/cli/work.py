@@ -1,6 +1,7 @@
 """Working off one description: ``roadgpt run`` does it once, the conversation as often as it is asked."""
 
 import secrets
+import shlex
 import sys
 from contextlib import redirect_stdout
 from dataclasses import dataclass
@@ -101,6 +102,10 @@ def _watch(work: "Campaign", screen: Screen) -> None:
                 name = test_name(run.index)
                 screen.row(row_of(run, str(work.folder / name), name))
                 screen.detail(f"  {run.description}")
+    except KeyboardInterrupt:
+        command = ["roadgpt", "run", work.request.words, "-n", str(work.roads), "--out", str(work.folder)]
+        click.echo(f"roadgpt: go on with: {shlex.join(command)} and the options that you gave", err=True)
+        raise
     finally:
         screen.close()
         if work.meter.spent.calls:
