@@ -220,6 +220,17 @@ def test_what_cannot_be_is_told_in_a_sentence(driven: Path, words: list[str], se
     assert done.exit_code != 0
 
 
+@pytest.mark.parametrize("command", ["status", "resume", "top"])
+def test_a_folder_of_roadgpt_run_is_told_from_a_campaign(tmp_path: Path, command: str) -> None:
+    done = roadgpt("run", "a road", "-n", 1, "--no-drive", "--no-plot", "--seed", 7, "--out", tmp_path / "r")
+    assert done.exit_code == 0, done.output
+    done = roadgpt(command, tmp_path / "r")
+    assert done.exit_code == 2
+    assert "was made by roadgpt run, not by roadgpt campaign" in done.output
+    assert f"the same roadgpt run with --out {tmp_path / 'r'} goes on" in done.output
+    assert done.stdout == ""
+
+
 def test_a_campaign_that_cannot_be_leaves_no_folder(tmp_path: Path) -> None:
     (tmp_path / "plan.toml").write_text(
         "prompts = 'two hairpins'\ntests = 3\ngoal = 'failures'\n[settings]\naxes = ['NONE']\n"

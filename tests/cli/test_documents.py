@@ -149,14 +149,34 @@ def test_the_first_page_leads_to_every_page() -> None:
     assert [page for page in pages if page.startswith("decisions/0") and Path(page).name not in listed] == []
 
 
+def folders_made(pages: list[str]) -> list[tuple[str, dict[str, str]]]:
+    """Every line of these pages that calls us, and which folders the lines before it have made, by whom."""
+    made: dict[str, str] = {}
+    lines = []
+    for page in pages:
+        for line in re.findall(r"^roadgpt .*", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE):
+            lines.append((line, dict(made)))
+            maker = re.match("roadgpt (run|campaign) ", line)
+            if maker and (out := re.search(r" --out (\S+)", line)):
+                made.setdefault(out[1], maker[1])
+            elif maker and (found := re.match(r'roadgpt \w+ "(.*?)".* --seed (\d+)', line)):
+                made.setdefault(f"roadgpt-runs/{slug(found[1])}-{found[2]}", maker[1])
+    return lines
+
+
 @pytest.mark.parametrize("page", ["README.md", "docs/how-to/run-campaigns.md"])
 def test_folders_that_a_page_opens_are_made_by_a_line_before(page: str) -> None:
     """So that the lines can be typed one after the other."""
-    made = set()
-    for line in re.findall(r"^roadgpt .*", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE):
-        assert set(re.findall(r"roadgpt-runs/([\w-]+)", line)) <= made, line
-        if found := re.match(r'roadgpt (?:run|campaign) "(.*?)".* --seed (\d+)', line):
-            made.add(f"{slug(found[1])}-{found[2]}")
+    for line, made in folders_made([page]):
+        assert set(re.findall(r"roadgpt-runs/[\w-]+", line)) <= {*made}, line
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/how-to/run-campaigns.md"])
+def test_campaigns_that_a_page_goes_on_with_are_campaigns(page: str) -> None:
+    """Also for someone who has done the tutorial and stands in the same folder."""
+    for line, made in folders_made(["docs/tutorial.md", page]):
+        if found := re.match(r"roadgpt (?:status|resume|top|redrive) (\S+)", line):
+            assert made.get(found[1]) == "campaign", line
 
 
 def test_every_command_line_in_the_docs_is_understood() -> None:

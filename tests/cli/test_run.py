@@ -270,7 +270,7 @@ def test_the_folder_of_a_campaign_is_answered_with_its_roads(command: str) -> No
     assert result.exit_code == 2
     assert (
         result.stderr
-        == f"roadgpt: here is the folder of a whole campaign; give its roads: {Path('here', 'runs')}/*\n"
+        == f"roadgpt: here is a folder of runs; give the runs themselves: {Path('here', 'runs')}/*\n"
     )
     assert result.stdout == ""
     assert CliRunner().invoke(app, [command, "here/runs/0001"]).exit_code == 0

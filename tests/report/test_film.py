@@ -263,7 +263,7 @@ def test_the_command_films_a_run_two_runs_and_a_campaign(
         ((folders[0], "--out", "a.txt"), "ends in .mp4"),
         ((folders[0], "--out", tmp_path), "is a folder"),
         ((folders[0],) * 3, "3 are given"),
-        ((folders[0], "--all"), "holds no roads"),
+        ((folders[0], "--all"), "holds no runs"),
         ((tmp_path,), "holds 2 roads"),
         ((folders[0], "--size", "big"), "such as 640x360"),
     ):

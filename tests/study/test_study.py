@@ -258,6 +258,6 @@ def test_a_campaign_of_run_has_a_report_too(tmp_path: Path) -> None:
 def test_folders_that_hold_nothing(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["report", str(tmp_path)])
     assert result.exit_code == 2
-    assert "no campaign and no study" in result.stderr
+    assert "no runs, no campaign and no study" in result.stderr
     with pytest.raises(UsageError):
         write_campaign(tmp_path)

@@ -14,7 +14,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign.executors import Executor, Staff
 from roadgpt.campaign.office import Office, Progress
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import STORE, Record
+from roadgpt.campaign.record import STORE, Record, no_campaign
 from roadgpt.campaign.store import Store, refused
 from roadgpt.campaign.table import CELLS, RESULTS, write_tables
 from roadgpt.campaign.traces import SUFFIX, TRACES
@@ -152,7 +152,7 @@ def work(
     """
     kind: type[Executor] = plugins.find("executors", executor)
     if not (folder / STORE).is_file():
-        raise UsageError(f"there is no campaign in {folder}; give the folder of one")
+        raise no_campaign(folder)
     with _lone(folder), Store.opened(folder) as store:
         if plan is not None:
             store.set_plan(plan.model_dump_json())

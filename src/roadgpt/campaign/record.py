@@ -9,6 +9,7 @@ from typing import Any, Self
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
 from roadgpt.errors import UsageError
+from roadgpt.run.card import CARD, read_card
 
 STORE = "campaign.sqlite"
 FORMAT = 1
@@ -37,6 +38,19 @@ def _opened(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
         db.close()
         raise
     return db, version
+
+
+def no_campaign(folder: Path) -> UsageError:
+    """What to say where a folder holds no store."""
+    if not (folder / CARD).is_file():
+        return UsageError(f"there is no campaign in {folder}; give a folder that roadgpt campaign made")
+    show = f"{folder} holds single runs and no campaign; roadgpt show {folder} tells of them"
+    if not read_card(folder).request.words:
+        return UsageError(show)
+    return UsageError(
+        f"{folder} was made by roadgpt run, not by roadgpt campaign; roadgpt show {folder} tells what is in "
+        f"it, and the same roadgpt run with --out {folder} goes on where it stopped"
+    )
 
 
 @dataclass
@@ -69,7 +83,7 @@ class Record:
     def _opened(cls, folder: Path, mode: str) -> Self:
         path = folder / STORE
         if not path.is_file():
-            raise UsageError(f"there is no campaign in {folder}; give the folder of one")
+            raise no_campaign(folder)
         try:
             db, version = _connected(path, mode)
         except sqlite3.Error as error:

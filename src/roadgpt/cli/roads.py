@@ -20,13 +20,13 @@ def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
     """What a file holds, a Design or a Road, and remarks on what had to be settled.
 
     Raises:
-        UsageError: it holds no road, or is the folder of a whole campaign, or of something else.
+        UsageError: it holds no road, or is a folder of runs, or of something else.
     """
     from roadgpt.road import read_blueprint
     from roadgpt.run.card import CARD
 
     if Path(file, CARD).is_file():
-        raise UsageError(f"{file} is the folder of a whole campaign; give its roads: {Path(file, 'runs')}/*")
+        raise UsageError(f"{file} is a folder of runs; give the runs themselves: {Path(file, 'runs')}/*")
     if Path(file).is_dir() and not Path(file, "road.json").is_file():
         raise UsageError(
             f"{file} is a folder without a road; give a road file, or the folder of a run such as "

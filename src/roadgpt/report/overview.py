@@ -51,7 +51,7 @@ def overview(folder: Path | str) -> list[Path]:
     folder = Path(folder)
     names = sorted(folder.glob("test.*.json"))
     if not names:
-        raise UsageError(f"{folder} holds no test.0001.json; give the folder of a campaign")
+        raise UsageError(f"{folder} holds no test.0001.json; give a folder that roadgpt run made")
     about, size = _about(folder)
     pages = [names[i : i + PER_PAGE] for i in range(0, len(names), PER_PAGE)][:MOST_PAGES]
     drawn = []

@@ -237,12 +237,12 @@ class Campaign:
         other = [name for name, value in self.request.essence() if getattr(there_was, name) != value]
         if other:
             raise UsageError(
-                f"{self.folder} holds another campaign (other {' and '.join(other)}); name another folder"
+                f"{self.folder} holds other roads (other {' and '.join(other)}); name another folder"
             )
         there = finished(self.folder)
         if there and there[-1] > self.roads:
             raise UsageError(
-                f"{self.folder} holds road {there[-1]} of this campaign already; ask for at least so many "
+                f"{self.folder} holds road {there[-1]} already; ask for at least so many "
                 "roads or name another folder"
             )
         for index in there:

@@ -40,7 +40,9 @@ def read_card(folder: Path) -> Card:
     try:
         card = json.loads((folder / CARD).read_text(encoding="utf-8"))
     except FileNotFoundError as error:
-        raise UsageError(f"{folder} is not empty and holds no campaign; name another folder") from error
+        raise UsageError(
+            f"{folder} is not empty and was not made by roadgpt run; name another folder"
+        ) from error
     except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
     try:

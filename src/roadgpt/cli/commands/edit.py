@@ -40,7 +40,7 @@ def command(
 ) -> None:
     """Change a road that exists, by words.
 
-    RUN is the folder of a run, a campaign's folder with one road, or a RoadGPT design. The changed road goes
+    RUN is the folder of a run, a folder of runs that holds one, or a RoadGPT design. The changed road goes
     into a new folder; what the words do not speak of stays as it was, number by number. World, driver and
     rules are those of the run; --map-size is for a design from a file.
 

@@ -35,10 +35,10 @@ def command(
 ) -> int:
     """Write roads in the formats of other people's tools.
 
-    RUN is the folder of a run or of a whole campaign; it brings its own lanes, limits and drive. ROAD is a
+    RUN is the folder of a run, or a folder of runs; each brings its own lanes, limits and drive. ROAD is a
     RoadGPT design, an SBFT test, a list of points, or an OpenDRIVE file, which brings its own lanes and
-    limits where no option says otherwise. Files are named after what they are made of, those of a campaign
-    after it and the run, and replace those of the same name. Prints their names.
+    limits where no option says otherwise. Files are named after what they are made of, those of a
+    folder of runs after it and the run, and replace those of the same name. Prints their names.
 
     \b
     roadgpt export roadgpt-runs/hairpins-7 --to opendrive

@@ -16,7 +16,7 @@ from roadgpt.cli.options import folder, whole
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
 def command(place: Path, repeat: int, minimise: bool, workers: int, no_plot: bool, quiet: bool) -> None:
-    """Look into the failures of a run or a campaign: why, how often again, and how many faults they are.
+    """Look into failures, of a folder of runs or a campaign: why, how often again, and how many faults.
 
     Each failing road is driven again and again with friction, start and the age of what the driver sees off
     a little. Failures whose 60 m of road around the departure are alike are one fault. DIR/faults gets a

@@ -66,7 +66,7 @@ def _seconds(value: str) -> tuple[float, float | None]:
     metavar="N|FROM:TO",
     help="Which seconds of the drive. [default: all, and the outcome]",
 )
-@click.option("--all", "is_all", is_flag=True, help="A film of every road of a campaign, in its own folder.")
+@click.option("--all", "is_all", is_flag=True, help="A film of each in a folder of runs, put into the run.")
 @world_options("map_size")
 @setup_options("geometry")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
@@ -102,7 +102,7 @@ def command(
         return
     if len(files) > MOST:
         raise UsageError(
-            f"a film shows one road or two side by side; {len(files)} are given. A whole campaign: --all"
+            f"a film shows one road or two side by side; {len(files)} are given. All of a folder: --all"
         )
     out = out or FILM
     if out.is_dir():
@@ -114,15 +114,15 @@ def command(
 
 
 def _film_all(files: tuple[str, ...], view: str, out: Path | None, settings: "Settings", quiet: bool) -> None:
-    """One film for each road of a campaign, but for those that are there."""
+    """One film for each in a folder of runs, but for those that are there."""
     from roadgpt.run import read_run
     from roadgpt.run.folder import RUNS, is_run
 
     if len(files) != 1 or out is not None:
-        raise UsageError("--all takes the folder of one campaign, and puts each film into its road's folder")
+        raise UsageError("--all takes one folder of runs, and puts each film into its run")
     folders = sorted(folder for folder in Path(files[0], RUNS).glob("*") if is_run(folder))
     if not folders:
-        raise UsageError(f"{files[0]} holds no roads; give the folder of a campaign")
+        raise UsageError(f"{files[0]} holds no runs; give a folder that roadgpt run made")
     for folder in folders:
         film = folder / f"{view}.mp4"
         if film.exists():

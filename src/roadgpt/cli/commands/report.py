@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
 def command(folder: Path, opens: bool) -> None:
-    """Write DIR/report.html on a campaign or a study, with report.md and its tables as CSV and LaTeX.
+    """Write DIR/report.html on runs, a campaign or a study, with report.md and its tables as CSV and LaTeX.
 
     DIR is what roadgpt run, roadgpt campaign or roadgpt study wrote into. The page needs no network and no
     server; its links lead to the runs beside it.
@@ -44,7 +44,9 @@ def _written(folder: Path) -> Path:
         return write_many(folder, command_of_many(folder))
     if (folder / CARD).is_file():
         return reporting.write_campaign(folder, _command(read_card(folder), folder))
-    raise UsageError(f"there is no campaign and no study in {folder}; give the folder of one")
+    raise UsageError(
+        f"there are no runs, no campaign and no study in {folder}; give a folder that holds them"
+    )
 
 
 def command_of_many(folder: Path) -> str:

@@ -28,7 +28,7 @@ from roadgpt.cli.work import Wish, work_off
 @click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION")
 @click.option("-n", "--roads", type=ROADS, default=1, show_default=True, help="How many roads.")
 @click.option("--seed", type=SEED, default=None, help="The same seed gives the same roads. [default: drawn]")
-@click.option("--out", type=folder, default=None, help="Folder for the campaign. [default: a new one]")
+@click.option("--out", type=folder, default=None, help="Folder for the runs. [default: a new one]")
 @setup_options("reader", "designer", "driver", "simulator", "keep_driving")
 @world_options()
 @setup_options("geometry", "rules")

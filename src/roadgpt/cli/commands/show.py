@@ -1,4 +1,4 @@
-"""``roadgpt show``: what is in the folder of a run or a campaign."""
+"""``roadgpt show``: what is in a run, a folder of runs or a campaign."""
 
 import click
 
@@ -6,9 +6,9 @@ import click
 @click.command()
 @click.argument("folders", nargs=-1, required=True, metavar="RUN...")
 def command(folders: tuple[str, ...]) -> None:
-    """Tell what is in the folder of a run or a campaign, and how to make it again.
+    """Tell what is in a run, a folder of runs or a campaign, and how to make it again.
 
-    RUN is a folder like DIR/runs/0001, the file DIR/test.0001.json, or the folder DIR of a whole campaign.
+    RUN is a folder like DIR/runs/0001, the file DIR/test.0001.json, or the folder DIR that holds them.
     """
     from roadgpt.cli.summary import show
 

@@ -21,9 +21,7 @@ def command() -> None:
 
 @command.command()
 @click.argument("file", metavar="[SURVEY.toml]", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "--from", "study", type=folder, metavar="STUDY_DIR", help="Draw roads out of campaigns instead."
-)
+@click.option("--from", "study", type=folder, metavar="STUDY_DIR", help="Draw roads out of folders of runs.")
 @click.option("--out", type=folder, required=True, metavar="DIR", help="The survey's folder.")
 @click.option("--asks", default="", help="With --from: who asks; raters are told first.")
 @click.option("--contact", default="", help="With --from: where raters may ask back.")
@@ -34,15 +32,15 @@ def new(
 ) -> None:
     """Make a survey out of runs: plots, films and 3-D views of every road, and the questions.
 
-    SURVEY.toml names the runs; --from draws one valid road of each campaign in a folder, and pairs of roads
-    of one description, and writes a SURVEY.toml to be edited beside the survey.
+    SURVEY.toml names the runs; --from draws one valid road of each folder of runs below a folder, and pairs
+    of roads of one description, and writes a SURVEY.toml to be edited beside the survey.
 
     \b
     roadgpt study survey new SURVEY.toml --out my-survey
     roadgpt study survey new --from roadgpt-runs --out my-survey --asks "Jane Roe" --contact j@x.example
     """
     if (file is None) == (study is None):
-        raise UsageError(f"a survey is made of a {FILE} or --from a folder of campaigns; give one of them")
+        raise UsageError(f"a survey is made of a {FILE} or --from folders of runs; give one of them")
     if study is not None and not (asks.strip() and contact.strip()):
         raise UsageError(ASK)
     from roadgpt.study.survey.making import make

@@ -42,7 +42,7 @@ def picked(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int
             similarity.append(PairPlan(runs=(two[0][0], two[1][0]), prompt=run.words))
     if not alignment:
         raise UsageError(
-            f"{study} holds no campaign with a valid road; make one: roadgpt run DESCRIPTION --out DIR"
+            f"{study} holds no runs with a valid road; make some: roadgpt run DESCRIPTION --out DIR"
         )
     return Plan(asks=asks, contact=contact, alignment=tuple(alignment), similarity=tuple(similarity))
 
