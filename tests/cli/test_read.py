@@ -1,7 +1,9 @@
 """``roadgpt read``: the Brief as a sentence, a table or JSON, and what was doubtful about it."""
 
 import json
+import re
 
+import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt.brief import Brief
@@ -36,6 +38,39 @@ def test_a_table_has_a_row_for_each_thing() -> None:
     cells = [line.split(maxsplit=2) for line in lines[1:]]
     assert cells[0] == ["what", "how"]
     assert [cell[0] for cell in cells[1:]] == ["1", "2", "whole"]
+
+
+def test_a_table_speaks_plain_words() -> None:
+    words = (
+        "three sharp left turns of 60 degrees uphill, then 80 m straight downhill, the whole road 300 m long"
+    )
+    lines = _read(words, "--table", "--reader", "grammar").output.splitlines()[2:]
+    assert [re.split(r"\s{2,}", line.strip()) for line in lines] == [
+        ["1", "3 turns", "sharp, uphill, left, 60 degrees"],
+        ["2", "straight", "downhill, 80 metres"],
+        ["whole road", "300 metres long"],
+    ]
+    (row,) = _read("a road", "--table", "--reader", "grammar").output.splitlines()[2:]
+    assert row.split(maxsplit=2) == ["whole", "road", "nothing is asked of it"]
+
+
+def test_a_list_of_readings_gives_each_its_chance_and_warns_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    def readings(*chances: float) -> list[str]:
+        briefs = [
+            read_plan(f"turn x{n}").model_copy(update={"confidence": c}) for n, c in enumerate(chances, 1)
+        ]
+        monkeypatch.setattr("roadgpt.brief.alternatives", lambda *asked: tuple(briefs))
+        return _read("some turns", "--alternatives", "4").output.splitlines()
+
+    said = readings(0.42, 0.31, 0.012, 0.004)
+    assert said[:3] == [
+        "1.  42 %  a road with a turn",
+        "2.  31 %  a road with 2 turns",
+        "3.   1 %  a road with 3 turns",
+    ]
+    assert said[3:] == ["not sure of any: if none is what you mean, say it in other words"]
+    assert readings(0.97, 0.004) == ["1.  97 %  a road with a turn", "no other reading has a chance of 1 %"]
+    assert readings(0.004)[0] == "1.   0 %  a road with a turn", "the likeliest one in any case"
 
 
 def test_vague_words_have_several_readings_and_the_same_ones_again() -> None:

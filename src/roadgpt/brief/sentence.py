@@ -111,25 +111,49 @@ def clause_text(clause: Clause) -> str:
     words += [leading or "", _plural(noun, count)]
     text = " ".join(word for word in words if word)
     text = (_article(text) if count == exactly(1) else f"{_count(count)} ") + text
-    return text + _tail(clause)
+    return " ".join([text, *_tails(clause)])
 
 
-def _tail(clause: Clause) -> str:
-    tail = ""
+def clause_columns(clause: Clause) -> tuple[str, str]:
+    """The same in two columns of a table: '2 turns', 'sharp, uphill, left'."""
+    noun = NOUNS.get(clause.kind, clause.kind)
+    is_one = clause.kind in WAVY or clause.count == exactly(1)
+    what = noun if is_one else f"{_count(clause.count)} {_plural(noun, clause.count)}"
+    how = ["alternating" if clause.alternating else "", clause.sharpness or "", clause.size or ""]
+    if clause.slope and not clause.incline:
+        how.append(SLOPE_WORDS[clause.slope])
+    leading = clause.side if not (clause.alternating and clause.kind not in STRAIGHT) else None
+    how += [leading or "", *_tails(clause)]
+    return what, ", ".join(words.removeprefix("of ") for words in how if words)
+
+
+def road_words(brief: Brief) -> str:
+    """What is asked of the whole road: 'uphill, 3 turns, hard for a lane keeper'; empty where nothing is."""
+    slope = SLOPE_WORDS[brief.slope] if brief.slope and not brief.incline else ""
+    turns = ""
+    if not brief.clauses and brief.turns and brief.turns not in (at_least(1), exactly(0), at_least(0)):
+        turns = f"{_count(brief.turns)} {_plural('turn', brief.turns)}"
+    length = _exact_metres(brief.length)
+    said = [f"{length}s long" if length else "", slope, turns, *_wishes(brief)]
+    return ", ".join(words for words in said if words)
+
+
+def _tails(clause: Clause) -> list[str]:
+    tails = []
     if clause.degrees:
-        tail += f" of {_number(clause.degrees)} degrees"
+        tails.append(f"of {_number(clause.degrees)} degrees")
     if clause.length:
-        tail += f" of {_number(clause.length)} metres"
-        tail += " each" if clause.count != exactly(1) else ""
+        each = " each" if clause.count != exactly(1) else ""
+        tails.append(f"of {_number(clause.length)} metres{each}")
     if clause.slope and clause.incline:
-        tail += f" {SLOPE_WORDS[clause.slope]} {_percent(clause.incline)}"
+        tails.append(f"{SLOPE_WORDS[clause.slope]} {_percent(clause.incline)}")
     if clause.radius:
-        tail += f" with a radius of {_number(clause.radius)} metres"
+        tails.append(f"with a radius of {_number(clause.radius)} metres")
     if clause.kind in WAVY and clause.count != exactly(1):
-        tail += f" with {_count(clause.count)} {_plural('turn', clause.count)}"
+        tails.append(f"with {_count(clause.count)} {_plural('turn', clause.count)}")
     if clause.alternating and clause.side:
-        tail += f" starting to the {clause.side}"
-    return tail
+        tails.append(f"starting to the {clause.side}")
+    return tails
 
 
 def _if(amount: Amount | None, say: Callable[[Amount], str]) -> str | None:

@@ -81,14 +81,20 @@ def _seed(wish: Wish) -> int:
 
 def understood(brief: "Brief") -> str:
     """What was understood of the words, which of them were not, and whether the reader doubts it."""
+    told = f"I read this as: {reading(brief)}"
+    if brief.confidence < SURE:
+        told += f"; not sure of this ({100 * brief.confidence:.0f} %), so check it or say it in other words"
+    return told
+
+
+def reading(brief: "Brief") -> str:
+    """What was understood of the words, and which of them were not."""
     from roadgpt.brief import sentence
 
     said = sentence(brief).removesuffix(".")
-    told = f"I read this as: {said[:1].lower()}{said[1:]}"
+    told = f"{said[:1].lower()}{said[1:]}"
     if brief.unused:
         told += "; not understood: " + ", ".join(f"'{word}'" for word in brief.unused)
-    if brief.confidence < SURE:
-        told += f"; not sure of this ({100 * brief.confidence:.0f} %), so check it or say it in other words"
     return told
 
 

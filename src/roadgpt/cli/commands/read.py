@@ -1,6 +1,7 @@
 """``roadgpt read``: what a description is read as, without making a road."""
 
 import json
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from roadgpt.chat import ChatSettings
 
 FEW = whole(1, 10, "the number of readings")
+LEAST = 0.01  # chance of a reading that is listed
 TEMPERATURE = 1.3  # of readings beside the likeliest one
 
 
@@ -48,10 +50,12 @@ def command(
         found = [_as_data(brief) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
         return
-    for brief in briefs:
-        click.echo(understood(brief))
-        if as_table:
-            click.echo(_table(brief))
+    if number > 1:
+        click.echo("\n".join(_list(briefs, as_table)))
+        return
+    click.echo(understood(briefs[0]))
+    if as_table:
+        click.echo(_table(briefs[0]))
 
 
 def _readings(
@@ -72,16 +76,31 @@ def _as_data(brief: "Brief") -> dict[str, object]:
     return {**told, "unused": brief.unused, "brief": brief.model_dump(exclude_defaults=True)}
 
 
+def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
+    """The readings that have a chance, numbered, each with it; and one warning where none is sure."""
+    from roadgpt.cli.work import SURE, reading
+
+    likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
+    for number, brief in enumerate(likely, 1):
+        yield f"{number}. {100 * brief.confidence:3.0f} %  {reading(brief)}"
+        if as_table:
+            yield _table(brief)
+    if len(likely) == 1:
+        yield f"no other reading has a chance of {100 * LEAST:.0f} %"
+    if likely[0].confidence < SURE:
+        yield "not sure of any: if none is what you mean, say it in other words"
+
+
 def _table(brief: "Brief") -> str:
     """What stands along the road, in driving order, then the wishes for the whole road."""
-    from roadgpt.brief.plan import plan
+    from roadgpt.brief.normal import normal
+    from roadgpt.brief.sentence import clause_columns, road_words
 
-    things, _, wishes = plan(brief).partition("|")
+    said = normal(brief)
     rows = [("", "what", "how")]
-    for number, thing in enumerate(filter(None, (part.strip() for part in things.split(";"))), 1):
-        kind, _, how = thing.partition(" ")
-        rows.append((str(number), kind, how))
-    if wishes.strip():
-        rows.append(("", "whole road", wishes.strip()))
+    rows += [(str(number), *clause_columns(clause)) for number, clause in enumerate(said.clauses, 1)]
+    wishes = road_words(said)
+    if wishes or not said.clauses:
+        rows.append(("", "whole road", wishes or "nothing is asked of it"))
     wide = [max(len(row[column]) for row in rows) for column in range(2)]
     return "\n".join(f"{row[0]:>{wide[0]}}  {row[1]:<{wide[1]}}  {row[2]}".rstrip() for row in rows)
