@@ -77,6 +77,18 @@ def test_what_cannot_be_is_told(words: list[str]) -> None:
     assert done.returncode == 2, done.stderr
     assert "Traceback" not in done.stderr
     assert (done.stdout + done.stderr).count("cannot be loaded") <= 1
+    assert list(Path().iterdir()) == [], "nothing was begun"
+
+
+def test_a_folder_that_was_there_stays_where_a_generator_cannot_be_loaded() -> None:
+    Path("here").mkdir()
+    Path("broken.py").write_text("import json\n\nraise OSError('no such disk')\n")
+    words = ["--module-name", "broken", "--class-name", "X", "--module-path", ".", "--test-budget", "1"]
+    done = CliRunner().invoke(app, ["sbft", *words, "--out", "here"])
+    assert done.exit_code == 2
+    assert "broken.py, line 3): no such disk" in done.stderr
+    assert "tests and tables" not in done.stderr
+    assert list(Path("here").iterdir()) == []
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")

@@ -4,8 +4,8 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +58,21 @@ def whole_folder(path: Path) -> Iterator[Path]:
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
+
+
+def missing(folder: Path) -> tuple[Path, ...]:
+    """The folder and those around it that do not exist, the innermost first."""
+    return tuple(path for path in (folder, *folder.parents) if not path.exists())
+
+
+def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
+    """Remove files, then folders in which nothing else lies."""
+    for path in files:
+        with suppress(OSError):  # Windows removes no file that is open
+            path.unlink()
+    for folder in folders:
+        with suppress(OSError):  # something else lies in it
+            folder.rmdir()
 
 
 def sweep(folder: Path) -> None:

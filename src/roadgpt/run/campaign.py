@@ -2,14 +2,14 @@
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design
-from roadgpt.run.atomic import PART, held, json_text, sweep, write_whole
+from roadgpt.run.atomic import PART, held, json_text, missing, sweep, take_away, write_whole
 from roadgpt.run.card import CARD, Card, read_card
 from roadgpt.run.folder import RUNS, Draw, read_run, run_folder, write_run
 from roadgpt.run.model import Request, Run
@@ -63,12 +63,12 @@ class Campaign:
         if roads < 1:
             raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
         if out is None:
-            made = _missing(HOME)
+            made = missing(HOME)
             folder = new_folder(request.words, request.seed)
             return cls(folder, request, roads, perform, draw, (folder, *made), meter or Meter())
         folder = Path(out)
         try:
-            made = _missing(folder)
+            made = missing(folder)
             folder.mkdir(parents=True, exist_ok=True)
             is_new = all(_may_lie_in_a_new_folder(path) for path in folder.iterdir())
         except OSError as error:
@@ -143,12 +143,12 @@ class Campaign:
         Roads that cannot be designed are held back until one can: a description that makes no road at all
         leaves no tests behind.
         """
-        missing = [index for index in range(1, self.roads + 1) if index not in self._finished]
+        lacking = [index for index in range(1, self.roads + 1) if index not in self._finished]
         held_back: list[Run] = []
-        for index in missing:
+        for index in lacking:
             held_back.append(self._one(index))
             if held_back[-1].road is None and not self._tally.with_road:
-                if len(held_back) == min(GIVE_UP, len(missing)):
+                if len(held_back) == min(GIVE_UP, len(lacking)):
                     raise DesignError(held_back[-1].description)
                 continue
             for run in held_back:
@@ -164,12 +164,8 @@ class Campaign:
         if self._finished:
             self._tally.write(self.folder)
             return
-        for name in (CARD, DESCRIPTION, *TABLES, LOCK):
-            with suppress(OSError):  # Windows removes no file that is open
-                (self.folder / name).unlink()
-        for folder in (self.folder / RUNS, *self.made):
-            with suppress(OSError):  # something else lies in it
-                folder.rmdir()
+        names = (CARD, DESCRIPTION, *TABLES, LOCK)
+        take_away((self.folder / name for name in names), (self.folder / RUNS, *self.made))
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
@@ -260,11 +256,6 @@ class Campaign:
             self._count(run)
             if run.spent is not None:
                 self.meter.add(run.spent)
-
-
-def _missing(folder: Path) -> tuple[Path, ...]:
-    """The folder and those around it that do not exist, the innermost first."""
-    return tuple(path for path in (folder, *folder.parents) if not path.exists())
 
 
 def _may_lie_in_a_new_folder(path: Path) -> bool:

@@ -37,6 +37,8 @@ class Competition:
     """How the generator ended; None while it works."""
     tests: int = 0
     _deadline: float = field(default=0.0, repr=False)
+    _is_begun: bool = field(default=False, repr=False)
+    """Is there a generator, whose results or whose log somebody may want to see?"""
 
     def __iter__(self) -> Iterator[Run]:
         """The Runs, as tests end.
@@ -51,6 +53,7 @@ class Competition:
             self._begin(host)
             yield from self._work(host)
         except GoneError as error:
+            self._is_begun = True
             self.ending = Ending(how="died", sentence=_died(error.status))
         except OSError as error:
             raise RoadGPTError(
@@ -58,7 +61,10 @@ class Competition:
             ) from error
         finally:
             host.stop()
-            self.results.close()
+            if self._is_begun:
+                self.results.close()
+            else:
+                self.results.discard()
         if self.ending is not None and self.ending.how == "unloadable":
             raise UsageError(self.ending.sentence)
 
@@ -75,10 +81,12 @@ class Competition:
             raise RoadGPTError(f"not even a straight road can be driven: {first.description}")
         heard = host.hear(LOADING)
         if heard is None:
+            self._is_begun = True
             self.ending = Ending(how="hung", sentence=f"it was not loaded within {LOADING:g} s")
         elif heard["op"] == "end":
             self.ending = self._ended(heard)
         else:
+            self._is_begun = True
             self._deadline = time.monotonic() + (self.experiment.time_budget or float("inf"))
             host.tell({"go": True})
 
@@ -145,7 +153,7 @@ class Competition:
             "exit": f"it called sys.exit({said})",
             "raised": f"it raised {said}",
             "unloadable": f"the generator {name} cannot be loaded: {said}; check --module-name, --class-name "
-            f"and --module-path, or see {self.folder / LOG}",
+            "and --module-path",
         }
         how = heard.get("how", "died")
         return Ending(how=how, sentence=sentences.get(how, said))
@@ -178,8 +186,8 @@ def compete(
     world = world.model_copy(update={"z_floor": GROUND})
     roll_call(setup)
     request = Request(seed=seed, world=world, setup=setup)
-    folder = new_folder(experiment, out)
-    results = Results(folder, request, draw)
+    folder, made = new_folder(experiment, out)
+    results = Results(folder, request, draw, made)
     results.describe(experiment)
     return Competition(experiment, request, folder, results)
 

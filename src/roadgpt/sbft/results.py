@@ -14,12 +14,12 @@ from typing import Any
 
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
-from roadgpt.run.atomic import json_text, write_whole
+from roadgpt.run.atomic import json_text, missing, take_away, write_whole
 from roadgpt.run.card import CARD, Card
 from roadgpt.run.features import features_of
 from roadgpt.run.folder import RUNS, Draw, write_run
 from roadgpt.run.model import Request
-from roadgpt.run.tables import DESCRIPTION, Tally
+from roadgpt.run.tables import DESCRIPTION, TABLES, Tally
 from roadgpt.sbft.experiment import Experiment
 from roadgpt.sbft.trial import plan_of, records_at_their_height, told
 
@@ -27,8 +27,9 @@ HOME = Path("results")
 LOG = "generator.log"
 
 
-def new_folder(experiment: Experiment, out: Path | None = None) -> Path:
-    """The folder, made now; the competition's name for it where none is given.
+def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
+    """The folder, made now, and all that were made for it, the innermost first; the competition's name for it
+    where none is given.
 
     Raises:
         UsageError: it holds something, or cannot be made.
@@ -37,6 +38,7 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> Path:
     name = f"{experiment.module_name}_{experiment.class_name}_{stamp}".replace("/", "-").replace("\\", "-")
     folder = HOME / name if out is None else out
     try:
+        made = missing(folder)
         folder.mkdir(parents=True, exist_ok=True)
         is_used = any(folder.iterdir())
         (folder / RUNS).mkdir(exist_ok=True)
@@ -44,15 +46,18 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> Path:
         raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder with --out") from error
     if is_used:
         raise UsageError(f"{folder} is not empty; name another folder with --out")
-    return folder
+    return folder, made
 
 
 class Results:
     """Writes as tests end; what is there is whole at any time."""
 
-    def __init__(self, folder: Path, request: Request, draw: Draw | None = None) -> None:
-        """Results in an empty folder."""
+    def __init__(
+        self, folder: Path, request: Request, draw: Draw | None = None, made: tuple[Path, ...] = ()
+    ) -> None:
+        """Results in an empty folder; ``made`` are those that were made for it, the innermost first."""
         self.folder = folder
+        self._made = made
         self._request = request
         self._draw = draw
         self._tally = Tally()
@@ -90,6 +95,11 @@ class Results:
     def close(self) -> None:
         """All tests are there."""
         self._write_card(is_finished=True)
+
+    def discard(self) -> None:
+        """Nothing was begun: leave nothing behind that was not there before."""
+        names = (CARD, DESCRIPTION, *TABLES, LOG)
+        take_away((self.folder / name for name in names), (self.folder / RUNS, *self._made))
 
     def _write_card(self, is_finished: bool) -> None:
         card = Card(request=self._request, roads=max(len(self._numbers), 1), is_finished=is_finished)

@@ -135,7 +135,8 @@ def _watched(work: "Competition", screen: Screen, has_overview: bool) -> int:
                 screen.say(f"the generator: {work.ending.sentence}")
             if screen.rows and has_overview:
                 _overview(work.folder)
-            screen.say(f"tests and tables: {work.folder}")
+            if work.folder.is_dir():
+                screen.say(f"tests and tables: {work.folder}")
     return 0 if work.ending is None or work.ending.is_fine else FAILED
 
 
