@@ -52,8 +52,8 @@ def test_a_road_off_the_map_is_moved_onto_it(here: Path) -> None:
     moved = said("import", "exports/far.xodr", "--out", "near.json")
     assert "it is moved by (" in moved.stderr
     assert said("check", "near.json").exit_code == 0
-    said("import", "exports/far.xodr", "--out", "kept.json", "--keep-place")
-    assert read_road("kept.json").at(0)[:2] == pytest.approx([5000, -900])
+    said("import", "exports/far.xodr", "--out", "kept/far.json", "--keep-place")
+    assert read_road("kept/far.json").at(0)[:2] == pytest.approx([5000, -900])
 
 
 def test_a_campaign_is_exported_as_it_goes_and_afterwards(here: Path) -> None:

@@ -49,7 +49,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "number of turns" in result.output
     first = Path("compared.png").read_bytes()
     assert first[:4] == b"\x89PNG"
-    again = CliRunner().invoke(app, ["compare", "a.json", "a.json", "--json", "--out", "same.png"])
+    again = CliRunner().invoke(app, ["compare", "a.json", "a.json", "--json", "--out", "pictures/same.png"])
     assert json.loads(again.stdout)["duplicate"] is True
     wrong = CliRunner().invoke(app, ["compare", "a.json", "none.json"])
     assert wrong.exit_code == 2

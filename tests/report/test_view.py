@@ -197,9 +197,14 @@ def test_what_cannot_be_shown_is_told(driven: Run, alone: Run, tmp_path: Path) -
         view.page([driven] * 3)
     with pytest.raises(UsageError, match="not finite"):
         view.embedded([float("nan")])
+    (tmp_path / "file").touch()
     with pytest.raises(RoadGPTError, match="--out"):
-        view.write([alone], tmp_path / "none" / "page.html")
-    assert not list(tmp_path.iterdir())
+        view.write([alone], tmp_path / "file" / "page.html")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_folder_that_is_not_there_is_made(alone: Run, tmp_path: Path) -> None:
+    assert view.write([alone], tmp_path / "none" / "deep" / "page.html").is_file()
 
 
 @pytest.fixture
@@ -233,7 +238,7 @@ def test_the_command_writes_one_page_of_a_file_and_a_run(
         (["none.json"], "none.json"),
         (["road.json", "--out", "campaign"], "is a folder"),
         (["road.json", "--out", "road.json"], "ends in .html"),
-        (["road.json", "--out", "no/such/page.html"], "--out"),
+        (["road.json", "--out", "road.json/page.html"], "--out"),
     ],
 )
 def test_wrong_words_get_advice(

@@ -92,6 +92,7 @@ def _draw(runs: list[Any], out: Path, axes: Any) -> None:
     if out.is_dir():
         raise UsageError(f"{out} is a folder; give the name of a picture, such as {out / PICTURE}")
     try:
+        out.parent.mkdir(parents=True, exist_ok=True)
         save(pair(runs[0], runs[1], axes), out)
     except OSError as error:
         raise RoadGPTError(

@@ -49,6 +49,7 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
         click.echo(f"roadgpt: {file}: {remark}", err=True)
     out = out or _new(Path.cwd(), f"{file.stem}-{found.id}")
     try:
+        out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps(road.to_json()) + "\n", encoding="utf-8")
     except OSError as error:
         raise RoadGPTError(f"cannot write {out}: {error.strerror}; name another file with --out") from error

@@ -79,6 +79,7 @@ def write(runs: Sequence[Run], path: Path | str) -> Path:
     path = Path(path)
     text = page(runs)
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, text)
     except OSError as error:
         raise RoadGPTError(
