@@ -73,6 +73,18 @@ def test_the_page_counts_outcomes_in_words(tmp_path: Path) -> None:
     assert any("seed 4" in text and "page 2 of 3" in text for text in said)
 
 
+def test_the_page_says_what_its_signs_mean() -> None:
+    line = np.array([[10.0, 20.0], [30.0, 40.0]])
+
+    def said(entries: list[Entry]) -> set[str]:
+        return {text.get_text() for text in page_of(entries, ("", ""), "", 200.0).axes[0].texts}
+
+    kept, failed = Entry(1, "PASS", line, None), Entry(2, "FAIL", line, (20.0, 30.0))
+    assert {"start", "where the car failed"} <= said([kept, failed])
+    assert "where the car failed" not in said([kept, kept])
+    assert "start" not in said([Entry(1, "ERROR", np.empty((0, 2)), None)])
+
+
 def test_no_tests_no_page(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"holds no test\.0001\.json"):
         overview(tmp_path)

@@ -27,7 +27,8 @@ MARGIN = 0.3  # inches, left and right of the header
 LINE = 0.19  # inches
 TITLE, TEXT, SMALL = 11, 10, 8.5  # points
 BADGE = 9  # points
-MOST_LINES = 2  # of the description, and of the outcome
+MOST_LINES = 2  # of the description
+MOST_SAID = 8  # of the outcome, which nothing may cut but an error that goes on and on
 
 
 # A user's matplotlibrc would otherwise change our pictures.
@@ -80,7 +81,7 @@ class Header:
         """The header of a picture so many inches wide."""
         room = width - 2 * MARGIN
         title = fitted(run.words or run.source or "a road that was given", room, TITLE, True, MOST_LINES)
-        return cls(run, width, title, fitted(run.description, room - _badge(run), TEXT, lines=MOST_LINES))
+        return cls(run, width, title, fitted(run.description, room - _badge(run), TEXT, lines=MOST_SAID))
 
     @property
     def height(self) -> float:

@@ -23,7 +23,8 @@ from roadgpt.run.execution import FIELDS
 PER_PAGE, MOST_PAGES = 100, 10
 WIDEST = 11.0  # inches
 LARGEST, TITLE, GAP = 2.4, 0.24, 0.12  # inches: of a map, over it, and between maps
-HEADER = 0.9  # inches
+HEADER = 1.12  # inches
+KEY = 0.92  # inches, down to what the signs mean
 PLACE, OUTSIDE = FIELDS.index("pos"), FIELDS.index("is_oob")
 STYLES = {"PASS": "solid", "FAIL": "solid", "VALID": "solid", "INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
 
@@ -101,6 +102,7 @@ def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float
     axes.set(xlim=(0, width), ylim=(high, 0))
     axes.axis("off")
     _header(axes, about, part, Counter(entry.outcome for entry in entries), width)
+    _key(axes, entries)
     for place, entry in zip(_places(len(entries), columns, cell), entries, strict=True):
         _cell(axes, entry, place, cell, size)
     return figure
@@ -135,6 +137,18 @@ def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str],
     )
 
 
+def _key(axes: Axes, entries: list[Entry]) -> None:
+    """What the signs on the maps mean: where a road starts, and where the car failed."""
+    x = MARGIN + 0.06
+    if any(len(entry.points) for entry in entries):
+        axes.scatter(x, KEY, s=20, c=INK, marker="o", lw=0)
+        axes.text(x + 0.12, KEY, "start", size=8.5, color=SOFT, va="center")
+        x += inches("start", 8.5) + 0.42
+    if any(entry.failed_at for entry in entries):
+        axes.scatter(x, KEY, s=60, c=VERMILLION, marker="X", ec="white", lw=0.8)
+        axes.text(x + 0.12, KEY, "where the car failed", size=8.5, color=SOFT, va="center")
+
+
 def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, size: float) -> None:
     """A road on its map; the map's y grows upwards, the page's downwards."""
     x0, y0 = place
@@ -157,7 +171,7 @@ def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, siz
     )  # fmt: skip
     line.set_clip_path(clip)
     axes.add_collection(line)
-    (start,) = axes.plot(*scaled[0], "o", ms=3.6 if cell > 1.2 else 2.4, color=INK, zorder=3)
+    (start,) = axes.plot(*scaled[0], "o", ms=4.5 if cell > 1.2 else 2.8, color=INK, zorder=3)
     start.set_clip_path(clip)
     if entry.failed_at is not None:
         x, y = np.asarray(entry.failed_at) / size * cell * [1, -1] + [x0, y0 + cell]
