@@ -14,7 +14,9 @@ from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.store import Store
 from roadgpt.campaign.worker import Ended
 from roadgpt.cli import app
+from roadgpt.road import Design, Segment
 from roadgpt.run.model import Request, Seconds
+from roadgpt.study.chapters.many import _caption
 from roadgpt.study.many import write_many
 
 CELLS, TESTS = ("c01", "c02"), 300
@@ -171,3 +173,74 @@ def test_bars_and_cells_hold_every_test(campaign: Path) -> None:
     )
     assert np.abs(sums - theirs).sum() <= 2  # rounding at the border of a cell
     assert len(figures) == 1
+
+
+def straight_turn_straight(first: float, incline: float = 0.0) -> Design:
+    legs = [
+        Segment(distance=first, direction="straight"),
+        Segment(distance=40, direction="left", turn_degrees=60),
+        Segment(distance=30, direction="straight", incline=incline),
+    ]
+    return Design(starting_point=(60, 60, 0), theta=0, segments=tuple(legs))
+
+
+def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Path) -> None:
+    """By the weights of the explanation: 10 m of a straight and 1 % of a grade are 1 each."""
+    roads = {
+        1: ("PASS", straight_turn_straight(50)),
+        2: ("PASS", straight_turn_straight(50, 7)),
+        3: ("FAIL", straight_turn_straight(90, 7)),
+        4: ("FAIL", straight_turn_straight(50, 2)),
+        5: ("INVALID", straight_turn_straight(50)),
+    }
+    plan = Plan(prompts=("a road with a turn",), goal="boundary", budget=Budget(tests=5))
+    request = Request(words="a road with a turn")
+    cell = Cell("c01", request, None, "quality_diversity", "boundary", budget=Budget(tests=5))
+    with Store.new(tmp_path, plan.model_dump_json(), [cell], {"roadgpt": "1"}) as store:
+        store.begin_sitting(1)
+        proposals = {number: Proposal(design, number, "draft") for number, (_, design) in roads.items()}
+        store.add_batch("c01", 0, 1, [*proposals.values()])
+        for number, (outcome, design) in roads.items():
+            margin = {"PASS": 0.25, "FAIL": -1e-5}.get(outcome)
+            result = Result(
+                number, 0, proposals[number], outcome, outcome, design, 120.0, margin,  # type: ignore[arg-type]
+                at_s=52.0 if outcome == "FAIL" else None, cause="out of lane" if outcome == "FAIL" else None,
+            )  # fmt: skip
+            store.keep([("c01", Ended(result, seconds=Seconds(0.01, 0.1)))], None, [], {"c01": 1.0})
+        store.finish()
+    write_many(tmp_path)
+    assert [[*row.values()] for row in rows(tmp_path, "pairs")] == [
+        ["c01/1", "0.25", "c01/4", "52.0", "2.0", "straight 2: grade 0 %, then 2 %"],
+        ["c01/2", "0.25", "c01/3", "52.0", "4.0", "straight 1: length 50 m, then 90 m"],
+    ]
+    text = (tmp_path / "report.md").read_text(encoding="utf-8")
+    assert "c01/1, where the car kept its lane, and c01/4, where it did not" in text
+    assert "c01/1 c01/4" in text.split("redrive")[-1]
+
+
+def test_without_such_a_search_there_are_no_pairs(campaign: Path) -> None:
+    write_many(campaign)
+    assert not (campaign / "tables" / "pairs.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("shown", "every", "drives_on", "said"),
+    [
+        (1, 1, True, "The one failure"),
+        (4, 4, False, "All 4 failures"),
+        (4, 4, True, "All 4 failures, the worst first"),
+        (30, 1234, True, "The 30 worst of 1,234 failures"),
+        (30, 31, False, "The first 30 of 31 failures"),
+    ],
+)
+def test_failures_are_counted_as_people_count(shown: int, every: int, drives_on: bool, said: str) -> None:
+    assert _caption(shown, every, drives_on) == said
+
+
+def test_what_is_the_same_in_all_cells_takes_no_column(campaign: Path) -> None:
+    write_many(campaign)
+    row = rows(campaign, "outcomes")[0]
+    assert row["driver"] == DRIVERS[0]
+    assert not {"description", "generator", "seed"} & {*row}
+    text = (campaign / "report.md").read_text(encoding="utf-8")
+    assert "In all cells: description “a winding road”, generator words, seed 0." in text

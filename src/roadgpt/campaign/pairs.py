@@ -43,6 +43,35 @@ def distance(one: Genes, other: Genes) -> float:
     return float(np.sqrt(total))
 
 
+MEASURES = (
+    ("turn", "angle", " degrees", DEGREES),
+    ("radius", "radius", " m", RADII),
+    ("ramp", "clothoid", " m", RADII),
+    ("length", "length", " m", LENGTHS),
+    ("incline", "grade", " %", INCLINES),
+)
+"""Fields of a gene: what people call them, their unit, and which difference weighs 1."""
+
+
+def weightiest(kept: Genes, lost: Genes) -> str:
+    """What weighs most between corresponding roads: 'turn 2: radius 15.4 m, then 14.9 m'; or nothing."""
+    found = (0.0, "")
+    turns = straights = 0
+    for a, b in zip(kept, lost, strict=True):
+        turns, straights = turns + bool(a.turn), straights + (not a.turn)
+        what = f"turn {turns}" if a.turn else f"straight {straights}"
+        for name, called, unit, scale in MEASURES:
+            one, other = getattr(a, name), getattr(b, name)
+            if one != other and (weight := abs(one - other) / scale) > found[0]:
+                told = f"{what}: {called} {_figure(abs(one) if name == 'turn' else one)}{unit}"
+                found = (weight, f"{told}, then {_figure(abs(other) if name == 'turn' else other)}{unit}")
+    return found[1]
+
+
+def _figure(value: float) -> str:
+    return f"{value:.2f}".rstrip("0").rstrip(".").replace("-", "−")
+
+
 def pairs_of(results: Sequence[Result]) -> list[Pair]:
     """For every failure its nearest relative that was kept, the nearest pairs first; each kept road once.
 

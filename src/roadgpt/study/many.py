@@ -8,6 +8,7 @@ from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.report.page import Block, Cell, Figure, Page, Section, Table, cell, linked, write
 from roadgpt.report.page.forest import Share, forest
+from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
 from roadgpt.study.chapters.many import coverage, failures, faults, margins
 from roadgpt.study.chapters.saying import (
     decimal,
@@ -48,15 +49,18 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
     lead = f"{status.done:,} tests in {plural(len(status.cells), 'cell')}"
     lead += "" if status.is_finished else "; the campaign goes on"
+    pairs = nearest(record, [each for each in fields if each.goal == "boundary"][:MOST_CELLS])
     sections = [Section("Outcomes", _outcomes(record, status, fields))]
     if any(c.outcomes.get("PASS") or c.outcomes.get("FAIL") for c in fields):
         goes_on = _drives_on(record)
         blocks = [*failures(folder, record, fields[:MOST_CELLS], goes_on), *faults(folder, fields)]
         sections.append(Section("Failures", blocks))
         sections.append(Section("How near to failing", [margins(record, goes_on)]))
+    sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
     covered = coverage(record, status.done)
     sections += [Section("Coverage", covered)] if covered else []
-    return Page(title, _summary(record, status, fields), sections, _card(command, record, status), lead)
+    summary = [*_summary(record, status, fields), *nearest_sentence(pairs)]
+    return Page(title, summary, sections, _card(command, record, status), lead)
 
 
 def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[str]:
@@ -102,6 +106,7 @@ def _failing(of: CellStatus) -> float:
 
 def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[Block]:
     seconds = dict(record.query("SELECT name, seconds FROM cells"))
+    differing, note = _what_differs(status.cells)
     rows: list[list[Cell]] = []
     for each in status.cells:
         failed = each.outcomes.get("FAIL", 0)
@@ -109,9 +114,7 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
         rows.append(
             [
                 cell(each.name),
-                cell(each.words or "roads that were given"),
-                cell(each.generator),
-                cell(each.driver),
+                *(cell(_about(each)[head]) for head in differing),
                 cell(each.done),
                 cell(each.outcomes.get("INVALID", 0)),
                 cell(each.outcomes.get("ERROR", 0)),
@@ -121,9 +124,9 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
                 decimal(seconds.get(each.name), 0),
             ]
         )
-    heads = ["cell", "description", "generator", "driver", "tests", "invalid", "error", "failed", "driven",
-             "share", "Wilson 95 %", "nearest when kept, m", "s"]  # fmt: skip
-    blocks: list[Block] = [Table("outcomes", "Outcomes, cell by cell", heads, rows)]
+    heads = ["cell", *differing, "tests", "invalid", "error", "failed", "driven", "share", "Wilson 95 %",
+             "nearest when kept, m", "s"]  # fmt: skip
+    blocks: list[Block] = [Table("outcomes", "Outcomes, cell by cell", heads, rows, note)]
     counts = [[c.outcomes.get("FAIL", 0), c.outcomes.get("PASS", 0)] for c in cells]
     if len(cells) > 1:
         found = chi_squared(counts)
@@ -137,6 +140,25 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
     if beside:
         blocks.append(["Every test stands in ", *_listed(beside), "."])
     return blocks
+
+
+def _about(of: CellStatus) -> dict[str, str]:
+    """What makes a cell, by the heads of a table."""
+    words = of.words or "roads that were given"
+    return {"description": words, "generator": of.generator, "driver": of.driver, "seed": str(of.seed)}
+
+
+def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:
+    """The heads of what differs between cells, and a sentence with what is the same in all of them."""
+    every = [_about(each) for each in cells]
+    differing = [head for head in every[0] if len({about[head] for about in every}) > 1]
+    same = [
+        f"{head} “{text}”" if head == "description" else f"{head} {text}"
+        for head, text in every[0].items()
+        if head not in differing
+    ]
+    whose = "In all cells: " if len(cells) > 1 else f"{cells[0].name}: "
+    return differing, whose + ", ".join(same) + "." if same else ""
 
 
 def _listed(links: Sequence[Cell]) -> list[str | Cell]:

@@ -8,6 +8,7 @@ from roadgpt.report.page.model import Block, Cell, Details, Figure, Line, Page, 
 
 STYLE = Path(__file__).parent / "style.css"
 SHORT = 24  # letters of a cell that is not broken into lines
+MANY = 9  # columns, beyond which they move closer together
 TOTAL = ' class="total"'
 # The page forbids itself to run or to fetch anything.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
@@ -86,8 +87,9 @@ def _table(table: Table) -> str:
         is_total = table.has_total and number == len(table.rows)
         rows.append(f"<tr{TOTAL if is_total else ''}>{cells}</tr>")
     note = f'<p class="note">{escape(table.note)}</p>' if table.note else ""
+    kind = "table many" if len(table.heads) > MANY else "table"
     return (
-        f'<div class="table"><p class="caption">{escape(table.caption)}</p>'
+        f'<div class="{kind}"><p class="caption">{escape(table.caption)}</p>'
         f'<div class="wide"><table aria-label="{escape(table.caption)}">'
         f"<thead><tr>{heads}</tr></thead><tbody>\n{chr(10).join(rows)}\n</tbody></table></div>{note}</div>"
     )

@@ -48,7 +48,7 @@ def failures(
     for name, number, margin, outside, cause, side, at_s, says in some:
         rows.append(
             [
-                cell(f"{name}/{number}", href=_again(folder, name, number)),
+                cell(f"{name}/{number}", href=again(folder, name, number)),
                 *_how_far(margin, outside, drives_on),
                 cell(cause or ""),
                 cell(side or ""),
@@ -59,9 +59,22 @@ def failures(
     if rows:
         note = f"To see one: {shlex.join(['roadgpt', 'redrive', str(folder), str(rows[0][0].value)])}"
         heads = ["test", *_far_heads(drives_on), "cause", "side", "at, m", "what happened"]
-        caption = f"The {len(rows)} {'worst' if drives_on else 'first'} failures"
-        blocks.append(Table("failures", caption, heads, rows, note))
+        ((every,),) = record.query("SELECT count(*) FROM tests WHERE outcome = 'FAIL'")
+        blocks.append(Table("failures", _caption(len(rows), every, drives_on), heads, rows, note))
     return blocks
+
+
+def _caption(shown: int, every: int, drives_on: bool) -> str:
+    """Over failures that are shown, of so many."""
+    if every == 1:
+        return "The one failure"
+    if shown == every:
+        return f"All {every} failures" + (", the worst first" if drives_on else "")
+    return (
+        f"The {shown} worst of {every:,} failures"
+        if drives_on
+        else f"The first {shown} of {every:,} failures"
+    )
 
 
 def faults(folder: Path, cells: Sequence[CellStatus]) -> list[Block]:
@@ -78,7 +91,7 @@ def faults(folder: Path, cells: Sequence[CellStatus]) -> list[Block]:
     return [Table("faults", caption, heads, rows)] if rows else []
 
 
-def _again(folder: Path, name: str, number: int) -> str:
+def again(folder: Path, name: str, number: int) -> str:
     """The picture of a test that was driven again; empty where none was."""
     place = f"again/{name}/runs/{number:04d}/birds_eye.png"
     return place if (folder / place).is_file() else ""

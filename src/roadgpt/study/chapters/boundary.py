@@ -1,0 +1,83 @@
+"""The section on the boundary: roads that are nearly one, of which the car kept its lane on one only."""
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from roadgpt.campaign.genome import genes_of
+from roadgpt.campaign.model import Result
+from roadgpt.campaign.pairs import Pair, pairs_of, weightiest
+from roadgpt.campaign.record import Record
+from roadgpt.campaign.status import CellStatus
+from roadgpt.report.page import Block, Cell, Table, cell
+from roadgpt.study.chapters.many import again
+from roadgpt.study.chapters.saying import decimal
+
+MOST = 1000  # tests of all cells among which pairs are looked for; first those that lie half-way between two
+NAMED = 30  # pairs of a campaign of one cell
+FEW = 10  # of each of several
+NEAR = (
+    "tests.number IN (SELECT number FROM tests JOIN details USING (cell, number) WHERE tests.cell = ? "
+    "AND outcome IN ('PASS', 'FAIL') ORDER BY origin LIKE 'between %' DESC, number DESC LIMIT ?)"
+)
+EXPLAINED = (
+    "Distance: the root of the summed squares of all differences, where 10 m of a straight, 2 m of a radius "
+    "or a clothoid, 10 degrees of a turn and 1 % of a grade are 1 each. Each road stands in one pair."
+)
+
+
+class Side(NamedTuple):
+    """A nearest pair of a cell, with the results of both roads."""
+
+    cell: str
+    pair: Pair
+    kept: Result
+    lost: Result
+
+
+def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
+    """The nearest pairs of every cell, cell by cell; see ``campaign.pairs``."""
+    out = []
+    for each in cells:
+        some = (each.name, MOST // len(cells))
+        results = {result.number: result for result in record.results(each.name, NEAR, some)}
+        for pair in pairs_of([*results.values()])[: NAMED if len(cells) == 1 else FEW]:
+            out.append(Side(each.name, pair, results[pair.kept], results[pair.lost]))
+    return out
+
+
+def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
+    """A line of the summary: how near the search has come to the boundary."""
+    if not pairs:
+        return []
+    best = min(pairs, key=lambda side: side.pair.distance)
+    return [
+        f"Nearest to each other on either side of the boundary are tests {best.cell}/{best.pair.kept}, where "
+        f"the car kept its lane, and {best.cell}/{best.pair.lost}, where it did not: "
+        f"their distance, as told below, is {best.pair.distance:.2f}."
+    ]
+
+
+def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
+    """Every pair with what differs most between its roads; nothing where there is none."""
+    if not pairs:
+        return []
+    rows = [_row(folder, *side) for side in pairs]
+    names = [f"{pairs[0].cell}/{number}" for number in (pairs[0].pair.kept, pairs[0].pair.lost)]
+    note = f"{EXPLAINED} To see a pair: {shlex.join(['roadgpt', 'redrive', str(folder), *names])}"
+    heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
+    return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
+
+
+def _row(folder: Path, name: str, pair: Pair, kept: Result, lost: Result) -> list[Cell]:
+    assert kept.design is not None
+    assert lost.design is not None
+    return [
+        cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
+        decimal(kept.margin),
+        cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
+        decimal(lost.at_s, 0),
+        decimal(pair.distance),
+        cell(weightiest(genes_of(kept.design), genes_of(lost.design))),
+    ]
