@@ -305,6 +305,30 @@ def test_a_road_without_a_verge_floats_above_the_ground(tab: Page, pages: dict[s
     assert_quiet(tab, pages["floats"])
 
 
+@pytest.fixture
+def night(tab: Page) -> Iterator[Page]:
+    """A browser that asks for dark pages."""
+    scheme = "prefers-color-scheme"
+    tab.send("Emulation.setEmulatedMedia", features=[{"name": scheme, "value": "dark"}])
+    yield tab
+    tab.send("Emulation.setEmulatedMedia", features=[{"name": scheme, "value": "light"}])
+
+
+def test_it_is_dark_by_night(night: Page, pages: dict[str, Path]) -> None:
+    """Paper is dark and writing light, on the drawings too, and day comes without loading the page again."""
+    night.size(820, 580)
+    night.open(pages["driven"])
+    parts = ("body", "figure.plan canvas", "figure.height canvas", ".bar select")
+    dark = {part: night.picture(part)[..., :3] for part in parts}
+    drawn = night.run("roadgpt.frames")
+    night.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
+    night.wait_for(f"roadgpt.frames > {drawn}")
+    for part, picture in dark.items():
+        assert np.median(picture) < 0.25, part
+        assert picture.max() > 0.8, part
+        assert np.median(night.picture(part)[..., :3]) > 0.75, part
+
+
 @pytest.mark.parametrize("name", ["driven", "two"])
 def test_it_fits_a_phone(tab: Page, pages: dict[str, Path], name: str) -> None:
     tab.size(390, 844, is_phone=True)

@@ -87,6 +87,10 @@ function frame(now) {
   requestAnimationFrame(frame);
 }
 
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  takeLook();
+  fit();
+});
 new ResizeObserver(fit).observe(document.getElementById("panels"));
 fit();
 fromAddress(player);

@@ -54,4 +54,16 @@ function speedColour(share) {
 }
 
 const css = (rgb) => `rgb(${rgb.join(",")})`;
-const INK = "#1b1e23", SOFT = "#5f6670", FAINT = "#d9dce1", MARK = "#d55e00", HERE = "#0072b2";
+const MARK = "#d55e00", HERE = "#0072b2";
+
+// Colours of what is drawn on paper, as the style sheet has them by day and by night.
+const LOOK = {};
+
+function takeLook() {
+  const style = getComputedStyle(document.documentElement);
+  for (const name of ["ink", "soft", "paper", "here", "halo", "case", "rule", "earth", "surface", "bend", "meadow", "grid", "map", "verge", "asphalt"]) {
+    LOOK[name] = style.getPropertyValue(`--${name}`).trim();
+  }
+}
+
+takeLook();

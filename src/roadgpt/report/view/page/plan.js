@@ -73,27 +73,27 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
   function ground(pen, size) {
     aim(size);
     const { wide, high } = size;
-    pen.fillStyle = "#eef1ea";
+    pen.fillStyle = LOOK.meadow;
     pen.fillRect(0, 0, wide, high);
     pen.lineWidth = 1;
-    pen.strokeStyle = "#fff";
+    pen.strokeStyle = LOOK.grid;
     const step = GRID.find((each) => each * view.scale >= 26) || GRID[GRID.length - 1];
     pen.beginPath();
     for (let x = Math.ceil(view.x / step) * step; px(x) < wide; x += step) { pen.moveTo(px(x), 0); pen.lineTo(px(x), high); }
     for (let y = Math.floor(view.y / step) * step; py(y) < high; y -= step) { pen.moveTo(0, py(y)); pen.lineTo(wide, py(y)); }
     pen.stroke();
     pen.setLineDash([6, 4]);
-    pen.strokeStyle = "#9aa68e";
+    pen.strokeStyle = LOOK.map;
     pen.strokeRect(px(0), py(world.map_size), world.map_size * view.scale, world.map_size * view.scale);
     pen.setLineDash([]);
     pen.lineJoin = "round";
     const lane = world.lane_width * view.scale;
-    trace(pen, road.x, road.y, "#c9c5b4", Math.max(5, 2 * lane + 2 * world.verge * view.scale));
-    trace(pen, road.x, road.y, "#62666d", Math.max(4, 2 * lane));
+    trace(pen, road.x, road.y, LOOK.verge, Math.max(5, 2 * lane + 2 * world.verge * view.scale));
+    trace(pen, road.x, road.y, LOOK.asphalt, Math.max(4, 2 * lane));
     if (lane > 3) trace(pen, road.x, road.y, "#fff", 0.8);
     if (columns) path(pen);
-    label(pen, size, 0, "start", "#fff");
-    label(pen, size, road.length, isLoop(view.scale) ? "" : "goal", INK);
+    label(pen, size, 0, "start", LOOK.paper);
+    label(pen, size, road.length, isLoop(view.scale) ? "" : "goal", LOOK.ink);
     scene.places.forEach((place) => cross(pen, px(place.x), py(place.y), 6));
     scaleBar(pen, size, step);
   }
@@ -128,7 +128,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     pen.arc(px(x), py(y), 4, 0, 7);
     pen.fillStyle = fill;
     pen.fill();
-    pen.strokeStyle = INK;
+    pen.strokeStyle = LOOK.ink;
     pen.lineWidth = 1.5;
     pen.stroke();
     const [u, v] = [px(x) + sign * Math.cos(heading) * 18, py(y) - sign * Math.sin(heading) * 14];
@@ -137,7 +137,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
 
   function scaleBar(pen, { wide }, step) {
     const long = step * view.scale;
-    pen.strokeStyle = INK;
+    pen.strokeStyle = LOOK.ink;
     pen.lineWidth = 1.5;
     pen.beginPath();
     pen.moveTo(wide - 10 - long, 17);
@@ -170,12 +170,12 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
   return makeSheet(canvas, ground, over);
 }
 
-function said(pen, text, x, y, align, colour = INK) {
+function said(pen, text, x, y, align, colour = LOOK.ink) {
   pen.font = "11px system-ui, sans-serif";
   pen.textAlign = align;
   pen.textBaseline = "middle";
   pen.lineWidth = 3;
-  pen.strokeStyle = "rgba(255,255,255,.85)";
+  pen.strokeStyle = LOOK.halo;
   pen.strokeText(text, x, y);
   pen.fillStyle = colour;
   pen.fillText(text, x, y);

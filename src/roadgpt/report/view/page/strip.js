@@ -1,6 +1,7 @@
 // A strip: one quantity over the distance along the road, with the car on it.
 
 const LEFT = 34, RIGHT = 12, TOP = 26, BOTTOM = 20; // pixels around the graph
+const NARROW = 200; // pixels, below which a value has no room beside its name for more than itself
 
 // what: s, values; least: span of the axis; floor: value it starts from; limit: a line with a name;
 // colour: of the line at index i; at: value under the car.
@@ -23,17 +24,17 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
     const up = tidyStep(view.high - view.low, Math.max(2, view.tall / 30));
     for (let value = Math.ceil(view.low / up) * up; value <= view.high; value += up) {
       rule(pen, LEFT, py(value), LEFT + view.wide, py(value));
-      said(pen, String(+value.toFixed(6)), LEFT - 5, py(value), "right", SOFT);
+      said(pen, String(+value.toFixed(6)), LEFT - 5, py(value), "right", LOOK.soft);
     }
     const along = tidyStep(road.length, Math.max(2, view.wide / 62));
     for (let s = 0; s <= road.length * 1.0001; s += along) {
       rule(pen, px(s), TOP, px(s), TOP + view.tall);
-      said(pen, String(+s.toFixed(6)), px(s), high - BOTTOM / 2 - 1, "center", SOFT);
+      said(pen, String(+s.toFixed(6)), px(s), high - BOTTOM / 2 - 1, "center", LOOK.soft);
     }
   }
 
   function rule(pen, x0, y0, x1, y1) {
-    pen.strokeStyle = "#e6e9ed";
+    pen.strokeStyle = LOOK.rule;
     pen.lineWidth = 1;
     pen.beginPath();
     pen.moveTo(x0, y0);
@@ -61,28 +62,31 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
       pen.moveTo(px(what.s[0]), py(view.low));
       what.s.forEach((s, i) => pen.lineTo(px(s), py(what.values[i])));
       pen.lineTo(px(what.s[what.s.length - 1]), py(view.low));
-      pen.fillStyle = what.fill;
+      pen.fillStyle = LOOK[what.fill];
       pen.fill();
     }
-    for (let i = 1; i < what.s.length; i++) {
-      pen.beginPath();
-      pen.moveTo(px(what.s[i - 1]), py(what.values[i - 1]));
-      pen.lineTo(px(what.s[i]), py(what.values[i]));
-      pen.strokeStyle = what.colour(i);
-      pen.lineWidth = 2.2;
-      pen.lineCap = "round";
-      pen.stroke();
+    // the case is seen by night only: the colours of low speeds are dark
+    for (const [width, colour] of [[4, () => LOOK.case], [2.2, what.colour]]) {
+      for (let i = 1; i < what.s.length; i++) {
+        pen.beginPath();
+        pen.moveTo(px(what.s[i - 1]), py(what.values[i - 1]));
+        pen.lineTo(px(what.s[i]), py(what.values[i]));
+        pen.strokeStyle = colour(i);
+        pen.lineWidth = width;
+        pen.lineCap = "round";
+        pen.stroke();
+      }
     }
     if (what.limit) {
       pen.setLineDash([5, 4]);
-      pen.strokeStyle = SOFT;
+      pen.strokeStyle = LOOK.soft;
       pen.lineWidth = 1;
       pen.beginPath();
       pen.moveTo(LEFT, py(what.limit.value));
       pen.lineTo(LEFT + view.wide, py(what.limit.value));
       pen.stroke();
       pen.setLineDash([]);
-      said(pen, what.limit.name, LEFT + 4, py(what.limit.value) + 9, "left", SOFT);
+      said(pen, what.limit.name, LEFT + 4, py(what.limit.value) + 9, "left", LOOK.soft);
     }
     for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), TOP + 5, 4);
   }
@@ -90,7 +94,7 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
   function over(pen, size, pose) {
     const s = clamp(pose.s, 0, road.length);
     const value = what.at(pose);
-    pen.strokeStyle = HERE;
+    pen.strokeStyle = LOOK.here;
     pen.lineWidth = 1.5;
     pen.beginPath();
     pen.moveTo(px(s), TOP);
@@ -98,12 +102,13 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
     pen.stroke();
     pen.beginPath();
     pen.arc(px(s), py(value), 5, 0, 7);
-    pen.fillStyle = HERE;
+    pen.fillStyle = LOOK.here;
     pen.fill();
     pen.strokeStyle = "#fff";
     pen.lineWidth = 1.5;
     pen.stroke();
-    said(pen, what.tell(pose), size.wide - RIGHT + 2, 12, "right", INK);
+    const told = what.tell(pose);
+    said(pen, size.wide < NARROW ? told.split(",")[0] : told, size.wide - RIGHT + 2, 12, "right", LOOK.ink);
   }
 
   takesHold(canvas, (u) => moveTo(trip.timeAt(clamp(((u - LEFT) / view.wide) * road.length, 0, road.length))));
@@ -113,8 +118,8 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
 function heightOf(scene) {
   const { road } = scene;
   return {
-    s: road.s, values: road.z, least: 4, fill: "#dfe5d6",
-    colour: () => "#55604a",
+    s: road.s, values: road.z, least: 4, fill: "earth",
+    colour: () => LOOK.surface,
     at: (pose) => read(road.z, placeIn(road.s, pose.s)),
     tell(pose) {
       const grade = 100 * read(road.grade, placeIn(road.s, pose.s));
@@ -141,7 +146,7 @@ function bendOf(scene) {
   const curvature = road.curvature.map((value) => 100 * value);
   return {
     s: road.s, values: curvature, least: 2,
-    colour: () => "#7a4b9a",
+    colour: () => LOOK.bend,
     at: (pose) => read(curvature, placeIn(road.s, pose.s)),
     tell(pose) {
       const bend = read(road.curvature, placeIn(road.s, pose.s));
