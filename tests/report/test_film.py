@@ -266,6 +266,9 @@ def test_the_command_films_a_run_two_runs_and_a_campaign(
         ((folders[0], "--all"), "holds no runs"),
         ((tmp_path,), "holds 2 roads"),
         ((folders[0], "--size", "big"), "such as 640x360"),
+        ((folders[0], "--seconds", "3:1"), "ends before it begins"),
+        ((folders[0], "--seconds=-3"), "'-3' is no part of a drive"),
+        ((folders[0], "--seconds", "nan"), "'nan' is no part of a drive"),
     ):
         done = CliRunner().invoke(app, ["film", *map(str, words)])
         assert done.exit_code != 0

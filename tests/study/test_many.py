@@ -173,6 +173,7 @@ def test_bars_and_cells_hold_every_test(campaign: Path) -> None:
     )
     assert np.abs(sums - theirs).sum() <= 2  # rounding at the border of a cell
     assert len(figures) == 1
+    assert "largest curvature, 1/m" in figures[0].svg
 
 
 def straight_turn_straight(first: float, incline: float = 0.0) -> Design:

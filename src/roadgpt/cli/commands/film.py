@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from roadgpt.report.film import Settings
 
 MOST = 2  # roads in one picture
+LONGEST = 1_000_000  # s, of a part of a drive that is asked for
 FILM = Path("roadgpt-film.mp4")
 ENDINGS = (".mp4", ".m4v")
 VIEWS = ("chase", "bonnet", "both")
@@ -38,7 +39,9 @@ def _seconds(value: str) -> tuple[float, float | None]:
         raise click.BadParameter(
             f"'{value}' are no seconds; give 9, or 4:13 for the 4th to the 13th"
         ) from None
-    if not 0 <= begin < 1e6 or (end is not None and not begin < end < 1e6):
+    if not 0 <= begin <= LONGEST or (end is not None and not 0 <= end <= LONGEST):
+        raise click.BadParameter(f"'{value}' is no part of a drive; give seconds from 0 to {LONGEST:,}")
+    if end is not None and end <= begin:
         raise click.BadParameter(f"'{value}' ends before it begins; give 9, or 4:13 for the 4th to the 13th")
     return begin, None if end is None else end - begin
 

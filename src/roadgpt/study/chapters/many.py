@@ -14,6 +14,7 @@ from roadgpt.campaign.status import CellStatus
 from roadgpt.report.page import Block, Cell, Figure, Table, cell
 from roadgpt.report.page.heat import Axis, heat
 from roadgpt.report.page.lines import bars, lines
+from roadgpt.study.chapters.maps import CALLED
 from roadgpt.study.chapters.saying import decimal, percent
 
 NAMED = 30  # failures, one by one
@@ -176,7 +177,7 @@ def coverage(record: Record, done: int) -> list[Block]:
         filled = int(np.count_nonzero(sums))
         part = f" of every {every:,}th test" if every > 1 else ""
         caption = f"Tests{part} by {across} and {upwards}: {filled} of {SIDE * SIDE} cells are filled."
-        axes = (Axis(across, *BOUNDS[across]), Axis(upwards, *BOUNDS[upwards]))
+        axes = (Axis(CALLED[across], *BOUNDS[across]), Axis(CALLED[upwards], *BOUNDS[upwards]))
         blocks.append(Figure(f"map-{across.lower()}", caption, heat(sums, *axes, "tests", caption)))
     return blocks
 

@@ -24,6 +24,8 @@ MAPS = (
         2.5,
     ),
 )
+CALLED = {name: label for row in MAPS for name, label in (row[:2], row[4:6])}
+"""What features are called, with their units."""
 
 
 def coverage(parts: Sequence[LookedPart]) -> Section | None:
