@@ -187,7 +187,7 @@ def write_campaign(folder: Path, command: str = "") -> Path:
     words = request.words or "roads that were given"
     part = look_at_campaign(folder, Part(setup.designer, 1, Prompt(id="1", prompt=words)))
     if not part.roads:
-        raise UsageError(f"{folder} holds no finished road yet; go on with the campaign first")
+        raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
     found = [spread_of(part)]
     sections = [validity([part], [setup.designer], has_baseline=False)]
     if setup.drives:
