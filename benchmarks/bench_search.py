@@ -93,7 +93,7 @@ SETTINGS = {
         "a flat road",
         AGAINST_THE_WALK,
         driver=f"{Path(__file__).resolve().parent / 'assumes_dry.py'}:AssumesDry",
-        friction=0.572,
+        friction=0.57,
         truth={"turns": [1, None], "grade": "flat"},
     ),
     "uphill": Setting(
