@@ -71,6 +71,8 @@ def test_a_list_of_readings_gives_each_its_chance_and_warns_once(monkeypatch: py
     assert said[3:] == ["not sure of any: if none is what you mean, say it in other words"]
     assert readings(0.97, 0.004) == ["1.  97 %  a road with a turn", "no other reading has a chance of 1 %"]
     assert readings(0.004)[0] == "1.   0 %  a road with a turn", "the likeliest one in any case"
+    said = readings(0.9, 0.6)
+    assert [int(line.split()[1]) for line in said[:2]] == [60, 40], "of readings one at most is meant"
 
 
 def test_vague_words_have_several_readings_and_the_same_ones_again() -> None:

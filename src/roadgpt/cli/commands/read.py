@@ -81,8 +81,9 @@ def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
     from roadgpt.cli.work import SURE, reading
 
     likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
+    whole = max(1.0, sum(brief.confidence for brief in likely))  # each is judged on its own; one is meant
     for number, brief in enumerate(likely, 1):
-        yield f"{number}. {100 * brief.confidence:3.0f} %  {reading(brief)}"
+        yield f"{number}. {100 * brief.confidence / whole:3.0f} %  {reading(brief)}"
         if as_table:
             yield _table(brief)
     if len(likely) == 1:
