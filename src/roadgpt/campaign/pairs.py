@@ -6,14 +6,32 @@ of the one can be moved to that of the other, and a road half-way is driven next
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.campaign.genome import Genes, genes_of
+from roadgpt.campaign.genome import Gene, Genes, genes_of
 from roadgpt.campaign.model import Result
 
-LENGTHS, RADII, DEGREES, INCLINES = 10.0, 2.0, 10.0, 1.0
-"""Metres, metres, degrees, percent: differences that weigh alike between two genes."""
+
+class Measure(NamedTuple):
+    """A number of a gene, by which two of them differ."""
+
+    field: str
+    called: str
+    unit: str
+    scale: float
+    """Which difference weighs 1."""
+
+
+GRADE = Measure("incline", "grade", " %", 1.0)
+OF_TURN = (
+    GRADE,
+    Measure("turn", "angle", " degrees", 10.0),
+    Measure("radius", "radius", " m", 2.0),
+    Measure("ramp", "clothoid", " m", 2.0),
+)
+OF_STRAIGHT = (GRADE, Measure("length", "length", " m", 10.0))
 
 
 @dataclass(frozen=True)
@@ -34,42 +52,35 @@ def distance(one: Genes, other: Genes) -> float:
         return np.inf
     total = 0.0
     for a, b in zip(one, other, strict=True):
-        total += ((a.incline - b.incline) / INCLINES) ** 2
-        if a.turn:
-            total += ((a.turn - b.turn) / DEGREES) ** 2
-            total += ((a.radius - b.radius) / RADII) ** 2 + ((a.ramp - b.ramp) / RADII) ** 2
-        else:
-            total += ((a.length - b.length) / LENGTHS) ** 2
+        for measure in OF_TURN if a.turn else OF_STRAIGHT:
+            total += _weight(measure, a, b) ** 2
     return float(np.sqrt(total))
-
-
-MEASURES = (
-    ("turn", "angle", " degrees", DEGREES),
-    ("radius", "radius", " m", RADII),
-    ("ramp", "clothoid", " m", RADII),
-    ("length", "length", " m", LENGTHS),
-    ("incline", "grade", " %", INCLINES),
-)
-"""Fields of a gene: what people call them, their unit, and which difference weighs 1."""
 
 
 def weightiest(kept: Genes, lost: Genes) -> str:
     """What weighs most between corresponding roads: 'turn 2: radius 15.4 m, then 14.9 m'; or nothing."""
-    found = (0.0, "")
+    most, found = 0.0, ""
     turns = straights = 0
     for a, b in zip(kept, lost, strict=True):
         turns, straights = turns + bool(a.turn), straights + (not a.turn)
         what = f"turn {turns}" if a.turn else f"straight {straights}"
-        for name, called, unit, scale in MEASURES:
-            one, other = getattr(a, name), getattr(b, name)
-            if one != other and (weight := abs(one - other) / scale) > found[0]:
-                told = f"{what}: {called} {_figure(abs(one) if name == 'turn' else one)}{unit}"
-                found = (weight, f"{told}, then {_figure(abs(other) if name == 'turn' else other)}{unit}")
-    return found[1]
+        for measure in OF_TURN if a.turn else OF_STRAIGHT:
+            weight = abs(_weight(measure, a, b))
+            if weight > most:
+                then = f"{_figure(a, measure)}, then {_figure(b, measure)}"
+                most, found = weight, f"{what}: {measure.called} {then}"
+    return found
 
 
-def _figure(value: float) -> str:
-    return f"{value:.2f}".rstrip("0").rstrip(".").replace("-", "−")
+def _weight(measure: Measure, a: Gene, b: Gene) -> float:
+    difference: float = getattr(a, measure.field) - getattr(b, measure.field)
+    return difference / measure.scale
+
+
+def _figure(gene: Gene, measure: Measure) -> str:
+    value = getattr(gene, measure.field)
+    size = abs(value) if measure.field == "turn" else value
+    return f"{size:.2f}".rstrip("0").rstrip(".").replace("-", "−") + measure.unit
 
 
 def pairs_of(results: Sequence[Result]) -> list[Pair]:
