@@ -136,6 +136,8 @@ def _line(failure: "Failure") -> str:
 
 def _summary(lines: "list[Line]") -> str:
     """One row per fault: how often, how stable its most stable failure is, and why that one failed."""
+    from roadgpt.study.chapters.saying import plural
+
     first = {line.fault: line for line in reversed(lines)}
     rows = [f"{'fault':>5} {'failures':>8} {'again':>7}  road  why"]
     for number in sorted(first):
@@ -145,14 +147,10 @@ def _summary(lines: "list[Line]") -> str:
         rows.append(f"{number:>5} {line.of_it:>8} {again:>7}  {what}")
     stable = sum(line.failure.stability.is_stable for line in lines)
     rows.append(
-        f"{_many(len(lines), 'failure')}, of which {stable} fail every second time or oftener; "
-        f"{_many(len(first), 'fault')}"
+        f"{plural(len(lines), 'failure')}, of which {stable} fail every second time or oftener; "
+        f"{plural(len(first), 'fault')}"
     )
     return "\n".join(rows)
-
-
-def _many(count: int, name: str) -> str:
-    return f"{count:,} {name}{'' if count == 1 else 's'}"
 
 
 def _minimise(cell: _Cell, lines: "list[Line]", look: Look) -> None:

@@ -103,6 +103,7 @@ def _study(
 ) -> int:
     """Work, report, and say where the report is; the exit status."""
     from roadgpt.run import roll_call
+    from roadgpt.study.chapters.saying import plural
     from roadgpt.study.plan import open_folder
     from roadgpt.study.reporting import keep_problems, write_study
     from roadgpt.study.working import work
@@ -119,7 +120,7 @@ def _study(
     tell = None if quiet else _teller(total)
     if not quiet:
         click.echo(
-            f"{_many(len(prompts), 'description')}, {_many(roads, 'road')} each, "
+            f"{plural(len(prompts), 'description')}, {plural(roads, 'road')} each, "
             f"by {' and '.join(plan.designers)}, into {place}"
         )
     begun = time.perf_counter()
@@ -135,10 +136,6 @@ def _study(
     _complain(problems)
     click.echo(str(page))
     return NOT_ASKED if any(problem.is_of_chat for problem in problems) else 0
-
-
-def _many(n: int, what: str) -> str:
-    return f"{n:,} {what}{'s' * (n != 1)}"
 
 
 def _plan(
