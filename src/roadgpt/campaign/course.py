@@ -10,9 +10,7 @@ from roadgpt.campaign.store import Store
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Design
 
-REMEMBERED = (
-    2048  # designs that a draft is not to repeat, at most: 50 MB in each worker; older ones are forgotten
-)
+REMEMBERED = 2048  # designs that a draft is not to repeat, 50 MB in each worker; older ones are forgotten
 STRIDE = 512  # of them at a time, so that what designers remember of the others stays of use
 LAG = 2  # batches: number k knows results up to k - 2
 
