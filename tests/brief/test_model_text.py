@@ -49,6 +49,8 @@ def test_what_is_spelled_is_read_back(number: int, language: str) -> None:
         ("soixante mètres", [(60.0, "metres")]), ("medio kilómetro", [(500.0, "metres")]),
         ("dieci per cento", [(10.0, "percent")]), ("fifty yards", [(45.7, "metres")]),
         ("70 km/h", [(70.0, "kmh")]),
+        ("50 m / left R30 / 2 km / h", [(50.0, "metres"), (30.0, ""), (2.0, "kmh")]),
+        ("12 m/s", [(12.0, "kmh")]),
         ("3 turns, the 2nd left", []), ("once over the top", []), ("très serré", []),
     ],
 )  # fmt: skip

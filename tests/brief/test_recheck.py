@@ -2,9 +2,11 @@
 
 import pytest
 
+from roadgpt.brief import check
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.recheck import rechecked
 from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.errors import BriefError
 
 
 @pytest.mark.parametrize(
@@ -34,4 +36,36 @@ def test_sums_are_put_right(words: str, written: str, right: str) -> None:
     ],
 )
 def test_what_follows_from_the_words_stays(words: str, written: str) -> None:
+    assert plan(rechecked(read_plan(written), slotted(words))) == written
+
+
+@pytest.mark.parametrize(
+    ("words", "written"),
+    [
+        ("five bends: two left, one right", "turn x5 | lefts=2 rights=1"),
+        ("sechs Kurven, vier davon links, drei rechts", "turn x6 | lefts=4 rights=3"),
+        ("ten bends, first four lefts, then seven rights", "turn x4 left; turn x7 right"),
+        ("three lefts plus two rights make six bends", "turn x3 left; turn x2 right"),
+        ("un gauche, deux droites, quatre virages en tout", "turn left; turn x2 right"),
+    ],
+)
+def test_sums_that_cannot_be_are_kept_as_said_and_refused(words: str, written: str) -> None:
+    with pytest.raises(BriefError, match=r"numbers agree|ask for (more|fewer)"):
+        check(rechecked(read_plan(written), slotted(words)))
+
+
+@pytest.mark.parametrize(
+    ("words", "written"),
+    [
+        (
+            "three double bends with a straight after each",
+            "s_bend; straight; s_bend; straight; s_bend; straight",
+        ),
+        ("six ordinary turns around one hairpin", "turn x3; hairpin; turn x3"),
+        ("four curves, one left and three right", "turn left; turn x3 right"),
+        ("two bends left, then two bends right", "turn x2 left; turn x2 right"),
+        ("sector 3: turns right; sector 5: turns left", "turn right; turn left"),
+    ],
+)
+def test_numbers_that_add_up_are_no_contradiction(words: str, written: str) -> None:
     assert plan(rechecked(read_plan(written), slotted(words))) == written

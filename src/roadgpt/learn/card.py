@@ -15,15 +15,17 @@ def card(
     data: Mapping[str, int],
     found: Sequence[Reading],
     others: Mapping[str, Sequence[Reading]],
+    shown: Sequence[Reading],
     training: str,
 ) -> str:
-    """The card as Markdown.
+    """The card as Markdown. It shows no description of the test split: who writes pairs may read cards.
 
     Args:
         weights: the folder of the exported model.
         data: how many pairs each part of the data has.
         found: the model's readings of the test split.
         others: readings of the same split by other readers, by name.
+        shown: the model's readings of the validation split, for what it takes for what and its misses.
         training: one paragraph on how it was trained.
     """
     return "\n".join(
@@ -41,8 +43,8 @@ def card(
             training,
             "",
             *_scores(found, others),
-            *_confusions(found),
-            *_misses(found),
+            *_confusions(shown),
+            *_misses(shown),
             "## Licence",
             "",
             f"The encoder starts from {origin.NAME}; its `model.safetensors` has the SHA-256 `{origin.HASH}`."
@@ -83,7 +85,8 @@ def _confusions(found: Sequence[Reading]) -> list[str]:
         f"| `{wanted}` | `{got}` | {times} |"
         for (wanted, got), times in confusion(found).most_common(MOST_CONFUSIONS)
     ]
-    return ["## What it takes for what", "", "| wanted | written | times |", "|---|---|---|", *rows, ""]
+    head = ["| wanted | written | times |", "|---|---|---|"]
+    return ["## What it takes for what", "", "In the validation split.", "", *head, *rows, ""]
 
 
 def _misses(found: Sequence[Reading]) -> list[str]:
@@ -93,4 +96,8 @@ def _misses(found: Sequence[Reading]) -> list[str]:
         for reading in worst(found)
     ]
     head = ["| description | wanted | written | confidence |", "|---|---|---|---|"]
-    return ["## The worst misses", "", "Wrong, and most sure of it.", "", *head, *rows, ""]
+    text = (
+        "Wrong, and most sure of it; of the validation split, since a test whose misses are shown is none"
+        " any more."
+    )
+    return ["## The worst misses", "", text, "", *head, *rows, ""]

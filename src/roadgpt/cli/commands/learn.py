@@ -193,10 +193,11 @@ def evaluate(hand: Path, split: str, names: Sequence[str], misses: int, card: Pa
         for miss in worst(its, misses):
             click.echo(f"{name}: '{miss.pair.text}'\n  asked for {miss.pair.plan}\n  read as {miss.got}")
     if card:
-        _write_card(card, hand, found)
+        shown = readings(_pairs_of(hand / "validation"), readers[names[0]].read)
+        _write_card(card, hand, found, shown)
 
 
-def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]") -> None:
+def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]", shown: "list[Reading]") -> None:
     from roadgpt.brief.readers.model import WEIGHTS
     from roadgpt.learn.card import card
 
@@ -205,7 +206,7 @@ def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]") -> No
     }
     first, *others = found
     told = (WEIGHTS / "training.txt").read_text(encoding="utf-8").strip()
-    text = card(WEIGHTS, counts, found[first], {name: found[name] for name in others}, told)
+    text = card(WEIGHTS, counts, found[first], {name: found[name] for name in others}, shown, told)
     path.write_text(text, encoding="utf-8")
     click.echo(f"the card is in {path}")
 

@@ -21,8 +21,6 @@ MOST_TOKENS = 90
 WIDTH = 4
 FAVOUR = 0.3
 """Exponent of the length by which log-chances are divided."""
-MARGIN = 1.0
-"""Log-chance by which unfinished drafts may be worse than a finished one and still be followed."""
 REFUSED = [NUMBER_OF[word] for word in REFUSALS]
 LAYERS, HEADS, SIZE = 3, 6, 64
 
@@ -156,11 +154,6 @@ class Draft:
     def written(self, refusal: float) -> "Written":
         """The plan as it stands."""
         return Written(self.tokens, self.chances, refusal)
-
-
-def _is_over(done: Sequence[Draft], longer: Sequence[Draft]) -> bool:
-    """Has every draft that is still being written fallen behind by MARGIN?"""
-    return bool(done) and max(d.worth for d in done) >= max(d.worth for d in longer) + MARGIN
 
 
 def _nothing() -> Array:

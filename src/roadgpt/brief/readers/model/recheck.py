@@ -2,11 +2,15 @@
 
 A small network copies numbers well and calculates badly: "seven turns, the first two uphill" became 2 and 4.
 Where exactly one count of a plan was not said, and exactly one number that was said is in no count, the sum
-decides.
+decides. Where every count was said and yet a number of turns fits no sum of them, it stays in the Brief as
+the number of turns in all, so that the contradiction is seen.
 """
 
+from collections.abc import Iterator
+from itertools import chain, combinations, pairwise
+
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
-from roadgpt.brief.normal import STRAIGHT
+from roadgpt.brief.normal import STRAIGHT, turns_of
 from roadgpt.brief.readers.model.slots import Slotted
 
 LEFT = frozenset(
@@ -86,13 +90,22 @@ MULTIPLES = frozenset(
     ]
 )
 """Words with which numbers are in the text that no digit shows."""
+ONE = frozenset(["one", "ein", "eine", "einen", "einer", "eins", "un", "une", "una", "uno", "single", "sole"])
+"""What may be the number 1, and may be an article."""
+TURNS = frozenset(
+    ["turns", "bends", "corners", "curves", "kurven", "virages", "tournants", "courbes", "curvas"]
+)
+"""What roads have several of, when no shape is meant; Italian "curve" is English for one."""
+MOST_COUNTS = 8
+"""So many counts have 255 sums; who names more has added up nothing."""
 
 
 def rechecked(brief: Brief, text: Slotted) -> Brief:
     """The Brief with its counts made to follow from what was said."""
     words = {word.text for word in text.words}
     said = [int(word.text) for word in text.words if word.text.isdecimal() and word.said]
-    return _counts_summed(_sides_summed(brief, said, words), said, words)
+    sides = _sides_summed(brief, [*said, 1] if words & ONE else said, words)
+    return _total_kept(_counts_summed(sides, said, words), text, {*said, 1})
 
 
 def _sides_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
@@ -162,6 +175,29 @@ def _counts_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
     clauses = list(brief.clauses)
     clauses[strange[0]] = clauses[strange[0]].model_copy(update={"count": exactly(right)})
     return brief.model_copy(update={"clauses": tuple(clauses)})
+
+
+def _total_kept(brief: Brief, text: Slotted, said: set[int]) -> Brief:
+    """A number of turns that is no sum of the counts, all of which were said."""
+    turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
+    counts = [_exact(clause.count) for clause in turning]
+    if brief.turns or not 2 <= len(counts) <= MOST_COUNTS or not said.issuperset(n or 0 for n in counts):
+        return brief
+    sums = {sum(some) for some in _subsets([turns_of(clause)[0] for clause in turning])}
+    explained = sums | {*counts, len(counts)} | _measured(brief)
+    total = next((n for n in _before_turns(text) if n > 1 and n not in explained), None)
+    return brief.model_copy(update={"turns": exactly(total)}) if total else brief
+
+
+def _before_turns(text: Slotted) -> Iterator[int]:
+    """Numbers that stand right before a word for turns."""
+    for word, after in pairwise(text.words):
+        if word.text.isdecimal() and word.said and after.text in TURNS:
+            yield int(word.text)
+
+
+def _subsets(numbers: list[float]) -> Iterator[tuple[float, ...]]:
+    return chain.from_iterable(combinations(numbers, size) for size in range(1, len(numbers) + 1))
 
 
 def _measured(brief: Brief) -> set[float | None]:

@@ -22,6 +22,7 @@ from roadgpt.brief.readers.model.units import (
     SETS,
     SHARE_FILLERS,
     SHARES,
+    TIMES,
     UNITS,
     Unit,
 )
@@ -227,7 +228,8 @@ def _unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
         found = UNITS.get(tuple(tokens[at : at + size]))
         if found:
             unit, factor = found
-            if unit == "metres" and list(tokens[at + size : at + size + 1]) == ["/"]:
+            over, time = [*tokens[at + size : at + size + 2], "", ""][:2]
+            if unit == "metres" and over == "/" and time in TIMES:
                 return "kmh", 1.0, size + 2  # a speed
             if tokens[at] in ("km", "kilometers") and list(tokens[at + 1 : at + 3]) in (
                 ["per", "hour"],

@@ -27,6 +27,12 @@ _SAID: tuple[tuple[str, Unit, float], ...] = (
     ("kmh kph mph km/h", "kmh", 1.0),
 )
 
+TIMES = frozenset(
+    ["h", "hr", "hrs", "hour", "std", "stunde", "heure", "hora", "ora"]
+    + ["s", "sec", "second", "sekunde", "seconde", "segundo", "secondo"]
+)
+"""What lengths are divided by where they make a speed."""
+
 
 def plain_unit(text: str) -> str:
     """A unit's word without accents."""
