@@ -51,6 +51,9 @@ def test_what_is_spelled_is_read_back(number: int, language: str) -> None:
         ("70 km/h", [(70.0, "kmh")]),
         ("50 m / left R30 / 2 km / h", [(50.0, "metres"), (30.0, ""), (2.0, "kmh")]),
         ("12 m/s", [(12.0, "kmh")]),
+        ("Distances in feet: 250 straight, 3 bends, 250 straight", [(76.2, "metres"), (76.2, "metres")]),
+        ("in metres and degrees: 100, L 30", [(100.0, ""), (30.0, "")]),
+        ("lengths in yards; 50 m, then 40", [(50.0, "metres"), (40.0, "")]),
         ("3 turns, the 2nd left", []), ("once over the top", []), ("très serré", []),
     ],
 )  # fmt: skip

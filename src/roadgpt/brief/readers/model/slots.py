@@ -10,27 +10,30 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from roadgpt.brief.readers.model.measures import (
+    Number,
+    is_count,
+    share_units,
+    take_unit,
+    take_unit_of_all,
+    unit_at,
+)
 from roadgpt.brief.readers.model.numerals import plain, words
 from roadgpt.brief.readers.model.units import (
     AMBIGUOUS,
     AND_A_HALF,
     FUNCTION_WORDS,
-    JOINTS,
     ONES,
     ORDINALS,
     RATIO,
     SETS,
     SHARE_FILLERS,
     SHARES,
-    TIMES,
-    UNITS,
     Unit,
 )
 
 SLOTS = 12
 """Most numbers with a slot of their own in one description."""
-LARGEST_SEEN = 20
-"""Bare numbers up to this one stay digits."""
 SYMBOLS = str.maketrans({
     "–": "-", "—": "-", "−": "-", "’": "'", "‘": "'", "“": '"', "”": '"', "×": "x",
     "→": " then ", "½": " 0.5 ",
@@ -70,24 +73,15 @@ class Slotted:
         return " ".join(word.text for word in self.words)
 
 
-@dataclass(slots=True)
-class _Number:
-    value: float
-    first: int
-    last: int  # index of its last word, unit included
-    unit: Unit = ""
-    is_bare: bool = True
-    factor: float = 1.0
-
-
 def slotted(text: str) -> Slotted:
     """Takes the numbers out of a description."""
     said = WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS)))
     tokens = [plain(word) for word in said]
     numbers = _numbers(tokens)
     for number in numbers:
-        _take_unit(number, tokens)
-    _share_units(numbers, tokens)
+        take_unit(number, tokens)
+    share_units(numbers, tokens)
+    take_unit_of_all(numbers, tokens)
     return _replaced(tokens, said, numbers)
 
 
@@ -102,9 +96,9 @@ def language_of(tokens: Sequence[str]) -> str:
     return max(FUNCTION_WORDS, key=lambda code: (len(found & FUNCTION_WORDS[code]), code == "en"))
 
 
-def _numbers(tokens: list[str]) -> list[_Number]:
+def _numbers(tokens: list[str]) -> list[Number]:
     language = language_of(tokens)
-    numbers: list[_Number] = []
+    numbers: list[Number] = []
     at = 0
     while at < len(tokens):
         number = (
@@ -118,7 +112,7 @@ def _numbers(tokens: list[str]) -> list[_Number]:
     return numbers
 
 
-def _ratio(tokens: list[str], at: int) -> _Number | None:
+def _ratio(tokens: list[str], at: int) -> Number | None:
     """One in ten, 1:8."""
     places = [place for place in range(at, min(at + 5, len(tokens))) if tokens[place] != "-"][:3]
     here = [tokens[place] for place in places]
@@ -126,9 +120,9 @@ def _ratio(tokens: list[str], at: int) -> _Number | None:
         return None
     spelled = next(iter((words().get((here[2],)) or {"": 0}).values()))
     below = _digit_value(here[2]) or spelled
-    if not 3 <= below <= 100 or _unit_at(tokens, places[2] + 1):
+    if not 3 <= below <= 100 or unit_at(tokens, places[2] + 1):
         return None
-    return _Number(round(100 / below, 1), at, places[2], "percent", False)
+    return Number(round(100 / below, 1), at, places[2], "percent", False)
 
 
 def _digit_value(token: str) -> float | None:
@@ -140,7 +134,7 @@ def _digit_value(token: str) -> float | None:
     return float(".".join(parts[:2]))
 
 
-def _digits(tokens: list[str], at: int) -> _Number | None:
+def _digits(tokens: list[str], at: int) -> Number | None:
     value = _digit_value(tokens[at])
     if value is None:
         return _point(tokens, at)
@@ -148,16 +142,16 @@ def _digits(tokens: list[str], at: int) -> _Number | None:
     if len(after) == 2 and value < 10 and _is_fraction(tokens, at):
         return None
     if after and after[0] in ("hundred", "thousand") and value < 20:
-        return _Number(value * (100 if after[0] == "hundred" else 1000), at, at + 1)
-    return _Number(value, at, at)
+        return Number(value * (100 if after[0] == "hundred" else 1000), at, at + 1)
+    return Number(value, at, at)
 
 
-def _point(tokens: list[str], at: int) -> _Number | None:
+def _point(tokens: list[str], at: int) -> Number | None:
     """Point two."""
     if tokens[at] != "point" or at + 1 >= len(tokens):
         return None
     tenths = next(iter((words().get((tokens[at + 1],)) or {"": 0}).values()))
-    return _Number(tenths / 10, at, at + 1) if 0 < tenths < 10 else None
+    return Number(tenths / 10, at, at + 1) if 0 < tenths < 10 else None
 
 
 def _is_fraction(tokens: list[str], at: int) -> bool:
@@ -165,27 +159,27 @@ def _is_fraction(tokens: list[str], at: int) -> bool:
     return tokens[at + 1] == "/" and tokens[at + 2] in ("2", "3", "4")
 
 
-def _set(tokens: list[str], at: int) -> _Number | None:
+def _set(tokens: list[str], at: int) -> Number | None:
     """Half a dozen, hyphens inside or not."""
-    best: _Number | None = None
+    best: Number | None = None
     key: list[str] = []
     for place in range(at, min(at + 6, len(tokens))):
         if tokens[place] == "-" and key:
             continue
         key.append(tokens[place])
         if tuple(key) in SETS:
-            best = _Number(SETS[tuple(key)], at, place)
+            best = Number(SETS[tuple(key)], at, place)
     return best
 
 
-def _part(tokens: list[str], at: int) -> _Number | None:
+def _part(tokens: list[str], at: int) -> Number | None:
     """Half a mile, three quarters of a kilometre, a kilometre, one and a half miles: where a unit follows."""
     if tokens[at] in AND_A_HALF:
-        return _Number(AND_A_HALF[tokens[at]], at, at, "", False)
+        return Number(AND_A_HALF[tokens[at]], at, at, "", False)
     many = _digit_value(tokens[at]) or next(iter((words().get((tokens[at],)) or {"": 0}).values()))
     many = 1.0 if tokens[at] in ONES else many
-    if tokens[at + 1 : at + 4] == ["and", "a", "half"] and many and _unit_at(tokens, at + 4):
-        return _Number(many + 0.5, at, at + 3, "", False)
+    if tokens[at + 1 : at + 4] == ["and", "a", "half"] and many and unit_at(tokens, at + 4):
+        return Number(many + 0.5, at, at + 3, "", False)
     share_at = at + 1 if many else at
     while share_at < len(tokens) and tokens[share_at] == "-" and share_at > at:
         share_at += 1
@@ -193,17 +187,17 @@ def _part(tokens: list[str], at: int) -> _Number | None:
     last = share_at if share else at
     while last + 1 < len(tokens) and tokens[last + 1] in SHARE_FILLERS and last - at < 6:
         last += 1
-    found = _unit_at(tokens, last + 1)
+    found = unit_at(tokens, last + 1)
     if not found or (not share and many != 1):
         return None
     if not share and (found[0] != "metres" or (found[1] < 100 and tokens[at] in ("a", "an", "un", "una"))):
         return None
-    return _Number(many * share if share and many else share or 1.0, at, last, "", False)
+    return Number(many * share if share and many else share or 1.0, at, last, "", False)
 
 
-def _spelled(tokens: list[str], at: int, language: str) -> _Number | None:
+def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
     """The longest number word here, hyphens inside or not."""
-    best: _Number | None = None
+    best: Number | None = None
     key: list[str] = []
     place = at
     while place < len(tokens) and len(key) < 6:
@@ -215,64 +209,14 @@ def _spelled(tokens: list[str], at: int, language: str) -> _Number | None:
         key.append(tokens[place])
         found = words().get(tuple(key))
         if found and not (key[0] in AMBIGUOUS and len(key) == 1 and language not in found):
-            best = _Number(found.get(language, next(iter(found.values()))), at, place)
+            best = Number(found.get(language, next(iter(found.values()))), at, place)
         place += 1
     if best and best.value == 0 and tokens[at] == "null" and language != "de":
         return None
     return best
 
 
-def _unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
-    """The unit that begins here: what it measures, its size, its number of words."""
-    for size in (2, 1):
-        found = UNITS.get(tuple(tokens[at : at + size]))
-        if found:
-            unit, factor = found
-            over, time = [*tokens[at + size : at + size + 2], "", ""][:2]
-            if unit == "metres" and over == "/" and time in TIMES:
-                return "kmh", 1.0, size + 2  # a speed
-            if tokens[at] in ("km", "kilometers") and list(tokens[at + 1 : at + 3]) in (
-                ["per", "hour"],
-                ["an", "hour"],
-            ):
-                return "kmh", 1.0, size + 2
-            return unit, factor, size
-    return None
-
-
-def _take_unit(number: _Number, tokens: list[str]) -> None:
-    if number.unit:
-        return
-    at = number.last + 1
-    for skip in (0, 1):
-        if skip and (at >= len(tokens) or tokens[at] not in ("-", "'")):
-            break
-        found = _unit_at(tokens, at + skip)
-        if found and not (tokens[at + skip] in ("º", "a", "e") and number.value < 10):
-            unit, factor, size = found
-            number.value, number.unit = round(number.value * factor, 1), unit
-            number.last, number.is_bare, number.factor = at + skip + size - 1, False, factor
-            return
-    number.value = round(number.value, 1)
-
-
-def _share_units(numbers: list[_Number], tokens: list[str]) -> None:
-    """Gives "40" in "40 to 60 metres" its unit; from the back, so that lists pass it on."""
-    for one, other in zip(numbers[-2::-1], numbers[:0:-1], strict=False):
-        between = tokens[one.last + 1 : other.first]
-        while between and between[-1] in ("about", "than", "de", "di", "maximal", "another"):
-            between = between[:-1]
-        if one.unit or not other.unit or not 1 <= len(between) <= 2 or _is_radius(tokens, one):
-            continue
-        if any(token not in JOINTS for token in between) or (between == [","] and one.value < LARGEST_SEEN):
-            continue
-        if len(between) == 2 and between[0] == "," and between[1] not in ("or", "and", "to"):
-            continue
-        one.value, one.unit = round(one.value * other.factor, 1), other.unit
-        one.is_bare, one.factor = False, other.factor
-
-
-def _replaced(tokens: list[str], said: list[str], numbers: list[_Number]) -> Slotted:
+def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> Slotted:
     out: list[Word] = []
     slots: list[Slot] = []
     starts = {number.first: number for number in numbers}
@@ -289,12 +233,7 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[_Number]) -> Slo
             out.append(Word(tokens[at] + after[0], spoken + said[number.last + 1]))
             at = number.last + 2
             continue
-        if (
-            number.is_bare
-            and number.value <= LARGEST_SEEN
-            and number.value == int(number.value)
-            and not _is_radius(tokens, number)
-        ):
+        if number.is_bare and is_count(tokens, number):
             out.append(Word(str(int(number.value)), spoken))
         elif len(slots) >= SLOTS:
             out.append(Word("[unused20]", spoken))
@@ -306,7 +245,7 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[_Number]) -> Slo
     return Slotted(tuple(out), tuple(slots))
 
 
-def _is_ordinal(tokens: list[str], number: _Number) -> bool:
+def _is_ordinal(tokens: list[str], number: Number) -> bool:
     return (
         tokens[number.first].isdigit()
         and number.value < 13
@@ -314,12 +253,7 @@ def _is_ordinal(tokens: list[str], number: _Number) -> bool:
     )
 
 
-def _is_radius(tokens: list[str], number: _Number) -> bool:
-    """R15: too large for a count, so it is a measure."""
-    return number.value >= 10 and number.first > 0 and tokens[number.first - 1] == "r"
-
-
-def _tail(number: _Number) -> list[str]:
+def _tail(number: Number) -> list[str]:
     """The unit, and a mark where the size of a number matters to what the words mean."""
     value, marks = number.value, {
         "percent": ((15.0, "[unused21]"),),

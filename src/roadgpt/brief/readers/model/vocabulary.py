@@ -6,7 +6,8 @@ turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1
 import re
 from collections.abc import Iterable, Sequence
 
-from roadgpt.brief.readers.model.slots import LARGEST_SEEN, SLOTS, Slot
+from roadgpt.brief.readers.model.measures import LARGEST_SEEN
+from roadgpt.brief.readers.model.slots import SLOTS, Slot
 
 REFUSALS = ("!nonsense", "!contradiction", "!impossible")
 # The weights know these words by their places in the lists; so they stand here, and not in the Brief's order.

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from copy import copy
 
 from roadgpt.brief.readers.model.evidence import Evidence
-from roadgpt.brief.readers.model.slots import LARGEST_SEEN, Slot
+from roadgpt.brief.readers.model.measures import LARGEST_SEEN
+from roadgpt.brief.readers.model.slots import Slot
 from roadgpt.brief.readers.model.vocabulary import (
     CLAUSE_KEYS,
     KINDS,

@@ -1,0 +1,99 @@
+"""Measures: numbers of a description with the units that are theirs, wherever these stand."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from roadgpt.brief.readers.model.units import JOINTS, TIMES, UNITS, Unit
+
+LARGEST_SEEN = 20
+"""Bare numbers up to this one stay digits."""
+SIDES = frozenset(["left", "right", "l", "r"])
+
+
+@dataclass(slots=True)
+class Number:
+    """A number, where it stands, and what it measures."""
+
+    value: float
+    first: int
+    last: int  # index of its last word, unit included
+    unit: Unit = ""
+    is_bare: bool = True
+    factor: float = 1.0
+
+
+def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
+    """The unit that begins here: what it measures, its size, its number of words."""
+    for size in (2, 1):
+        found = UNITS.get(tuple(tokens[at : at + size]))
+        if found:
+            unit, factor = found
+            over, time = [*tokens[at + size : at + size + 2], "", ""][:2]
+            if unit == "metres" and over == "/" and time in TIMES:
+                return "kmh", 1.0, size + 2  # a speed
+            if tokens[at] in ("km", "kilometers") and list(tokens[at + 1 : at + 3]) in (
+                ["per", "hour"],
+                ["an", "hour"],
+            ):
+                return "kmh", 1.0, size + 2
+            return unit, factor, size
+    return None
+
+
+def take_unit(number: Number, tokens: list[str]) -> None:
+    """Gives a number the unit that stands behind it."""
+    if number.unit:
+        return
+    at = number.last + 1
+    for skip in (0, 1):
+        if skip and (at >= len(tokens) or tokens[at] not in ("-", "'")):
+            break
+        found = unit_at(tokens, at + skip)
+        if found and not (tokens[at + skip] in ("º", "a", "e") and number.value < 10):
+            unit, factor, size = found
+            number.value, number.unit = round(number.value * factor, 1), unit
+            number.last, number.is_bare, number.factor = at + skip + size - 1, False, factor
+            return
+    number.value = round(number.value, 1)
+
+
+def share_units(numbers: list[Number], tokens: list[str]) -> None:
+    """Gives "40" in "40 to 60 metres" its unit; from the back, so that lists pass it on."""
+    for one, other in zip(numbers[-2::-1], numbers[:0:-1], strict=False):
+        between = tokens[one.last + 1 : other.first]
+        while between and between[-1] in ("about", "than", "de", "di", "maximal", "another"):
+            between = between[:-1]
+        if one.unit or not other.unit or not 1 <= len(between) <= 2 or is_radius(tokens, one):
+            continue
+        if any(token not in JOINTS for token in between) or (between == [","] and one.value < LARGEST_SEEN):
+            continue
+        if len(between) == 2 and between[0] == "," and between[1] not in ("or", "and", "to"):
+            continue
+        one.value, one.unit = round(one.value * other.factor, 1), other.unit
+        one.is_bare, one.factor = False, other.factor
+
+
+def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
+    """Gives bare measures the unit that is said for all, as in "lengths in feet: 250 straight"."""
+    factors = {UNITS.get((unit,), ("", 0.0)) for word, unit in pairwise(tokens) if word in ("in", "en")}
+    sizes = [factor for unit, factor in factors if unit == "metres" and factor < 1.0]
+    if len(sizes) != 1 or any(number.unit == "metres" for number in numbers):
+        return
+    for number in numbers:
+        is_after_side = number.first > 0 and tokens[number.first - 1] in SIDES
+        if number.is_bare and not is_count(tokens, number) and not is_after_side:
+            number.value, number.unit = round(number.value * sizes[0], 1), "metres"
+            number.is_bare, number.factor = False, sizes[0]
+
+
+def is_count(tokens: list[str], number: Number) -> bool:
+    """May it be how many there are of something?"""
+    return (
+        number.value <= LARGEST_SEEN and number.value == int(number.value) and not is_radius(tokens, number)
+    )
+
+
+def is_radius(tokens: list[str], number: Number) -> bool:
+    """R15: too large for a count, so it is a measure."""
+    return number.value >= 10 and number.first > 0 and tokens[number.first - 1] == "r"
