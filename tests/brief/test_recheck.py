@@ -17,7 +17,7 @@ from roadgpt.errors import BriefError
         ("five bends, the last three go right", "turn x3; turn x3 right", "turn x2; turn x3 right"),
         ("6 turns, 2 of them to the right", "turn x6 | rights=2", "turn x6 | lefts=4 rights=2"),
         ("5 turns, 3 left", "turn x5 | lefts=3 rights=3", "turn x5 | lefts=3 rights=2"),
-        ("cinq virages dont deux à gauche", "turn x5 | lefts=3 rights=2", "turn x5 | lefts=2 rights=3"),
+        ("cinq virages dont deux à gauche", "turn x5 | lefts=2 rights=2", "turn x5 | lefts=2 rights=3"),
     ],
 )
 def test_sums_are_put_right(words: str, written: str, right: str) -> None:
@@ -32,6 +32,7 @@ def test_sums_are_put_right(words: str, written: str, right: str) -> None:
         ("case 7: several turns", "| turns=3.."),
         ("straight: 120 m, right, radius:20", "straight len=120; turn right r=20"),
         ("4 turns and no lefts", "turn x4 | lefts=0"),
+        ("all of the five go left except one", "turn x5 | lefts=4 rights=1"),
         ("6 turns, twice as many lefts as rights", "turn x6 | lefts=4 rights=2"),
     ],
 )

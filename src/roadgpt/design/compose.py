@@ -23,11 +23,11 @@ APPROACH = 35.0  # m more in front of a turn of a hard road: room to gain speed
 DIRECT = 0.35  # chance that turns of opposite hands follow each other with hardly a straight
 HARDLY = 7.0  # m
 CHANGE = 24.0  # m: a straight in which the grade changes from one promise to another
+LONGEST_CHANGE = 100.0  # m: more would not fit on the map
 STEP_ASIDE = (
     14.0  # m of the neighbour's grade on an asked-for straight's gap, so that the change is not in the turn
 )
-RAMP = 5.0  # m: what a ramp takes off a straight's mean grade, in metres of its full grade
-MOST_KEPT, LEAST_KEPT = 0.8, 0.45  # of a straight from which ramps are taken off: first, and at last
+RAMP_OF_GRADE = 0.9  # m: of straight for each percent, by which a ramp takes the least off its mean grade
 OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a straight whose length nobody said
 ALONE = (60.0, 240.0)  # m, of a road without turns whose length nobody said
 HILL = 42.0  # m that one climb or fall of a hilly road takes
@@ -124,11 +124,10 @@ def _asked_gap(
             neighbours.append(after.grade)
         changes = sum(windows.part(grade, other) for other in neighbours)
         least = max(LEAD, changes * _change(grade) * (1 - 0.3 * haste) + 8.0 if changes else 0.0)
-        if number and not windows.part(grades[number - 1], grade):
-            out.append(Span(STEP_ASIDE, grade=windows.other(grade)))
+        if number and windows.alike(grades[number - 1], grade):
+            ledge = Range(STEP_ASIDE, STEP_ASIDE)
+            out.append(Span(STEP_ASIDE, grade=windows.other(grade), promised=ledge))
         length = drawn_straight(wish, rng, haste, least, mean)
-        if wish.length and wish.length.hi < inf:
-            length = max(length - changes * RAMP, max(MOST_KEPT - haste, LEAST_KEPT) * length)
         out.append(Span(length, grade=grade, promised=wish.length or OPEN))
     if after and windows.part(grades[-1], after.grade):
         out.append(Span(STEP_ASIDE, grade=after.grade))
@@ -140,7 +139,7 @@ def _change(grade: Range | None) -> float:
     if grade is None:
         return CHANGE
     steep, width = max(abs(grade.lo), abs(grade.hi)), max(grade.hi - grade.lo, 0.5)
-    return max(CHANGE, RAMP * steep / width)
+    return max(CHANGE, min(RAMP_OF_GRADE * steep * steep / width, LONGEST_CHANGE))
 
 
 def _with_hills(spans: list[Span], hills: Range, rng: np.random.Generator) -> list[Span]:

@@ -8,6 +8,7 @@ import numpy as np
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import STEEPEST, Range, overlap
 from roadgpt.check.measures import LEVEL
+from roadgpt.design.ramps import Inclines, eased
 from roadgpt.design.spans import TENTH, Span
 from roadgpt.errors import DesignError
 from roadgpt.road import World
@@ -29,9 +30,6 @@ HILL_GRADES = (4.0, 8.5)  # percent
 CREST = (2.5, 4.5)  # percent up to a bend of a hard road, and down in it
 RAMPED = 6.0  # percent: a place so steep shows best where its neighbours slope the other way
 BISECTIONS = 40
-
-Inclines = list[tuple[float, float]]
-"""Lengths in metres and inclines in percent, in order."""
 
 
 class Windows:
@@ -106,6 +104,12 @@ class Windows:
         """Must the grade change between features with these promises?"""
         return bool(one and other and (one.lo > other.hi or other.lo > one.hi))
 
+    def alike(self, one: Range | None, other: Range | None) -> bool:
+        """Would straights with these promises be measured as one: both climbing, both falling, or alike?"""
+        if not one or not other or not self.part(one, other):
+            return True
+        return min(one.lo, other.lo) >= LEVEL or max(one.hi, other.hi) <= -LEVEL
+
 
 def drawn_in(grade: Range) -> Range:
     """A promised grade without its edges, where ramps and rounding could break it."""
@@ -131,7 +135,7 @@ def drawn_heights(
         values = _with_steepest(values, lengths, limits, outline.steepest, rng)
     if outline.climb:
         values = _with_climb(values, lengths, limits, outline.climb, rng)
-    return _shared_out(spans, owners, rounded(values))
+    return eased(spans, _shared_out(spans, owners, rounded(values)), windows.limit)
 
 
 def rounded(values: np.ndarray) -> np.ndarray:

@@ -115,6 +115,8 @@ def _sides_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
     if turns is None or not any(sides) or not all(side is None or side.exact for side in sides):
         return brief
     left, right = (None if side is None or side.lo is None else int(side.lo) for side in sides)
+    if left is not None and right is not None and left + right == turns:
+        return brief
     number, side = _trusted(left, right, said, words)
     if side is None or number is None or not 0 < number <= turns:
         return brief
