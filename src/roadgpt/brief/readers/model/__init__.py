@@ -18,6 +18,7 @@ from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.brief.readers.model.coverage import Coverage
+from roadgpt.brief.readers.model.listing import listed_sides, sides_of
 from roadgpt.brief.readers.model.looks import Draft, drafts
 from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.recheck import rechecked
@@ -64,9 +65,8 @@ class ModelReader:
             BriefError: the words are empty, too many, no road, contradictory or ask for the impossible.
         """
         text = _text(words)
-        return self._brief(
-            words, text, _consistent(drafts(self._network, words, self._settings["refuse_from"]))
-        )
+        found = drafts(self._network, words, self._settings["refuse_from"])
+        return self._brief(words, text, _as_listed(found, text) or _consistent(found))
 
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
@@ -120,6 +120,15 @@ class ModelReader:
     def _settings(self) -> dict[str, Any]:
         settings: dict[str, Any] = json.loads((self.folder / "settings.json").read_text(encoding="utf-8"))
         return settings
+
+
+def _as_listed(found: Sequence[Draft], text: Slotted) -> Draft | None:
+    """The likeliest draft whose turns have the sides that the words list; None where they list none."""
+    sides = listed_sides(text)
+    if not sides or not found or found[0].is_refusal:
+        return None
+    kept = (draft for draft in found if not draft.is_refusal and _can_be_kept(draft.line))
+    return next((draft for draft in kept if sides_of(read_plan(draft.line)) == sides), None)
 
 
 def _consistent(found: Sequence[Draft]) -> Draft:
