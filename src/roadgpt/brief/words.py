@@ -73,7 +73,7 @@ KINDS: Mapping[Kind, Meaning] = {
     "turn": Meaning(("turn", "bend", "curve"), ONE, degrees=Range(25, 120)),
     "hairpin": Meaning(("hairpin",), ONE, degrees=Range(140, 210), radius=Range(0, 35)),
     "switchback": Meaning(("switchback",), ONE, alternating=True, degrees=Range(100, 210)),
-    "u_turn": Meaning(("U-turn",), ONE, degrees=Range(150, 210)),
+    "u_turn": Meaning(("U-turn",), ONE, degrees=Range(150, 210), aim=Range(165, 195)),
     "s_bend": Meaning(("S-bend", "S-curve"), Range(2, 2), alternating=True, degrees=Range(25, 120)),
     "chicane": Meaning(
         ("chicane",), Range(2, 4), alternating=True, degrees=Range(25, 120), radius=Range(0, 30)

@@ -34,6 +34,8 @@ HILL = 42.0  # m that one climb or fall of a hilly road takes
 CLIMBS_AT = 12.0  # percent at most, where a road must be long enough for its climb
 EASE = 0.85  # of that grade, on average
 SHORT_LEAD = 5.0  # m, of a lead-in or lead-out that a short road leaves no room for
+NARROW = 1.25  # ratio of the ends of a range that stands for one number with its slack
+OFF_CORE = 0.3  # share of such a range at either end that is kept only where nothing else fits
 FEWEST_METRES = 1.0  # of a straight that is squeezed to make the whole length right
 
 
@@ -159,10 +161,11 @@ def _with_length(
 ) -> list[Span] | None:
     """Free straights stretched or squeezed until the road has a length that was asked for."""
     now = sum(span.length for span in spans)
-    if asked.lo + 1 < now < asked.hi - 1:
+    core = _core(asked)
+    if core.lo + 1 < now < core.hi - 1:
         return spans
-    low = asked.lo if asked.lo > 0 else 0.7 * asked.hi
-    high = asked.hi if asked.hi < inf else 1.3 * asked.lo
+    low = core.lo if core.lo > 0 else 0.7 * asked.hi
+    high = core.hi if core.hi < inf else 1.3 * asked.lo
     target = low + (high - low) * (0.15 + 0.7 * rng.random())
     free = [i for i, span in enumerate(spans) if span.is_elastic]
     if not free:
@@ -175,13 +178,21 @@ def _with_length(
         least = [_least(spans, i, LEAD if haste < 0.5 else SHORT_LEAD) for i in free]
         slack = sum(spans[i].length - floor for i, floor in zip(free, least, strict=True))
         if slack < -missing:
-            return None
+            return spans if now < asked.hi - 1 else None
         keep = 1 + missing / slack
         lengths = [floor + keep * (spans[i].length - floor) for i, floor in zip(free, least, strict=True)]
     out = list(spans)
     for i, length in zip(free, lengths, strict=True):
         out[i] = out[i]._replace(length=length)
     return out
+
+
+def _core(asked: Range) -> Range:
+    """The middle of a range that stands for one number, which is nearer to what was said; else the range."""
+    if asked.lo <= 0 or asked.hi > NARROW * asked.lo:
+        return asked
+    edge = OFF_CORE * (asked.hi - asked.lo)
+    return Range(asked.lo + edge, asked.hi - edge)
 
 
 def _least(spans: Sequence[Span], index: int, lead: float) -> float:

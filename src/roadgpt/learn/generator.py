@@ -8,6 +8,7 @@ import numpy as np
 
 from roadgpt.brief.plan import read_plan
 from roadgpt.errors import BriefError
+from roadgpt.learn.compositions import composed
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.noise import noisy, tidy
@@ -17,6 +18,8 @@ from roadgpt.learn.standard import standard
 
 SPOILED = 0.045
 """Share of honest descriptions that are made contradictory or impossible."""
+COMPOSED = 0.6
+"""Share of the English pairs that are composed and not drawn from a grammar."""
 SHARES = {"en": 0.62, "de": 0.10, "fr": 0.10, "es": 0.09, "it": 0.09}
 WISH = re.compile(r"\|\s*(?:(?:starts|ends)\([^()]*\)|[^\s;|]+)")
 KIND = re.compile(
@@ -41,7 +44,8 @@ def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair
     codes, weights = list(shares), np.cumsum(list(shares.values()))
     while True:
         code = codes[int(np.searchsorted(weights, rng.random() * weights[-1], side="right"))]
-        pair = draw(code, rng)
+        is_composed = code == "en" and rng.random() < COMPOSED
+        pair = _composed(rng) if is_composed else draw(code, rng)
         if pair:
             yield refused(pair, rng)
 
@@ -72,6 +76,13 @@ def draw(language: str, rng: np.random.Generator, symbol: str = "top") -> Pair |
     if is_held_out(text) or is_held_out(typed):
         return None
     return Pair(typed, plan, f"generated-{language}", language)
+
+
+def _composed(rng: np.random.Generator) -> Pair | None:
+    said = composed(rng)
+    if said is None or is_held_out(said.text):
+        return None
+    return Pair(said.text, said.plan, "composed-en", "en")
 
 
 def assembled(raw: str) -> str | None:

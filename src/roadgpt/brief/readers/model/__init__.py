@@ -20,6 +20,7 @@ from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.brief.readers.model.coverage import Coverage
 from roadgpt.brief.readers.model.listing import listed_sides, sides_of
 from roadgpt.brief.readers.model.looks import Draft, drafts
+from roadgpt.brief.readers.model.negatives import negative
 from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.recheck import rechecked
 from roadgpt.brief.readers.model.slots import Slotted, slotted
@@ -181,4 +182,8 @@ def _text(words: str) -> Slotted:
         raise BriefError(
             f"the description has {len(words)} letters; {MOST_LETTERS} are the most, so say it shorter"
         )
-    return slotted(words)
+    text = slotted(words)
+    below = negative(text)
+    if below:
+        raise BriefError(f"nothing on a road is negative, and '{below}' is; ask for a number above 0")
+    return text

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.bounds import bounded
 from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
 from roadgpt.brief.readers.model.network import Network, Written
 from roadgpt.brief.readers.model.slots import Slotted, slotted
@@ -111,8 +112,8 @@ def _look(network: Network, text: Slotted, refuse_from: float, is_mirrored: bool
     for written in network.write(network.encode(text), text, refuse_from):
         chance = written.refusal
         tokens = in_mirror_tokens(written.tokens) if is_mirrored else written.tokens
-        seen = Written(tokens, written.log_chances, written.refusal)
-        key = _key(tokens, text)
+        seen = Written(bounded(tokens, text), written.log_chances, written.refusal)
+        key = _key(seen.tokens, text)
         if key and (key not in plans or plans[key][0] < written.worth):
             plans[key] = (written.worth, seen)
     return Look(plans, chance)

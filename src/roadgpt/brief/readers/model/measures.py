@@ -21,6 +21,8 @@ class Number:
     unit: Unit = ""
     is_bare: bool = True
     factor: float = 1.0
+    spread: int = 0
+    """Of a count: how many more or fewer will do."""
 
 
 def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
@@ -87,13 +89,13 @@ def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
             number.is_bare, number.factor = False, sizes[0]
 
 
-def is_count(tokens: list[str], number: Number) -> bool:
+def is_count(tokens: Sequence[str], number: Number) -> bool:
     """May it be how many there are of something?"""
     return (
         number.value <= LARGEST_SEEN and number.value == int(number.value) and not is_radius(tokens, number)
     )
 
 
-def is_radius(tokens: list[str], number: Number) -> bool:
+def is_radius(tokens: Sequence[str], number: Number) -> bool:
     """R15: too large for a count, so it is a measure."""
     return number.value >= 10 and number.first > 0 and tokens[number.first - 1] == "r"

@@ -272,6 +272,8 @@ def _spellings(number: int, language: str) -> Iterator[str]:
     if language == "en" and text.startswith("one "):
         yield "a" + text[3:]
         yield text[4:] if number in (100, 1000) else text
+    if language == "es" and number >= 200:
+        yield text.replace("cientos", "cientas").replace("quinientos", "quinientas")
     if language == "de":
         yield text.replace("ß", "ss")
         yield text.replace("ü", "ue").replace("ö", "oe").replace("ß", "ss")

@@ -11,6 +11,7 @@ from itertools import chain, combinations, pairwise
 
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.normal import STRAIGHT, turns_of
+from roadgpt.brief.readers.model.bag import bag
 from roadgpt.brief.readers.model.slots import Slotted
 
 LEFT = frozenset(
@@ -96,6 +97,11 @@ TURNS = frozenset(
     ["turns", "bends", "corners", "curves", "kurven", "virages", "tournants", "courbes", "curvas"]
 )
 """What roads have several of, when no shape is meant; Italian "curve" is English for one."""
+MORE = bag(
+    "more further other others additional else otherwise weiteren weitere weiter anderen sonst autres",
+    "autre plus davantage mas otras otra otros demas altre altra altri ulteriori",
+)
+"""With which turns are denied besides those that were named: "no further turns"."""
 MOST_COUNTS = 8
 """So many counts have 255 sums; who names more has added up nothing."""
 
@@ -104,8 +110,17 @@ def rechecked(brief: Brief, text: Slotted) -> Brief:
     """The Brief with its counts made to follow from what was said."""
     words = {word.text for word in text.words}
     said = [int(word.text) for word in text.words if word.text.isdecimal() and word.said]
+    brief = _without_more(brief, words)
     sides = _sides_summed(brief, [*said, 1] if words & ONE else said, words)
     return _total_kept(_counts_summed(sides, said, words), text, {*said, 1})
+
+
+def _without_more(brief: Brief, words: set[str]) -> Brief:
+    """Turns were named, and then no others: that is no road without turns."""
+    turning = any(clause.kind not in STRAIGHT for clause in brief.clauses)
+    if turning and brief.turns and brief.turns.hi == 0 and words & MORE:
+        return brief.model_copy(update={"turns": None})
+    return brief
 
 
 def _sides_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:

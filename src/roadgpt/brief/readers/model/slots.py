@@ -19,10 +19,13 @@ from roadgpt.brief.readers.model.measures import (
     unit_at,
 )
 from roadgpt.brief.readers.model.numerals import plain, words
+from roadgpt.brief.readers.model.tilts import as_grade
+from roadgpt.brief.readers.model.tolerances import tolerances_first, with_tolerances
 from roadgpt.brief.readers.model.units import (
     AMBIGUOUS,
     AND_A_HALF,
     FUNCTION_WORDS,
+    MILLIONS,
     ONES,
     ORDINALS,
     RATIO,
@@ -41,6 +44,7 @@ SYMBOLS = str.maketrans({
 })  # fmt: skip
 WORD = re.compile(r"\d+(?:[.,]\d+)*|[^\W\d_]+|[^\w\s]|_")
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
+MILLION = 1e6
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 
@@ -75,13 +79,16 @@ class Slotted:
 
 def slotted(text: str) -> Slotted:
     """Takes the numbers out of a description."""
-    said = WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS)))
+    said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
     tokens = [plain(word) for word in said]
     numbers = _numbers(tokens)
     for number in numbers:
         take_unit(number, tokens)
     share_units(numbers, tokens)
     take_unit_of_all(numbers, tokens)
+    numbers = with_tolerances(numbers, tokens)
+    for number in numbers:
+        as_grade(number, tokens)
     return _replaced(tokens, said, numbers)
 
 
@@ -102,8 +109,8 @@ def _numbers(tokens: list[str]) -> list[Number]:
     at = 0
     while at < len(tokens):
         number = (
-            _ratio(tokens, at) or _part(tokens, at) or _digits(tokens, at) or _set(tokens, at)
-            or _spelled(tokens, at, language)
+            _ratio(tokens, at) or _millions(tokens, at) or _part(tokens, at) or _digits(tokens, at)
+            or _set(tokens, at) or _spelled(tokens, at, language)
         )  # fmt: skip
         if number:
             numbers.append(number)
@@ -123,6 +130,18 @@ def _ratio(tokens: list[str], at: int) -> Number | None:
     if not 3 <= below <= 100 or unit_at(tokens, places[2] + 1):
         return None
     return Number(round(100 / below, 1), at, places[2], "percent", False)
+
+
+def _millions(tokens: list[str], at: int) -> Number | None:
+    """A million: more than anything on a road, however many there are."""
+    if tokens[at] in MILLIONS:
+        return Number(MILLION, at, at)
+    many = tokens[at] in ONES or tokens[at].isdecimal() or (tokens[at],) in words()
+    return (
+        Number(MILLION, at, at + 1)
+        if many and tokens[at + 1 : at + 2] and tokens[at + 1] in MILLIONS
+        else None
+    )
 
 
 def _digit_value(token: str) -> float | None:
@@ -234,7 +253,7 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> Slot
             at = number.last + 2
             continue
         if number.is_bare and is_count(tokens, number):
-            out.append(Word(str(int(number.value)), spoken))
+            out += _count(number, spoken)
         elif len(slots) >= SLOTS:
             out.append(Word("[unused20]", spoken))
         else:
@@ -243,6 +262,14 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> Slot
             out += [Word(text, "") for text in _tail(number)]
         at = number.last + 1
     return Slotted(tuple(out), tuple(slots))
+
+
+def _count(number: Number, spoken: str) -> list[Word]:
+    """A small bare number stays a digit; one with a tolerance becomes "3 to 5"."""
+    value, spread = int(number.value), number.spread
+    if not spread:
+        return [Word(str(value), spoken)]
+    return [Word(str(max(value - spread, 0)), spoken), Word("to", ""), Word(str(value + spread), spoken)]
 
 
 def _is_ordinal(tokens: list[str], number: Number) -> bool:

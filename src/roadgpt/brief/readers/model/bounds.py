@@ -1,0 +1,116 @@
+"""Bounds: "at least", "no more than" and their like, said right before a measure, stay what they say.
+
+A small network sometimes takes "no larger than" for "at least", or leaves the bound out. Only phrases are
+judged of which the training pairs agree what they mean; "over 60 m" is as often a place, and stays.
+"""
+
+from collections.abc import Sequence
+from typing import Literal
+
+from roadgpt.brief.readers.model.bag import bag
+from roadgpt.brief.readers.model.slots import Slotted, slot_name
+from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+
+Bound = Literal["lo", "hi"]
+KEYS = frozenset(["deg=", "r=", "len=", "pct=", "steepest="])
+"""Whose bounds are judged; a climb's turns round where it falls."""
+SMALLER = bag(
+    "below under less smaller shorter fewer lower inside unter weniger kleiner kurzer geringer",
+    "unterhalb moins inferieur inferieure inferieurs inferieures sous menos menor inferior inferiores",
+    "meno minore minori inferiore inferiori sotto",
+)
+LARGER = bag(
+    "above over more larger longer greater higher exceed exceeds exceeding exceeded beyond past uber",
+    "ueber mehr grosser langer laenger hoher oberhalb uberschreiten uberschreitet plus superieur",
+    "superieure depasse depasser depassant mas mayor superior supera superar superando superare piu",
+    "maggiore superiore dessus encima oltre bigger",
+)
+BELOW = bag("below under less unter inferieur inferieure inferior inferiore")
+"""What says the most by itself, where nothing is denied; others compare with what was said before."""
+LEAST = bag("least minimum min mindestens minimal wenigstens moins minimo minima menos meno almeno")
+MOST = bag("most maximum max hochstens hoechstens maximal massimo maximo maxima massima")
+ALONE = bag("min max minimum maximum mindestens wenigstens hochstens hoechstens maximal almeno")
+"""What says so without "at" before it."""
+AT = bag("at au al por lo du como come")
+NOT = bag(
+    "no not never none neither nor nowhere without t nothing cannot dont doesnt kein keine keinen",
+    "keiner keines nicht nichts nie niemals nirgends nirgendwo ohne pas sans aucun aucune jamais nulle",
+    "sin nunca ningun ninguna nada non senza mai nessun nessuna niente ne",
+)
+RULED_OUT = bag("exclude excludes excluded avoid avoids free ban banned forbidden rule ruled")
+FILLERS = bag("than als de que di a the of von da about mit um at su um ein eine einem un une una")
+STOPS = frozenset(",.;:()|-")
+SENTENCE_STOPS = frozenset(".;:")
+MOST_FILLERS = 2
+REACH = 4
+"""Words before a comparison in which what denies it stands."""
+
+
+def bounded(tokens: Sequence[str], text: Slotted) -> tuple[str, ...]:
+    """The tokens of a plan, with the bounds of its measures as the words have them."""
+    words = [word.text for word in text.words]
+    out: list[str] = []
+    at = 0
+    while at < len(tokens):
+        size = _size(tokens, at)
+        amount = tokens[at + 1 : at + 1 + size]
+        out += [tokens[at], *_with_bound(amount, words)] if size else [tokens[at]]
+        at += 1 + size
+    return tuple(out)
+
+
+def _size(tokens: Sequence[str], at: int) -> int:
+    """How many tokens the amount of this key has, where it is one slot, bound or not; else 0."""
+    if tokens[at] not in KEYS:
+        return 0
+    after = [*tokens[at + 1 : at + 4], "", "", ""]
+    if after[0] == ".." and after[1] in SLOT_TOKENS:
+        return 2
+    if after[0] in SLOT_TOKENS:
+        if after[1] != "..":
+            return 1
+        return 0 if after[2] in SLOT_TOKENS or after[2].isdecimal() else 2
+    return 0
+
+
+def _with_bound(amount: Sequence[str], words: list[str]) -> list[str]:
+    slot = next(token for token in amount if token in SLOT_TOKENS)
+    name = slot_name(SLOT_TOKENS.index(slot))
+    bound = bound_before(words, words.index(name)) if words.count(name) == 1 else None
+    if bound is None:
+        return [*amount]
+    return ["..", slot] if bound == "hi" else [slot, ".."]
+
+
+def bound_before(words: Sequence[str], at: int) -> Bound | None:
+    """What the words right before a number say of it; None where they say no bound, or none for sure."""
+    last = at - 1
+    while last >= 0 and words[last] in FILLERS and at - 1 - last < MOST_FILLERS:
+        last -= 1
+    if last < 0:
+        return None
+    word, before = words[last], _since_stop(words, last)
+    is_at = word in ALONE or bool(before and before[0] in AT)
+    if is_at and word in LEAST | MOST:
+        return "lo" if word in LEAST else "hi"
+    if word not in SMALLER | LARGER:
+        return None
+    if NOT.intersection(before):
+        return "lo" if word in SMALLER else "hi"
+    return "hi" if word in BELOW and not (NOT | RULED_OUT).intersection(_sentence(words, at)) else None
+
+
+def _sentence(words: Sequence[str], at: int) -> Sequence[str]:
+    first = max((place + 1 for place in range(at) if words[place] in SENTENCE_STOPS), default=0)
+    last = next((place for place in range(at, len(words)) if words[place] in SENTENCE_STOPS), len(words))
+    return words[first:last]
+
+
+def _since_stop(words: Sequence[str], last: int) -> list[str]:
+    """Up to REACH words before this place, the nearest first, back to a stop."""
+    out: list[str] = []
+    for place in range(last - 1, max(-1, last - 1 - REACH), -1):
+        if words[place] in STOPS:
+            break
+        out.append(words[place])
+    return out

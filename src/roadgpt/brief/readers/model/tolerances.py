@@ -1,0 +1,87 @@
+"""Tolerances: "four turns, plus or minus one" is three to five; "60 m ± 5 m" is 60 m, since slack is ours."""
+
+from collections.abc import Sequence
+
+from roadgpt.brief.readers.model.bag import bag
+from roadgpt.brief.readers.model.measures import Number, is_count, unit_at
+from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.numerals import words as spellings
+from roadgpt.brief.readers.model.units import ONES
+
+SIGNS = frozenset(
+    tuple(sign.split())
+    for sign in (
+        *("±", "+ / -", "+ -", "+ or -", "plus or minus", "plus / minus", "plus minus", "give or take"),
+        *("plus oder minus", "plus ou moins", "mas o menos", "mas menos", "piu o meno", "piu meno"),
+        *("a tolerance of", "tolerance"),
+    )
+)
+OPENING = frozenset([",", "(", "-"])
+LONGEST = 4
+"""Words of the longest sign and a bracket before it."""
+COUNTED = bag(
+    "turns bends corners curves hairpins switchbacks kurven kehren virages tournants epingles curvas",
+    "horquillas tornanti curve",
+)
+
+
+def tolerances_first(said: Sequence[str]) -> list[str]:
+    """The words with "five turns, give or take one" as "five, give or take one turns"."""
+    words = [*said]
+    tokens = [plain(word) for word in words]
+    for at in range(1, len(words) - 2):
+        if tokens[at] not in COUNTED:
+            continue
+        for last in range(at + 2, min(at + 2 + LONGEST, len(words))):
+            if _is_tolerance(tokens[at + 1 : last]) and _is_count(tokens, last):
+                last += "(" in tokens[at:last] and tokens[last + 1 : last + 2] == [")"]
+                words[at : last + 1] = [*words[at + 1 : last + 1], words[at]]
+                return words
+    return words
+
+
+def _is_count(tokens: Sequence[str], at: int) -> bool:
+    token = tokens[at]
+    return (token.isdecimal() or token in ONES or (token,) in spellings()) and not unit_at(tokens, at + 1)
+
+
+def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
+    """The numbers without those that only say how far another may be off, which then ends behind them."""
+    out: list[Number] = []
+    for number in numbers:
+        if out and _is_tolerance(tokens[out[-1].last + 1 : number.first]) and number.value < out[-1].value:
+            _take(out[-1], number, tokens)
+        else:
+            out.append(number)
+    for number in out:
+        _take_one(number, tokens)
+    return out
+
+
+def _take_one(number: Number, tokens: Sequence[str]) -> None:
+    """Gives a count the tolerance of "one", which is no number elsewhere, since it mostly is an article."""
+    if not (number.is_bare and is_count(tokens, number)) or number.spread:
+        return
+    for place in range(number.last + 1, min(number.last + 2 + LONGEST, len(tokens))):
+        if tokens[place] in ONES and _is_tolerance(tokens[number.last + 1 : place]):
+            number.spread, number.last = 1, place
+            return
+
+
+def _is_tolerance(between: Sequence[str]) -> bool:
+    words = [*between]
+    while words and words[0] in OPENING:
+        words = words[1:]
+    return tuple(words) in SIGNS
+
+
+def _take(number: Number, tolerance: Number, tokens: Sequence[str]) -> None:
+    both_counts = number.is_bare and tolerance.is_bare and is_count(tokens, number)
+    if number.is_bare and tolerance.unit in ("metres", "degrees"):
+        number.value = round(number.value * tolerance.factor, 1)
+        number.unit, number.is_bare = tolerance.unit, False
+    if both_counts and tolerance.value == int(tolerance.value):
+        number.spread = int(tolerance.value)
+    is_open = "(" in tokens[number.last + 1 : tolerance.first]
+    closes = tolerance.last + 1 < len(tokens) and tokens[tolerance.last + 1] == ")"
+    number.last = tolerance.last + (is_open and closes)

@@ -1,0 +1,54 @@
+"""Descriptions composed of turns that are numbered, repeated, kept apart or counted by side, in English.
+
+Grammars write one thing after another; here one sentence speaks of many things at once ("six bends, 30 m of
+straight between any two", "turns 2 and 4 go left, the others right"), and the plan follows by counting. These
+pairs teach a network to go on counting where people's examples end.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from roadgpt.brief.feasible import check
+from roadgpt.brief.plan import read_plan
+from roadgpt.errors import BriefError
+from roadgpt.learn.compositions.by_parts import by_parts
+from roadgpt.learn.compositions.endings import corrected, nothing_more
+from roadgpt.learn.compositions.kept_apart import kept_apart
+from roadgpt.learn.compositions.limits import limited
+from roadgpt.learn.compositions.numbered import numbered_kinds, numbered_sides
+from roadgpt.learn.compositions.repeated import lettered, repeated
+from roadgpt.learn.compositions.said import Said, Voice
+from roadgpt.learn.compositions.sums import ranged, sided_sum
+from roadgpt.learn.compositions.turned_round import turned_round
+from roadgpt.learn.noise import noisy, tidy
+from roadgpt.learn.standard import standard
+
+MAP_SIZE = 750.0  # metres: what is said of eight turns and their straights need not fit on the usual map
+WAYS: tuple[tuple[Callable[[Voice], Said], float], ...] = (
+    (kept_apart, 0.16),
+    (numbered_sides, 0.13),
+    (numbered_kinds, 0.13),
+    (by_parts, 0.10),
+    (repeated, 0.11),
+    (lettered, 0.05),
+    (sided_sum, 0.07),
+    (ranged, 0.04),
+    (limited, 0.10),
+    (corrected, 0.03),
+    (nothing_more, 0.03),
+    (turned_round, 0.05),
+)
+SHARES = np.cumsum([share for _, share in WAYS])
+
+
+def composed(rng: np.random.Generator) -> Said | None:
+    """A description and its plan in standard form; None where no road could be so."""
+    way = WAYS[int(np.searchsorted(SHARES, rng.random() * SHARES[-1], side="right"))][0]
+    said = way(Voice(rng))
+    try:
+        brief = read_plan(said.plan)
+        check(brief, MAP_SIZE)
+    except BriefError:
+        return None
+    return Said(noisy(tidy(said.text), "en", rng), standard(brief))

@@ -1,0 +1,48 @@
+"""Counts that add up: so many in all, so many to a side, and which come first or last."""
+
+from roadgpt.learn.compositions.said import NOUNS, OTHER, SIDES, Said, Turn, Voice, clauses
+
+
+def sided_sum(voice: Voice) -> Said:
+    """A number of turns, those of each side, and now and then their order."""
+    total = voice.whole(2, 9)
+    side = voice.pick(SIDES)
+    few = voice.whole(1, max(1, total // 2))
+    many = total - few
+    count = voice.say("totals", n=voice.number(total), noun=voice.pick(NOUNS))
+    text = f"{count}, " + voice.say(
+        "sums", one=_sided(voice, few, side), other=_sided(voice, many, OTHER[side])
+    )
+    if voice.chance(0.45):
+        left, right = (few, many) if side == "left" else (many, few)
+        return voice.framed(text, f"| turns={total} lefts={left} rights={right}")
+    place = voice.pick(("last", "last", "first"))
+    text += voice.pick((", ", "; ", ", and ")) + voice.say(f"{'one' if few == 1 else 'many'} {place}", s=side)
+    own, rest = [Turn(mods={"side": side})] * few, [Turn(mods={"side": OTHER[side]})] * many
+    return voice.framed(text, clauses([*rest, *own] if place == "last" else [*own, *rest]))
+
+
+def _sided(voice: Voice, number: int, side: str) -> str:
+    return (
+        f"{voice.number(number)} {voice.pick((side, side if number == 1 else f'{side}s', f'to the {side}'))}"
+    )
+
+
+def ranged(voice: Voice) -> Said:
+    """Between three and five turns, one of which may be told apart."""
+    low = voice.whole(2, 5)
+    high = low + voice.whole(1, 3)
+    numbers = {"low": low, "high": high, "less": low - 1, "more": high + 1}
+    count = voice.say(
+        "ranges", noun=voice.pick(NOUNS), **{name: voice.number(value) for name, value in numbers.items()}
+    )
+    if voice.chance(0.35):
+        return voice.framed(count, f"| turns={low}..{high}")
+    side = voice.pick(SIDES)
+    own, said = voice.pick(
+        (("turn", f"a {side}"), ("turn", f"a {side}-hander"), ("hairpin", f"a {side} hairpin"))
+    )
+    rest = f"turn x{low - 1}..{high - 1}"
+    if voice.chance(0.5):
+        return voice.framed(voice.say("first of", count=count, said=said), f"{own} {side}; {rest}")
+    return voice.framed(voice.say("last of", count=count, said=said), f"{rest}; {own} {side}")
