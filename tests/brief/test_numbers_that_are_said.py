@@ -1,0 +1,106 @@
+"""Numbers with a tolerance, slopes in degrees, and numbers below nothing."""
+
+from math import degrees
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadgpt.brief import reader_of
+from roadgpt.brief.readers.model.negatives import negative
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.errors import BriefError
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("4 +/- 1 turns", "3 to 5 turns"),
+        ("4 turns plus or minus one", "3 to 5 turns"),
+        ("five bends, give or take two, uphill", "3 to 7 bends , uphill"),
+        ("6 hairpins (± 2)", "4 to 8 hairpins"),
+        ("vier Kurven plus minus eine", "3 to 5 kurven"),
+        ("a road of 300 m (plus or minus 10 %)", "a road of [unused1] metres"),
+        ("60±5 m of straight", "[unused1] metres of straight"),
+        ("five bends plus two hairpins", "5 bends plus 2 hairpins"),
+        ("3 turns + 2 turns", "3 turns + 2 turns"),
+    ],
+)
+def test_a_tolerance_widens_a_count_and_says_nothing_of_a_measure(text: str, read: str) -> None:
+    assert slotted(text).text == read
+
+
+@given(st.integers(2, 9), st.integers(1, 8), st.sampled_from(["± {}", "plus or minus {}", "give or take {}"]))
+def test_any_tolerance_below_the_count(count: int, off: int, sign: str) -> None:
+    if off < count:
+        text = slotted(f"{count} turns {sign.format(off)}").text
+        assert text == f"{count - off} to {count + off} turns"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a grade of {}°",
+        "uphill at {} degrees",
+        "a {} degree climb",
+        "the slope is {} deg",
+        "uphill at an angle of {} degrees through 3 bends",
+        "eine Steigung von {} Grad",
+        "una pendiente de {} grados",
+    ],
+)
+@pytest.mark.parametrize("angle", [3, 5, 8])
+def test_a_slope_in_degrees_is_the_tangent_in_percent(text: str, angle: int) -> None:
+    from scipy.special import tandg
+
+    (slot,) = slotted(text.format(angle)).slots
+    assert slot.unit == "percent"
+    assert slot.value == pytest.approx(100 * float(tandg(angle)), abs=0.051)
+    assert degrees(slot.value / 100) == pytest.approx(angle, abs=0.1)  # for small angles both are alike
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "turn left 30 degrees uphill",
+        "climbs 30 degrees to the left",
+        "downhill, 45 degrees left",
+        "an uphill bend of 40 degrees",
+        "climbing through a 30 degree bend",
+        "a climb with a 40 degree left",
+    ],
+)
+def test_an_angle_of_a_turn_stays_an_angle(text: str) -> None:
+    assert [slot.unit for slot in slotted(text).slots] == ["degrees"]
+
+
+@pytest.mark.parametrize(
+    ("text", "below"),
+    [
+        ("a road with minus three turns", "minus three turns"),
+        ("a road with -3 turns", "minus 3 turns"),
+        ("a straight of -50 m, then a left", "minus 50 m"),
+        ("negative 50 metres of straight", "minus 50 metres"),
+        ("a left with a radius of minus 30 m", "minus 30 m"),
+        ("falls at minus 5 percent", None),
+        ("ends at minus 8 m of height", None),
+        ("40 m straight - 3 turns - hairpin", None),
+        ("four turns, plus or minus 1", None),
+        ("- 3 turns\n- uphill", None),
+    ],
+)
+def test_what_cannot_be_negative_is_found(text: str, below: str | None) -> None:
+    assert negative(slotted(text)) == below
+
+
+def test_a_negative_number_of_turns_is_refused_with_its_words() -> None:
+    with pytest.raises(BriefError, match="'minus four bends'"):
+        reader_of("model").read("I need a road with minus four bends, please.")
+
+
+@pytest.mark.parametrize(
+    "text", ["two million bends", "Bend left by a million degrees", "ochocientas horquillas"]
+)
+def test_absurd_numbers_in_words_are_refused(text: str) -> None:
+    with pytest.raises(BriefError):
+        reader_of("model").read(text)
