@@ -87,6 +87,7 @@ def briefs() -> st.SearchStrategy[Brief]:
         alternating=maybe(st.just(True), 6).map(bool),
         sharpness=maybe(st.sampled_from(["gentle", "sweeping", "sharp"]), 6),
         slope=maybe(st.sampled_from(SLOPES)),
+        turning=maybe(amounts(60, 400), 8),
         steepest=maybe(amounts(2, 15), 8),
         climb=maybe(amounts(-25, 25), 8),
         hills=maybe(amounts(1, 5, whole=True), 8),

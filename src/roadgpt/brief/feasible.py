@@ -15,6 +15,7 @@ from roadgpt.brief.words import (
     SHARPNESS,
     SLOPES,
     STEEPEST,
+    TURNING_SLACK,
     Range,
 )
 from roadgpt.errors import BriefError
@@ -24,6 +25,7 @@ SMALLEST_ANGLE = 10.0  # degrees; less is measured as straight
 SHORTEST_ROAD = 20.0  # metres
 WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, verges, and the bow of the turn itself
 MOST_TURNS = 200.0
+MOST_TURNING = 3000.0  # degrees of all turns together
 RISING = ("up", "gently_up", "steeply_up")
 FALLING = ("down", "gently_down", "steeply_down")
 LEVEL = ("flat", "nearly_flat")
@@ -63,6 +65,7 @@ def check(
     each = Clause(kind="turn", sharpness=brief.sharpness, degrees=brief.degrees, radius=brief.radius)
     _shape(each, limits)
     _number_of_turns(brief)
+    _turning(brief)
     _sides(brief)
     _slopes(brief, limits)
     _length(brief, limits)
@@ -173,6 +176,45 @@ def _number_of_turns(brief: Brief) -> None:
             raise BriefError("turns are asked for, but also no turns: leave out one of the two")
     if max(said.lo or 0, (brief.turns.lo or 0) if brief.turns else 0) > MOST_TURNS:
         raise BriefError(f"no map holds so many turns; ask for {MOST_TURNS:g} or fewer")
+
+
+def _turning(brief: Brief) -> None:
+    """All turns together turn no less than each, and no more than they can."""
+    if brief.turning is None:
+        return
+    if brief.turning.lo is not None and brief.turning.lo > MOST_TURNING:
+        raise BriefError(f"no map holds {brief.turning.lo:g} degrees of turning; ask for less")
+    if brief.turns and brief.turns.hi == 0:
+        raise BriefError("turning is asked for, but also no turns: leave out one of the two")
+    turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
+    if turning:
+        spans = [(turns_of(clause), _degrees_of(clause, brief.degrees)) for clause in turning]
+        least = sum(count[0] * degrees.lo for count, degrees in spans)
+        most = sum(count[1] * degrees.hi for count, degrees in spans)
+    else:
+        turns = brief.turns or Amount(lo=1)
+        least = (turns.lo or 0) * SMALLEST_ANGLE
+        most = LARGEST_ANGLE * (inf if turns.hi is None else turns.hi)
+    if brief.turning.hi is not None and brief.turning.hi * (1 + TURNING_SLACK) < least:
+        raise BriefError(
+            f"what is named turns {least:g} degrees or more, but {brief.turning.hi:g} are asked for in all;"
+            " ask for fewer turns or for more degrees"
+        )
+    if brief.turning.lo is not None and brief.turning.lo * (1 - TURNING_SLACK) > most:
+        raise BriefError(
+            f"what is named turns {most:g} degrees at most, but {brief.turning.lo:g} are asked for in all;"
+            " ask for more turns or for fewer degrees"
+        )
+
+
+def _degrees_of(clause: Clause, each: Amount | None) -> Range:
+    """What one turn of a clause may turn, widely."""
+    said = clause.degrees or each
+    own = KINDS[clause.kind].degrees or Range(SMALLEST_ANGLE, LARGEST_ANGLE)
+    if said is None:
+        return own
+    low = SMALLEST_ANGLE if said.lo is None else said.lo * (1 - TURNING_SLACK)
+    return Range(low, LARGEST_ANGLE if said.hi is None else said.hi * (1 + TURNING_SLACK))
 
 
 def _sides(brief: Brief) -> None:

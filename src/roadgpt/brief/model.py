@@ -118,6 +118,8 @@ class Brief(Frozen):
     """Of every turn."""
     radius: Amount | None = None
     """Metres, of every turn."""
+    turning: Amount | None = None
+    """Degrees, all turns together, whichever way."""
     slope: Slope | None = None
     """Of the whole road."""
     incline: Amount | None = None

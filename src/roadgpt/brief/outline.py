@@ -19,6 +19,7 @@ from roadgpt.brief.words import (
     SIZES,
     SLOPES,
     STEEPEST,
+    TURNING_SLACK,
     Range,
     degrees_slack,
     overlap,
@@ -72,6 +73,8 @@ class Outline:
     """Of the whole road: up or down all the way on 20 m windows, or within 1 %."""
     grade_range: Range | None = None
     """Percent: mean of the whole road, or every place of it where ``grade`` is None or flat."""
+    turning: Range | None = None
+    """Degrees, all turns together."""
     steepest: Range | None = None
     climb: Range | None = None
     hills: Range | None = None
@@ -111,6 +114,7 @@ def outline(brief: Brief, roomy: bool = True) -> Outline:
         ),
         grade=grade,
         grade_range=grade_range,
+        turning=_near(brief.turning, lambda degrees: TURNING_SLACK * degrees),
         steepest=steepest,
         climb=_near(brief.climb, lambda m: max(LENGTH_SLACK * abs(m), 1.0)),
         hills=_count(brief.hills) if brief.hills else None,

@@ -30,6 +30,7 @@ ROAD_KEYS = {
     "turns": "turns",
     "lefts": "left",
     "rights": "right",
+    "turning": "turning",
     "steepest": "steepest",
     "climb": "climb",
     "hills": "hills",

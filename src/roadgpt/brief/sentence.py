@@ -43,6 +43,7 @@ def _wishes(brief: Brief) -> list[str]:
         f"every turn {brief.sharpness}" if brief.sharpness else None,
         _if(brief.degrees, lambda a: f"every turn of {_number(a)} degrees"),
         _if(brief.radius, lambda a: f"every turn radius {_number(a)} metres"),
+        _if(brief.turning, lambda a: f"{_number(a)} degrees of turning in all"),
         _slope(brief),
         _if(brief.steepest, lambda a: f"steepest {_number(a)} percent"),
         _if(brief.climb, _climb),

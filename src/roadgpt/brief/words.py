@@ -130,6 +130,7 @@ STEEPEST = 15.0  # percent, up and down: RoadGPT's system prompt
 PERCENT_SLACK = 1.0  # percentage points, around a grade that was said as a number
 LENGTH_SLACK = 0.15  # ratio, around the length of a straight or the radius of a turn
 ROAD_LENGTH_SLACK = 0.10  # ratio, around the length of the whole road
+TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 
 def degrees_slack(degrees: float) -> float:
@@ -200,7 +201,7 @@ def _slopes() -> list[str]:
 
 def _numbers() -> list[str]:
     rows = [
-        ("degrees", "10 %, at most 7 degrees; at most 10 from 90 degrees on"),
+        ("degrees", "10 %, at most 7 degrees; at most 10 from 90 degrees on; of all turns together 10 %"),
         ("metres", f"{100 * LENGTH_SLACK:g} %; of the whole road {100 * ROAD_LENGTH_SLACK:g} %"),
         ("percent", f"{PERCENT_SLACK:g} percentage point"),
         ("a number of turns", "none"),

@@ -98,6 +98,7 @@ def demands(outline: Outline) -> list[str]:
     grade = f" (mean slope {outline.grade_range} %)" if outline.grade_range else ""
     out.append(whole[outline.grade] + grade if outline.grade else "")
     quantities = (
+        (outline.turning, "all turns together turn {} degrees"),
         (outline.steepest, "the steepest place has {} %"),
         (outline.climb, "the end lies {} m higher than the start"),
         (outline.hills, "{} changes between climbing and falling"),

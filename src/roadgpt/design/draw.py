@@ -25,6 +25,7 @@ RAMPS = (0.12, 0.34)  # of the arc, for each clothoid
 RAMP_LIMITS = (3.0, 16.0)  # m
 LEAD = 16.5  # m: a straight before the first or after the last turn is measured as 10 m or more
 SEPARATE = 17.5  # m: turns of one hand with so much between them are measured as two
+KEPT = 0.5  # degrees by which a turn may still leave the angle that makes a sum right
 TIGHTER = 1.35  # hard roads: radii are at most so many times the least one
 
 
@@ -110,6 +111,11 @@ def drawn_turns(
     """
     angles = [room.degrees.lo + _share(rng, haste) * (room.degrees.hi - room.degrees.lo) for room in rooms]
     angles = _uncoiled(angles, rooms, 215 + 115 * rng.random())
+    if outline.turning:
+        angles = _summed(angles, rooms, _target(outline.turning, rng))
+        rooms = [
+            room._replace(degrees=Range(a - KEPT, a + KEPT)) for room, a in zip(rooms, angles, strict=True)
+        ]
     longest = _longest(len(rooms), outline, world) * (1 - 0.6 * haste)
     return [
         _drawn_turn(room, angle, longest, outline.hard, rng, haste)
@@ -138,6 +144,22 @@ def _uncoiled(angles: list[float], rooms: Sequence[TurnRoom], most: float) -> li
         return angles
     f = max((most - low) / (now - low), 0.0)
     return [room.degrees.lo + f * (a - room.degrees.lo) for a, room in zip(angles, rooms, strict=True)]
+
+
+def _target(asked: Range, rng: np.random.Generator) -> float:
+    """Degrees for all turns together, inside what was asked for."""
+    low = asked.lo if asked.lo > 0 else 0.6 * asked.hi
+    high = asked.hi if asked.hi < inf else 1.3 * asked.lo
+    return low + (high - low) * (0.3 + 0.4 * float(rng.random()))
+
+
+def _summed(angles: list[float], rooms: Sequence[TurnRoom], target: float) -> list[float]:
+    """Angles moved towards their least or their most until they add up, as far as that goes."""
+    missing = target - sum(angles)
+    ends = [room.degrees.hi if missing > 0 else room.degrees.lo for room in rooms]
+    room_left = sum(ends) - sum(angles)
+    f = min(missing / room_left, 1.0) if room_left else 0.0
+    return [angle + f * (end - angle) for angle, end in zip(angles, ends, strict=True)]
 
 
 def _swing(signed: Sequence[float]) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import ceil, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ MORE = (0.45, 0.30, 0.17, 0.08)  # chances of 0, 1, ... turns more than "at leas
 SWITCH = 0.6  # chance that a turn goes the other way than the one before, where that is open
 WIDE = 100.0  # degrees: turns of so many or more would coil up, so they mostly alternate
 SWITCH_WIDE = 0.9
+SMALL, LARGE = 27.0, 105.0  # degrees of usual turns, by which a number of them turns as far as was asked for
 ROUNDS = 60  # of drawing sides until left and right are as many as asked for
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
@@ -79,7 +81,7 @@ def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> li
     counts = [group.lo for group in groups]
     open_ = [i for i, g in enumerate(groups) if g.feature.kind == "turn" and g.hi != g.lo]
     total = sum(count for count, g in zip(counts, groups, strict=True) if g.feature.kind == "turn")
-    missing = int(max(outline.turns.lo - total, 0))
+    missing = int(max(outline.turns.lo - total, _turned(outline).lo - total, 0))
     more = 0 if plain or not open_ else int(rng.choice(len(MORE), p=MORE))
     spare = outline.turns.hi - total
     for _ in range(int(min(max(missing, more), spare)) if open_ else 0):
@@ -113,12 +115,22 @@ def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
         raise DesignError(f"no road has turns {outline.turns} in all, {asked}; change one of these numbers")
     # of a road of which only ups and downs are said, they are what it is to show
     only_slopes = bool(outline.groups) and all(group.feature.grade for group in outline.groups)
+    enough = _turned(outline)
+    low, high = max(low, int(min(enough.lo, high))), max(low, min(high, enough.hi))
     if plain or only_slopes:
         return low
     if low <= 1:
         some = 1 + int(rng.choice(len(USUAL), p=USUAL))
         return int(min(max(some, low), high))
     return int(min(low + rng.choice(len(MORE), p=MORE), high))
+
+
+def _turned(outline: Outline) -> Range:
+    """How many usual turns make up the degrees that all are to turn together."""
+    if outline.turning is None:
+        return Range()
+    most = outline.turning.hi // SMALL if outline.turning.hi < inf else inf
+    return Range(ceil(max(outline.turning.lo, 0) / LARGE), most)
 
 
 def _with_ends(outline: Outline, turns: list[Turn], gaps: list[list[Feature]]) -> None:

@@ -83,6 +83,11 @@ FRAME_WORDS: dict[str, str] = {
     " | of climb | total ascent | of height | of elevation | in height | in elevation"
     " | in altitude | higher | of altitude | net elevation gain | net gain | of ascent"
     " | of climbing | ascent of | gain of | altitude gain | difference in height | height change",
+    "turned": "of turning in all | of turning in total | of turning altogether | total heading change"
+    " | total heading change of | heading change in all | heading change in total | total turning"
+    " | of heading change in all | of heading change in total | overall heading change | cumulative turning"
+    " | cumulative heading change | accumulated heading change | total of turning | of total turning"
+    " | of total heading change | total turning angle | sum of all turns | sum of the turn angles",
     "loss": "elevation loss | height loss | altitude loss | net drop | net fall | net descent | lower"
     " | total descent | of descent | loss of | net elevation loss | total drop",
     "gain": "gain | gains | gaining",

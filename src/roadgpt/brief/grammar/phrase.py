@@ -65,6 +65,9 @@ class Phrase:
     length_said: bool = False
     height: Amount | None = None
     height_said: str = ""
+    turned: Amount | None = None
+    """Degrees of all turns together."""
+    turned_said: bool = False
     incline: Amount | None = None
     highest: bool = False
     alternating: bool = False

@@ -122,6 +122,8 @@ class _Builder:
             steep = at_least((SLOPES["steeply_up"].grade or Range(8)).lo)
             mountain = wishes.steepest == at_least(MOUNTAIN.lo)
             wishes.steepest = steep if mountain else wishes.steepest or steep
+        if phrase.turned:
+            wishes.turning = phrase.turned
         if phrase.height is not None:
             self._climb(phrase, phrase.height)
 

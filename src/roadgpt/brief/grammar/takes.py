@@ -136,6 +136,9 @@ def _size(amount: Amount) -> Amount:
 
 def _take_degrees(now: Phrase, item: Item, after: str) -> None:
     amount = item.amount
+    if (now.turned_said or after == "turned") and now.turned is None and not item.series:
+        now.turned = amount
+        return
     if _changes_sign(amount):
         now.ignored.append(item)
         return
@@ -225,6 +228,7 @@ TAKES: dict[str, Callable[[Phrase, Item, str], None]] = {
     "radius": _radius_word,
     "length": _set(length_said=True),
     "height": _set(height_said="gain"),
+    "turned": _set(turned_said=True),
     "gain": _set(height_said="gain", slope="up", climbs=True),
     "loss": _set(height_said="loss"),
     "lose": _set(height_said="loss", slope="down", climbs=True),

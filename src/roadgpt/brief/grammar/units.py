@@ -24,6 +24,7 @@ class Wishes:
     sharpness: Sharpness | None = None
     degrees: Amount | None = None
     radius: Amount | None = None
+    turning: Amount | None = None
     slope: Slope | None = None
     incline: Amount | None = None
     steepest: Amount | None = None

@@ -36,7 +36,7 @@ Behind it may stand, each once and only where the description says so:
 "road": what holds for the whole road, on one line: the words alternating, gentle, sweeping, sharp, hard and
 those of slopes, and
   turns=3 lefts=1 rights=2 deg= r= len= pct=     steepest=8 (percent)  climb=20 (metres)  hills=2
-  starts(straight len=50) ends(turn left)
+  turning=270 (degrees of all turns together)  starts(straight len=50) ends(turn left)
 "unused": words about the road that fit into neither.
 
 A number is exact (3), at least (3..), at most (..3) or between (3..5); no units. If anything along the road

@@ -110,6 +110,12 @@ def _wholes(found: Measures, asked: Outline) -> tuple[_Whole, ...]:
             asked.steepest,
             f"asked for a steepest place of {{asked}} %, has {found.steepest:.1f} %",
         ),
+        _Whole(
+            found.turning,
+            asked.turning,
+            f"asked for {{asked}} degrees of turning in all, has {found.turning:.0f}",
+            False,
+        ),
         _Whole(found.climb, asked.climb, f"asked for a climb of {{asked}} m, has {found.climb:.1f} m"),
         _Whole(
             found.hills,

@@ -13,7 +13,7 @@ from typing import Any, Self
 import numpy as np
 
 from roadgpt.brief.feasible import check
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.grammar import GrammarReader
@@ -24,6 +24,7 @@ from roadgpt.brief.readers.model.negatives import negative
 from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.recheck import rechecked
 from roadgpt.brief.readers.model.slots import Slotted, slotted
+from roadgpt.brief.readers.model.turned import turned_in_all
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.errors import BriefError, PartError
 
@@ -65,6 +66,15 @@ class ModelReader:
         Raises:
             BriefError: the words are empty, too many, no road, contradictory or ask for the impossible.
         """
+        _text(words)
+        turned = turned_in_all(words)
+        if turned is None:
+            return self._read(words)
+        is_said = len(turned.rest.split()) > 1
+        brief = self._read(turned.rest) if is_said else Brief(turns=at_least(1))
+        return brief.model_copy(update={"words": words, "turning": turned.degrees})
+
+    def _read(self, words: str) -> Brief:
         text = _text(words)
         found = drafts(self._network, words, self._settings["refuse_from"])
         return self._brief(words, text, _as_listed(found, text) or _consistent(found))
@@ -78,6 +88,8 @@ class ModelReader:
             BriefError: as ``read``.
         """
         first = self.read(words)
+        if first.turning:  # of what the network cannot say there are no others
+            return (first,)
         text = _text(words)
         across = self._network.encode(text)
         rng = np.random.default_rng(seed)
