@@ -238,6 +238,15 @@ def test_a_proposal_with_the_right_turns_is_made_true_to_its_brief(words: str) -
     assert check.inspect(build(after), brief, WORLD) == ()
 
 
+@pytest.mark.parametrize("asked", [150, 210, 300])
+def test_turns_that_should_add_up_to_a_sum_are_made_to(asked: int) -> None:
+    proposed = road_of((30, 0, 0), (30, 60, 0), (40, 0, 0), (30, -60, 0), (40, 0, 0), (30, 60, 0), (30, 0, 0))
+    brief = read(f"three turns; {asked} degrees of turning in all")
+    after = repair(proposed, brief, WORLD, "full").design
+    assert is_valid(after, brief)
+    assert sum(abs(segment.turn_degrees) for segment in after.segments) == pytest.approx(asked, rel=0.1)
+
+
 def test_a_proposal_with_other_turns_than_asked_is_made_valid_and_stays_what_it_is() -> None:
     brief = Brief(clauses=(Clause(kind="turn", count=exactly(3)),))
     proposed = road_of((30, 0, 0), (8, 60, 0), (40, 0, 20), start=(240.0, 20.0, 0.0))

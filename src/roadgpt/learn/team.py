@@ -1,6 +1,7 @@
 """Several processes train side by side, each on one core, and average their weights (local SGD)."""
 
 import multiprocessing
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from multiprocessing.process import BaseProcess
@@ -34,7 +35,9 @@ def train_together(
     spawn = multiprocessing.get_context("spawn")
     others: list[BaseProcess] = [
         spawn.Process(
-            target=_work, args=(folder, pieces, weights, hand, replace(plan, rank=rank)), daemon=True
+            target=_work,
+            args=(folder, pieces, weights, hand, replace(plan, rank=rank), os.getpid()),
+            daemon=True,
         )
         for rank in range(1, plan.workers)
     ]
@@ -52,11 +55,17 @@ def train_together(
 
 
 def _work(
-    folder: Path, pieces: Sequence[str], weights: Path | None, hand: Sequence[Pair], plan: Plan
+    folder: Path, pieces: Sequence[str], weights: Path | None, hand: Sequence[Pair], plan: Plan, parent: int
 ) -> None:
     """A worker's whole life."""
     torch.set_num_threads(1)
-    train(folder, pieces, weights, hand, plan, report=lambda line: None)
+    train(folder, pieces, weights, hand, plan, lambda line: None, lambda: _not_alone(parent))
+
+
+def _not_alone(parent: int) -> None:
+    """Ends a worker whose training was killed: it would go on for ever, and write beside the next one."""
+    if os.getppid() != parent:
+        raise SystemExit(1)
 
 
 def _all_there(workers: Sequence[BaseProcess]) -> None:

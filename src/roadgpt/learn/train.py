@@ -66,7 +66,7 @@ def train(
         hand: pairs written by hand, for training.
         plan: how long, how fast.
         report: is given a line from time to time.
-        check: called while it waits for other workers; raises where one of them is gone.
+        check: called before every step and while it waits for other workers; raises where one is gone.
     """
     folder.mkdir(parents=True, exist_ok=True)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
@@ -94,6 +94,7 @@ def train(
     began, losses = time.monotonic(), []
     reader.train()
     for step in range(first, plan.steps):
+        check()
         losses.append(_step(reader, optimiser, next(stream), _rate(step, plan), device))
         if (step + 1) % 50 == 0 and plan.rank == 0:
             _note(folder, step + 1, plan, losses, (step + 1 - first) / (time.monotonic() - began), report)

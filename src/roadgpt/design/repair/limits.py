@@ -114,6 +114,9 @@ def limits_of(
     rows.within(whole, Range(world.min_length + 2.0))
     if outline.length:
         rows.within(whole, _drawn_in(outline.length, margins.promise / 4))
+    if outline.turning:
+        turning = [i for i, segment in enumerate(segments) if segment.turn_degrees]
+        rows.turned(turning, _drawn_in(outline.turning, margins.promise / 4))
     return rows.done()
 
 
