@@ -171,6 +171,25 @@ def test_straights_of_different_grades_keep_their_lengths_and_grades(line: str) 
         assert_fine(planner.draft(brief, WORLD, (), (), seed), brief, WORLD)
 
 
+@pytest.mark.parametrize(("length", "percent"), [(25, 12), (40, 10), (40, 14), (30, 8), (60, 12)])
+@pytest.mark.parametrize("way", ["up", "down"])
+def test_a_short_ramp_between_level_straights_is_as_steep_as_asked(
+    length: int, percent: int, way: str
+) -> None:
+    brief = read_plan(
+        f"straight flat len=30; straight {way} len={length} pct={percent}; straight flat; turn left"
+    )
+    for seed in range(3):
+        points = build(draft(brief, WORLD, seed=seed)).centreline()
+        s = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points[:, :2], axis=0).T))])
+        z = np.interp(np.arange(0, s[-1]), s, points[:, 2])
+        over_ten = 10.0 * (z[10:] - z[:-10]) * (1 if way == "up" else -1)  # percent
+        assert over_ten.max() == pytest.approx(percent, abs=1.01)
+        steep = np.flatnonzero(over_ten >= 1.0)
+        assert len(steep) == pytest.approx(length, rel=0.15, abs=2)  # one climb, as long as asked
+        assert steep[-1] - steep[0] == len(steep) - 1
+
+
 @pytest.mark.parametrize("slope", ["up", "down", "gently_up", "steeply_up", "steeply_down"])
 def test_a_short_climb_between_straights_is_short_and_steep_enough(slope: Slope) -> None:
     plain, climb = Clause(kind="straight"), Clause(kind="straight", size="short", slope=slope)

@@ -163,10 +163,10 @@ def _number_of_turns(brief: Brief) -> None:
     said = total(brief.clauses)
     if any(clause.kind not in STRAIGHT for clause in brief.clauses) and brief.turns:
         if brief.turns.hi == 0:
-            raise BriefError(f"{_figure(said)} turns but no turns: leave out one of the two")
+            raise BriefError(f"{_many(said, 'turn')} but no turns: leave out one of the two")
         if not _meet(said, brief.turns):
             raise BriefError(
-                f"what is named has {_figure(said)} turns, but {_figure(brief.turns)} are asked for in all;"
+                f"what is named has {_many(said, 'turn')}, but {_figure(brief.turns)} are asked for in all;"
                 " make the numbers agree"
             )
     if brief.turns and brief.turns.hi == 0:
@@ -225,7 +225,8 @@ def _sides(brief: Brief) -> None:
         sure = _named(turning, side)
         if wished.hi is not None and sure > wished.hi:
             raise BriefError(
-                f"{sure:g} {side} turns are named, but {_figure(wished)} asked for; make the numbers agree"
+                f"what is named has {_many(exactly(sure), f'{side} turn')}, but {_figure(wished)} are asked"
+                " for; make the numbers agree"
             )
         most = total(brief.clauses) if turning else brief.turns
         if most and most.hi is not None and (wished.lo or 0) > most.hi:
@@ -377,6 +378,10 @@ def _figure(amount: Amount) -> str:
     if amount.lo is None:
         return f"at most {amount.hi:g}"
     return f"at least {amount.lo:g}" if amount.hi is None else f"{amount.lo:g} to {amount.hi:g}"
+
+
+def _many(amount: Amount, noun: str) -> str:
+    return f"{_figure(amount)} {noun}" + ("" if amount == exactly(1) else "s")
 
 
 def _noun(clause: Clause) -> str:

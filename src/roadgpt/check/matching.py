@@ -44,8 +44,16 @@ def fits(stretch: Stretch, feature: Feature) -> bool:
         and (feature.degrees is None or stretch.degrees in feature.degrees)
         and (feature.radius is None or stretch.radius in feature.radius)
         and (feature.length is None or stretch.length in feature.length)
-        and (feature.grade is None or stretch.grade in feature.grade)
+        and (
+            feature.grade is None or stretch.grade in feature.grade or _is_rounded_off(stretch, feature.grade)
+        )
     )
+
+
+def _is_rounded_off(stretch: Stretch, asked: Range) -> bool:
+    """Is a straight too gentle as a whole, but as steep as asked over its middle half?"""
+    least = asked.lo if asked.lo > 0 else -asked.hi if asked.hi < 0 else 0.0
+    return stretch.kind == "straight" and 0 < least > abs(stretch.grade) and stretch.inner_grade in asked
 
 
 def turn_complaints(

@@ -54,6 +54,8 @@ class Stretch:
     """Metres, at the tightest place."""
     grade: float
     """Percent, from end to end."""
+    inner_grade: float
+    """Percent, over its middle half: a short slope between others is mostly rounded off at its ends."""
     pieces: tuple["Stretch", ...] = ()
     """Of a straight: where its grade changes class."""
 
@@ -291,7 +293,13 @@ def _stretch(
     start, end = float(line.s[first]), float(line.s[last])
     grade = 100 * float(line.z[last] - line.z[first]) / (end - start)
     radius = _radius(line.curvature[first : last + 1])
-    return Stretch(kind, start, end, side, degrees, radius, grade, pieces)
+    return Stretch(kind, start, end, side, degrees, radius, grade, _inner_grade(line, first, last), pieces)
+
+
+def _inner_grade(line: _Line, first: int, last: int) -> float:
+    off = (last - first) // 4
+    a, b = first + off, last - off
+    return 100 * float(line.z[b] - line.z[a]) / float(line.s[b] - line.s[a])
 
 
 def _straight(line: _Line, first: int, last: int) -> Stretch:

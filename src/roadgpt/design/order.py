@@ -128,7 +128,7 @@ def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
 def _turned(outline: Outline) -> Range:
     """How many usual turns make up the degrees that all are to turn together."""
     if outline.turning is None:
-        return Range()
+        return Range(0)
     most = outline.turning.hi // SMALL if outline.turning.hi < inf else inf
     return Range(ceil(max(outline.turning.lo, 0) / LARGE), most)
 
