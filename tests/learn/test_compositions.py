@@ -6,15 +6,15 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
+from roadgpt.brief.feasible import check
 from roadgpt.brief.normal import turns_of
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.learn.compositions import WAYS, composed
 from roadgpt.learn.compositions.kept_apart import kept_apart
 from roadgpt.learn.compositions.limits import limited
 from roadgpt.learn.compositions.numbered import numbered_sides
 from roadgpt.learn.compositions.said import ORDINALS, Said, Voice
 from roadgpt.learn.compositions.sums import ranged, sided_sum
-from roadgpt.learn.standard import standard
 
 ADJECTIVES = "(?:alternating|left|right|sharp|tight|gentle|easy)"
 Way = Callable[[Voice], Said]
@@ -44,12 +44,13 @@ def test_the_same_seed_gives_the_same_pairs() -> None:
     assert one == again
 
 
-def test_nearly_all_pairs_make_a_road_and_are_in_standard_form() -> None:
+def test_nearly_all_pairs_make_a_road_and_are_written_in_one_way() -> None:
     rng = np.random.default_rng(1)
     found = [composed(rng) for _ in range(1500)]
     kept = [said for said in found if said]
     assert len(kept) > 0.95 * len(found)
-    assert all(standard(read_plan(said.plan)) == said.plan for said in kept)
+    assert all(plan(read_plan(said.plan)) == said.plan for said in kept)
+    assert all(check(read_plan(said.plan), map_size=None) is None for said in kept)
     assert len({said.text for said in kept}) > 0.98 * len(kept)
 
 

@@ -25,7 +25,8 @@ def test_the_same_seed_gives_the_same_pairs_and_another_others() -> None:
 def test_every_generated_plan_is_in_standard_form_and_none_is_held_out() -> None:
     for pair in islice(pairs(11), 1500):
         assert not is_held_out(pair.text)
-        assert pair.plan in REFUSALS or standard(read_plan(pair.plan)) == pair.plan
+        if pair.family != "composed-en":  # see test_compositions
+            assert pair.plan in REFUSALS or standard(read_plan(pair.plan)) == pair.plan
 
 
 @pytest.mark.parametrize("language", ["en", "de", "fr", "es", "it"])

@@ -13,6 +13,7 @@ from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.sentence import sentence
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.held_out import is_held_out
+from roadgpt.learn.said_once import said_once
 from roadgpt.learn.variation import varied
 
 Numbers = npt.NDArray[np.int64]
@@ -35,7 +36,7 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     With ``rng`` slots get numbers at random, so that all slot tokens are learnt alike.
     """
     taken = slotted(pair.text)
-    tokens = tokens_of(pair.plan, taken.slots)
+    tokens = tokens_of(said_once(pair.plan, taken.slots), taken.slots)
     if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
         return None
     words = [word.text for word in taken.words]

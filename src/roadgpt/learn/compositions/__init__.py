@@ -10,12 +10,14 @@ from collections.abc import Callable
 import numpy as np
 
 from roadgpt.brief.feasible import check
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import normal
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.errors import BriefError
 from roadgpt.learn.compositions.by_parts import by_parts
 from roadgpt.learn.compositions.endings import corrected, nothing_more
 from roadgpt.learn.compositions.kept_apart import kept_apart
-from roadgpt.learn.compositions.limits import limited
+from roadgpt.learn.compositions.limits import limited, with_limits
 from roadgpt.learn.compositions.numbered import numbered_kinds, numbered_sides
 from roadgpt.learn.compositions.repeated import lettered, repeated
 from roadgpt.learn.compositions.said import Said, Voice
@@ -39,16 +41,30 @@ WAYS: tuple[tuple[Callable[[Voice], Said], float], ...] = (
     (nothing_more, 0.03),
     (turned_round, 0.05),
 )
+SEVERAL = 2
+WITH_LIMITS = 0.4
+"""Share to which limits for the whole road are added."""
 SHARES = np.cumsum([share for _, share in WAYS])
 
 
 def composed(rng: np.random.Generator) -> Said | None:
     """A description and its plan in standard form; None where no road could be so."""
     way = WAYS[int(np.searchsorted(SHARES, rng.random() * SHARES[-1], side="right"))][0]
-    said = way(Voice(rng))
+    voice = Voice(rng)
+    said = way(voice)
+    if way is not limited and voice.chance(WITH_LIMITS):
+        said = with_limits(voice, said)
     try:
         brief = read_plan(said.plan)
         check(brief, MAP_SIZE)
     except BriefError:
         return None
-    return Said(noisy(tidy(said.text), "en", rng), standard(brief))
+    return Said(noisy(tidy(said.text), "en", rng), _written(brief))
+
+
+def _written(brief: Brief) -> str:
+    """The plan in standard form, but what holds for all of several turns stays behind the bar."""
+    if len([clause for clause in brief.clauses if clause.kind != "straight"]) < SEVERAL:
+        return standard(brief)
+    rest = normal(brief.model_copy(update={"degrees": None, "radius": None}))
+    return plan(rest.model_copy(update={"degrees": brief.degrees, "radius": brief.radius}))

@@ -13,6 +13,35 @@ class _Wish(NamedTuple):
     of_road: str = ""
 
 
+def with_limits(voice: Voice, said: Said) -> Said:
+    """The same road with one to three limits for the whole of it, before or behind what was said."""
+    ways = [_grade, _length, _height]
+    if not any(word in said.plan for word in ("sharp", "gentle", "sweeping")):
+        ways.append(_radius_of_hairpins if "hairpin" in said.plan else _radius)
+    if "deg=" not in said.plan and "hairpin" not in said.plan:
+        ways.append(_angle)
+    wishes = [ways[int(at)](voice) for at in voice.rng.permutation(len(ways))[: voice.whole(1, 3)]]
+    parts = [wish.said for wish in wishes]
+    parts.insert(0 if voice.chance(0.7) else voice.whole(0, len(parts)), said.text.rstrip(". "))
+    text = _joined(voice, parts)
+    road = " ".join(f"{wish.of_turns} {wish.of_road}" for wish in wishes)
+    return Said(text, f"{said.plan}{' ' if '|' in said.plan else ' | '}{road}")
+
+
+def _joined(voice: Voice, parts: list[str]) -> str:
+    """As a sentence, as sentences, or as a list with letters, numbers or dashes."""
+    way = voice.rng.random()
+    if way < 0.12:
+        return "; ".join(f"{letter}) {part}" for letter, part in zip("abcdef", parts, strict=False))
+    if way < 0.2:
+        return "\n".join(f"- {part}" for part in parts)
+    if way < 0.26:
+        return "\n".join(f"{number}. {part}" for number, part in enumerate(parts, 1))
+    if way < 0.5:
+        return ". ".join(part[:1].upper() + part[1:] for part in parts)
+    return voice.pick((", ", "; ", ", ", ", and ")).join(parts)
+
+
 def limited(voice: Voice) -> Said:
     """A number of turns and two to four wishes with numbers, in any order."""
     number = voice.whole(2, 7)
@@ -24,10 +53,7 @@ def limited(voice: Voice) -> Said:
     wishes = [ways[int(at)](voice) for at in voice.rng.permutation(len(ways))[: voice.whole(2, 4)]]
     parts = [wish.said for wish in wishes]
     parts.insert(voice.whole(0, len(parts)), count)
-    if voice.chance(0.25):
-        text = "; ".join(f"{letter}) {part}" for letter, part in zip("abcde", parts, strict=False))
-    else:
-        text = voice.pick((", ", "; ", ", ", ". ")).join(parts)
+    text = _joined(voice, parts)
     clause = " ".join([f"turn x{number}", side, *(wish.of_turns for wish in wishes)])
     road = " ".join(wish.of_road for wish in wishes)
     return voice.framed(text, f"{clause} | {road}" if road.strip() else clause, may_slope=False)
@@ -38,6 +64,11 @@ def _radius(voice: Voice) -> _Wish:
     if voice.chance(0.7):
         return _Wish(voice.say("least radius", said), f"r={value}..")
     return _Wish(voice.say("largest radius", said), f"r=..{value}")
+
+
+def _radius_of_hairpins(voice: Voice) -> _Wish:
+    said, value = voice.metres(15, 25)
+    return _Wish(voice.say("least radius", said), f"r={value}..")
 
 
 def _grade(voice: Voice) -> _Wish:
