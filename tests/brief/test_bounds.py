@@ -45,6 +45,8 @@ def test_what_words_before_a_number_say(text: str, bound: str | None) -> None:
         ("each below 90 degrees", ["turn", "deg=", "[1]"], "turn deg=..90"),
         ("no radius below 25 m", ["turn", "r=", "..", "[1]"], "turn r=25.."),
         ("40 to at most 60 m straight", ["straight", "len=", "[1]", "..", "[2]"], "straight len=40..60"),
+        ("straights of 40 m or more", ["straight", "len=", "[1]"], "straight len=40.."),
+        ("8 % or less, uphill", ["|", "steepest=", "[1]"], "| steepest=..8"),
         ("falls by at least 8 m", ["turn", "|", "climb=", "-", "[1]"], "turn | climb=-8"),
         ("straight over 60 m", ["straight", "len=", "[1]"], "straight len=60"),
     ],

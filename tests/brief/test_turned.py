@@ -31,6 +31,7 @@ from roadgpt.errors import BriefError
         ("Drei Kurven, insgesamt 270 Grad", exactly(270), "Drei Kurven"),
         ("trois virages, 200 degrés au total", exactly(200), "trois virages"),
         ("turning 270 degrees in all", exactly(270), ""),
+        ("five turns, accumulated heading change of 300 degrees or more", at_least(300), "five turns"),
     ],
 )
 def test_it_is_taken_out_of_the_words(words: str, degrees: Amount, rest: str) -> None:

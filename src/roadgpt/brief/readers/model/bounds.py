@@ -38,9 +38,13 @@ NOT = bag(
     "sin nunca ningun ninguna nada non senza mai nessun nessuna niente ne",
 )
 RULED_OUT = bag("exclude excludes excluded avoid avoids free ban banned forbidden rule ruled")
+UNITS = bag("metres degrees percent")
+OR = bag("or oder ou o")
+OR_MORE = bag("more longer larger greater above over wider mehr langer darueber davantage plus mas piu")
+OR_LESS = bag("less shorter smaller fewer below under tighter weniger kurzer darunter moins menos meno")
 FILLERS = bag("than als de que di a the of von da about mit um at su um ein eine einem un une una")
 STOPS = frozenset(",.;:()|-")
-SENTENCE_STOPS = frozenset(".;:")
+SENTENCE_STOPS = frozenset(".;")
 MOST_FILLERS = 2
 REACH = 4
 """Words before a comparison in which what denies it stands."""
@@ -76,7 +80,9 @@ def _size(tokens: Sequence[str], at: int) -> int:
 def _with_bound(amount: Sequence[str], words: list[str]) -> list[str]:
     slot = next(token for token in amount if token in SLOT_TOKENS)
     name = slot_name(SLOT_TOKENS.index(slot))
-    bound = bound_before(words, words.index(name)) if words.count(name) == 1 else None
+    if words.count(name) != 1:
+        return [*amount]
+    bound = bound_before(words, words.index(name)) or bound_behind(words, words.index(name))
     if bound is None:
         return [*amount]
     return ["..", slot] if bound == "hi" else [slot, ".."]
@@ -104,6 +110,14 @@ def _sentence(words: Sequence[str], at: int) -> Sequence[str]:
     first = max((place + 1 for place in range(at) if words[place] in SENTENCE_STOPS), default=0)
     last = next((place for place in range(at, len(words)) if words[place] in SENTENCE_STOPS), len(words))
     return words[first:last]
+
+
+def bound_behind(words: Sequence[str], at: int) -> Bound | None:
+    """What the words right behind a number and its unit say of it: "40 m or more"."""
+    after = [word for word in words[at + 1 : at + 5] if word not in UNITS and not word.startswith("[unused2")]
+    if len(after) < 2 or after[0] not in OR:
+        return None
+    return "lo" if after[1] in OR_MORE else "hi" if after[1] in OR_LESS else None
 
 
 def _since_stop(words: Sequence[str], last: int) -> list[str]:

@@ -20,10 +20,11 @@ BOUND = (
     r"|(?P<hi>at most|no more than|not more than|less than|below|under|hochstens|au plus|al massimo)"
     r"|about|around|roughly|exactly) "
 )
-ANGLE = rf"(?:{BOUND})?(?P<slot>\[unused(?:[1-9]|1[0-2])\]) degrees(?: \[unused2\d\])?"
+OR = r"(?: or (?:(?P<or_more>more|above)|(?P<or_less>less|below)))?"
+ANGLE = rf"(?:{BOUND})?(?P<slot>\[unused(?:[1-9]|1[0-2])\]) degrees(?: \[unused2\d\])?{OR}"
 IS = r"(?: (?:of|:|is|=|be|should|shall|must))*"
 LED = r"(?:(?:and|with|has|have|a|an|the|its|which|that|turning|bending|und|et|y|e|,) )*"
-TURNING = r"of (?:turning|heading change|turn)"
+TURNING = r"of (?:turning|heading change|turn|steering)"
 WAYS = tuple(
     re.compile(r"(?<!\S)" + LED + way)
     for way in (
@@ -52,7 +53,8 @@ def turned_in_all(words: str) -> Turned | None:
     if found is None:
         return None
     slot = next(slot for at, slot in enumerate(text.slots) if slot_name(at) == found["slot"])
-    amount = (at_least if found["lo"] else at_most if found["hi"] else exactly)(slot.value)
+    is_least, is_most = found["lo"] or found["or_more"], found["hi"] or found["or_less"]
+    amount = (at_least if is_least else at_most if is_most else exactly)(slot.value)
     first = line[: found.start()].count(" ")
     last = first + found[0].count(" ") + 1
     rest = [word.said for word in (*text.words[:first], *text.words[last:]) if word.said]
