@@ -46,6 +46,7 @@ def test_what_words_before_a_number_say(text: str, bound: str | None) -> None:
         ("no radius below 25 m", ["turn", "r=", "..", "[1]"], "turn r=25.."),
         ("40 to at most 60 m straight", ["straight", "len=", "[1]", "..", "[2]"], "straight len=40..60"),
         ("straights of 40 m or more", ["straight", "len=", "[1]"], "straight len=40.."),
+        ("to the right, 60 degrees or so", ["turn", "right", "deg=", "[1]", ".."], "turn right deg=60"),
         ("8 % or less, uphill", ["|", "steepest=", "[1]"], "| steepest=..8"),
         ("falls by at least 8 m", ["turn", "|", "climb=", "-", "[1]"], "turn | climb=-8"),
         ("straight over 60 m", ["straight", "len=", "[1]"], "straight len=60"),

@@ -11,7 +11,8 @@ from roadgpt.brief.readers.model.bag import bag
 from roadgpt.brief.readers.model.slots import Slotted, slot_name
 from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
 
-Bound = Literal["lo", "hi"]
+Bound = Literal["lo", "hi", "none"]
+"""At least, at most, or none for sure: "60 m or so"."""
 KEYS = frozenset(["deg=", "r=", "len=", "pct=", "steepest="])
 """Whose bounds are judged; a climb's turns round where it falls."""
 SMALLER = bag(
@@ -85,7 +86,7 @@ def _with_bound(amount: Sequence[str], words: list[str]) -> list[str]:
     bound = bound_before(words, words.index(name)) or bound_behind(words, words.index(name))
     if bound is None:
         return [*amount]
-    return ["..", slot] if bound == "hi" else [slot, ".."]
+    return {"hi": ["..", slot], "lo": [slot, ".."], "none": [slot]}[bound]
 
 
 def bound_before(words: Sequence[str], at: int) -> Bound | None:
@@ -117,6 +118,8 @@ def bound_behind(words: Sequence[str], at: int) -> Bound | None:
     after = [word for word in words[at + 1 : at + 5] if word not in UNITS and not word.startswith("[unused2")]
     if len(after) < 2 or after[0] not in OR:
         return None
+    if after[:2] == ["or", "so"]:
+        return "none"
     return "lo" if after[1] in OR_MORE else "hi" if after[1] in OR_LESS else None
 
 
