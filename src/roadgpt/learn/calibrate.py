@@ -17,7 +17,7 @@ from roadgpt.errors import BriefError
 from roadgpt.learn.generator import Pair
 
 Floats = npt.NDArray[np.float64]
-MOST_WRONGLY = 0.005  # share of honest descriptions that may be refused
+MOST_WRONGLY = 0.004  # share of these honest descriptions that may be refused; of others it will be more
 STEPS = 4000
 RATE = 0.05
 PULL = 0.01  # towards zero, so that few pairs do not make bold weights
