@@ -79,7 +79,9 @@ def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
 
     def takes(option: str, value: int) -> bool:
         try:
-            run.make_context("run", ["a road", f"{option}", str(value)], click.Context(app))
+            run.make_context(
+                "run", ["a road", f"{option}", str(value)], click.Context(app, **app.context_settings)
+            )
         except click.BadParameter:
             return False
         return True
