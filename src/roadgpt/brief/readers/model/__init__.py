@@ -70,8 +70,7 @@ class ModelReader:
         turned = turned_in_all(words)
         if turned is None:
             return self._read(words)
-        is_said = len(turned.rest.split()) > 1
-        brief = self._read(turned.rest) if is_said else Brief(turns=at_least(1))
+        brief = self._read(turned.rest) if turned.is_more_said else Brief(turns=at_least(1))
         return brief.model_copy(update={"words": words, "turning": turned.degrees})
 
     def _read(self, words: str) -> Brief:
@@ -87,9 +86,12 @@ class ModelReader:
         Raises:
             BriefError: as ``read``.
         """
+        turned = turned_in_all(words)
+        if turned:
+            rest = self.alternatives(turned.rest, number, temperature, seed) if turned.is_more_said else ()
+            update = {"words": words, "turning": turned.degrees}
+            return tuple(brief.model_copy(update=update) for brief in rest) or (self.read(words),)
         first = self.read(words)
-        if first.turning:  # of what the network cannot say there are no others
-            return (first,)
         text = _text(words)
         across = self._network.encode(text)
         rng = np.random.default_rng(seed)
@@ -197,5 +199,5 @@ def _text(words: str) -> Slotted:
     text = slotted(words)
     below = negative(text)
     if below:
-        raise BriefError(f"nothing on a road is negative, and '{below}' is; ask for a number above 0")
+        raise BriefError(f"no road has '{below}'; ask for a number above 0")
     return text

@@ -6,7 +6,8 @@ turns of its plan have these sides, and a draft that has them is believed before
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import SINGLE, STRAIGHT, normal
-from roadgpt.brief.readers.model.recheck import LEFT, MULTIPLES, RIGHT
+from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
+from roadgpt.brief.readers.model.recheck import MULTIPLES
 from roadgpt.brief.readers.model.slots import Slotted
 
 FEWEST = 3

@@ -7,6 +7,7 @@ count for sure is left alone.
 from collections.abc import Sequence
 
 from roadgpt.brief.readers.model.bag import bag
+from roadgpt.brief.readers.model.nouns import COUNTED, ONE_TURN
 from roadgpt.brief.readers.model.slots import Slotted, slot_name
 
 MINUS = frozenset(["minus", "negative", "negativ", "negativen", "negatif", "negativo"])
@@ -15,10 +16,6 @@ BEFORE_DASH = bag(
     "di r",
 )
 """After these a dash right before a number is a sign."""
-COUNTED = bag(
-    "turn turns bend bends curve curves corner corners hairpin hairpins switchback switchbacks kurve",
-    "kurven kehre kehren virage virages tournants curva curvas horquillas tornanti",
-)
 LENGTHS = bag(
     "straight straights radius radii r length long lang gerade geraden lange kurvenradius longueur",
     "droite rayon recta longitud radio rettilineo lunghezza raggio tangent",
@@ -34,8 +31,9 @@ def negative(text: Slotted) -> str | None:
             continue
         after = words[at + 1 : at + 3]
         said = text.words[at].said
-        if COUNTED.intersection(after):
-            return f"minus {said} {next(noun for noun in after if noun in COUNTED)}"
+        noun = next((word for word in after if word in COUNTED | ONE_TURN), None)
+        if noun:
+            return f"minus {said} {noun}"
         if after[:1] == ["metres"] and LENGTHS.intersection(words[max(at - NEAR, 0) : at + 1 + NEAR]):
             return f"minus {said}"
     return None

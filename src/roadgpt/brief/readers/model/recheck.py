@@ -12,91 +12,17 @@ from itertools import chain, combinations, pairwise
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.normal import STRAIGHT, turns_of
 from roadgpt.brief.readers.model.bag import bag
+from roadgpt.brief.readers.model.nouns import LEFT, RIGHT, TURNS
 from roadgpt.brief.readers.model.slots import Slotted
 
-LEFT = frozenset(
-    [
-        "left",
-        "lefts",
-        "lefthand",
-        "leftward",
-        "linke",
-        "links",
-        "linkskurven",
-        "gauche",
-        "izquierda",
-        "sinistra",
-        "l",
-        "lh",
-        "sx",
-        "izq",
-        "izda",
-    ]
-)
-RIGHT = frozenset(
-    [
-        "right",
-        "rights",
-        "righthand",
-        "rightward",
-        "rechte",
-        "rechts",
-        "rechtskurven",
-        "droite",
-        "derecha",
-        "destra",
-        "r",
-        "rh",
-        "dx",
-        "dcha",
-    ]
-)
-MULTIPLES = frozenset(
-    [
-        "twice",
-        "thrice",
-        "double",
-        "doubles",
-        "triple",
-        "both",
-        "pair",
-        "trio",
-        "again",
-        "same",
-        "half",
-        "zweimal",
-        "dreimal",
-        "beide",
-        "doppelt",
-        "gleiche",
-        "halb",
-        "deux",
-        "fois",
-        "moitie",
-        "meme",
-        "encore",
-        "dos",
-        "veces",
-        "doble",
-        "ambas",
-        "misma",
-        "mitad",
-        "due",
-        "volte",
-        "doppio",
-        "entrambe",
-        "stessa",
-        "meta",
-        "alternating",
-    ]
+MULTIPLES = bag(
+    "twice thrice double doubles triple both pair trio again same half zweimal dreimal beide doppelt",
+    "gleiche halb deux fois moitie meme encore dos veces doble ambas misma mitad due volte doppio",
+    "entrambe stessa meta alternating",
 )
 """Words with which numbers are in the text that no digit shows."""
-ONE = frozenset(["one", "ein", "eine", "einen", "einer", "eins", "un", "une", "una", "uno", "single", "sole"])
+ONE = bag("one ein eine einen einer eins un une una uno single sole")
 """What may be the number 1, and may be an article."""
-TURNS = frozenset(
-    ["turns", "bends", "corners", "curves", "kurven", "virages", "tournants", "courbes", "curvas"]
-)
-"""What roads have several of, when no shape is meant; Italian "curve" is English for one."""
 MORE = bag(
     "more further other others additional else otherwise weiteren weitere weiter anderen sonst autres",
     "autre plus davantage mas otras otra otros demas altre altra altri ulteriori",

@@ -8,6 +8,7 @@ from math import radians, tan
 
 from roadgpt.brief.readers.model.bag import bag
 from roadgpt.brief.readers.model.measures import Number
+from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
 
 STEEPEST = 45.0  # degrees: what is said to be steeper is a turn, or nonsense that the network sees for itself
 NOUNS = bag(
@@ -22,11 +23,7 @@ VERBS = bag(
 BETWEEN = bag(
     "of at is are : = by with an angle angled about around roughly von mit um de d ' di con del der"
 )
-TURNING = bag(
-    "turn turns bend bends curve curves corner corners left right hairpin hairpins kurve kurven links",
-    "rechts virage virages tournant gauche droite curva curvas izquierda derecha sinistra destra",
-    "heading",
-)
+TURNING = COUNTED | ONE_TURN | LEFT | RIGHT | {"heading"}
 SKIPPED = frozenset(["-", "of", "to", "the", "nach", "a", "la", "vers"])
 REACH = 4
 """Words of BETWEEN that may stand between the slope and its number."""

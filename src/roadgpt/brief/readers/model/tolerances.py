@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from roadgpt.brief.readers.model.bag import bag
 from roadgpt.brief.readers.model.measures import Number, is_count, unit_at
+from roadgpt.brief.readers.model.nouns import COUNTED
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.numerals import words as spellings
 from roadgpt.brief.readers.model.units import ONES
@@ -19,10 +19,6 @@ SIGNS = frozenset(
 OPENING = frozenset([",", "(", "-"])
 LONGEST = 4
 """Words of the longest sign and a bracket before it."""
-COUNTED = bag(
-    "turns bends corners curves hairpins switchbacks kurven kehren virages tournants epingles curvas",
-    "horquillas tornanti curve",
-)
 
 
 def tolerances_first(said: Sequence[str]) -> list[str]:

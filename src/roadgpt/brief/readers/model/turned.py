@@ -44,6 +44,11 @@ class Turned(NamedTuple):
     degrees: Amount
     rest: str
 
+    @property
+    def is_more_said(self) -> bool:
+        """Is there anything else to read?"""
+        return len(self.rest.split()) > 1
+
 
 def turned_in_all(words: str) -> Turned | None:
     """What a description says of the degrees of all turns together; None where it says nothing of them."""
