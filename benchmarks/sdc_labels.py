@@ -1,6 +1,6 @@
 """How well `roadgpt sdc` orders and selects tests that BeamNG's AI was recorded on.
 
-    python benchmarks/sdc_labels.py LABELS.csv.gz [--every 10]
+    python benchmarks/sdc_labels.py LABELS.csv.gz [--every 1]
 
 LABELS as for beamng_labels.py: recorded at 70 km/h, aggression 0.7 and a tolerance of 0.85, not at the SDC
 competition's 120 km/h, risk 1.5 and 0.5. Every second run, by name, is told to the service; the others are
@@ -14,7 +14,7 @@ import gzip
 import numpy as np
 
 from beamng_labels import auc, road_of
-from roadgpt.sbft.sdc.risk import BY_DRIVE, PLAIN, Weighing, learnt, order, signs_of
+from roadgpt.sbft.sdc.risk import BY_LINE, Weighing, learnt, order, signs_of
 
 
 def apfd(ranked: np.ndarray) -> float:
@@ -44,20 +44,16 @@ def main(labels: str, every: int) -> None:
         points = [road_of([float(row[f"k{i}"]) for i in range(17)]).control_points().tolist() for row in some]
         failed = np.array([row["failed"] == "1" for row in some])
         halves.append((points, failed))
-    for name, world in (
-        ("at 120 km/h, 0.5", PLAIN),
-        ("at 70 km/h, 0.85", PLAIN.model_copy(update={"speed_limit": 70 / 3.6, "oob_tolerance": 0.85})),
-    ):
-        (known, known_failed), (rest, failed) = (
-            ([signs_of(points, world) for points in roads], outcomes) for roads, outcomes in halves
-        )
-        weighing = learnt(known, known_failed.tolist())
-        print(told(f"{name}, by the drive alone", BY_DRIVE, rest, failed))
-        print(told(f"{name}, after {len(known)} known outcomes", weighing, rest, failed))
+    (known, known_failed), (rest, failed) = (
+        ([signs_of(points) for points in roads], outcomes) for roads, outcomes in halves
+    )
+    weighing = learnt(known, known_failed.tolist())
+    print(told("by the planned line alone", BY_LINE, rest, failed))
+    print(told(f"after {len(known)} known outcomes", weighing, rest, failed))
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("labels")
-    parser.add_argument("--every", type=int, default=10)
+    parser.add_argument("--every", type=int, default=1)
     main(**vars(parser.parse_args()))

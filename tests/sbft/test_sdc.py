@@ -4,6 +4,7 @@ import importlib
 import math
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,12 @@ import pytest
 from google.protobuf import descriptor_pb2
 from grpc_tools import protoc
 
+from roadgpt.drive import simulate
+from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.errors import UsageError
+from roadgpt.road import Road
 from roadgpt.sbft.sdc import messages
-from roadgpt.sbft.sdc.risk import BY_DRIVE, UNKNOWN, Signs, learnt, order, signs_of
+from roadgpt.sbft.sdc.risk import BY_LINE, PLAIN, UNKNOWN, Signs, learnt, order, signs_of
 from roadgpt.sbft.sdc.service import serve
 
 PROTO = Path(messages.__file__).with_name("competition.proto")
@@ -149,13 +153,56 @@ def test_weighing_finds_the_sign_that_counts() -> None:
     first = order(scores)[: int(failed.sum())]
     assert failed[first].mean() > 0.8
     chosen = weighing.worth([Signs(*row) for row in table])
-    assert failed[chosen].mean() > 0.75
-    assert failed[chosen].sum() > 0.75 * failed.sum()
+    assert failed[chosen].mean() > 0.9
+    assert len(chosen) >= 10
+
+
+def test_what_is_selected_fails_far_more_often_than_what_is_not() -> None:
+    # As rare and as hard to foretell as recorded: 8 % fail, and the best sign tells little.
+    rng = np.random.default_rng(11)
+    shares, counts, misses = [], [], 0
+    for _ in range(40):
+        table = rng.normal(size=(1500, len(Signs._fields)))
+        failed = rng.random(1500) < 1 / (1 + np.exp(3.0 - 0.9 * table[:, 0]))
+        signs = [Signs(*row) for row in table]
+        weighing = learnt(signs[:1200], failed[:1200].tolist())
+        chosen = failed[1200:][weighing.worth(signs[1200:])]
+        shares.append(chosen.mean())
+        counts.append(len(chosen))
+        misses += not chosen.any()
+    assert np.mean(shares) > 2.5 * failed.mean()
+    assert max(counts) <= 40
+    assert misses <= 2  # the evaluator divides by the failures that were found
+
+
+def test_a_hundred_tests_are_ordered_in_far_less_than_four_seconds(client: tuple[Any, Any]) -> None:
+    compiled, stub = client
+    radii = np.linspace(15, 150, 100).tolist()
+    asked = [case_of(compiled, f"{radius}", arc(radius, 300)) for radius in radii]
+    begun = time.process_time()
+    answer = [float(reply.testId) for reply in stub.Prioritize(iter(asked))]
+    assert time.process_time() - begun < 4  # the service's threads are of this process
+    assert sorted(answer) == radii
+    assert answer[0] < 40 < 100 < answer[-1]
+
+
+def test_the_line_is_where_the_car_drives() -> None:
+    road = Road.through(arc(30))
+    drive = simulate(road, PLAIN, BeamngLike(), keep_driving=True)
+    s, t = drive["s"], drive["t"]
+    counts = (s > 25) & (s < road.length - 8)
+    farthest = np.abs(t[counts] + PLAIN.lane_width / 2).max()
+    assert signs_of(arc(30)).near == pytest.approx(farthest, abs=0.6)
+
+
+def test_roads_that_cannot_be_used_lie_in_the_middle() -> None:
+    signs = [signs_of(arc(16)), signs_of([(0.0, 0.0)]), signs_of(arc(1e5, 0.01))]
+    assert order(BY_LINE.scores(signs)).tolist() == [0, 1, 2]
 
 
 def test_too_little_teaches_nothing() -> None:
-    assert learnt([UNKNOWN] * 5, [True, False] * 2 + [True]) is BY_DRIVE
-    assert learnt([UNKNOWN] * 50, [True] * 50) is BY_DRIVE
+    assert learnt([UNKNOWN] * 5, [True, False] * 2 + [True]) is BY_LINE
+    assert learnt([UNKNOWN] * 50, [True] * 50) is BY_LINE
     assert np.isfinite(learnt([UNKNOWN] * 50, [True, False] * 25).scores([UNKNOWN])).all()
 
 

@@ -4,11 +4,10 @@ import logging
 
 import click
 
-from roadgpt.cli.options import competition_options, whole
+from roadgpt.cli.options import whole
 from roadgpt.errors import UsageError
 
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
-KMH = 3.6
 
 
 @click.group()
@@ -26,13 +25,12 @@ def command() -> None:
     show_default=True,
     help="Who may ask: 127.0.0.1, this machine; 0.0.0.0, all (in a container).",
 )
-@competition_options(oob_tolerance=0.5, speed_limit_kmh=120)
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
-def serve(port: int, host: str, speed_limit: float, oob_tolerance: float, quiet: bool) -> None:
+def serve(port: int, host: str, quiet: bool) -> None:
     """Select or prioritise roads by how likely the car is to leave its lane, over gRPC.
 
-    Every road is driven in the embedded simulator. Outcomes that the evaluator tells are learnt from. Ctrl-C
-    ends it.
+    How far the driver's planned line strays from its lane counts, and how the road bends; nothing is driven.
+    Outcomes that the evaluator tells are learnt from. Ctrl-C ends it.
 
     \b
     roadgpt sdc serve --port 4545
@@ -42,11 +40,8 @@ def serve(port: int, host: str, speed_limit: float, oob_tolerance: float, quiet:
         from roadgpt.sbft.sdc.service import serve as serve_on
     except ImportError as error:
         raise UsageError(f"{EXTRA} ({error})") from error
-    from roadgpt.sbft.sdc.risk import PLAIN
-
     logging.basicConfig(level=logging.WARNING if quiet else logging.INFO, format="%(asctime)s %(message)s")
-    world = PLAIN.model_copy(update={"speed_limit": speed_limit / KMH, "oob_tolerance": oob_tolerance})
-    server, got = serve_on(host, port, world)
+    server, got = serve_on(host, port)
     if not quiet:
         click.echo(f"listening on {host}:{got}")
     try:

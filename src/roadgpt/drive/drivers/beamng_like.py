@@ -88,12 +88,17 @@ class BeamngLike:
         # Like BeamNG's, its plan knows slopes, and no crests.
         self._line, self._speed = line, plan_speed(replace(line, crest=[0.0] * len(line.crest)), limits)
 
+    def bend(self, road: "Road", world: "World") -> FloatArray:
+        """Curvature of the lane's middle at the line's stations as it sees it, 1/m: without short bends."""
+        s = stations(road)
+        bend = road.curvature(s)
+        stretch = np.maximum(1 + world.lane_width / 2 * bend, TIGHTEST)
+        return _smoothed(bend / stretch, float(s[1]))
+
     def offsets(self, road: "Road", world: "World") -> FloatArray:
         """Metres to the left of the centre line at the line's stations."""
-        s = stations(road)
+        s, bend = stations(road), self.bend(road, world)
         middle = -world.lane_width / 2
-        bend = road.curvature(s)
-        bend = _smoothed(bend / np.maximum(1 - middle * bend, TIGHTEST), float(s[1]))
         cut = self.cut * (world.speed_limit / USUAL) ** self.eagerness
         offset = middle + self._joined(s) * (cut * np.tanh(bend / self.sharpness) - self.aside)
         if world.verge == 0 and self.edge_room is not None:

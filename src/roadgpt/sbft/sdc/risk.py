@@ -1,8 +1,10 @@
-"""How likely a road is to make the car leave its lane: from a drive in the embedded simulator.
+"""How likely a road is to make the car leave its lane: from the line that its driver plans.
 
 The competition's car is BeamNG's AI at risk 1.5 and up to 120 km/h; a test fails where more than half of the
-car is outside its lane. Ours is ``beamng_like`` at the limit of its tyres, up to the same speed. Where it is
-known how tests ended, all signs are weighed by that (logistic regression); else the drive alone counts.
+car is outside its lane. Ours is ``beamng_like``. Nothing is driven: how far its line, and what it cuts inside
+of it, lies from the middle of the lane tells recorded failures no worse than a drive does
+(docs/reference/benchmarks.md), in a fortieth of the time. Where it is known how tests ended, all signs are
+weighed by that (logistic regression); else the line alone counts.
 """
 
 import logging
@@ -13,71 +15,75 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.drive import simulate
-from roadgpt.drive.drivers.beamng_like import BeamngLike
+from roadgpt.drive.drivers.beamng_like import PURSUIT_CUTS, BeamngLike
+from roadgpt.drive.driving_line import stations
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Road, World
-from roadgpt.verdict import judge
 
 log = logging.getLogger(__name__)
 
 Array = NDArray[np.float64]
 
-SPEED_LIMIT = 120 / 3.6  # m/s
-TOLERANCE = 0.5  # share of the car outside its lane
-DARING = 0.95  # g in bends: all that dry asphalt gives
-FARTHEST = 3.0  # m: margins beyond say no more
+PLAIN = World(map_size=10_000.0, speed_limit=120 / 3.6, oob_tolerance=0.5)
+FARTHEST = 20.0  # m from the middle of the lane: more says no more
+LONGEST = 20_000.0  # m of road that is looked at
 SHORTEST = 0.01  # m between points; closer ones are one
+GETTING_GOING = 25.0  # m in which no car is fast enough to fail
+ARRIVED = 8.0  # m before the end: there the competition's drive is over
 RIDGE = 1.0  # of the regression, so that few outcomes do not decide it all
 STEPS = 30  # of Newton's method
 FEWEST = 20  # known outcomes from which something is learnt
-UNTAUGHT = 1 / 3  # share of tests that are selected where no outcome is known; 38 % failed in 2025
-FEW = 0.1  # share of tests that are selected where none seems likely to fail
-
-PLAIN = World(map_size=10_000.0, speed_limit=SPEED_LIMIT, oob_tolerance=TOLERANCE)
+EXPECTED = 3.0  # failures that a selection is to hold: of fewer, one in twenty-five suites had none at all
+FEW = 0.05  # share of tests that is selected at least
+UNTAUGHT = 0.1  # share of tests that are selected where no outcome is known
 
 
 class Signs(NamedTuple):
     """What is seen of a road; the larger the likelier to fail."""
 
     near: float
-    """-margin, metres: above 0 where the car left its lane."""
+    """Metres from the middle of the lane to where the car is farthest from it."""
+    wander: float
+    """Mean of that distance, metres."""
+    swing: float
+    """How quickly it changes, at most: metres per metre."""
     tightest: float
     """Largest curvature, 1/m."""
     bends: float
     """Mean curvature, whichever hand, 1/m."""
-    turned: float
-    """Changes of direction altogether, radians."""
-    length: float
-    """Metres."""
 
 
-UNKNOWN = Signs(0.0, 0.0, 0.0, 0.0, 0.0)
+UNKNOWN = Signs(*[np.nan] * len(Signs._fields))
+"""Of a road that cannot be used."""
 
 
 def signs_of(points: Sequence[Sequence[float]], world: World = PLAIN) -> Signs:
-    """Signs of a road of control points, in metres. A road that cannot be driven lies in the middle."""
+    """Signs of a road of control points, in metres; unknown ones of a road that cannot be used."""
     try:
         road = Road.through(_apart(points))
-        samples = road.sample()
-    except RoadGPTError as error:
+        if not road.length < LONGEST:
+            raise RoadGPTError(f"it is longer than {LONGEST / 1000:g} km")
+        return _signs(road, world)
+    except (RoadGPTError, ArithmeticError, ValueError) as error:
         log.info("a road cannot be used: %s", error)
         return UNKNOWN
-    bend = np.abs(samples.curvature)
-    mean = float(bend.mean())
-    return Signs(
-        _near(road, world), min(float(bend.max()), 1.0), mean, mean * road.length, min(road.length, 5000.0)
+
+
+def _signs(road: Road, world: World) -> Signs:
+    s, driver = stations(road), BeamngLike()
+    bend = np.abs(road.curvature(s))
+    aside = driver.offsets(road, world) + world.lane_width / 2
+    away = np.abs(aside + PURSUIT_CUTS * driver.bend(road, world))
+    counts = (s >= GETTING_GOING) & (s <= road.length - ARRIVED)
+    away = away[counts] if counts.any() else away
+    signs = (
+        min(away.max(), FARTHEST),
+        min(away.mean(), FARTHEST),
+        np.abs(np.diff(aside)).max() / s[1],
+        min(bend.max(), 1.0),
+        min(bend.mean(), 1.0),
     )
-
-
-def _near(road: Road, world: World) -> float:
-    try:
-        drive = simulate(road, world, BeamngLike(risk=DARING), keep_driving=True)
-        margin = judge(road, drive, world).margin
-    except Exception as error:  # whatever breaks down on a road costs what is known of it
-        log.info("a road cannot be driven: %s", error)
-        return 0.0
-    return float(np.clip(-margin, -FARTHEST, FARTHEST)) if np.isfinite(margin) else 0.0
+    return Signs(*map(float, signs)) if np.isfinite(signs).all() else UNKNOWN
 
 
 def _apart(points: Sequence[Sequence[float]]) -> Array:
@@ -98,30 +104,40 @@ class Weighing:
     scale: Array
     weights: Array
     """One per sign, and a constant."""
-    threshold: float | None = None
-    """Above it a test is expected to fail; None where nobody knows."""
+    share: float | None = None
+    """Of the known tests, those that failed; None where nobody knows."""
 
     def scores(self, signs: Sequence[Signs]) -> Array:
-        """The larger the likelier to fail, ``(n,)``."""
-        table = (np.asarray(signs, float).reshape(-1, len(Signs._fields)) - self.mean) / self.scale
-        return np.asarray(table @ self.weights[:-1] + self.weights[-1])
+        """The larger the likelier to fail, ``(n,)``; what is unknown lies in the middle."""
+        scores = (_table(signs) - self.mean) / self.scale @ self.weights[:-1] + self.weights[-1]
+        known = np.isfinite(scores)
+        return np.asarray(np.where(known, scores, np.median(scores[known]) if known.any() else 0.0))
 
     def worth(self, signs: Sequence[Signs]) -> list[int]:
-        """Indices of tests that are expected to fail; of the likeliest tenth where none is, and of the
-        likeliest third where nobody knows."""
+        """Indices of the tests to select, so that the largest share of them fails: the likeliest ones.
+
+        A twentieth of them; or more, until three failures are expected, as long as a test is likelier to fail
+        than most. Where nobody knows what to expect, the likeliest tenth.
+        """
         scores = self.scores(signs)
-        share = FEW
-        chosen: list[int] = []
-        if self.threshold is None:
-            share = UNTAUGHT
+        first = order(scores)
+        if self.share is None:
+            count = int(np.ceil(UNTAUGHT * len(scores)))
         else:
-            chosen = np.flatnonzero(scores > self.threshold).tolist()
-        return chosen or sorted(order(scores)[: int(np.ceil(share * len(scores)))].tolist())
+            chance = 1 / (1 + np.exp(-np.clip(scores[first], -30, 30)))
+            enough = int(np.searchsorted(chance.cumsum(), EXPECTED)) + 1
+            likelier = int((chance > self.share).sum())
+            count = max(int(np.ceil(FEW * len(scores))), min(enough, likelier))
+        return sorted(first[:count].tolist())
 
 
 ZERO = np.zeros(len(Signs._fields))
-BY_DRIVE = Weighing(ZERO, ZERO + 1.0, np.r_[1.0, np.zeros(len(Signs._fields))])
-"""The drive alone."""
+BY_LINE = Weighing(ZERO, ZERO + 1.0, np.r_[1.0, np.zeros(len(Signs._fields))])
+"""The planned line alone."""
+
+
+def _table(signs: Sequence[Signs]) -> Array:
+    return np.asarray(signs, float).reshape(-1, len(Signs._fields))
 
 
 def order(scores: Array) -> NDArray[np.intp]:
@@ -130,11 +146,12 @@ def order(scores: Array) -> NDArray[np.intp]:
 
 
 def learnt(signs: Sequence[Signs], failed: Sequence[bool]) -> Weighing:
-    """Signs weighed so that they tell failures; the drive alone where there is too little to learn from."""
-    outcome = np.asarray(failed, float)
+    """Signs weighed so that they tell failures; the line alone where there is too little to learn from."""
+    table, outcome = _table(signs), np.asarray(failed, float)
+    known = np.isfinite(table).all(axis=1)
+    table, outcome = table[known], outcome[known]
     if len(outcome) < FEWEST or outcome.min() == outcome.max():
-        return BY_DRIVE
-    table = np.asarray(signs, float)
+        return BY_LINE
     mean, scale = table.mean(axis=0), np.maximum(table.std(axis=0), 1e-9)
     design = np.c_[(table - mean) / scale, np.ones(len(table))]
     penalty = RIDGE * np.diag(np.r_[np.ones(design.shape[1] - 1), 1e-6])
@@ -145,15 +162,5 @@ def learnt(signs: Sequence[Signs], failed: Sequence[bool]) -> Weighing:
         slope = design.T @ (outcome - chance) - penalty @ weights
         weights = weights + np.linalg.solve(design.T @ (spread[:, None] * design) + penalty, slope)
     if not np.isfinite(weights).all():
-        return BY_DRIVE
-    return Weighing(mean, scale, weights, _threshold(design @ weights, outcome))
-
-
-def _threshold(scores: Array, outcome: Array) -> float:
-    """Where failures and passes part best: the largest difference of their shares above it."""
-    ranked = order(scores)
-    failures = np.cumsum(outcome[ranked]) / outcome.sum()
-    passes = np.cumsum(1 - outcome[ranked]) / (1 - outcome).sum()
-    best = int(np.argmax(failures - passes))
-    below = scores[ranked[best + 1]] if best + 1 < len(scores) else scores[ranked[best]] - 1.0
-    return float((scores[ranked[best]] + below) / 2)
+        return BY_LINE
+    return Weighing(mean, scale, weights, float(outcome.mean()))
