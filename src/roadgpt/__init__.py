@@ -10,6 +10,7 @@ The values and the verbs of the rooms can be taken from here; each is imported w
     road = roadgpt.build(design)
 """
 
+import sys
 from importlib import import_module
 from typing import Any
 
@@ -41,6 +42,7 @@ _ROOMS = {
     "perform": "run",
     "prove": "run",
     "draw": "report",
+    "plot": "report",
     "compare": "study",
 }
 
@@ -55,3 +57,30 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return __all__
+
+
+# What a notebook shows as a picture, by module and class: nothing is imported until one is shown.
+_PICTURES = (
+    ("roadgpt.road.road", "Road"),
+    ("roadgpt.road.design", "Design"),
+    ("roadgpt.run.model", "Run"),
+    ("roadgpt.run.campaign", "Campaign"),
+)
+
+
+def _picture(value: Any) -> bytes | None:
+    made: bytes | None = import_module("roadgpt.report.notebook").png_of(value)
+    return made
+
+
+def _show_pictures_in_notebooks() -> None:
+    """Tell the notebook that runs this process, if one does, how our values look."""
+    if "IPython" in sys.modules:
+        shell = sys.modules["IPython"].get_ipython()
+        if shell is not None:
+            formatter = shell.display_formatter.formatters["image/png"]
+            for module, name in _PICTURES:
+                formatter.for_type_by_name(module, name, _picture)
+
+
+_show_pictures_in_notebooks()

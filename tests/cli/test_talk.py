@@ -18,7 +18,7 @@ def quick_and_in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(
         talk,
         "Wish",
-        lambda words, roads, world, _: wish(words, roads, world, Setup(drives=False), has_pictures=False),
+        lambda words, roads, world, _: wish(words, roads, world, Setup(drives=False), pictures=()),
     )
 
 

@@ -3,7 +3,8 @@
 A Brief stands at a door, so its numbers carry the units that people speak in: degrees, metres, percent.
 """
 
-from typing import Annotated, Literal, Self
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -32,6 +33,13 @@ class Frozen(BaseModel):
     """A value: never changed, compared by content, read from and written to JSON."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
+        """What was set to something else than usual; the rest would bury it."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if field.is_required() or value != field.get_default(call_default_factory=True):
+                yield name, value
 
 
 class Amount(Frozen):

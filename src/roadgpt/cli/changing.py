@@ -13,6 +13,7 @@ from roadgpt.cli.screen import Screen
 if TYPE_CHECKING:
     from roadgpt.chat import ChatSettings
     from roadgpt.design.edit import Edited
+    from roadgpt.report import Format
     from roadgpt.road import World
     from roadgpt.run.editing import Original
     from roadgpt.run.folder import Draw
@@ -31,7 +32,8 @@ class Wish:
     """Of a design that no run belongs to."""
     chat: "ChatSettings | None" = None
     drives: bool = True
-    has_pictures: bool = True
+    pictures: "tuple[Format, ...]" = ("png",)
+    """Formats of the pictures; empty: none are drawn."""
 
 
 def change(wish: Wish, screen: Screen) -> Path:
@@ -69,8 +71,9 @@ def change(wish: Wish, screen: Screen) -> Path:
     with screen:
         screen.row(row)
     screen.say(f"changed road: {place}")
-    if wish.has_pictures:
-        screen.say(f"pictures: {place}/*.png, and of the road as it was: {place}/before/*.png")
+    if wish.pictures:
+        kind = wish.pictures[0]
+        screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
     return place
 
 
@@ -91,8 +94,8 @@ def _edited(before: "Original", wish: Wish, screen: Screen) -> "Edited":
 
 
 def _drawing(wish: Wish) -> "Draw | None":
-    if not wish.has_pictures:
+    if not wish.pictures:
         return None
     from roadgpt.report import drawing
 
-    return drawing()
+    return drawing(formats=wish.pictures)

@@ -137,6 +137,29 @@ def formats_option(flag: str, required: bool = False) -> Decorator:
     )
 
 
+PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load matplotlib
+
+
+def picture_formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
+    """The type of an option that takes formats of pictures, several after commas."""
+    names = value if isinstance(value, tuple) else tuple(name.strip().lower() for name in value.split(","))
+    for name in names:
+        if name not in PICTURES:
+            raise click.BadParameter(
+                f"'{name}' is no format of pictures; give {', '.join(PICTURES)}, or several"
+            )
+    return tuple(dict.fromkeys(names))
+
+
+format_option = click.option(
+    "--format",
+    "picture_formats",
+    type=picture_formats,
+    default=("png",),
+    metavar="FORMAT,...",
+    help="Of the pictures: png, svg, pdf, or several after commas. [default: png]",
+)
+
 axes_option = click.option(
     "--axes",
     type=click.Choice(["equal", "thesis"]),
@@ -144,6 +167,7 @@ axes_option = click.option(
     show_default=True,
     help="Of the pictures: to scale, or RoadGPT's fixed 220 m by 220 m and 200 m by 20 m.",
 )
+pictures_options = together(axes_option, format_option)
 
 screen_options = together(
     click.option("--json", "as_json", is_flag=True, help="One JSON line per road on standard output."),

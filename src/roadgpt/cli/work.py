@@ -17,7 +17,7 @@ from roadgpt.cli.streams import apart
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
-    from roadgpt.report import Scale
+    from roadgpt.report import Format, Scale
     from roadgpt.road import World
     from roadgpt.run import Campaign, Setup
     from roadgpt.run.folder import Draw
@@ -37,7 +37,8 @@ class Wish:
     seed: int | None = None
     out: Path | None = None
     axes: "Scale" = "equal"
-    has_pictures: bool = True
+    pictures: "tuple[Format, ...]" = ("png",)
+    """Formats of the pictures of each run; empty: none are drawn."""
     formats: tuple[str, ...] = ()
     """Of the road files beside each run."""
 
@@ -66,7 +67,7 @@ def work_off(wish: Wish, screen: Screen) -> None:
         screen.say(f"all {work.roads} roads are there")
     elif work.kept:
         screen.say(f"{len(work.kept)} roads were finished before; going on")
-    _watch(work, screen)
+    _watch(work, wish, screen)
 
 
 def _seed(wish: Wish) -> int:
@@ -98,7 +99,7 @@ def reading(brief: "Brief") -> str:
     return told
 
 
-def _watch(work: "Campaign", screen: Screen) -> None:
+def _watch(work: "Campaign", wish: Wish, screen: Screen) -> None:
     """Show the roads of a campaign, first those that were there before; end with the table in any case."""
     from roadgpt.run.sbft_json import test_name
 
@@ -118,8 +119,11 @@ def _watch(work: "Campaign", screen: Screen) -> None:
             screen.say(f"language model: {spending(work.meter.spent)}")
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
-            if work.draw is not None:
-                screen.say(f"pictures: {work.folder / 'overview.png'} and {work.folder / 'runs'}/*/*.png")
+            if wish.pictures:
+                kind = wish.pictures[0]
+                screen.say(
+                    f"pictures: {work.folder / f'overview.{kind}'} and {work.folder / 'runs'}/*/*.{kind}"
+                )
 
 
 def _beside(wish: Wish) -> "Draw | None":
@@ -140,8 +144,8 @@ def _complain(sentence: str) -> None:
 
 
 def _pictures(wish: Wish) -> "Draw | None":
-    if not wish.has_pictures:
+    if not wish.pictures:
         return None
     from roadgpt.report import drawing
 
-    return drawing(wish.axes)
+    return drawing(wish.axes, wish.pictures)

@@ -97,6 +97,10 @@ class Drive:
     ended: Ended
     car: Box
 
+    def __repr__(self) -> str:
+        way = f"{self['s'][-1]:.1f} m in {self.duration:.2f} s, {len(self)} steps"
+        return f"Drive({self.driver} in {self.simulator}, seed {self.seed}, {way}, ended by {self.ended})"
+
     def __getitem__(self, name: str) -> FloatArray:
         return self.columns[name]
 

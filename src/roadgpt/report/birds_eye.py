@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.ticker import MultipleLocator
 
+from roadgpt.drive import Drive
 from roadgpt.report.border import name_border
 from roadgpt.report.canvas import HALO, INK, SOFT, VERMILLION, Header, add_axes, new_figure
 from roadgpt.report.labels import Labels
@@ -58,7 +59,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
         labels.keep_clear_of(border)
     places = places_of(run)
     for place in places:
-        _mark(axes, run, place)
+        mark(axes, run, place)
         labels.put((place.x, place.y), place.text, VERMILLION)
     for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
         heading = float(road.heading(s))
@@ -98,19 +99,9 @@ def _ground(axes: Axes, frame: Frame, size: float) -> None:
 
 
 def _path(figure: Figure, axes: Axes, run: Run) -> None:
-    """The way of the car's centre, coloured by its speed, with a bar that says which."""
+    """The driven path, and the bar that says which colour is which speed."""
     assert run.drive is not None
-    track = np.stack([run.drive["x"], run.drive["y"]], axis=-1)
-    speed = run.drive["speed"] * 3.6
-    every = max(1, len(track) // 600)
-    track = np.concatenate([track[::every], track[-1:]])
-    speed = np.r_[speed[::every], speed[-1]]
-    norm = Normalize(0.0, max(SLOWEST, float(speed.max())))
-    axes.plot(track[:, 0], track[:, 1], color="white", lw=4.2, zorder=6, solid_capstyle="round")
-    pieces = np.stack([track[:-1], track[1:]], axis=1)
-    line = LineCollection(list(pieces), cmap=SPEEDS, norm=norm, linewidths=2.6, zorder=7, capstyle="round")
-    line.set_array((speed[:-1] + speed[1:]) / 2)
-    axes.add_collection(line)
+    line = driven_path(axes, run.drive)
     shown = axes.get_position()
     inch = 1 / figure.get_figwidth()
     box = (shown.x1 + 0.18 * inch, shown.y0 + 0.1 * shown.height, 0.16 * inch, 0.8 * shown.height)
@@ -120,7 +111,23 @@ def _path(figure: Figure, axes: Axes, run: Run) -> None:
     bar.outline.set_visible(False)
 
 
-def _mark(axes: Axes, run: Run, place: Place) -> None:
+def driven_path(axes: Axes, drive: Drive) -> LineCollection:
+    """Draw the way of the car's centre of gravity, coloured by its speed in km/h."""
+    track = np.stack([drive["x"], drive["y"]], axis=-1)
+    speed = drive["speed"] * 3.6
+    every = max(1, len(track) // 600)
+    track = np.concatenate([track[::every], track[-1:]])
+    speed = np.r_[speed[::every], speed[-1]]
+    norm = Normalize(0.0, max(SLOWEST, float(speed.max())))
+    axes.plot(track[:, 0], track[:, 1], color="white", lw=4.2, zorder=6, solid_capstyle="round")
+    pieces = np.stack([track[:-1], track[1:]], axis=1)
+    line = LineCollection(list(pieces), cmap=SPEEDS, norm=norm, linewidths=2.6, zorder=7, capstyle="round")
+    line.set_array((speed[:-1] + speed[1:]) / 2)
+    axes.add_collection(line)
+    return line
+
+
+def mark(axes: Axes, run: Run, place: Place) -> None:
     """A cross on the place, and the car's outline as it stood there."""
     if place.step is not None and run.drive is not None:
         car = Polygon(run.drive.corners(place.step), closed=True, fc="none", ec=VERMILLION, lw=1.6, zorder=9)

@@ -1,9 +1,10 @@
-"""What all pictures share: colours, the header, and PNG bytes that depend on nothing but the picture."""
+"""What all pictures share: colours, the header, and files whose bytes depend on nothing but the picture."""
 
 import io
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 from matplotlib import rc_context, rcParamsDefault
 from matplotlib.axes import Axes
@@ -11,11 +12,25 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
+from roadgpt.errors import UsageError
 from roadgpt.report.lettering import fitted, inches
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 
+Format = Literal["png", "svg", "pdf"]
+"""Of a picture: pixels, or lines and letters that papers can scale."""
+FORMATS: tuple[Format, ...] = get_args(Format)
+PNG: tuple[Format, ...] = ("png",)
+
 DPI = 110
+# What a file would otherwise tell of the day and of matplotlib's version.
+UNDATED: Mapping[str, Mapping[str, None]] = {
+    "png": {"Software": None},
+    "svg": {"Date": None, "Creator": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+# Names inside an SVG are otherwise drawn by lot; PDF of Type 42 is what publishers take.
+SAVING: dict[Any, Any] = {"svg.hashsalt": "roadgpt", "svg.fonttype": "path", "pdf.fonttype": 42}
 INK, SOFT, FAINT = "#1b1e23", "#5f6670", "#d9dce1"
 
 # Okabe and Ito's colours, which colour-blind people tell apart; every use has a word or a symbol beside it.
@@ -124,9 +139,35 @@ def origin(run: Run) -> str:
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Write a PNG whole; the same figure gives the same bytes."""
-    data = io.BytesIO()
-    # matplotlib's version would otherwise stand in the file
-    figure.savefig(data, format="png", dpi=DPI, metadata={"Software": None})
-    write_whole(path, data.getvalue())
+    """Write a picture whole, in the format of the path's suffix; the same figure gives the same bytes.
+
+    Raises:
+        UsageError: the suffix is none of .png, .svg and .pdf.
+    """
+    write_whole(path, encoded(figure, format_of(path)))
     return path
+
+
+def save_all(figure: Figure, path: Path, formats: Sequence[Format] = PNG) -> list[Path]:
+    """Write a picture in each format; ``path`` is its name, whose suffix is that of the format."""
+    return [save(figure, path.with_suffix(f".{name}")) for name in formats]
+
+
+def format_of(path: Path) -> Format:
+    """The format that a picture's name asks for.
+
+    Raises:
+        UsageError: the suffix is none of .png, .svg and .pdf.
+    """
+    for name in FORMATS:
+        if path.suffix.lower() == f".{name}":
+            return name
+    raise UsageError(f"a picture cannot be written as {path.name}; end its name in .png, .svg or .pdf")
+
+
+def encoded(figure: Figure, name: Format) -> bytes:
+    """The bytes of a picture's file, which depend on nothing but the figure."""
+    data = io.BytesIO()
+    with rc_context(SAVING):
+        figure.savefig(data, format=name, dpi=DPI, metadata=dict(UNDATED[name]))
+    return data.getvalue()

@@ -2,7 +2,7 @@
 
 import json
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,18 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from roadgpt.errors import UsageError
-from roadgpt.report.canvas import INK, MARGIN, OUTCOMES, SOFT, VERMILLION, in_our_style, new_figure, save
+from roadgpt.report.canvas import (
+    INK,
+    MARGIN,
+    OUTCOMES,
+    PNG,
+    SOFT,
+    VERMILLION,
+    Format,
+    in_our_style,
+    new_figure,
+    save_all,
+)
 from roadgpt.report.lettering import fitted, inches
 from roadgpt.report.scenery import GROUND, Array
 from roadgpt.road import World
@@ -40,11 +51,24 @@ class Entry:
 
 
 @in_our_style
-def overview(folder: Path | str) -> list[Path]:
+def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
     """Draw ``overview.png`` of a campaign's folder (and ``overview-2.png`` and so on beyond 100 roads; the
     first 1,000 are drawn).
 
     Reads the folder's ``test.NNNN.json``, so folders of the SBFT competition's own tools can be drawn too.
+
+    Raises:
+        UsageError: there is no test in the folder, or one cannot be read.
+    """
+    drawn: list[Path] = []
+    for number, figure in enumerate(pages(folder), 1):
+        name = f"overview{'' if number == 1 else f'-{number}'}.png"
+        drawn += save_all(figure, Path(folder) / name, formats)
+    return drawn
+
+
+def pages(folder: Path | str) -> Iterator[Figure]:
+    """The pages of ``overview``, one by one.
 
     Raises:
         UsageError: there is no test in the folder, or one cannot be read.
@@ -54,14 +78,10 @@ def overview(folder: Path | str) -> list[Path]:
     if not names:
         raise UsageError(f"{folder} holds no test.0001.json; give a folder that roadgpt run made")
     about, size = _about(folder)
-    pages = [names[i : i + PER_PAGE] for i in range(0, len(names), PER_PAGE)][:MOST_PAGES]
-    drawn = []
-    for number, page in enumerate(pages, 1):
-        entries = [_entry(path) for path in page]
-        part = f"page {number} of {len(pages)}, of {len(names)} roads" if len(pages) > 1 else ""
-        figure = page_of(entries, about, part, size)
-        drawn.append(save(figure, folder / f"overview{'' if number == 1 else f'-{number}'}.png"))
-    return drawn
+    shown = [names[i : i + PER_PAGE] for i in range(0, len(names), PER_PAGE)][:MOST_PAGES]
+    for number, page in enumerate(shown, 1):
+        part = f"page {number} of {len(shown)}, of {len(names)} roads" if len(shown) > 1 else ""
+        yield page_of([_entry(path) for path in page], about, part, size)
 
 
 def _about(folder: Path) -> tuple[tuple[str, str], float]:

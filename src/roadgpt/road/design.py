@@ -54,6 +54,12 @@ class Design(_Frozen):
     """Degrees, 0 along +x, counter-clockwise."""
     segments: Annotated[tuple[Segment, ...], Field(min_length=1, max_length=MAX_SEGMENTS)]
 
+    def __repr__(self) -> str:
+        length = sum(segment.distance for segment in self.segments)
+        turns = sum(segment.direction != "straight" for segment in self.segments)
+        about = f"{len(self.segments)} segments, {turns} of them turning, {length:.0f} m"
+        return f"Design({about}, from {self.starting_point} at {self.theta:g} degrees)"
+
     def to_json(self) -> dict[str, Any]:
         """RoadGPT's dictionary; whole numbers are written as integers, as its models write them."""
         out: dict[str, Any] = {

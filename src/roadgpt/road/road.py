@@ -75,6 +75,16 @@ class Road:
         level = GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0))
         return cls(plan, SplineProfile(plan) if nodes.shape[1] == 3 else level, nodes, control)
 
+    def __repr__(self) -> str:
+        low, high = self.profile.height(self.sample().s[[0, -1]])
+        (x0, y0), (x1, y1) = self.plan.at(np.array([0.0, self.length]))
+        ends = f"({x0:.1f}, {y0:.1f}, {low:.1f}) to ({x1:.1f}, {y1:.1f}, {high:.1f})"
+        return f"Road({self.length:.1f} m, from {ends}, {self._tightest()})"
+
+    def _tightest(self) -> str:
+        sharpest = float(np.abs(self.sample().curvature).max())
+        return f"radius {1 / sharpest:.1f} m or more" if sharpest > 1 / LONGEST else "straight"
+
     @property
     def length(self) -> float:
         """In plan, metres."""

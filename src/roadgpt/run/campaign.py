@@ -78,6 +78,10 @@ class Campaign:
             campaign._take_up()
         return campaign
 
+    def __repr__(self) -> str:
+        done = f"{len(self._finished)} of {self.roads} roads"
+        return f"Campaign({self.request.words!r}, seed {self.request.seed}, {done}, in {str(self.folder)!r})"
+
     @property
     def kept(self) -> tuple[int, ...]:
         """Numbers of the roads that are finished."""

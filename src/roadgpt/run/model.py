@@ -96,6 +96,11 @@ class Run:
     """Of a simulator or a driver that failed: where."""
     seconds: Seconds = Seconds()
 
+    def __repr__(self) -> str:
+        about = self.words or self.source or "a road that was given"
+        made = f"{about!r}, {self.length:.0f} m, seed {self.seed}"
+        return f"Run({self.index}, {self.outcome}: {self.description}; {made})"
+
     @property
     def words(self) -> str:
         """The description that the road was made from."""

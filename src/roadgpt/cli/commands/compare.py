@@ -31,7 +31,7 @@ NAMES = {
 @click.argument("other", metavar="B")
 @click.option(
     "--out", type=click.Path(path_type=Path), default=PICTURE, show_default=True, metavar="FILE.png",
-    help="The picture; one of that name is replaced.",
+    help="The picture, as .png, .svg or .pdf; one of that name is replaced.",
 )  # fmt: skip
 @click.option("--no-plot", is_flag=True, help="Draw no picture.")
 @click.option("--mirror", is_flag=True, help="A road and its mirror image count as alike.")
@@ -59,8 +59,11 @@ def command(
     roadgpt compare DIR/runs/0001 DIR/runs/0002
     roadgpt compare a.json b.json --axes thesis --mirror
     """
+    from roadgpt.report.canvas import format_of
     from roadgpt.study import compare
 
+    if not no_plot:
+        format_of(out)
     world = world_of(rest)
     runs = [shown_run(file, world, geometry) for file in (one, other)]
     roads = [run.road for run in runs if run.road is not None]

@@ -7,7 +7,14 @@ import click
 
 from roadgpt.cli.changing import Wish, change
 from roadgpt.cli.dashes import DescribedCommand
-from roadgpt.cli.options import chat_of, chat_options_but, folder, world_of, world_options
+from roadgpt.cli.options import (
+    chat_of,
+    chat_options_but,
+    folder,
+    format_option,
+    world_of,
+    world_options,
+)
 from roadgpt.cli.screen import Screen
 
 
@@ -25,6 +32,7 @@ from roadgpt.cli.screen import Screen
 @world_options("map_size")
 @click.option("--no-drive", is_flag=True, help="Change and check only.")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
+@format_option
 @click.option("--json", "as_json", is_flag=True, help="One JSON line on standard output.")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
 def command(
@@ -34,6 +42,7 @@ def command(
     designer: str,
     no_drive: bool,
     no_plot: bool,
+    picture_formats: Any,
     as_json: bool,
     quiet: bool,
     **rest: Any,
@@ -60,6 +69,6 @@ def command(
         world_of(rest),
         chat=chat,
         drives=not no_drive,
-        has_pictures=not no_plot,
+        pictures=() if no_plot else picture_formats,
     )
     change(wish, Screen(1, as_json, quiet))

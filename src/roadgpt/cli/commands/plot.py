@@ -5,7 +5,14 @@ from typing import Any
 
 import click
 
-from roadgpt.cli.options import axes_option, files_argument, folder, setup_options, world_of, world_options
+from roadgpt.cli.options import (
+    files_argument,
+    folder,
+    pictures_options,
+    setup_options,
+    world_of,
+    world_options,
+)
 from roadgpt.cli.roads import shown_run
 from roadgpt.errors import UsageError
 
@@ -17,18 +24,27 @@ UNREADABLE = 2  # exit status
 @click.option(
     "--out", type=folder, default=Path("plots"), show_default=True, help="Folder; each road gets one in it."
 )
-@axes_option
+@pictures_options
 @world_options("map_size")
 @setup_options("geometry")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
 def command(
-    files: tuple[str, ...], out: Path, axes: Any, geometry: Any, quiet: bool, **rest: Any
+    files: tuple[str, ...],
+    out: Path,
+    axes: Any,
+    picture_formats: Any,
+    geometry: Any,
+    quiet: bool,
+    **rest: Any,
 ) -> int | None:
     """Draw roads that exist: from above, height over distance, curvature and grade.
 
     ROAD.json is a RoadGPT design, an SBFT test, a list of points [x, y] or [x, y, z], or the folder or test
     file of a run, whose drive is drawn as well. The pictures of straight.json go into a new folder
     OUT/straight, or OUT/straight-2 and so on where that exists. Prints the names of the pictures.
+
+    \b
+    roadgpt plot DIR/runs/0001 --format pdf
     """
     from roadgpt.report import draw
 
@@ -38,7 +54,7 @@ def command(
         try:
             run = shown_run(file, world, geometry)
             place = _place(out, Path(file))
-            pictures = draw(run, place, axes)
+            pictures = draw(run, place, axes, picture_formats)
         except UsageError as error:
             click.echo(f"roadgpt: {error}", err=True)
             status = UNREADABLE

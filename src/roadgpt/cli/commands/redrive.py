@@ -1,11 +1,12 @@
 """``roadgpt redrive``: tests of a campaign again, as folders of runs that other commands open."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 from roadgpt.cli.campaigns import one_line
-from roadgpt.cli.options import axes_option, folder
+from roadgpt.cli.options import folder, pictures_options
 from roadgpt.errors import UsageError
 
 DIGITS = 18  # of a number that a store can look for
@@ -16,8 +17,15 @@ DIGITS = 18  # of a number that a store can look for
 @click.argument("tests", nargs=-1, required=True, metavar="TEST...")
 @click.option("--out", type=folder, default=None, help="Folder for the runs. [default: CAMPAIGN/again]")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
-@axes_option
-def command(campaign: Path, tests: tuple[str, ...], out: Path | None, no_plot: bool, axes: str) -> None:
+@pictures_options
+def command(
+    campaign: Path,
+    tests: tuple[str, ...],
+    out: Path | None,
+    no_plot: bool,
+    axes: Any,
+    picture_formats: Any,
+) -> None:
     """Drive tests of a campaign again, into folders that show, view, plot and export open.
 
     TEST is the number of a test, as in results.csv, with its cell in front where there are several: c02/17.
@@ -32,9 +40,10 @@ def command(campaign: Path, tests: tuple[str, ...], out: Path | None, no_plot: b
     from roadgpt.run import write_run
 
     out = out or campaign / "again"
+    draw = None if no_plot else drawing(axes, picture_formats)
     for cell, number in [_named(campaign, test) for test in tests]:
         run, result = run_again(campaign, cell, number)
-        written = write_run(run, _made(out / cell), None if no_plot else drawing(axes))  # type: ignore[arg-type]
+        written = write_run(run, _made(out / cell), draw)
         click.echo(f"{run.outcome:<8} {cell}/{number}  {written}  {one_line(run.description)}")
         if not is_same(run, result):
             said = f"{result.outcome} in the campaign ({one_line(result.description)})"

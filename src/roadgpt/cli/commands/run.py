@@ -10,11 +10,11 @@ from roadgpt.cli.dashes import DescribedCommand
 from roadgpt.cli.options import (
     ROADS,
     SEED,
-    axes_option,
     chat_of,
     chat_options,
     folder,
     formats_option,
+    pictures_options,
     screen_options,
     setup_options,
     world_of,
@@ -34,7 +34,7 @@ from roadgpt.cli.work import Wish, work_off
 @setup_options("geometry", "rules")
 @click.option("--no-drive", is_flag=True, help="Design and check only.")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
-@axes_option
+@pictures_options
 @formats_option("--export")
 @chat_options
 @beamng_options
@@ -47,6 +47,7 @@ def command(
     no_drive: bool,
     no_plot: bool,
     axes: Any,
+    picture_formats: Any,
     formats: tuple[str, ...],
     as_json: bool,
     quiet: bool,
@@ -69,5 +70,6 @@ def command(
     world = world_of(rest)
     chat = chat_of(rest, rest["reader"], rest["designer"])
     setup = Setup(drives=not no_drive, chat=chat, **rest)
-    wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, not no_plot, formats)
+    pictures = () if no_plot else picture_formats
+    wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, pictures, formats)
     work_off(wish, Screen(roads, as_json, quiet, verbose))

@@ -10,9 +10,9 @@ from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.flags import measure
 from roadgpt.cli.options import (
     SEED,
-    axes_option,
     competition_options,
     folder,
+    pictures_options,
     screen_options,
     setup_options,
     whole,
@@ -71,7 +71,7 @@ KMH = 3.6
 )
 @click.option("--plot", "has_pictures", is_flag=True, help="Draw every test, not only the page of all.")
 @click.option("--no-plot", is_flag=True, help="Draw nothing.")
-@axes_option
+@pictures_options
 @click.option("--debug", is_flag=True, help="Let the generator's log hold more.")
 @screen_options
 def command(
@@ -85,6 +85,7 @@ def command(
     has_pictures: bool,
     no_plot: bool,
     axes: "Scale",
+    picture_formats: Any,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -110,15 +111,15 @@ def command(
     if has_pictures and not no_plot:
         from roadgpt.report import drawing
 
-        draw = drawing(axes)
+        draw = drawing(axes, picture_formats)
     work = compete(Experiment(**experiment), world, setup, seed, out, draw)
     crashes_go_to(work.folder)
     screen = Screen(work.experiment.test_budget or 0, as_json, quiet, verbose)
     screen.say(f"{work.experiment.class_name} of {work.experiment.module_name}, into {work.folder}")
-    return _watched(work, screen, has_overview=not no_plot)
+    return _watched(work, screen, () if no_plot else picture_formats)
 
 
-def _watched(work: "Competition", screen: Screen, has_overview: bool) -> int:
+def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
     """Show every test as it ends; then how the generator ended, and the page of all tests."""
     from roadgpt.run.sbft_json import test_name
 
@@ -133,14 +134,14 @@ def _watched(work: "Competition", screen: Screen, has_overview: bool) -> int:
         if work.ending is None or work.ending.how != "unloadable":  # of that the error speaks
             if work.ending is not None:
                 screen.say(f"the generator: {work.ending.sentence}")
-            if screen.rows and has_overview:
-                _overview(work.folder)
+            if screen.rows and formats:
+                _overview(work.folder, formats)
             if work.folder.is_dir():
                 screen.say(f"tests and tables: {work.folder}")
     return 0 if work.ending is None or work.ending.is_fine else FAILED
 
 
-def _overview(folder: Path) -> None:
-    from roadgpt.report import drawing
+def _overview(folder: Path, formats: Any) -> None:
+    from roadgpt.report import overview
 
-    drawing().of_campaign(folder)
+    overview(folder, formats)

@@ -4,18 +4,27 @@ Each bar is all answers about one road in one criterion, its middle answer centr
 right speaks for the road.
 """
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from roadgpt.report.canvas import BLUE, FAINT, INK, SOFT, VERMILLION, dress, in_our_style, new_figure, save
+from roadgpt.report.canvas import (
+    BLUE,
+    FAINT,
+    INK,
+    SOFT,
+    VERMILLION,
+    dress,
+    encoded,
+    in_our_style,
+    new_figure,
+    save_all,
+)
 from roadgpt.report.lettering import fitted
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey.tally import Tally, Unit
@@ -147,26 +156,12 @@ def _finished(figure: Figure, name: str, folder: Path, is_synthetic: bool) -> Dr
             0.62, 0.5, "SYNTHETIC", size=54, weight="bold", color=VERMILLION, alpha=0.16, ha="center",
             va="center", rotation=18, zorder=50,
         )  # fmt: skip
-    svg = _text(figure)
+    svg = encoded(figure, "svg").decode()
     write_whole(folder / f"{name}.svg", svg)
     figure.patch.set_alpha(1)
-    _written(figure, folder / f"{name}.pdf")
-    save(figure, folder / f"{name}.png")
+    save_all(figure, folder / f"{name}.png", ("pdf", "png"))
     inside = svg[svg.index("<svg") :]
     for colour, variable in PAPER.items():
         inside = inside.replace(colour, variable)
     # on a phone it is scrolled and not shrunk
     return Drawn(name, inside.replace("<svg ", '<svg style="min-width: 38rem" ', 1))
-
-
-def _text(figure: Figure) -> str:
-    data = io.StringIO()
-    with rc_context({"svg.hashsalt": "roadgpt", "svg.fonttype": "path"}):
-        figure.savefig(data, format="svg", metadata={"Date": None, "Creator": None})
-    return data.getvalue()
-
-
-def _written(figure: Figure, path: Path) -> None:
-    data = io.BytesIO()
-    figure.savefig(data, format="pdf", metadata={"CreationDate": None, "Creator": None, "Producer": None})
-    write_whole(path, data.getvalue())
