@@ -39,7 +39,7 @@ from roadgpt.campaign.worker import Task, do, result_of
 from roadgpt.check import sbft_verdict
 from roadgpt.road import Road, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
-from roadgpt.run.sparseness import Spread, failure_segment
+from roadgpt.run.sparseness import Spread, segment_around
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "search.md"
 BEGIN, END = "<!-- measured by benchmarks/bench_search.py -->", "<!-- end of what was measured -->"
@@ -216,7 +216,9 @@ def figures(
     spread = Spread()
     failures = [(result, road) for result, road in tried if result.outcome == "FAIL"]
     for result, road in failures:
-        spread.add(failure_segment(road, result.at_s))
+        segment = segment_around(road.control_points(), road.at(result.at_s)[:2].tolist())
+        if segment is not None:
+            spread.add(result.number, segment)
     judge = judge_of(referee) if referee else None
     valid = sum(result.outcome in ("PASS", "FAIL") for result, _ in tried)
     out = {

@@ -45,11 +45,13 @@ def walked(points: Array) -> float:
     return float(np.cumsum(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)))[-1])
 
 
-def interpolate(points: ArrayLike) -> Array:
+def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECIMALS) -> Array:
     """The competition's interpolated points, about one per metre, rounded to millimetres.
 
     Args:
         points: control points ``(n, 2)`` or ``(n, 3)`` in metres, n >= 2.
+        fewest: points that a short road is given at least.
+        decimals: that are kept.
 
     Returns:
         ``(m, 2)`` or ``(m, 3)``. For some lengths the last point lies beyond the last control point,
@@ -60,9 +62,9 @@ def interpolate(points: ArrayLike) -> Array:
     """
     points = np.asarray(points, float)
     tck, _ = _spline(points)
-    count = max(MIN_NODES, int(walked(points[:, :2])))
+    count = max(fewest, int(walked(points[:, :2])))
     u = np.arange(0, 1 + 1 / count, 1 / count)
-    return np.asarray(np.round(np.stack(splev(u, tck), axis=-1), DECIMALS), float)
+    return np.asarray(np.round(np.stack(splev(u, tck), axis=-1), decimals), float)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,33 +1,122 @@
-"""How much failures differ: the SBFT competition's sparseness.
+"""Where tests left their lane, and how much such failures differ: the SBFT competition's analysis.
 
 Each failure is the road from 30 m before to 30 m after the place where the car left its lane, as a row of
 steps (change of direction, length). Two rows differ by their weighted Levenshtein distance: leaving out or
 adding a step costs 1, and exchanging steps costs (da / (1 + da) + dl / (1 + dl)) / 2 with da in degrees and
-dl in metres, or nothing where da < 0.3 and dl < 0.2. Sparseness is the mean, over failures, of the distance
-to the one that differs most. Source: the competition's tests_evaluation.py (2024), and the code it calls.
+dl in metres, or nothing where da < 0.3 and dl < 0.2. Source: the competition's tests_evaluation.py (2024),
+and the code it calls. Its quirks are kept, so that its tools say the same of our files:
+
+* sparseness is the mean, over failures, of the distance to the one that differs most *among later tests*, so
+  that the last failure has none;
+* a failure whose segment cannot be cut out (its road has fewer than four control points, or the car left its
+  lane at the very start) counts as one to the right, and not for sparseness;
+* the road is interpolated once more, and the segment begins and ends within a metre of 30 m.
 """
 
 import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from roadgpt.road import Road
+from roadgpt.errors import UsageError
+from roadgpt.geometry import interpolate
+from roadgpt.run.execution import Record
 
 Array = NDArray[np.float64]
 
 AROUND = 30.0  # m, before and after the place
+LEFT = 2.0  # m from the centre line: nearer than half a lane is on the left
+NODE = 0.55  # m from a node of the road: half of what lies between nodes, and some for rounding
+SAME = 0.01  # m: a node and the start of a segment are one
+FEWEST_POINTS = 4  # of a road, for the spline to be a cubic one
+DECIMALS = 4  # of the road that is interpolated once more
 EPS_DEGREES = 0.3
 EPS_METRES = 0.2
 
 
-def failure_segment(road: Road, s: float) -> Array:
-    """Points ``(n, 2)`` of the centre line, one per metre, from 30 m before station ``s`` to 30 m after."""
-    samples = road.sample()
-    near = (np.abs(samples.s - s) <= AROUND) & (np.abs(samples.s - s) > EPS_METRES)
-    stations = np.sort(np.r_[samples.s[near], np.clip(s, 0.0, road.length)])
-    points: Array = road.at(stations)[:, :2]
-    return points
+class Departure(NamedTuple):
+    """Where a car left its lane."""
+
+    side: str
+    """left or right"""
+    segment: Array | None
+    """The road around the place, points ``(n, 2)``; None where it cannot be cut out."""
+
+
+def departure(points: ArrayLike, records: Sequence[Record]) -> Departure | None:
+    """What the competition's analysis finds in a failed test; None where the car did not leave its lane.
+
+    Args:
+        points: control points of the road, ``(n, 2)`` or more columns, metres.
+        records: its execution data.
+    """
+    number = next((i for i, record in enumerate(records) if record.is_oob), None)
+    if number is None:
+        return None
+    unknown = Departure("right", None)
+    line, place = _interpolated(points), records[number].pos[:2]
+    found = None if line is None else _cut_out(line, place)
+    if line is None or found is None or not _first_record(line, found[0], records) < number:
+        return unknown
+    return Departure("left" if _foot(line, place)[1] < LEFT else "right", found)
+
+
+def segment_around(points: ArrayLike, place: Sequence[float]) -> Array | None:
+    """Points ``(n, 2)`` of a road, given by control points, around a place; None where there are none."""
+    line = _interpolated(points)
+    return None if line is None else _cut_out(line, place)
+
+
+def _interpolated(points: ArrayLike) -> Array | None:
+    plan = np.asarray(points, float)[:, :2]
+    if len(plan) < FEWEST_POINTS:
+        return None
+    try:
+        return interpolate(plan, fewest=1, decimals=DECIMALS)
+    except UsageError:
+        return None
+
+
+def _cut_out(line: Array, place: Sequence[float]) -> Array | None:
+    """The line from 30 m before to 30 m after its point nearest to a place."""
+    near, _ = _foot(line, place)
+    nodes = np.flatnonzero(np.hypot(*(line - near).T) < NODE)
+    if not nodes.size or not nodes[-1]:
+        return None
+    before = _first_metres(np.concatenate((line[: nodes[-1]], [near]))[::-1])[::-1]
+    after = _first_metres(line[nodes[-1] :]) if nodes[-1] < len(line) - 1 else line[:0]
+    if len(before) < 2 or len(after) == 1:
+        return None
+    return np.concatenate((before, after))
+
+
+def _first_metres(line: Array) -> Array:
+    walked = np.cumsum(np.hypot(*np.diff(line, axis=0).T))
+    return line[: 1 + int((walked < AROUND).sum())]
+
+
+def _foot(line: Array, place: Sequence[float]) -> tuple[Array, float]:
+    """The point of a line that is nearest to a place, and how far that is away."""
+    start, way = line[:-1], np.diff(line, axis=0)
+    square = np.maximum((way**2).sum(axis=1), 1e-12)
+    share = np.clip(((place - start) * way).sum(axis=1) / square, 0, 1)
+    feet = start + share[:, None] * way
+    away = np.hypot(*(feet - place).T)
+    nearest = int(away.argmin())
+    return feet[nearest], float(away[nearest])
+
+
+def _first_record(line: Array, start: Array, records: Sequence[Record]) -> int:
+    """The first record beside a segment's start; the first of all where none is."""
+    for number, record in enumerate(records):
+        foot, _ = _foot(line, record.pos[:2])
+        close = np.flatnonzero(np.hypot(*(line - foot).T) < NODE)
+        at = line[close[0]] if close.size else foot
+        if np.hypot(*(at - start)) < SAME:
+            return number
+    return 0
 
 
 def steps_of(points: ArrayLike) -> Array:
@@ -66,24 +155,25 @@ class Spread:
     """Sparseness that grows with every failure, without measuring old pairs again."""
 
     def __init__(self) -> None:
-        self._rows: list[Array] = []
-        self._furthest: Array = np.empty(0)
+        self._rows: dict[tuple[int, int], Array] = {}
+        self._furthest: dict[tuple[int, int], float] = {}
 
-    def add(self, points: ArrayLike) -> None:
-        """Take in the segment of one more failure, points ``(n, 2)``."""
+    def add(self, number: int, points: ArrayLike) -> None:
+        """Take in the segment of the failure of one more test, points ``(n, 2)``."""
         row = steps_of(points)
-        if self._rows:
-            apart = distances(row, self._rows)
-            known = self._furthest if len(self._rows) > 1 else np.zeros(1)
-            self._furthest = np.r_[np.maximum(known, apart), apart.max()]
-        self._rows.append(row)
+        apart = dict(zip(self._rows, distances(row, [*self._rows.values()]).tolist(), strict=True))
+        key = (number, len(self._rows))
+        for other, distance in apart.items():
+            first = min(key, other)
+            self._furthest[first] = max(self._furthest.get(first, 0.0), distance)
+        self._rows[key] = row
 
     @property
     def mean(self) -> float:
         """NaN for fewer than two failures, as the competition has it."""
-        return float(self._furthest.mean()) if len(self._rows) > 1 else math.nan
+        return float(np.mean([*self._furthest.values()])) if self._furthest else math.nan
 
     @property
     def deviation(self) -> float:
         """Standard deviation; NaN for fewer than two failures."""
-        return float(self._furthest.std()) if len(self._rows) > 1 else math.nan
+        return float(np.std([*self._furthest.values()])) if self._furthest else math.nan

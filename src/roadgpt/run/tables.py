@@ -11,13 +11,13 @@ from collections import Counter
 from pathlib import Path
 
 from roadgpt.run.atomic import write_whole
+from roadgpt.run.execution import records_of
 from roadgpt.run.model import Request, Run
-from roadgpt.run.sparseness import Spread, failure_segment
+from roadgpt.run.sparseness import Spread, departure
 
 TABLES = ("generation_stats.csv", "oob_stats.csv")
 DESCRIPTION = "experiment_description.csv"
 ELSEWHERE = ("simulator", "designer", "chat")  # columns of their own, or none where nobody is asked
-DEPARTURES = ("out of lane", "fell")  # causes of failures that have a place and a side
 
 
 class Tally:
@@ -39,11 +39,14 @@ class Tally:
         self.designing += run.seconds.design
         self.driving += run.seconds.drive
         self.simulated += run.drive.duration if run.drive is not None else 0.0
-        verdict = run.verdict
-        if run.road is not None and verdict is not None and verdict.cause in DEPARTURES:
-            self.sides[verdict.side or "right"] += 1
-            if verdict.at_s is not None:
-                self.spread.add(failure_segment(run.road, verdict.at_s))
+        if run.outcome != "FAIL" or run.road is None or run.drive is None:
+            return
+        found = departure(run.road.control_points(), records_of(run.drive, run.world))
+        if found is None:
+            return
+        self.sides[found.side] += 1
+        if found.segment is not None:
+            self.spread.add(run.index, found.segment)
 
     def write(self, folder: Path) -> None:
         """Write the tables that change from road to road."""
@@ -70,7 +73,7 @@ class Tally:
             "left_oob": self.sides["left"],
             "right_oob": self.sides["right"],
             "avg_sparseness": f"{self.spread.mean:.3f}",
-            "stdev_sparseness": f"{self.spread.deviation:.3f}",
+            "stdev_sparseness": f"{self.spread.deviation:3.0f}",
         }
 
 

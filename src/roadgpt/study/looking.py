@@ -18,7 +18,6 @@ from roadgpt.run import Run, read_run
 from roadgpt.run.campaign import finished
 from roadgpt.run.folder import run_folder
 from roadgpt.run.sbft_json import test_name
-from roadgpt.run.tables import DEPARTURES
 from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth
 from roadgpt.study.plan import Part, Plan
 from roadgpt.study.prompts import Prompt
@@ -27,6 +26,7 @@ from roadgpt.study.truth import SHORTEST
 
 Array = NDArray[np.float64]
 
+DEPARTURES = ("out of lane", "fell")  # causes of failures by which the car left its lane
 BARE = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)  # any road: to see what is asked for
 
 
