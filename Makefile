@@ -49,6 +49,8 @@ $(VENV)/.installed-test $(VENV)/.installed-docs: $(VENV)/.installed-%: $(VENV)/.
 demo: $(VENV)/.installed
 	$(BIN)/roadgpt run "an uphill road with 3 turns" -n 3
 	@echo "make demo: $(SECONDS_SO_FAR) s"
+	@echo "Now call it with: $(BIN)/roadgpt run \"a winding road downhill\" -n 5"
+	@echo "or once 'source $(BIN)/activate', then everywhere: roadgpt run ..."
 
 test: $(VENV)/.installed-test judges/.installed
 	$(BIN)/python -m ruff check .

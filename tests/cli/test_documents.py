@@ -1,7 +1,9 @@
 """The documents run: examples are executed, the page of commands is current, links lead somewhere."""
 
+import importlib
 import importlib.util
 import json
+import os
 import re
 import subprocess
 import sys
@@ -11,6 +13,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
+import roadgpt
 from roadgpt.cli import app
 from roadgpt.road import build, read_design
 from roadgpt.run.naming import slug
@@ -136,13 +139,33 @@ def test_links_lead_to_pages_that_exist(page: Path) -> None:
             assert (page.parent / target).exists(), target
 
 
-def test_the_first_page_leads_to_every_page() -> None:
+def test_the_navigation_leads_to_every_page() -> None:
     docs = ROOT / "docs"
-    linked = set(re.findall(r"\]\(([^)#]+)\)", (docs / "index.md").read_text(encoding="utf-8")))
+    listed = re.findall(r"[\w/-]+\.md", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"))
+    assert len(listed) == len(set(listed))
     pages = {str(page.relative_to(docs)) for page in PAGES if docs in page.parents}
-    assert {page for page in pages if not page.startswith("decisions/")} - linked == {"index.md"}
-    listed = (docs / "decisions" / "index.md").read_text(encoding="utf-8")
-    assert [page for page in pages if page.startswith("decisions/0") and Path(page).name not in listed] == []
+    assert {page for page in pages if not page.startswith("decisions/0")} == set(listed)
+    listed_there = (docs / "decisions" / "index.md").read_text(encoding="utf-8")
+    records = [page for page in pages if page.startswith("decisions/0")]
+    assert [page for page in records if Path(page).name not in listed_there] == []
+
+
+def test_the_reference_of_python_holds_every_name_that_the_package_offers() -> None:
+    text = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
+    paths = re.findall(r"^::: (roadgpt\S+)", text, flags=re.MULTILINE)
+    named = {path.rpartition(".")[2] for path in paths}
+    assert set(roadgpt.__all__) - {"__version__"} <= named
+    for path in paths:
+        module, _, name = path.rpartition(".")
+        assert getattr(importlib.import_module(module), name).__doc__, path
+
+
+def test_the_python_in_the_reference_runs(tmp_path: Path) -> None:
+    for code in blocks("docs/reference/python.md", "python"):
+        env = {**os.environ, "MPLBACKEND": "agg"}
+        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=env, check=False)
+        assert done.returncode == 0
+    assert (tmp_path / "two-roads.pdf").read_bytes().startswith(b"%PDF")
 
 
 def folders_made(pages: list[str]) -> list[tuple[str, dict[str, str]]]:

@@ -1,5 +1,6 @@
 """How a command talks while it works: a bar on a terminal, plain lines in a pipe, JSON, or nothing."""
 
+import logging
 import sys
 import time
 from types import TracebackType
@@ -24,6 +25,8 @@ class Screen:
     def __init__(self, total: int, as_json: bool = False, quiet: bool = False, verbose: bool = False) -> None:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
         self.rows: list[Row] = []
+        if quiet:
+            logging.getLogger("roadgpt").setLevel(logging.ERROR)
         self._begun = time.perf_counter()
         self._bar: Progress | None = None
         self._task: TaskID | None = None

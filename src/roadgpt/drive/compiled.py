@@ -5,6 +5,7 @@ cannot be called at its addresses, everything is plain Python, far slower. ``ROA
 ``roadgpt doctor`` tells which is used.
 """
 
+import logging
 import os
 import warnings
 from collections.abc import Callable
@@ -34,6 +35,30 @@ def _numba() -> tuple[Any, Any, str]:
 numba, call_at, WHY_NOT = _numba()
 COMPILES = numba is not None
 """Does this process compile its inner loops? If not, WHY_NOT tells why."""
+
+COMPILING = "compiling the simulator for this machine, once after an installation: 10 to 30 s"
+
+
+def _announce() -> None:
+    """Have the log say why the first drive of an installation takes long, before numba begins to compile."""
+    from numba.core.event import Event, Listener, register
+
+    class Announcement(Listener):
+        is_made = False
+
+        def on_start(self, event: Event) -> None:
+            if not self.is_made:
+                self.is_made = True
+                logging.getLogger("roadgpt").warning("roadgpt: %s", COMPILING)
+
+        def on_end(self, event: Event) -> None:
+            pass
+
+    register("numba:compile", Announcement())  # type: ignore[no-untyped-call]
+
+
+if COMPILES:
+    _announce()
 
 
 def compiled(function: Function) -> Function:

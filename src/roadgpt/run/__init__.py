@@ -165,8 +165,11 @@ def campaign(
     on); ``.folder`` says where. A driver or a simulator that fails costs one Run.
 
     Args:
-        words, seed, world, setup: as for ``perform``.
+        words: a description, or the Brief that was read from it.
         n: how many roads.
+        seed: of the campaign; each road's own is drawn from it and its index.
+        world: map, limits of the rules, surface.
+        setup: who does the work, and how.
         out: the folder; an interrupted campaign of the same request is continued there, and nothing is done
             where it is finished. None makes a new one under ``roadgpt-runs``.
         draw: puts pictures into the folders, as ``report.drawing()`` does; None draws none.

@@ -17,7 +17,8 @@ def compare(one: Road, other: Road, mirror: bool = False) -> Similarity:
     """How alike two roads are, in the criteria of the thesis' survey.
 
     Args:
-        one, other: however they were made.
+        one: a road, however it was made.
+        other: a road to compare it with.
         mirror: a road and its mirror image count as alike.
 
     Raises:
