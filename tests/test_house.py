@@ -14,7 +14,7 @@ from roadgpt import plugins
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "roadgpt"
-HALLWAY = {"errors", "plugins"}
+HALLWAY = {"errors", "plugins", "provenance", "reading"}
 MOST_LINES = 400
 HEAVY = ("numpy", "scipy", "numba", "matplotlib", "mujoco", "pydantic", "shapely", "rich")
 

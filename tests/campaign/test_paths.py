@@ -12,6 +12,8 @@ from roadgpt.campaign.plan_file import read_plan
 from roadgpt.campaign.record import Record
 from roadgpt.cli import app
 from roadgpt.drive.custom import load_driver, located
+from roadgpt.drive.trust import named
+from roadgpt.errors import UsageError
 
 DRIVER = """
 from roadgpt.drive.drivers.pure_pursuit import PurePursuit
@@ -44,6 +46,9 @@ def test_a_path_in_a_plan_begins_at_the_plan(there: Path) -> None:
     assert written.plan.reader == f"model:{plans / 'mine'}"
     assert (shelf, absolute) == ("beamng_like", "/opt/other.py:Other")
     assert Path(own.rpartition(":")[0]).is_absolute()
+    with pytest.raises(UsageError, match=r"plan\.toml names the driver"):
+        load_driver(own)
+    named(own)
     assert type(load_driver(own)).__name__ == "Mine"
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from chat.stub_server import Stub, says, serving
+from roadgpt import provenance
 from roadgpt.chat import habits, wire
 
 KEY = "sk-canary-0123456789abcdefghijklmnop"
@@ -22,8 +23,10 @@ def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     place.mkdir()
     monkeypatch.chdir(place)
     habits.forget()
+    provenance.SERVERS.forget()
     yield
     habits.forget()
+    provenance.SERVERS.forget()
 
 
 @pytest.fixture

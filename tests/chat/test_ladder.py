@@ -19,7 +19,6 @@ from chat.stub_server import (
     only,
     refuses,
     says,
-    send,
 )
 from roadgpt.chat import Chat, ChatError, ChatSettings, Message, RefusedError, UnparsableError, open_chat
 from roadgpt.chat.habits import UNFIT
@@ -326,18 +325,3 @@ def test_usage_that_is_missing_is_guessed_and_nonsense_is_none(stub: Stub) -> No
 def test_content_may_come_in_parts(stub: Stub) -> None:
     stub.play(says([{"type": "text", "text": '{"total":'}, {"type": "text", "text": " 4}"}]))
     assert total(chat_with(stub)) == 4
-
-
-def test_a_redirect_to_elsewhere_brings_no_key_along(stub: Stub) -> None:
-    from chat.stub_server import serving
-
-    with serving(says(GOOD)) as elsewhere:
-        place = f"{elsewhere.url}/chat/completions".replace("127.0.0.1", "localhost")
-        stub.play(lambda request, handler: send(handler, 307, {}, {"Location": place}))
-        from _pytest.monkeypatch import MonkeyPatch
-
-        with MonkeyPatch.context() as patched:
-            patched.setenv("OPENAI_API_KEY", "sk-canary-0123456789abcdefghijklmnop")
-            total(chat_with(stub))
-        assert "Bearer" in str(stub.requests[0].headers)
-        assert "canary" not in str(elsewhere.requests[0].headers)

@@ -11,7 +11,7 @@ from chat.conftest import KEY
 from chat.stub_server import Stub, says
 from roadgpt.chat import ChatError, ChatSettings, configured, open_chat
 from roadgpt.chat.config import gathered, key_for, user_file
-from roadgpt.chat.wire import place_of
+from roadgpt.chat.place import place_of
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
 

@@ -20,7 +20,9 @@ from roadgpt.campaign.table import CELLS, RESULTS, write_tables
 from roadgpt.campaign.traces import SUFFIX, TRACES
 from roadgpt.campaign.worker import Ready
 from roadgpt.chat import Meter, Spent
+from roadgpt.chat.config import key_for
 from roadgpt.drive.custom import load_in_time
+from roadgpt.drive.trust import admit
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup, brief_of
 from roadgpt.run.atomic import held, sweep
@@ -48,6 +50,7 @@ def begin(plan: Plan, folder: Path) -> bool:
         ChatError: a language model that reads them could not be asked.
     """
     plan.check()
+    _admit(plan)
     _is_free(folder)
     with _lone(folder), _without_trace(folder):
         if (folder / STORE).is_file():
@@ -84,6 +87,20 @@ def _without_trace(folder: Path) -> Iterator[None]:
         raise
 
 
+def _admit(plan: Plan) -> None:
+    """Code and servers that came with files are asked about before anything is kept, paid for or begun.
+
+    Raises:
+        UsageError: a driver of the plan is code that the user does not name.
+        ChatError: a server of the plan is one that the user does not name, and they have a key.
+    """
+    if plan.drives:
+        for driver in plan.drivers:
+            admit(driver)
+    if plan.chat is not None and plan.chat.replay is None and plan.asks_a_model:
+        key_for(plan.chat.base_url)
+
+
 def _drivers_come(plan: Plan) -> None:
     """A driver whose name is mistyped is told of before anything is kept or paid for."""
     if plan.drives:
@@ -114,7 +131,7 @@ def _same(plan: Plan, folder: Path) -> None:
 
 def plan_of(record: Record) -> Plan:
     """The plan that a store holds."""
-    return Plan.model_validate_json(record.meta("plan"))
+    return Plan.model_validate_json(record.meta("plan")).came_with(record.path)
 
 
 @contextmanager
@@ -159,6 +176,7 @@ def work(
         else:
             plan = plan_of(store)
         if not store.meta("finished"):
+            _admit(plan)
             try:
                 _sweep(folder, store)
                 staff = Staff(workers, Ready(_setups(plan)), plan.patience, folder / LOG, address)

@@ -15,6 +15,7 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.campaign.model import UNLIMITED, Budget, Cell, Goal
 from roadgpt.chat import ChatSettings, asks_a_model
+from roadgpt.drive import trust
 from roadgpt.errors import UsageError
 from roadgpt.road import Geometry, World
 from roadgpt.run.model import Request, Setup
@@ -58,6 +59,12 @@ class Plan(Frozen):
         """Without what may be another when the campaign goes on."""
         chat = self.chat and self.chat.essence()
         return self.model_copy(update={"chat": chat, "patience": PATIENCE})
+
+    def came_with(self, file: object) -> "Plan":
+        """The same, out of a file that may be somebody else's, as a Setup's is."""
+        chat = self.chat and self.chat.came_with(file)
+        drivers = tuple(trust.came_with(driver, file) for driver in self.drivers)
+        return self.model_copy(update={"chat": chat, "drivers": drivers})
 
     @property
     def asks_a_model(self) -> bool:

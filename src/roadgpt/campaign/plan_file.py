@@ -115,13 +115,13 @@ def read_plan(path: Path) -> Written:
         raise UsageError(f"{path} is no TOML: {error}; correct it") from error
     try:
         table = PlanTable.model_validate(told)
-        ChatSettings.model_validate(table.chat)
+        ChatSettings.model_validate(table.chat).came_with(path)
     except ValidationError as error:
         within = ("chat",) if error.title == ChatSettings.__name__ else ()
         raise UsageError(f"{path}: {_sentence(error, within)}") from error
     folder = path.parent.absolute()
     chat = {name: str(folder / value) if name in FOLDERS else value for name, value in table.chat.items()}
-    return Written(plan=_plan(table, folder), chat=chat)
+    return Written(plan=_plan(table, folder).came_with(path), chat=chat)
 
 
 def _plan(table: PlanTable, folder: Path) -> Plan:

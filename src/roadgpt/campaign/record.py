@@ -124,7 +124,9 @@ class Record:
 
     def cells(self) -> list[Cell]:
         """In the order of the plan."""
-        return [cell_of_text(text) for (text,) in self.query("SELECT cell FROM cells ORDER BY name")]
+        return [
+            cell_of_text(text, self.path) for (text,) in self.query("SELECT cell FROM cells ORDER BY name")
+        ]
 
     def cell(self, name: str) -> Cell:
         """One cell.
@@ -136,7 +138,7 @@ class Record:
         if not found:
             names = [name for (name,) in self.query("SELECT name FROM cells ORDER BY name LIMIT 10")]
             raise UsageError(f"there is no cell '{name}' in {self.path.parent}; cells are {', '.join(names)}")
-        return cell_of_text(found[0][0])
+        return cell_of_text(found[0][0], self.path)
 
     def results(
         self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()

@@ -102,12 +102,12 @@ def cell_text(cell: Cell) -> str:
     )
 
 
-def cell_of_text(text: str) -> Cell:
-    """The cell again."""
+def cell_of_text(text: str, file: object) -> Cell:
+    """The cell again, out of a store."""
     data: Mapping[str, Any] = json.loads(text)
     return Cell(
         name=data["name"],
-        request=Request.model_validate(data["request"]),
+        request=Request.model_validate(data["request"]).came_with(file),
         brief=None if data["brief"] is None else Brief.model_validate(data["brief"]),
         generator=data["generator"],
         goal=data["goal"],

@@ -9,6 +9,7 @@ from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.traces import Trace, trace_of
 from roadgpt.chat import ChatError, Meter, ReplyError, Spent
 from roadgpt.errors import BudgetError, DesignError, PartError, RoadGPTError, UsageError
+from roadgpt.provenance import join, known
 from roadgpt.road import Design
 from roadgpt.run import Run, Seconds, Setup, perform, prove, roll_call, seed_of
 from roadgpt.run.execution import records_of
@@ -64,13 +65,15 @@ class Ready:
 
     def __init__(self, setups: tuple[Setup, ...]) -> None:
         self.setups = setups
+        self.known = known()
 
     def __call__(self) -> None:
-        """Find all parts.
+        """Find all parts; what is not to be trusted is known here as well.
 
         Raises:
             UsageError: a part is not installed, or a driver's file makes no driver.
         """
+        join(self.known)
         for setup in self.setups:
             roll_call(setup)
 

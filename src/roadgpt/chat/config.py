@@ -5,7 +5,9 @@
     .env          the same names, in the working folder
     TOML          roadgpt.toml in the working folder, then config.toml in the user's own: model under [chat]
 
-A key is never a setting: it has no flag, is not part of ChatSettings, and is shown masked.
+A plan of a campaign (its table [chat]) comes between the flags and the environment. A key is never a setting:
+it has no flag, is not part of ChatSettings, and is shown masked. It goes to servers that the user names, by a
+flag, the environment or their own file; whatever else names one may be somebody else's.
 """
 
 import os
@@ -15,13 +17,14 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
-from urllib.parse import urlsplit
 
 from pydantic import ValidationError
 
 from roadgpt.chat.model import ChatSettings
+from roadgpt.chat.place import origin_of
 from roadgpt.chat.secret import Key, usable
 from roadgpt.errors import ChatError, UsageError
+from roadgpt.provenance import SERVERS
 
 FIELDS = tuple(ChatSettings.model_fields)
 KEY = "api_key"
@@ -51,22 +54,28 @@ class Layer(NamedTuple):
     """By field, or by the name of a variable where it is one of the environment's."""
 
 
-def configured(flags: Mapping[str, Any] | None = None) -> ChatSettings:
+def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> ChatSettings:
     """The settings of this moment; a flag that is None was not given.
+
+    Args:
+        flags: what the user gave as options.
+        plan: what a file says that the user gave, and maybe did not write.
 
     Raises:
         UsageError: a value that cannot be; the sentence says where it stands.
     """
-    return settings_from(gathered(flags))
+    return settings_from(gathered(flags, plan))
 
 
-def gathered(flags: Mapping[str, Any] | None = None) -> dict[str, Setting]:
+def gathered(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> dict[str, Setting]:
     """Every setting with its origin; the first place that has it counts.
 
     Raises:
         UsageError: a file of settings cannot be read, or holds a name that is none.
     """
-    places = [_looked_up(layer) for layer in _layers()]
+    if (flags or {}).get("base_url"):
+        SERVERS.name(str(origin_of(str((flags or {})["base_url"]))))
+    places = [_looked_up(layer) for layer in ([plan] if plan else []) + _layers()]
     found: dict[str, Setting] = {}
     for name in FIELDS:
         given = (flags or {}).get(name)
@@ -118,14 +127,14 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 def key_for(base_url: str | None) -> Key | None:
     """The key for a server; None where there is none.
 
-    A server that a file of the working folder names gets only a key from there: the folder may be somebody
-    else's.
+    A server that only a file of the working folder names gets only a key from there; one that only a plan, a
+    campaign or a run names gets none. They may be somebody else's.
 
     Raises:
         UsageError: a file of settings cannot be read.
-        ChatError: the key holds what no key has, or belongs to the user and the server to the folder.
+        ChatError: the key holds what no key has, or belongs to the user and the server to a file.
     """
-    host = urlsplit(base_url or "").hostname or ""
+    host = origin_of(base_url)[1]
     names = ["ROADGPT_API_KEY", "OPENAI_API_KEY"]
     if host.endswith(".azure.com"):
         names.insert(1, "AZURE_OPENAI_API_KEY")
@@ -135,26 +144,45 @@ def key_for(base_url: str | None) -> Key | None:
         for name in (*names, KEY)
         if (value := layer.found.get(name))
     ]
-    place = _folder_naming(base_url)
-    if place and keys and host not in LOOPBACK:
-        keys = [key for key in keys if key.origin.startswith(FOLDER)]
-        if not keys:
+    place = stranger(base_url)
+    if place and keys and (place not in FOLDER or host not in LOOPBACK):
+        keys = [key for key in keys if place in FOLDER and key.origin.startswith(FOLDER)]
+        if not keys and host not in LOOPBACK:
+            where = f"{place} of this folder" if place in FOLDER else place
             raise ChatError(
-                f"the server {host} is named in {place} of this folder, so your own key is not sent there; "
-                f"if you trust it, say so in your environment: OPENAI_BASE_URL={base_url}"
+                f"the server {host} is named in {where}, so your own key is not sent there; if you trust it, "
+                f"say so in your environment: OPENAI_BASE_URL={base_url}"
             )
     return usable(keys[0]) if keys else None
 
 
-def _folder_naming(base_url: str | None) -> str:
-    """The file of the working folder that names this server, where the user does not."""
+def name_server(base_url: str, wanted: str | None, place: object) -> None:
+    """The user names the server that a file names: it may have their key.
+
+    Raises:
+        UsageError: the file names another.
+    """
+    if wanted is None or origin_of(base_url) != origin_of(wanted):
+        told = wanted or "no server of its own"
+        raise UsageError(f"{place} names {told}, and not {base_url}; name that one, or leave out --base-url")
+    SERVERS.name(str(origin_of(base_url)))
+
+
+def stranger(base_url: str | None) -> str:
+    """The file that names this server, where the user does not; empty where they do, or nobody does."""
     if not base_url:
         return ""
-    for layer in _layers():
-        said = _looked_up(layer).get("base_url")
-        if said and said.value == base_url:
-            return layer.name if layer.name in FOLDER else ""
-    return ""
+    wanted = origin_of(base_url)
+    naming = [
+        layer.name
+        for layer in _layers()
+        if (said := _looked_up(layer).get("base_url")) and origin_of(str(said.value)) == wanted
+    ]
+    if wanted == origin_of(None) or any(name not in FOLDER for name in naming):
+        return ""
+    if SERVERS.named(str(wanted)):
+        return ""
+    return SERVERS.stranger(str(wanted)) or next(iter(naming), "")
 
 
 def _layers() -> list[Layer]:

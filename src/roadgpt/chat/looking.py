@@ -4,8 +4,9 @@ from importlib.metadata import PackageNotFoundError, version
 
 from roadgpt.chat.config import DEFAULT, configured, gathered, key_for
 from roadgpt.chat.fault import FaultError
+from roadgpt.chat.place import place_of
 from roadgpt.chat.strict import plain
-from roadgpt.chat.wire import Wire, place_of
+from roadgpt.chat.wire import Wire
 from roadgpt.errors import ChatError
 
 PATIENCE = 5.0  # s

@@ -5,6 +5,9 @@ from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, field_validator
 
+from roadgpt.chat.place import origin_of
+from roadgpt.provenance import SERVERS
+
 Api = Literal["chat", "responses"]
 Repair = Literal["none", "place", "full"]
 Strategy = Literal["whole", "stepwise"]
@@ -156,6 +159,12 @@ class ChatSettings(Frozen):
         usual = type(self)()
         spare = ("timeout", "retries", "max_tokens", "max_cost", "price", "record", "replay")
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
+
+    def came_with(self, file: object) -> Self:
+        """The same, out of a file that may be somebody else's: no key for its server, no folders."""
+        if self.base_url:
+            SERVERS.came_with(str(origin_of(self.base_url)), file)
+        return self.model_copy(update={"record": None, "replay": None})
 
 
 def two_prices(text: str) -> tuple[float, float]:

@@ -10,9 +10,9 @@ import re
 from urllib.parse import urlsplit
 
 from roadgpt.chat.model import ChatSettings, Usage, two_prices
+from roadgpt.chat.place import OPENAI
 
 TAKEN = "2026-11-20"
-OPENAI = "https://api.openai.com/v1"
 PRICES: dict[str, tuple[float, float]] = {
     "gpt-3.5-turbo": (0.5, 1.5),
     "gpt-4": (30, 60),

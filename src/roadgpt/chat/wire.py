@@ -10,19 +10,19 @@ import json
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
-from urllib.parse import urlsplit
 
+from roadgpt.chat.config import stranger
 from roadgpt.chat.fault import BUSY, SPENT_UP, FaultError, asked_wait, wait_after
 from roadgpt.chat.model import ChatSettings
-from roadgpt.chat.prices import OPENAI, is_sold
+from roadgpt.chat.place import place_of
+from roadgpt.chat.prices import is_sold
 from roadgpt.chat.secret import NOBODY, Key, cleaned
 from roadgpt.chat.strict import NotReadableError, plain
 from roadgpt.errors import ChatError
 
 PAGE = ("<!doctype", "<html")  # how a web page begins, in small letters
-DOORS = ("/chat/completions", "/responses", "/models")  # of a base URL that was copied with its door
 CONNECT = 10.0  # s, to reach it
 TALKATIVE = ("openai", "httpx2", "httpcore2")  # debug logs of theirs show headers, and what servers echo
 GRACE = 0.2  # s behind the time limit, in which the request itself may say what is wrong
@@ -55,13 +55,20 @@ class Wire:
             ) from None
         for name in TALKATIVE:
             logging.getLogger(name).setLevel(logging.WARNING)
+        from roadgpt.chat.bounded import ASK_FOR, Bound
+
         limit = self.settings.timeout
+        most = ROOM + BYTES_PER_TOKEN * self.settings.max_completion
         try:
             return openai.OpenAI(
                 api_key=self._key.value,
                 base_url=self.place,
                 timeout=openai.Timeout(limit, connect=min(CONNECT, limit)),
                 max_retries=0,
+                default_headers={"Accept-Encoding": ASK_FOR},
+                http_client=openai.DefaultHttpxClient(
+                    event_hooks={"response": [Bound(most, limit, self._late)]}
+                ),
             )
         except Exception as error:
             why = plain(cleaned(str(error), self._key), 200)
@@ -107,12 +114,11 @@ class Wire:
     def _once(self, call: Callable[..., Any], body: dict[str, Any]) -> dict[str, Any]:
         """One request, given up after the time limit even where bytes drip in."""
         box: list[Any] = []
-        deadline = time.monotonic() + self.settings.timeout
         context = contextvars.copy_context()
 
         def work() -> None:
             try:
-                box.append(self._bytes(call, body, deadline))
+                box.append(_bytes(call, body))
             except BaseException as error:  # handed to the thread that waits
                 box.append(error)
 
@@ -124,18 +130,6 @@ class Wire:
         if isinstance(box[0], BaseException):
             raise self._fault_of(box[0]) from None
         return self._decoded(box[0])
-
-    def _bytes(self, call: Callable[..., Any], body: dict[str, Any], deadline: float) -> bytes:
-        most = ROOM + BYTES_PER_TOKEN * self.settings.max_completion
-        parts: list[bytes] = []
-        size = 0
-        with call(**body) as response:
-            for part in _within(response.iter_bytes(), deadline, self._late):
-                parts.append(part)
-                size += len(part)
-                if size > most:
-                    raise NotReadableError(f"it has more than {most:,} bytes, and a short one was asked for")
-        return b"".join(parts)
 
     def _late(self) -> FaultError:
         return FaultError(
@@ -176,6 +170,8 @@ class Wire:
         if isinstance(error, openai.APITimeoutError) or "Timeout" in type(error).__name__:
             return self._late()
         cause = error.__cause__ or error
+        if isinstance(cause, FaultError):  # of a hook, which the library takes for a broken connection
+            return cause
         why = plain(cleaned(str(cause), self._key), 100) or type(cause).__name__
         if isinstance(error, openai.APIConnectionError):
             return FaultError(
@@ -216,6 +212,11 @@ class Wire:
     def _sentence(self, status: int, message: str, used_up: bool) -> str:
         told = f": {message}" if message else ""
         if status == 401 and self._key is NOBODY:
+            if file := stranger(self.settings.base_url):
+                return (
+                    f"{self.place} wants a key and gets none, because {file} names it and you do not; if you "
+                    f"trust it, say so in your environment: OPENAI_BASE_URL={self.place}{told}"
+                )
             return f"{self.place} wants a key, and none is set; put one into OPENAI_API_KEY{told}"
         if status == 401:
             return f"{self.place} does not take the key from {self._key.origin}{told}"
@@ -232,19 +233,7 @@ class Wire:
         return f"{self.place} refuses the question with status {status}{told}"
 
 
-def place_of(base_url: str | None) -> str:
-    """The address of a server, with the path that its kind has where none was given."""
-    place = (base_url or OPENAI).rstrip("/")
-    for door in DOORS:
-        place = place.removesuffix(door)
-    parts = urlsplit(place)
-    if parts.path:
-        return place
-    return place + ("/openai/v1" if (parts.hostname or "").endswith(".azure.com") else "/v1")
-
-
-def _within(parts: Iterator[bytes], deadline: float, late: Callable[[], FaultError]) -> Iterator[bytes]:
-    for part in parts:
-        if time.monotonic() > deadline:
-            raise late()
-        yield part
+def _bytes(call: Callable[..., Any], body: dict[str, Any]) -> bytes:
+    """The whole answer; its client keeps it within limits."""
+    with call(**body) as response:
+        return b"".join(response.iter_bytes())

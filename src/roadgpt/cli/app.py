@@ -14,6 +14,7 @@ from roadgpt.cli.crash import report_crash
 from roadgpt.cli.dashes import told_of_dashes
 from roadgpt.cli.streams import OutputError, drop_output, is_coloured
 from roadgpt.errors import RoadGPTError
+from roadgpt.provenance import USER
 
 # Each command is `command` in the module of its name in roadgpt.cli.commands; its line of help stands here
 # so that `roadgpt --help` need not import it.
@@ -130,6 +131,7 @@ class Commands(click.Group):
         **extra: Any,
     ) -> Any:
         """Run a command; where it is the program, end the process with its exit status."""
+        USER.ask = _confirm
         if not standalone_mode:
             return super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
         try:
@@ -152,6 +154,13 @@ class Commands(click.Group):
             click.echo(f"roadgpt: {report_crash(error)}", err=True)
             status = INTERNAL
         sys.exit(status if isinstance(status, int) else 0)
+
+
+def _confirm(question: str) -> bool:
+    """Ask at the terminal; where there is none, nobody says yes, and nothing waits."""
+    if not (sys.stdin and sys.stdin.isatty() and sys.stderr.isatty()):
+        return False
+    return click.confirm(f"roadgpt: {question}", default=False, err=True)
 
 
 def _module(name: str) -> str:

@@ -41,6 +41,24 @@ def whole(low: int, high: int, what: str) -> Callable[[str], int]:
     return number
 
 
+def driver(value: str) -> str:
+    """The type of an option that names a driver: whoever types it may have its code run."""
+    if ".py" in value:
+        from roadgpt.drive.trust import named
+
+        named(value)
+    return value
+
+
+def driver_again(value: str) -> str:
+    """The same, for what a file names: as a path that holds from anywhere."""
+    from pathlib import Path
+
+    from roadgpt.drive.custom import located
+
+    return driver(located(value, Path.cwd()))
+
+
 @dataclass(frozen=True)
 class Flag:
     """One option for one field of a World, a Setup or ChatSettings; a default of False makes a switch."""
@@ -123,7 +141,7 @@ WORLD = (
 SETUP = (
     Flag("--reader", "reader", "model", "What reads the description: model, or grammar, by rules."),
     Flag("--designer", "designer", "planner", "What designs the roads."),
-    Flag("--driver", "driver", "beamng_like", "Who drives: a name, or FILE.py:CLASS."),
+    Flag("--driver", "driver", "beamng_like", "Who drives: a name, or FILE.py:CLASS.", driver),
     Flag("--simulator", "simulator", "mujoco", "What simulates the car."),
     Flag(
         "--keep-driving",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.flags import CHAT, SETUP, WORLD, measure
+from roadgpt.cli.flags import CHAT, SETUP, WORLD, driver_again, measure
 from roadgpt.cli.flags import whole as whole
 from roadgpt.errors import UsageError
 
@@ -78,6 +78,15 @@ def setup_options(*fields: str) -> Decorator:
     """Options that set these fields of the Setup, in this order."""
     known = {flag.field: flag for flag in SETUP}
     return together(*(known[field].option() for field in fields))
+
+
+driver_again_option = click.option(
+    "--driver",
+    "driver",
+    type=driver_again,
+    default=None,
+    help="The driver that it has, FILE.py:CLASS, named again: code is not run because a file names it.",
+)
 
 
 def chat_options_but(*fields: str) -> Decorator:

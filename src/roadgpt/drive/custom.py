@@ -11,22 +11,25 @@ from typing import Any
 
 from roadgpt import plugins
 from roadgpt.drive.seat import BEFORE_START, Seat
+from roadgpt.drive.trust import admit, parted
 from roadgpt.errors import DriverError, UsageError
 
 
 def load_driver(spec: str) -> Any:
     """The driver that a user named, ready to be handed to ``simulate``.
 
-    Runs the user's file; give it only what a user typed, never text that came from elsewhere.
+    Runs the user's file; one that only a run, a campaign or a plan names is not run: see ``drive.trust``.
 
     Args:
         spec: the name of a driver on the shelf, or PATH.py:CLASS.
 
     Raises:
         PartError: no driver of that name on the shelf.
-        UsageError: the file or the class is missing, the file cannot be run, or the class makes no driver.
+        UsageError: the file or the class is missing, the file cannot be run, the class makes no driver, or
+            the user does not name it.
     """
-    path, wanted = _parted(spec)
+    admit(spec)
+    path, wanted = parted(spec)
     if not path:
         return _made(plugins.find("drivers", spec), spec)
     module = _run(Path(path))
@@ -40,19 +43,11 @@ def located(spec: str, folder: Path) -> str:
         spec: as ``load_driver`` has it; the name of a driver on the shelf stays as it is.
         folder: where the path of a driver's file begins, if it is a relative one.
     """
-    path, wanted = _parted(spec)
+    path, wanted = parted(spec)
     if not path:
         return spec
     whole = (folder / path).absolute()
     return f"{whole}:{wanted}" if wanted else str(whole)
-
-
-def _parted(spec: str) -> tuple[str, str]:
-    """Path and class of a driver in a file; no path where it is the name of one on the shelf."""
-    if spec.endswith(".py"):
-        return spec, ""
-    path, _, wanted = spec.rpartition(":")
-    return (path, wanted) if path.endswith(".py") else ("", "")
 
 
 def load_in_time(spec: str, limit: float = BEFORE_START) -> Any:
@@ -62,6 +57,7 @@ def load_in_time(spec: str, limit: float = BEFORE_START) -> Any:
         PartError, UsageError: as ``load_driver``.
         DriverError: it hung.
     """
+    admit(spec)  # who is asked may take their time
     door = _Door(spec)
     seat = Seat(door, before_start=limit)
     try:

@@ -46,7 +46,8 @@ def read_card(folder: Path) -> Card:
     except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
     try:
-        return Card.model_validate(card)
+        found = Card.model_validate(card)
+        return found.model_copy(update={"request": found.request.came_with(folder / CARD)})
     except ValidationError as error:
         raise UsageError(
             f"{folder / CARD} is damaged or was written by another version of roadgpt; name another folder"

@@ -167,7 +167,7 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
     trace = folder / "error.txt"
     return Run(
-        request=Request.model_validate(card["request"]),
+        request=Request.model_validate(card["request"]).came_with(folder / "run.json"),
         index=card["index"],
         seed=card["seed"],
         outcome=card["outcome"],

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Self
 
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
+from roadgpt.drive import trust
 from roadgpt.road import Design, Geometry, Road, World
 
 if TYPE_CHECKING:
@@ -34,6 +35,15 @@ class Setup(Frozen):
     chat: ChatSettings | None = None
     """The language model, for readers and designers that ask one; None: what the user's settings say."""
 
+    def came_with(self, file: object) -> Self:
+        """The same, out of a file that may be somebody else's: it names, and the user decides.
+
+        See ``roadgpt.provenance``; the driver is the user's own file where they named it.
+        """
+        driver = trust.came_with(self.driver, file)
+        chat = self.chat and self.chat.came_with(file)
+        return self.model_copy(update={"driver": driver, "chat": chat})
+
 
 class Request(Frozen):
     """What a campaign is asked for, all but how often; the same Request gives the same files."""
@@ -48,6 +58,10 @@ class Request(Frozen):
         """Without what may be another when an interrupted campaign goes on."""
         chat = self.setup.chat and self.setup.chat.essence()
         return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
+
+    def came_with(self, file: object) -> Self:
+        """As its Setup."""
+        return self.model_copy(update={"setup": self.setup.came_with(file)})
 
 
 @dataclass(frozen=True)

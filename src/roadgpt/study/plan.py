@@ -124,7 +124,8 @@ def read_plan(folder: Path) -> Plan:
     except (OSError, ValueError, RecursionError) as error:
         raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
     try:
-        return Plan.model_validate(card)
+        plan = Plan.model_validate(card)
+        return plan.model_copy(update={"setup": plan.setup.came_with(folder / CARD)})
     except ValidationError as error:
         raise UsageError(
             f"{folder / CARD} is damaged or was written by another version of roadgpt; name another folder"

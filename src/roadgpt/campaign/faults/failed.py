@@ -8,6 +8,7 @@ from roadgpt.campaign.record import STORE, Record
 from roadgpt.errors import UsageError
 from roadgpt.run import Run, read_run
 from roadgpt.run.campaign import finished
+from roadgpt.run.card import read_card
 from roadgpt.run.folder import is_run, run_folder
 
 
@@ -23,6 +24,20 @@ def cells_of(folder: Path) -> list[str]:
     if is_run(folder) or finished(folder):
         return [""]
     raise UsageError(f"there are no roads in {folder}; give the folder of a run or of a campaign")
+
+
+def drivers_of(folder: Path) -> set[str]:
+    """Who drives in a run, a folder of runs or a campaign.
+
+    Raises:
+        UsageError: nothing of the kind is there, or a file cannot be read.
+    """
+    if is_run(folder):
+        return {read_run(folder).request.setup.driver}
+    if (folder / STORE).is_file() or not finished(folder):
+        with Record.opened(folder) as record:
+            return {cell.request.setup.driver for cell in record.cells()}
+    return {read_card(folder).request.setup.driver}
 
 
 def failed_runs(folder: Path, cell: str = "", only: Container[int] | None = None) -> Iterator[Run]:

@@ -10,6 +10,7 @@ from roadgpt import plugins
 from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
 from roadgpt.drive import Simulator, simulate
 from roadgpt.drive.custom import load_in_time
+from roadgpt.drive.trust import admit
 from roadgpt.errors import RoadGPTError
 from roadgpt.run import Run
 from roadgpt.verdict import Verdict, judge
@@ -78,6 +79,7 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
     Raises:
         UsageError: a part is not installed, or the driver's file makes no driver.
     """
+    admit(run.request.setup.driver)  # other processes know nothing of where it comes from
     return Stability(tuple(spread(once, [(run, number) for number in range(1, times + 1)])))
 
 

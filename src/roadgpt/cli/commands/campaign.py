@@ -12,7 +12,7 @@ from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.dashes import DescribedCommand
 from roadgpt.cli.failing import asked, fault_options, look_into_failures
-from roadgpt.cli.flags import CHAT, measure
+from roadgpt.cli.flags import CHAT, driver, driver_again, measure
 from roadgpt.cli.options import (
     SEED,
     chat_of,
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 MOST_TESTS = 10_000_000
 TESTS = whole(1, MOST_TESTS, "the number of tests")
 SECONDS = measure(0, 1e8, "s", above=True)
-BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "as_json", "quiet"}
+BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "as_json", "quiet"}
 
 
 @click.command(cls=DescribedCommand)
@@ -50,7 +50,18 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "as_json", "q
 @click.option("--seed", type=SEED, default=0, show_default=True, help="The same seed gives the same table.")
 @click.option("--out", type=folder, default=None, help="Folder for the campaign. [default: a new one]")
 @worker_options
-@setup_options("reader", "designer", "driver", "simulator", "keep_driving")
+@setup_options("reader", "designer")
+@click.option(
+    "--driver",
+    "drivers",
+    type=driver,
+    multiple=True,
+    default=("beamng_like",),
+    show_default=True,
+    help="Who drives: a name, or FILE.py:CLASS; give it again for more. Beside a FILE.toml: which "
+    "files of its drivers may be run.",
+)
+@setup_options("simulator", "keep_driving")
 @world_options()
 @setup_options("geometry", "rules")
 @click.option("--no-drive", is_flag=True, help="Design and check only.")
@@ -109,7 +120,8 @@ def command(
 def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     """The plan in a file; options that it could name itself have no place beside it."""
     from roadgpt.campaign.plan_file import read_plan
-    from roadgpt.chat import configured
+    from roadgpt.chat.config import Layer, configured
+    from roadgpt.drive.trust import expect
 
     chat = {flag.field for flag in CHAT}
     for parameter in ctx.command.params:
@@ -117,11 +129,16 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
         is_given = ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE
         if is_given and name not in BESIDE_A_FILE | chat and name in rest:
             raise UsageError(f"{parameter.opts[0]} has no place beside {path}; write it into the file")
+    if ctx.get_parameter_source("drivers") is ParameterSource.COMMANDLINE:
+        rest["drivers"] = [driver_again(one) for one in rest["drivers"]]
     written = read_plan(path)
     told = {flag.field: flag.read(rest[flag.field]) for flag in CHAT if rest.get(flag.field) is not None}
+    if ctx.get_parameter_source("drivers") is ParameterSource.COMMANDLINE:
+        for one in rest["drivers"]:
+            expect(one, {*written.plan.drivers}, path)
     if not written.plan.asks_a_model:
         return written.plan
-    return written.plan.model_copy(update={"chat": configured({**written.chat, **told})})
+    return written.plan.model_copy(update={"chat": configured(told, Layer(str(path), written.chat))})
 
 
 def _described(text: str, rest: dict[str, Any]) -> "Plan":
@@ -135,7 +152,7 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
     return Plan(
         prompts=(text,),
         designers=(rest["designer"],),
-        drivers=(located(rest["driver"], Path.cwd()),),
+        drivers=tuple(located(driver, Path.cwd()) for driver in rest["drivers"]),
         simulators=(rest["simulator"],),
         generators=(rest["generator"] or (WITH_GOAL if goal else WITHOUT_GOAL),),
         seeds=(rest["seed"],),

@@ -10,6 +10,7 @@ from roadgpt.cli.dashes import DescribedCommand
 from roadgpt.cli.options import (
     chat_of,
     chat_options_but,
+    driver_again_option,
     folder,
     format_option,
     world_of,
@@ -30,6 +31,7 @@ from roadgpt.cli.screen import Screen
 )
 @chat_options_but("repair", "strategy")
 @world_options("map_size")
+@driver_again_option
 @click.option("--no-drive", is_flag=True, help="Change and check only.")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @format_option
@@ -40,6 +42,7 @@ def command(
     words: tuple[str, ...],
     out: Path | None,
     designer: str,
+    driver: str | None,
     no_drive: bool,
     no_plot: bool,
     picture_formats: Any,
@@ -68,6 +71,7 @@ def command(
         designer,
         world_of(rest),
         chat=chat,
+        driver=driver,
         drives=not no_drive,
         pictures=() if no_plot else picture_formats,
     )

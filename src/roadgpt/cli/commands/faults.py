@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from roadgpt.cli.failing import DRIVES, REPEAT, Look, look_into_failures
-from roadgpt.cli.options import folder, whole
+from roadgpt.cli.options import driver_again_option, folder, whole
 
 
 @click.command()
@@ -13,9 +13,18 @@ from roadgpt.cli.options import folder, whole
 @click.option("--repeat", type=DRIVES, default=REPEAT, show_default=True, help="Disturbed drives of each.")
 @click.option("--minimise", is_flag=True, help="Also look for the simplest road that fails alike, per fault.")
 @click.option("-j", "workers", type=whole(1, 256, "processes"), default=1, show_default=True)
+@driver_again_option
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
-def command(place: Path, repeat: int, minimise: bool, workers: int, no_plot: bool, quiet: bool) -> None:
+def command(
+    place: Path,
+    repeat: int,
+    minimise: bool,
+    workers: int,
+    driver: str | None,
+    no_plot: bool,
+    quiet: bool,
+) -> None:
     """Look into failures, of a folder of runs or a campaign: why, how often again, and how many faults.
 
     Each failing road is driven again and again with friction, start and the age of what the driver sees off
@@ -26,4 +35,9 @@ def command(place: Path, repeat: int, minimise: bool, workers: int, no_plot: boo
     roadgpt faults roadgpt-runs/hairpins-7
     roadgpt faults roadgpt-runs/hairpins-7 --repeat 30 --minimise -j 2
     """
+    from roadgpt.campaign.faults.failed import drivers_of
+    from roadgpt.drive.trust import expect
+
+    if driver is not None:
+        expect(driver, drivers_of(place), place)
     look_into_failures(place, Look(repeat, minimise, workers, not no_plot, quiet))

@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from roadgpt.cli.campaigns import one_line
-from roadgpt.cli.options import folder, pictures_options
+from roadgpt.cli.options import driver_again_option, folder, pictures_options
 from roadgpt.errors import UsageError
 
 DIGITS = 18  # of a number that a store can look for
@@ -17,12 +17,14 @@ DIGITS = 18  # of a number that a store can look for
 @click.argument("tests", nargs=-1, required=True, metavar="TEST...")
 @click.option("--out", type=folder, default=None, help="Folder for the runs. [default: CAMPAIGN/again]")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
+@driver_again_option
 @pictures_options
 def command(
     campaign: Path,
     tests: tuple[str, ...],
     out: Path | None,
     no_plot: bool,
+    driver: str | None,
     axes: Any,
     picture_formats: Any,
 ) -> None:
@@ -36,9 +38,12 @@ def command(
     roadgpt view roadgpt-runs/an-uphill-road-with-3-turns-7/again/c01/runs/0017
     """
     from roadgpt.campaign.again import is_same, run_again
+    from roadgpt.campaign.faults.failed import drivers_of
+    from roadgpt.drive.trust import expect
     from roadgpt.report import drawing
     from roadgpt.run import write_run
 
+    expect(driver, drivers_of(campaign), campaign)
     out = out or campaign / "again"
     draw = None if no_plot else drawing(axes, picture_formats)
     for cell, number in [_named(campaign, test) for test in tests]:

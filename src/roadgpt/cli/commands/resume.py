@@ -7,16 +7,19 @@ import click
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.failing import asked, fault_options, look_into_failures
 from roadgpt.cli.flags import CHAT
-from roadgpt.cli.options import together
+from roadgpt.cli.options import driver_again_option, together
 from roadgpt.errors import UsageError
 
 LIMITS = [flag for flag in CHAT if flag.field in ("max_tokens", "max_cost")]
+SERVER = next(flag for flag in CHAT if flag.field == "base_url")
 
 
 @click.command()
 @click.argument("campaign", metavar="CAMPAIGN", type=click.Path(path_type=Path))
 @worker_options
 @together(*(flag.option() for flag in LIMITS))
+@driver_again_option
+@click.option(SERVER.flag, SERVER.field, default=None, help="The server that it asks, named again.")
 @fault_options
 @screen_options
 def command(
@@ -24,6 +27,8 @@ def command(
     workers: int,
     executor: str,
     address: str,
+    driver: str | None,
+    base_url: str | None,
     faults: bool,
     minimise: bool,
     repeat: int | None,
@@ -40,9 +45,14 @@ def command(
     """
     from roadgpt.campaign.launch import plan_of, work
     from roadgpt.campaign.record import Record
+    from roadgpt.chat.config import name_server
+    from roadgpt.drive.trust import expect
 
     with Record.opened(campaign) as record:
         plan = plan_of(record)
+    expect(driver, {*plan.drivers}, campaign)
+    if base_url is not None:
+        name_server(base_url, plan.chat.base_url if plan.chat else None, campaign)
     given = {name: value for name, value in limits.items() if value is not None}
     if given and plan.chat is None:
         raise UsageError(f"--max-tokens and --max-cost are for language models; {campaign} asks none")

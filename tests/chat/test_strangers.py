@@ -1,0 +1,210 @@
+"""Servers that only a file names, redirects, and replies without end."""
+
+import gzip
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from chat.conftest import KEY
+from chat.stub_server import Request, Scene, Stub, says, send, serving
+from roadgpt import provenance
+from roadgpt.campaign.launch import begin
+from roadgpt.campaign.model import Budget
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.plan_file import read_plan
+from roadgpt.chat import ChatError, ChatSettings, Message, open_chat
+from roadgpt.chat.config import configured, key_for
+from roadgpt.cli import app
+from roadgpt.run import Request as Asked
+from roadgpt.run import Setup, perform, read_run, write_run
+
+ELSEWHERE = "https://elsewhere.example/v1"
+GOOD = '{"degrees": 30, "along": ["turn x1 left"], "road": "", "unused": []}'
+
+
+@pytest.fixture(autouse=True)
+def key(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENAI_API_KEY", KEY)
+
+
+def invoke(*words: str) -> Result:
+    return CliRunner().invoke(app, words, prog_name="roadgpt")
+
+
+def plan_naming(url: str) -> Path:
+    path = Path("plan.toml")
+    path.write_text(
+        'prompts = ["a left turn"]\ntests = 1\ndrive = false\ndesigners = ["chat"]\nreader = "grammar"\n'
+        f'[chat]\nmodel = "m"\nretries = 0\nbase_url = "{url}"\n'
+    )
+    return path
+
+
+def test_a_plan_does_not_get_the_users_key_sent_to_its_server() -> None:
+    result = invoke("campaign", str(plan_naming(ELSEWHERE)), "--out", "c")
+    assert result.exit_code == 4
+    assert "elsewhere.example is named in plan.toml, so your own key is not sent there" in result.stderr
+    assert not Path("c").exists()
+
+
+@pytest.mark.parametrize("how", ["the plan alone", "as a flag", "in the environment"])
+def test_a_server_of_a_plan_gets_the_key_only_from_who_names_it(
+    stub: Stub, monkeypatch: pytest.MonkeyPatch, how: str
+) -> None:
+    """Also on this machine, where any port may be anybody's; the workers are processes of their own."""
+    stub.play(says(GOOD))
+    more = ["--base-url", stub.url] if how == "as a flag" else []
+    if how == "in the environment":
+        monkeypatch.setenv("OPENAI_BASE_URL", stub.url)
+    invoke("campaign", str(plan_naming(stub.url)), "--out", "c", "-q", *more)
+    assert stub.requests
+    sent = [KEY in str(request.headers) for request in stub.requests]
+    assert sent == [how != "the plan alone"] * len(sent)
+
+
+@pytest.mark.parametrize("how", ["resume", "resume with a flag", "resume another"])
+def test_a_store_does_not_get_the_users_key_sent(stub: Stub, how: str) -> None:
+    stub.play(says(GOOD))
+    chat = ChatSettings(model="m", base_url=stub.url, retries=0)
+    setup = {"designers": ("chat",), "reader": "grammar", "drives": False, "chat": chat}
+    begin(Plan(prompts=("a left turn",), budget=Budget(tests=1), **setup), Path("c"))  # type: ignore[arg-type]
+    provenance.SERVERS.forget()
+    given = {"resume": [], "resume with a flag": [stub.url], "resume another": [ELSEWHERE]}[how]
+    result = invoke("resume", "c", "-q", *(word for url in given for word in ("--base-url", url)))
+    if how == "resume another":
+        assert result.exit_code == 2
+        assert f"c names {stub.url}, and not {ELSEWHERE}" in result.stderr
+        assert not stub.requests
+        return
+    assert stub.requests
+    assert all((KEY in str(request.headers)) == bool(given) for request in stub.requests)
+
+
+def test_a_run_does_not_get_the_users_key_sent() -> None:
+    setup = Setup(reader="grammar", drives=False, chat=ChatSettings(model="m", base_url=ELSEWHERE))
+    run = perform("a left turn", setup=Setup(reader="grammar", drives=False))
+    asked = Asked(words="a left turn", setup=setup)
+    folder = write_run(type(run)(**{**vars(run), "request": asked}), Path("c"))
+    assert key_for(ELSEWHERE) is not None  # a program that names it itself
+    read_run(folder)
+    with pytest.raises(ChatError, match=r"named in .*run\.json, so your own key is not sent"):
+        key_for(ELSEWHERE)
+
+
+@pytest.mark.parametrize("url", ["https://elsewhere.example/v1/", "https://Elsewhere.example:443/other"])
+def test_another_spelling_of_a_server_is_the_same_server(url: str) -> None:
+    Path(".env").write_text(f"ROADGPT_BASE_URL={url}\n")
+    with pytest.raises(ChatError, match=r"named in \.env"):
+        key_for(configured().base_url)
+
+
+def test_a_server_over_https_is_not_the_same_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENAI_BASE_URL", ELSEWHERE)
+    assert read_plan(plan_naming(ELSEWHERE)).chat["base_url"] == ELSEWHERE
+    assert key_for(ELSEWHERE) is not None
+    open_way = ELSEWHERE.replace("https", "http")
+    read_plan(plan_naming(open_way))
+    with pytest.raises(ChatError, match=r"named in plan\.toml"):
+        key_for(open_way)
+
+
+def test_a_key_beside_a_plan_is_not_for_the_plans_server(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("OPENAI_API_KEY")
+    Path(".env").write_text(f"OPENAI_API_KEY={KEY}\n")
+    read_plan(plan_naming(ELSEWHERE))
+    with pytest.raises(ChatError, match=r"named in plan\.toml"):
+        key_for(ELSEWHERE)
+
+
+def test_a_server_that_gets_no_key_and_wants_one_is_told_why(stub: Stub) -> None:
+    stub.play(lambda request, handler: send(handler, 401, {"error": {"message": "no key"}}))
+    result = invoke("campaign", str(plan_naming(stub.url)), "--out", "c", "-q")
+    assert "wants a key and gets none, because plan.toml names it and you do not" in result.stderr
+
+
+def ask(stub: Stub, **settings: Any) -> str:
+    chat = open_chat(ChatSettings(base_url=stub.url, model="m", retries=0, **settings))
+    return chat.ask([Message(role="user", text="a road?")]).text
+
+
+@pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
+def test_a_redirect_to_another_server_is_not_followed(stub: Stub, status: int) -> None:
+    with serving(says("hello")) as elsewhere:
+        place = f"{elsewhere.url}/chat/completions"
+        stub.play(lambda request, handler: send(handler, status, {}, {"Location": place}))
+        with pytest.raises(ChatError, match=r"sends the question on to http://127\.0\.0\.1:\d+, which gets"):
+            ask(stub)
+        assert not elsewhere.requests
+    assert len(stub.requests) == 1
+
+
+def test_a_redirect_within_a_server_is_followed(stub: Stub) -> None:
+    stub.play(
+        lambda request, handler: send(handler, 307, {}, {"Location": "/v2/chat/completions"}), says("x")
+    )
+    assert ask(stub) == "x"
+    assert stub.requests[1].path == "/v2/chat/completions"
+
+
+def gushes(status: int, sent: list[int], packed: bool = False, most: int = 300) -> Scene:
+    """Megabytes without end, until whoever asked goes away."""
+
+    def scene(request: Request, handler: Any) -> None:
+        handler.send_response(status)
+        handler.send_header("Content-Type", "application/json")
+        if packed:
+            handler.send_header("Content-Encoding", "gzip")
+        handler.send_header("Connection", "close")
+        handler.end_headers()
+        block = b'"' + b"a" * 1_000_000
+        if packed:
+            block = gzip.compress(b" " * 100_000_000, 9)
+        for _ in range(most):
+            sent.append(len(block))
+            handler.wfile.write(block)
+        handler.close_connection = True
+
+    return scene
+
+
+@pytest.mark.parametrize("status", [200, 400, 401, 404, 429, 500, 503])
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_reply_of_any_status_is_read_up_to_a_limit(stub: Stub, status: int, packed: bool) -> None:
+    sent: list[int] = []
+    stub.play(gushes(status, sent, packed))
+    with pytest.raises(ChatError):
+        ask(stub, timeout=20)
+    assert sum(sent) < 60_000_000  # of 300 MB; what lies in buffers of the system is not ours
+
+
+def test_errors_without_end_take_little_memory(stub: Stub) -> None:
+    """In a process of its own, whose largest memory is measured; 600 MB came to twice as much before."""
+    stub.play(gushes(500, [], most=600))
+    code = (
+        "import resource, sys\nfrom roadgpt.chat import *\n"
+        f"chat = open_chat(ChatSettings(base_url={stub.url!r}, model='m', retries=0))\n"
+        "most = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024\nbefore = most()\n"
+        "try:\n    chat.ask([Message(role='user', text='a road?')])\n"
+        "except ChatError as error:\n    print(error, file=sys.stderr)\n"
+        "print(most() - before)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "failed with status 500" in done.stderr
+    assert int(done.stdout) < 100, "MiB"
+
+
+def test_a_packed_answer_is_read(stub: Stub) -> None:
+    def scene(request: Request, handler: Any) -> None:
+        body = {"choices": [{"message": {"content": "hello"}}], "model": "m"}
+        send(handler, 200, gzip.compress(json.dumps(body).encode()), {"Content-Encoding": "gzip"})
+
+    stub.play(scene)
+    assert ask(stub) == "hello"
+    stub.play(lambda request, handler: send(handler, 200, b"zz", {"Content-Encoding": "zstd"}))
+    with pytest.raises(ChatError, match="packs its answer as 'zstd', which was not asked for"):
+        ask(stub)
