@@ -285,6 +285,27 @@ def test_the_commands_make_and_analyse_a_survey(runs: Path, tmp_path: Path) -> N
     )
     assert done.exit_code == 0, done.output
     assert read_plan(tmp_path / "s" / "SURVEY.toml").asks == "J"
+    assert read_plan(tmp_path / "s" / "SURVEY.toml").films
+    pages = re.findall(r"^page (\d) of (\d)(, about \d+ s left)?: ", done.output, flags=re.MULTILINE)
+    assert [(number, total, bool(left)) for number, total, left in pages] == [
+        ("1", "2", False), ("2", "2", True)
+    ]  # fmt: skip
     tried = runner.invoke(command, ["analyse", out, "--synthetic", "5", "--seed", "2"])
     assert tried.output.strip().endswith("analysis-synthetic/report.html")
     assert "nobody was invited" in str(runner.invoke(command, ["analyse", out]).exception)
+
+
+def test_a_survey_without_films_is_made_without_films(
+    runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def forbidden(*_: object) -> None:
+        raise AssertionError("a film was made")
+
+    monkeypatch.setattr(making, "are_possible", lambda: True)
+    monkeypatch.setattr(making, "make_film", forbidden)
+    out = tmp_path / "s"
+    words = ["new", "--from", str(runs), "--out", str(out), "--asks", "J", "--contact", "j@x.example"]
+    done = CliRunner().invoke(command, [*words, "--no-films"])
+    assert done.exit_code == 0, done.output
+    assert not read_plan(out / "SURVEY.toml").films, "made anew it has none either"
+    assert not read_survey(out).lacks, "nobody is told to install what was not wanted"

@@ -27,8 +27,16 @@ def command() -> None:
 @click.option("--contact", default="", help="With --from: where raters may ask back.")
 @click.option("--pairs", type=whole(0, 20, "a number"), default=2, show_default=True, help="With --from.")
 @click.option("--seed", type=SEED, default=0, show_default=True, help="With --from: which roads are drawn.")
+@click.option("--no-films", is_flag=True, help="Make no films, which take most of the time.")
 def new(
-    file: Path | None, study: Path | None, out: Path, asks: str, contact: str, pairs: int, seed: int
+    file: Path | None,
+    study: Path | None,
+    out: Path,
+    asks: str,
+    contact: str,
+    pairs: int,
+    seed: int,
+    no_films: bool,
 ) -> None:
     """Make a survey out of runs: plots, films and 3-D views of every road, and the questions.
 
@@ -48,6 +56,8 @@ def new(
     from roadgpt.study.survey.plan import plan_text, read_plan
 
     plan = read_plan(file) if file else picked(study or Path(), asks, contact, seed, pairs)
+    if no_films:
+        plan = plan.model_copy(update={"films": False})
     survey = make(plan, file.parent if file else Path(), out, click.echo)
     if study is not None:
         (out / FILE).write_text(plan_text(plan), encoding="utf-8")

@@ -7,6 +7,7 @@ DIR/
 """
 
 import hashlib
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -48,7 +49,7 @@ def make(plan: Plan, base: Path, out: Path | str, tell: Tell = lambda _: None) -
     runs = [run for _, run in alignment] + [run for _, both in similarity for run in both]
     axes = Axes.of([run.road for run in runs if run.road is not None])
     films = plan.films and are_possible()
-    work = _Work(out / MEDIA, axes, films, plan.views, tell)
+    work = _Work(out / MEDIA, axes, films, plan.views, _Pages(len(alignment) + len(similarity), tell))
     try:
         (out / MEDIA).mkdir(parents=True, exist_ok=True)
         sweep(out / MEDIA)
@@ -92,17 +93,36 @@ def _run(base: Path, name: str) -> Run:
     return run
 
 
+class _Pages:
+    """Tells which page is being made, and how long the rest will take."""
+
+    def __init__(self, total: int, tell: Tell) -> None:
+        self.total, self.tell = total, tell
+        self.begun, self.count = time.monotonic(), 0
+
+    def begin(self, sentence: str) -> None:
+        """The next page is begun."""
+        left = ""
+        if self.count:
+            seconds = (time.monotonic() - self.begun) / self.count * (self.total - self.count)
+            left = (
+                f", about {seconds / 60:.0f} min left" if seconds >= 90 else f", about {seconds:.0f} s left"
+            )
+        self.count += 1
+        self.tell(f"page {self.count} of {self.total}{left}: {sentence}")
+
+
 class _Work:
     """Makes items, and tells of it."""
 
-    def __init__(self, folder: Path, axes: Axes, has_films: bool, has_views: bool, tell: Tell) -> None:
-        self.folder, self.axes, self.tell = folder, axes, tell
+    def __init__(self, folder: Path, axes: Axes, has_films: bool, has_views: bool, pages: _Pages) -> None:
+        self.folder, self.axes, self.pages = folder, axes, pages
         self.has_films, self.has_views = has_films, has_views
 
     def road(self, name: str, plan: RoadPlan, run: Run) -> Item:
         """A road and its description."""
         prompt = _prompt(plan.prompt or run.words, plan.run)
-        self.tell(f"{name}: {prompt}")
+        self.pages.begin(prompt)
         criteria = criteria_of(run.brief) if plan.criteria is None else plan.criteria
         return Item(
             id=name,
@@ -117,7 +137,7 @@ class _Work:
     def pair(self, name: str, plan: PairPlan, runs: list[Run]) -> Item:
         """Two roads of one description, one above the other."""
         prompt = _prompt(plan.prompt or runs[0].words, plan.runs[0])
-        self.tell(f"{name}: {prompt} (two roads)")
+        self.pages.begin(f"{prompt} (two roads)")
         plots: list[Medium] = []
         for number, (run, place) in enumerate(zip(runs, PLACES, strict=True), 1):
             plots += self._plots(f"{name}-{number}", run, f"Road {number} ({place}): ")
@@ -151,7 +171,7 @@ class _Work:
             title = said[0].upper() + said[1:] + (", road 1 left, road 2 right" if len(runs) > 1 else "")
             path = self.folder / f"{name}-{camera}-{_mark(runs)}.mp4"
             if not path.is_file():
-                self.tell(f"{name}: {said}")
+                self.pages.tell(f"  {said}")
                 make_film(runs, path, camera)
             made.append(Medium(name=path.name, kind="film", title=title))
         return made
