@@ -31,8 +31,10 @@ from roadgpt.brief.model import (
 )
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
+from roadgpt.brief.refusal import NoRoomError, TooMuchError
+from roadgpt.brief.room import ROAD_WIDTH
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, Range
+from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, USUAL_MAP, Range
 from roadgpt.chat import ChatSettings, made, meant_for
 from roadgpt.errors import BriefError, PartError
 
@@ -43,6 +45,7 @@ __all__ = [
     "Feature",
     "Group",
     "Kind",
+    "NoRoomError",
     "Outline",
     "Range",
     "Reader",
@@ -84,10 +87,11 @@ class Doubtful(Protocol):
 def read(
     words: str,
     reader: str = "model",
-    map_size: float | None = 250.0,
+    map_size: float | None = USUAL_MAP,
     min_radius: float = LEAST_RADIUS,
     max_grade: float = STEEPEST / 100,
     chat: ChatSettings | None = None,
+    road_width: float = ROAD_WIDTH,
 ) -> Brief:
     """What a description asks for.
 
@@ -98,15 +102,23 @@ def read(
         min_radius: metres, of the tightest turn that the world allows.
         max_grade: ratio, of the steepest slope that it allows.
         chat: the language model, for readers that ask one; None: what the user's settings say.
+        road_width: metres, of the carriageway.
 
     Raises:
+        NoRoomError: the map does not hold such a road; says what would fit, and on which map this one does.
         BriefError: no road can be read out of the words; says what to change.
         PartError: no such reader.
         ChatError: a language model could not be asked.
     """
     words = words.encode("utf-8", "replace").decode()  # half letters from a broken terminal fit into no file
-    brief = reader_of(reader, chat).read(words)
-    check(brief, map_size, min_radius, max_grade)
+    try:
+        brief = reader_of(reader, chat).read(words)
+    except TooMuchError as refusal:
+        check(refusal.brief, map_size, min_radius, max_grade, road_width)
+        if map_size is not None and map_size <= USUAL_MAP and min_radius >= LEAST_RADIUS:
+            raise
+        return refusal.brief
+    check(brief, map_size, min_radius, max_grade, road_width)
     return brief
 
 
@@ -114,9 +126,11 @@ def alternatives(
     words: str,
     number: int = 3,
     reader: str = "model",
-    map_size: float | None = 250.0,
+    map_size: float | None = USUAL_MAP,
     temperature: float = 1.0,
     seed: int = 0,
+    min_radius: float = LEAST_RADIUS,
+    max_grade: float = STEEPEST / 100,
 ) -> tuple[Brief, ...]:
     """Up to ``number`` different readings of a description, the likeliest first.
 
@@ -126,17 +140,20 @@ def alternatives(
         BriefError: as ``read``, of the likeliest one.
         PartError: no such reader.
     """
-    first = read(words, reader, map_size)
+    first = read(words, reader, map_size, min_radius, max_grade)
     part = reader_of(reader)
     if not isinstance(part, Doubtful):
         return (first,)
-    others = part.alternatives(first.words, number, temperature, seed)[1:]
-    return (first, *(brief for brief in others if _is_possible(brief, map_size)))
-
-
-def _is_possible(brief: Brief, map_size: float | None) -> bool:
     try:
-        check(brief, map_size)
+        others = part.alternatives(first.words, number, temperature, seed)[1:]
+    except TooMuchError:  # it is read in one way, as an ordinary road with other numbers
+        return (first,)
+    return (first, *(brief for brief in others if _is_possible(brief, map_size, min_radius, max_grade)))
+
+
+def _is_possible(brief: Brief, map_size: float | None, min_radius: float, max_grade: float) -> bool:
+    try:
+        check(brief, map_size, min_radius, max_grade)
     except BriefError:
         return False
     return True

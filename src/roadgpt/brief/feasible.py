@@ -1,11 +1,12 @@
 """Contradictions and impossible wishes: found before anybody designs, and said with a way out."""
 
-from math import inf, sqrt
+from math import inf
 from typing import NamedTuple
 
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.need import least_length
 from roadgpt.brief.normal import SINGLE, STRAIGHT, normal, total, turns_of
+from roadgpt.brief.room import ROAD_WIDTH, check_room
 from roadgpt.brief.words import (
     KINDS,
     LEAST_RADIUS,
@@ -16,6 +17,7 @@ from roadgpt.brief.words import (
     SLOPES,
     STEEPEST,
     TURNING_SLACK,
+    USUAL_MAP,
     Range,
 )
 from roadgpt.errors import BriefError
@@ -23,7 +25,6 @@ from roadgpt.errors import BriefError
 LARGEST_ANGLE = 240.0  # degrees; a turn that goes on would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; less is measured as straight
 SHORTEST_ROAD = 20.0  # metres
-WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, verges, and the bow of the turn itself
 MOST_TURNS = 200.0
 MOST_TURNING = 3000.0  # degrees of all turns together
 RISING = ("up", "gently_up", "steeply_up")
@@ -40,9 +41,10 @@ class _Limits(NamedTuple):
 
 def check(
     brief: Brief,
-    map_size: float | None = 250.0,
+    map_size: float | None = USUAL_MAP,
     min_radius: float = LEAST_RADIUS,
     max_grade: float = STEEPEST / 100,
+    road_width: float = ROAD_WIDTH,
 ) -> None:
     """Passes a Brief that some road can keep, as far as numbers alone can tell.
 
@@ -51,8 +53,10 @@ def check(
         map_size: metres along one side of the square map; None: do not ask whether it fits.
         min_radius: metres, of the tightest turn that the world allows.
         max_grade: ratio, of the steepest slope that it allows; no design has more than 15 %.
+        road_width: metres, of the carriageway.
 
     Raises:
+        NoRoomError: the map does not hold it; a larger one may.
         BriefError: one sentence on the first contradiction or impossible wish.
     """
     for clause in brief.clauses:
@@ -70,7 +74,7 @@ def check(
     _slopes(brief, limits)
     _length(brief, limits)
     if map_size is not None:
-        _on_the_map(brief, map_size, limits)
+        check_room(brief, map_size, min_radius, road_width)
 
 
 def _counts(clause: Clause) -> None:
@@ -342,28 +346,6 @@ def _heights(climb: Amount | None) -> list[tuple[str, float]]:
     if climb is None:
         return []
     return [("climb", climb.lo or 0.0), ("fall", -(climb.hi or 0.0))]
-
-
-def _on_the_map(brief: Brief, map_size: float, limits: _Limits) -> None:
-    metres = least_length(brief, limits.min_radius)
-    if brief.length and brief.length.lo is not None:
-        metres = max(metres, brief.length.lo * (1 - ROAD_LENGTH_SLACK))
-    room = map_size * map_size / WIDTH_OF_A_TURN
-    if metres > room:
-        raise BriefError(
-            f"a map of {map_size:g} m has no room for {metres:.0f} m of such road; ask for {room:.0f} m,"
-            " fewer turns or a larger map"
-        )
-    diagonal = sqrt(2) * (map_size - 10)
-    for clause in brief.clauses:
-        if clause.kind == "straight" and clause.length and (clause.length.lo or 0) * 0.85 > diagonal:
-            raise BriefError(
-                f"a straight of {clause.length.lo:g} m is longer than the map; ask for {diagonal:.0f} m"
-            )
-        if clause.radius and (clause.radius.lo or 0) > map_size:
-            raise BriefError(
-                f"a radius of {clause.radius.lo:g} m is wider than the map; ask for {map_size / 2:g} m"
-            )
 
 
 def _meet(one: Amount, other: Amount) -> bool:

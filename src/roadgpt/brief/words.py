@@ -125,6 +125,7 @@ ROAD_SIZES: Mapping[Size, Range] = {"long": Range(250), "short": Range(20, 150)}
 """Metres: 'a long road', 'a short road'."""
 
 LEAST_RADIUS = 14.326  # metres: 47 ft, the tightest turn of the SBFT competition
+USUAL_MAP = 250.0  # metres along one side, where nobody says another: RoadGPT's
 STEEPEST = 15.0  # percent, up and down: RoadGPT's system prompt
 
 PERCENT_SLACK = 1.0  # percentage points, around a grade that was said as a number

@@ -2,34 +2,38 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from math import ceil, inf
+from math import inf
 
+from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
+from roadgpt.design.offers import Fits, offer
 from roadgpt.road import World
 
 OF_THE_PLAN = ("too large", "over itself", "longer than was asked for", "like an earlier road")
 MANY = 60  # drafts that fitted on the map and broke a promise: then the map was not what stood in the way
-ROUND_MAP = 50.0  # m: sizes of maps are proposed in steps of so many
-LARGEST_MAP = 10_000.0  # m, of a World
 
 
-def advice(outline: Outline, world: World, failed: Counter[str], boxes: Sequence[float]) -> str:
+def advice(
+    brief: Brief, outline: Outline, world: World, failed: Counter[str], boxes: Sequence[float], fits: Fits
+) -> str:
     """One sentence: which wish stood in the way, and what to do.
 
     Args:
-        outline: what was asked for.
+        brief: what was asked for.
+        outline: the same as ranges.
         world: the map.
         failed: why drafts were given up, and how often.
         boxes: sides in metres of the smallest square around each draft that was too large for the map.
+        fits: tries whether roads of another length, or on another map, can be drafted.
     """
     broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
     fitted = broken.total() >= MANY
     reason = (broken if fitted else failed or Counter(["too large"])).most_common(1)[0][0]
     wishes = wishes_of(outline)
     if reason in ("too large", "over itself"):
-        size = _roomier(world, boxes)
+        found = offer(brief, world, fits, _roomier(world, boxes))
         where = f"on a {world.map_size:g} m map" + (" without crossing" if reason == "over itself" else "")
-        return f"{wishes} not fit {where}; ask for less or use --map-size {size:g}"
+        return f"{wishes} not fit {where}; {found.sentence}"
     if reason == "longer than was asked for":
         return f"{wishes} not fit into a road of {outline.length} m; ask for a longer road or for fewer turns"
     if reason == "like an earlier road":
@@ -60,7 +64,6 @@ def _counted(number: int, what: str) -> str:
 
 
 def _roomier(world: World, boxes: Sequence[float]) -> float:
-    """A map on which most of the drafts that were too large would have fitted."""
+    """Side in metres of a map on which most of the drafts that were too large would have fitted."""
     needed = sorted(boxes)[len(boxes) // 4] + world.road_width if boxes else 0.0
-    size = max(needed, 1.5 * world.map_size)
-    return min(ceil(size / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)
+    return max(needed, 1.2 * world.map_size)

@@ -9,6 +9,7 @@ from math import inf
 import numpy as np
 
 from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.room import longest_straight
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, inside, turn_rooms
 from roadgpt.design.heights import Windows
@@ -36,6 +37,7 @@ EASE = 0.85  # of that grade, on average
 SHORT_LEAD = 5.0  # m, of a lead-in or lead-out that a short road leaves no room for
 NARROW = 1.25  # ratio of the ends of a range that stands for one number with its slack
 OFF_CORE = 0.3  # share of such a range at either end that is kept only where nothing else fits
+ROUNDING = 0.1  # m that a straight from corner to corner is shorter than what there is room for
 FEWEST_METRES = 1.0  # of a straight that is squeezed to make the whole length right
 
 
@@ -56,7 +58,15 @@ def composed(
     if outline.hills:
         spans = _with_hills(spans, outline.hills, rng)
     length = _long_enough(outline, windows)
-    return _with_length(spans, length, rng, haste) if length else spans
+    whole = _with_length(spans, length, rng, haste) if length else spans
+    return _from_corner_to_corner(whole, world) if whole and outline.turns.hi == 0 else whole
+
+
+def _from_corner_to_corner(spans: list[Span], world: World) -> list[Span]:
+    """Straights one after another, shortened to what the map holds; the promises are asked later."""
+    longest = longest_straight(world.map_size, world.road_width) - ROUNDING
+    keep = longest / sum(span.length for span in spans)
+    return [span._replace(length=keep * span.length) for span in spans] if keep < 1 else spans
 
 
 def _long_enough(outline: Outline, windows: Windows) -> Range | None:

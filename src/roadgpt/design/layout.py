@@ -9,19 +9,23 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
+from roadgpt.brief.room import EDGE
 from roadgpt.design.spans import Span
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 
 STEP = 1.0  # m between points of the walked line
 COARSE = 3  # points of the walked line from one point of the test for overlap to the next
-EDGE = 0.3  # m kept free between ribbon and border of the map, for rounding and the bulge of splines
 NEIGHBOURS = (
     26.0  # m along the road: places nearer than this cannot meet (half a circle of 14 m radius is 44 m)
 )
+MANY = 700  # points from which on near ones are looked up in a tree: all pairs of them would take long
+SOME = 300  # points of a long line that are laid on the map before all are
 COARSENESS = 0.6  # m that the coarse points may see legs further apart than they are
 SPARE = 0.7  # m that carriageways are kept apart at least, where there is no room for the verges
+DIAGONALS = np.array([45.0, 135.0, 225.0, 315.0])  # headings at which a straight road has most room
 HEADINGS = 72  # that are tried on a map where the first one does not fit
 
 Complex = NDArray[np.complex128]
@@ -74,6 +78,9 @@ def keeps_clear(line: Line, world: World, with_verges: bool) -> bool:
     first = int(NEIGHBOURS / spacing) + 1
     if len(z) <= first:
         return True
+    if len(z) > MANY:
+        near_pairs = cKDTree(np.stack([z.real, z.imag], axis=1)).query_pairs(apart, output_type="ndarray")
+        return not (np.abs(near_pairs[:, 1] - near_pairs[:, 0]) >= first).any()
     dx, dy = z.real[:, None] - z.real, z.imag[:, None] - z.imag
     near = dx * dx + dy * dy < apart * apart
     return not np.triu(near, first).any()
@@ -86,7 +93,10 @@ def place(line: Line, world: World, rng: np.random.Generator) -> Place | None:
     chosen = _extent(line.z, turns[:1], room)
     if chosen is None:
         rng.shuffle(turns)
-        chosen = _extent(line.z[::2], turns, room - 0.2)
+        if _may_fit(line.z, turns, room):
+            chosen = _extent(line.z[::2], turns, room - 0.2)
+    if chosen is None and _is_straight(line):
+        chosen = _extent(line.z, rng.permutation(DIAGONALS), room)
     if chosen is None:
         return None
     theta, left, low, width, height = chosen
@@ -94,6 +104,16 @@ def place(line: Line, world: World, rng: np.random.Generator) -> Place | None:
     x = border - left + rng.random() * max(room - width, 0.0)
     y = border - low + rng.random() * max(room - height, 0.0)
     return Place(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)
+
+
+def _may_fit(z: Complex, thetas: Array, room: float) -> bool:
+    """Do some points of a long line fit at some heading? If they do not, the line does not either."""
+    every = 2 * (len(z) // (2 * SOME))
+    return every < 2 or _extent(z[::every], thetas, room) is not None
+
+
+def _is_straight(line: Line) -> bool:
+    return not line.z.imag.any()
 
 
 def _extent(z: Complex, thetas: Array, room: float) -> tuple[float, float, float, float, float] | None:
@@ -110,5 +130,5 @@ def _extent(z: Complex, thetas: Array, room: float) -> tuple[float, float, float
 
 def smallest_box(line: Line) -> float:
     """Side of the smallest square that holds the line at some heading, metres."""
-    turned = np.exp(1j * np.radians(np.arange(0, 90, 5)))[:, None] * line.z
+    turned = np.exp(1j * np.radians(np.arange(0, 90, 5)))[:, None] * line.z[:: max(1, len(line.z) // MANY)]
     return float(np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1)).min())

@@ -16,15 +16,16 @@ from pathlib import Path
 from typing import NamedTuple
 
 from roadgpt import plugins
-from roadgpt.brief import read
+from roadgpt.brief import NoRoomError, read
 from roadgpt.brief.model import Brief
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import Finding, inspect, rules_of
 from roadgpt.design import designer_of
+from roadgpt.design.offers import no_room
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import simulate
 from roadgpt.drive.custom import load_in_time
-from roadgpt.errors import DesignError, PartError, RoadGPTError
+from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError
 from roadgpt.road import Design, Geometry, Road, World, build, in_hops
 from roadgpt.run.campaign import Campaign
 from roadgpt.run.card import seed_in
@@ -120,7 +121,11 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
         ChatError: a language model could not be asked, or did not answer as it should.
     """
     with counting(meter or Meter.of(setup.chat), "reading"):
-        return read(words, setup.reader, world.map_size, world.min_radius, world.max_grade, setup.chat)
+        try:
+            limits = (world.map_size, world.min_radius, world.max_grade)
+            return read(words, setup.reader, *limits, setup.chat, world.road_width)
+        except NoRoomError as error:
+            raise BriefError(no_room(error, world)) from error
 
 
 def prove(

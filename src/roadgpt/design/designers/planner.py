@@ -40,6 +40,8 @@ CROWDED = (
 FINISHED = 100  # drafts that fit, of which none keeps every promise, before the search is given up
 LAST_RESORTS = 20  # drafts like earlier roads that are tried where there are no others
 HEIGHTS = 5  # that are tried on one plan
+TRIALS = (1, 2, 3)  # seeds with which it is tried whether there is room
+TRIED = 110  # drafts that are drawn for each of these
 NO_HASTE = 16  # drafts that are drawn freely
 VERGES = 0.6  # of the drafts: so long, legs keep off each other's verges as well
 CENTIMETRE = 100.0  # per metre: the start is written to the centimetre
@@ -75,6 +77,15 @@ class Planner:
         return design
 
 
+def fits(brief: Brief, world: World) -> bool:
+    """Is a road drafted soon, for more than one seed?"""
+    try:
+        searches = [_Search(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
+        return all(search.found(TRIED) is not None for search in searches)
+    except DesignError:
+        return False
+
+
 class _Search:
     """The search for one road."""
 
@@ -91,14 +102,25 @@ class _Search:
         self.boxes: list[float] = []
 
     def run(self) -> tuple[Design, Road]:
-        """The first draft that passes; where all are like earlier roads, the least alike."""
+        """The first draft that passes; where all are like earlier roads, the least alike.
+
+        Raises:
+            DesignError: none did.
+        """
+        found = self.found()
+        if found is None:
+            raise DesignError(advice(self.brief, self.outline, self.world, self.failed, self.boxes, fits))
+        return found
+
+    def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
+        """The same; None where none passes."""
         alike: list[tuple[float, int, _Draft]] = []
         finished = 0
         most = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
         choosy = CHOOSY * most / (3 if len(self.others.reach) > CROWDED else 1)
-        for number in range(DRAFTS):
-            haste = max(0.0, (number - NO_HASTE) / (DRAFTS - NO_HASTE))
-            drafted = self._plan(haste, with_verges=number < VERGES * DRAFTS)
+        for number in range(drafts):
+            haste = max(0.0, (number - NO_HASTE) / (drafts - NO_HASTE))
+            drafted = self._plan(haste, with_verges=number < VERGES * drafts)
             if drafted is None:
                 continue
             away = nearest(drafted.shape, self.others, by_metres=len(alike) < choosy)
@@ -118,7 +140,7 @@ class _Search:
             found = self._finished(drafted)
             if found:
                 return found
-        raise DesignError(advice(self.outline, self.world, self.failed, self.boxes))
+        return None
 
     def _plan(self, haste: float, with_verges: bool) -> _Draft | None:
         order = drawn_order(self.outline, self.rng, plain=haste > 0.5)

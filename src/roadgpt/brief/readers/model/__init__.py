@@ -6,6 +6,7 @@ only plans that can be read. Weights and their card lie in ``weights/``.
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
@@ -25,7 +26,9 @@ from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.recheck import rechecked
 from roadgpt.brief.readers.model.slots import Slotted, slotted
 from roadgpt.brief.readers.model.turned import turned_in_all
+from roadgpt.brief.readers.model.usual import usual
 from roadgpt.brief.readers.model.vocabulary import plan_of
+from roadgpt.brief.refusal import TooMuchError
 from roadgpt.errors import BriefError, PartError
 
 WEIGHTS = Path(__file__).parent / "weights"
@@ -33,13 +36,15 @@ FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.js
 MOST_LETTERS = 2000
 ALMOST = 2.0  # difference of worth
 NO_ROAD = "does not describe a road"
-MAP_SIZE = 250.0  # metres, of the usual map
 ADVICE = {
     "!nonsense": "this does not describe a road; say how it should be, such as 'uphill with three turns'",
     "!contradiction": "these wishes contradict each other; leave one out, or say for which part each is",
-    "!impossible": "no such road can be built here: at most 12 turns and 1500 m, radius 15 m or more,"
-    " grades of 15 percent or less, and no junctions or loops; ask for less",
+    "!impossible": "no such road can be built: no junctions, roundabouts or loops, no radius below 15 m and"
+    " no grade above 15 percent; ask for less",
 }
+TOO_MUCH = (
+    "12 turns and 1500 m are the most that is sure to fit on a map of 250 m; ask for less or for a larger map"
+)
 
 
 class ModelReader:
@@ -64,14 +69,19 @@ class ModelReader:
         """The Brief of a description.
 
         Raises:
+            TooMuchError: they ask for more than the usual map holds; has the Brief with it.
             BriefError: the words are empty, too many, no road, contradictory or ask for the impossible.
         """
         _text(words)
         turned = turned_in_all(words)
         if turned is None:
             return self._read(words)
-        brief = self._read(turned.rest) if turned.is_more_said else Brief(turns=at_least(1))
-        return brief.model_copy(update={"words": words, "turning": turned.degrees})
+        update = {"words": words, "turning": turned.degrees}
+        try:
+            brief = self._read(turned.rest) if turned.is_more_said else Brief(turns=at_least(1))
+        except TooMuchError as error:
+            raise TooMuchError(str(error), error.brief.model_copy(update=update)) from error
+        return brief.model_copy(update=update)
 
     def _read(self, words: str) -> Brief:
         text = _text(words)
@@ -107,7 +117,34 @@ class ModelReader:
 
     def _brief(self, words: str, text: Slotted, draft: Draft) -> Brief:
         if draft.is_refusal:
-            raise BriefError((draft.line != "!nonsense" and _reason(words)) or ADVICE[draft.line])
+            raise self._refusal(words, text, draft.line)
+        return self._as_brief(words, text, draft)
+
+    def _refusal(self, words: str, text: Slotted, why: str) -> BriefError:
+        """What the network has against the words; where it may be the usual map, with the Brief they make."""
+        brief, reason = _by_rules(words) if why != "!nonsense" else (None, "")
+        if why == "!impossible":
+            brief = self._for_the_usual_map(words, text) or brief
+            if brief:
+                return TooMuchError(reason or TOO_MUCH, brief)
+        return BriefError(reason or ADVICE[why])
+
+    def _for_the_usual_map(self, words: str, text: Slotted) -> Brief | None:
+        """The Brief, read as if its numbers were ordinary; None where they are, or where it is refused again."""
+        as_usual = usual(text)
+        if as_usual.text == text:
+            return None
+        found = drafts(self._network, words, self._settings["refuse_from"], lambda seen: usual(seen).text)
+        if not found or found[0].is_refusal:
+            return None
+        tokens = as_usual.told(found[0].tokens)
+        draft = replace(found[0], tokens=tokens, line=plan_of(tokens, text.slots))
+        try:
+            return self._as_brief(words, text, draft)
+        except BriefError:
+            return None
+
+    def _as_brief(self, words: str, text: Slotted, draft: Draft) -> Brief:
         try:
             brief = rechecked(read_plan(draft.line), text)
         except BriefError as error:
@@ -158,21 +195,22 @@ def _consistent(found: Sequence[Draft]) -> Draft:
     return found[0]
 
 
-def _reason(words: str) -> str:
-    """What rules have against the words, where they understand all of them; the network cannot say why."""
+def _by_rules(words: str) -> tuple[Brief | None, str]:
+    """The Brief, where rules understand all of the words; and what they have against them on any map."""
     try:
         brief = GrammarReader().read(words)
-        if not brief.unused:
-            check(brief, MAP_SIZE)
+        if brief.unused:
+            return None, ""
+        check(brief, map_size=None, min_radius=0.0)
     except BriefError as error:
-        return "" if NO_ROAD in str(error) else str(error)
-    return ""
+        return None, "" if NO_ROAD in str(error) else str(error)
+    return brief, ""
 
 
 def _can_be_kept(line: str) -> bool:
     try:
         brief = read_plan(line)
-        check(brief, map_size=None)
+        check(brief, map_size=None, min_radius=0.0)  # what a world allows is asked in brief.read
     except BriefError:
         return False
     return _sides_add_up(normal(brief))

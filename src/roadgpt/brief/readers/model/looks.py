@@ -4,7 +4,7 @@ A plan that the network writes at every look is right more often than one that i
 where the first look leaves no doubt the others would only cost time.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from roadgpt.brief.normal import normal
@@ -73,18 +73,21 @@ class Look:
         return sum(best.log_chances) > SURE
 
 
-def drafts(network: Network, words: str, refuse_from: float) -> tuple[Draft, ...]:
+def drafts(
+    network: Network, words: str, refuse_from: float, shown: Callable[[Slotted], Slotted] = lambda text: text
+) -> tuple[Draft, ...]:
     """Plans for a description, the likeliest first.
 
     Args:
         network: writes them.
         words: the description.
         refuse_from: mean chance of a refusal from which one is believed; above 1: never.
+        shown: what the network is shown of a text.
     """
-    text = slotted(words)
+    text = shown(slotted(words))
     looks = [_look(network, text, refuse_from, False)]
     for other, is_mirrored in [] if looks[0].is_clear else _others(words):
-        looks.append(_look(network, slotted(other), refuse_from, is_mirrored))
+        looks.append(_look(network, shown(slotted(other)), refuse_from, is_mirrored))
     looks = [look for look in looks if look.plans]
     keys = dict.fromkeys(key for look in looks for key in look.plans)
     found = [_judged(key, looks, text) for key in keys]
