@@ -29,6 +29,7 @@ from roadgpt.brief.model import (
     between,
     exactly,
 )
+from roadgpt.brief.motorway import remarks, says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.refusal import NoRoomError, TooMuchError
@@ -63,6 +64,7 @@ __all__ = [
     "outline",
     "read",
     "reader_of",
+    "remarks",
     "sentence",
 ]
 
@@ -114,12 +116,13 @@ def read(
     try:
         brief = reader_of(reader, chat).read(words)
     except TooMuchError as refusal:
-        check(refusal.brief, map_size, min_radius, max_grade, road_width)
+        brief = refusal.brief
+        check(brief, map_size, min_radius, max_grade, road_width)
         if map_size is not None and map_size <= USUAL_MAP and min_radius >= LEAST_RADIUS:
             raise
-        return refusal.brief
-    check(brief, map_size, min_radius, max_grade, road_width)
-    return brief
+    else:
+        check(brief, map_size, min_radius, max_grade, road_width)
+    return brief.model_copy(update={"motorway": True}) if says_motorway(words) else brief
 
 
 def alternatives(
@@ -148,6 +151,8 @@ def alternatives(
         others = part.alternatives(first.words, number, temperature, seed)[1:]
     except TooMuchError:  # it is read in one way, as an ordinary road with other numbers
         return (first,)
+    if first.motorway:
+        others = tuple(brief.model_copy(update={"motorway": True}) for brief in others)
     return (first, *(brief for brief in others if _is_possible(brief, map_size, min_radius, max_grade)))
 
 

@@ -144,6 +144,8 @@ class Brief(Frozen):
     """The first thing, where the clauses do not say it."""
     ends: Clause | None = None
     """The last thing, where the clauses do not say it."""
+    motorway: bool = False
+    """Was a motorway asked for? See ``brief.motorway``."""
     hard: bool = False
     """Hard for a lane keeper: tight, fast into bends, over crests."""
     unused: tuple[str, ...] = ()

@@ -10,9 +10,12 @@ from math import inf
 from typing import Literal
 
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope
+from roadgpt.brief.motorway import has_low_grades, has_wide_turns
 from roadgpt.brief.words import (
     KINDS,
     LENGTH_SLACK,
+    MOTORWAY_GRADE,
+    MOTORWAY_RADIUS,
     PERCENT_SLACK,
     ROAD_LENGTH_SLACK,
     SHARPNESS,
@@ -28,6 +31,8 @@ from roadgpt.brief.words import (
 SMALLEST_TURN = 12.0  # degrees; below 10 a bend is not measured as a turn
 SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have this share of it or more
 LARGEST_TURN = 270.0  # degrees, where only a lower bound was said
+USUALLY_WIDEST = 300.0  # metres: a bend of a larger radius is no turn, unless such turns are asked for
+WIDER = 1.5  # times the least radius asked for: a bend of a larger one is no turn
 NO_LIMIT = Range()
 KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
 
@@ -84,24 +89,35 @@ class Outline:
     hard: bool = False
 
     @property
+    def widest(self) -> float:
+        """Metres: the radius below which a bend of this road is a turn."""
+        ends = (end for end in (self.starts, self.ends) if end)
+        features = (self.each_turn, *(group.feature for group in self.groups), *ends)
+        radii = (feature.radius.lo for feature in features if feature.radius)
+        return max(USUALLY_WIDEST, WIDER * max(radii, default=0.0))
+
+    @property
     def names_all_turns(self) -> bool:
         """Do the groups say every turn of the road, in order?"""
         return any(group.feature.kind == "turn" for group in self.groups) or self.turns.hi == 0
 
 
-def outline(brief: Brief, roomy: bool = True) -> Outline:
+def outline(brief: Brief, roomy: bool = True, map_size: float = inf) -> Outline:
     """The Outline of a Brief.
 
     Args:
         brief: what was asked for.
         roomy: the map can hold sweeping turns of 60 m radius; else they are held to 40 m, as gentle ones.
+        map_size: metres along one side; a motorway has wide turns where there is room for them.
     """
     groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))
     grade, grade_range = _whole_grade(brief)
     steepest = _near(brief.steepest, _percent_slack)
     if grade is None and grade_range:  # nearly flat: no place is steeper
         steepest = overlap(steepest, Range(0, max(abs(grade_range.lo), abs(grade_range.hi))))
-    return Outline(
+    if has_low_grades(brief):
+        steepest = overlap(steepest, Range(0, MOTORWAY_GRADE))
+    found = Outline(
         groups=groups,
         turns=_turn_count(brief, groups),
         left=_count(brief.left),
@@ -123,6 +139,14 @@ def outline(brief: Brief, roomy: bool = True) -> Outline:
         ends=_last(brief.ends, roomy) if brief.ends else None,
         hard=brief.hard,
     )
+    return _widened(found) if has_wide_turns(brief, map_size) else found
+
+
+def _widened(found: Outline) -> Outline:
+    """With turns as wide as those of a motorway."""
+    wide = Range(MOTORWAY_RADIUS)
+    each = replace(found.each_turn, radius=overlap(found.each_turn.radius, wide))
+    return replace(found, each_turn=each)
 
 
 def _groups(clause: Clause, roomy: bool) -> list[Group]:

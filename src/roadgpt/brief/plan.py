@@ -24,7 +24,7 @@ WORDS = {
     **dict.fromkeys(("up", "down", "flat", "nearly_flat", "gently_up", "gently_down"), "slope"),
     **dict.fromkeys(("steeply_up", "steeply_down"), "slope"),
 }
-FLAGS = ("alternating", "hard")
+FLAGS = ("alternating", "hard", "motorway")
 KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
 ROAD_KEYS = {
     "turns": "turns",

@@ -57,10 +57,9 @@ def check_room(brief: Brief, map_size: float, min_radius: float, road_width: flo
 def _straights(brief: Brief, map_size: float, road_width: float) -> None:
     """Each straight must fit from corner to corner; of a road without turns, all of it."""
     longest = longest_straight(map_size, road_width)
-    for clause in brief.clauses:
-        if clause.kind == "straight" and clause.length and clause.length.lo:
-            if clause.length.lo * (1 - LENGTH_SLACK) > longest:
-                raise _too_long("a straight", clause.length.lo, brief, map_size, road_width)
+    lengths = [c.length.lo or 0.0 for c in brief.clauses if c.kind == "straight" and c.length]
+    if lengths and max(lengths) * (1 - LENGTH_SLACK) > longest:
+        raise _too_long("a straight", max(lengths), brief, map_size, road_width)
     if not brief.turns or brief.turns.hi != 0:
         return
     said = sum((c.length.lo or 0) if c.length else 0 for c in brief.clauses if c.kind in STRAIGHT)

@@ -25,7 +25,7 @@ def sentence(brief: Brief) -> str:
     adjectives = [_exact_metres(said.length)]
     if said.slope and not said.incline:
         adjectives.append(SLOPE_WORDS[said.slope])
-    road = " ".join(word for word in [*adjectives, "road"] if word)
+    road = " ".join(word for word in [*adjectives, "motorway" if said.motorway else "road"] if word)
     if said.clauses:
         road += " with " + ", then ".join(clause_text(clause) for clause in said.clauses)
     elif said.turns and said.turns not in (at_least(1), exactly(0)):

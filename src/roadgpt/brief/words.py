@@ -124,6 +124,9 @@ HILLS = 3
 ROAD_SIZES: Mapping[Size, Range] = {"long": Range(250), "short": Range(20, 150)}
 """Metres: 'a long road', 'a short road'."""
 
+MOTORWAY_RADIUS = 600.0  # metres, of every turn of 'a motorway', where the map has room: see brief.motorway
+MOTORWAY_GRADE = 5.0  # percent, up and down, of its steepest place
+
 LEAST_RADIUS = 14.326  # metres: 47 ft, the tightest turn of the SBFT competition
 USUAL_MAP = 250.0  # metres along one side, where nobody says another: RoadGPT's
 STEEPEST = 15.0  # percent, up and down: RoadGPT's system prompt
@@ -181,6 +184,8 @@ def _turns() -> list[str]:
         *_rows("Turns", ("words", "turns", "degrees each", "radius (m)"), [*rows, *OTHER_TURNS]),
         "",
         "Where the map cannot hold 60 m, a sweeping turn has a radius of 40 m or more."
+        " A motorway (freeway, highway, Autobahn, autoroute, autopista, autostrada) has sweeping turns;"
+        f" on a map with room for them, turns of {MOTORWAY_RADIUS:g} m or more."
         " Switchbacks alternate where there are several."
         " 'Sharp' with a kind of its own angle (a tight hairpin) keeps the angle of the kind.",
     ]
@@ -196,6 +201,7 @@ def _straights() -> list[str]:
 def _slopes() -> list[str]:
     rows = [(_said(m), str(m.grade)) for m in SLOPES.values()]
     rows.append(("a mountain road (steepest place, up or down)", str(MOUNTAIN)))
+    rows.append(("a motorway (steepest place, up or down)", f"{MOTORWAY_GRADE:g} or less"))
     rows.append(("a hilly road", f"{HILLS} or more changes between climbing and falling"))
     return _rows("Slopes", ("words", "percent, uphill positive"), rows)
 

@@ -54,7 +54,8 @@ def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
         brief: what was asked for, if anything was.
     """
     samples = road.sample()
-    return behaviour_of_measures(measure(samples.points), samples.heading, brief)
+    widest = outline(brief or Brief()).widest
+    return behaviour_of_measures(measure(samples.points, widest), samples.heading, brief)
 
 
 def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) -> dict[str, float]:

@@ -4,7 +4,8 @@ Nothing is known of how the road was made. Units are those of promises (``brief.
 percent uphill positive. All is measured on the centre line resampled about every metre of its plan:
 
 * curvature: change of heading per metre, averaged over 5 m.
-* turn: a stretch of one hand with a curvature above 1/300 per metre. Stretches of one hand less than 8 m
+* turn: a stretch of one hand with a curvature above 1/300 per metre; on roads of which wider turns are asked,
+  those of a motorway, with one that such turns have. Stretches of one hand less than 8 m
   apart are one turn. Its angle is taken out to where the curvature fades below 1/3000 or changes sign; a
   stretch that turns less than 4 degrees joins nothing, and less than 10 in all is no turn.
 * straight: 10 m or more between turns, or between a turn and an end. It is cut into pieces where its grade,
@@ -20,12 +21,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from roadgpt.brief.outline import USUALLY_WIDEST
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 
 STEP = 1.0  # m between stations
-CURVED = 1 / 300  # 1/m: more than this is a turn
-FADED = 1 / 3000  # 1/m: less than this no longer belongs to its angle
+FADES = 10.0  # times that radius: what is straighter no longer belongs to the angle of a turn
 SMOOTHED = 5  # stations that a curvature is averaged over
 JOINED = 8.0  # m: stretches of one hand with less between them are one turn
 SLIGHT = 4.0  # degrees: a stretch that turns less joins nothing
@@ -132,18 +133,19 @@ class _Bend(NamedTuple):
     degrees: float
 
 
-def measure(points: ArrayLike) -> Measures:
+def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
     """Measures the road whose centre line these points are.
 
     Args:
         points: ``(n, 2)`` or ``(n, 3)`` in metres, about 1 m apart.
+        widest: metres, the radius below which a bend is a turn.
 
     Raises:
         UsageError: fewer than two different points, or a number is not finite.
     """
     line = _resampled(points)
     s, z = line.s, line.z
-    features = _features(line, _turns(line))
+    features = _features(line, _turns(line, widest))
     climb = float(z[-1] - z[0])
     long = _windows(line, LONG_WINDOW if len(s) > 2 * LONG_WINDOW else max(2, len(s) // 4))
     short = _windows(line, min(SHORT_WINDOW, len(s) - 1))
@@ -227,8 +229,8 @@ def _signs(values: Array, least: float) -> NDArray[np.int8]:
     return (values > least).astype(np.int8) - (values < -least).astype(np.int8)
 
 
-def _turns(line: _Line) -> list[_Bend]:
-    signs, faint = _signs(line.curvature, CURVED), _signs(line.curvature, FADED)
+def _turns(line: _Line, widest: float) -> list[_Bend]:
+    signs, faint = _signs(line.curvature, 1 / widest), _signs(line.curvature, 1 / (FADES * widest))
     first, last = _stretches(signs)
     curved = signs[first] != 0
     from_, to = _stretches(faint)

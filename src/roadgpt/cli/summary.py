@@ -44,9 +44,11 @@ def _run_lines(run: Run, folder: Path) -> Iterator[str]:
     if run.words:
         yield f"  words     {run.words}"
     if run.brief is not None:
-        from roadgpt.brief import sentence
+        from roadgpt.brief import remarks, sentence
 
         yield f"  brief     {sentence(run.brief)}"
+        for remark in remarks(run.brief, run.world.map_size):
+            yield f"  note      {remark}"
     if run.road is not None:
         yield f"  road      {_road_line(run)}"
         drafts = f", {run.rounds} draft{'s' * (run.rounds != 1)}" if run.rounds else ""

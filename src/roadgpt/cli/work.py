@@ -5,6 +5,7 @@ import shlex
 import sys
 from contextlib import redirect_stdout
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,7 +60,7 @@ def work_off(wish: Wish, screen: Screen) -> None:
     seed = _seed(wish)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, beside, meter)
-    screen.say(understood(brief))
+    screen.say(understood(brief, wish.world.map_size))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")
@@ -80,12 +81,14 @@ def _seed(wish: Wish) -> int:
     return secrets.randbelow(SEEDS) if there is None else there
 
 
-def understood(brief: "Brief") -> str:
-    """What was understood of the words, which of them were not, and whether the reader doubts it."""
+def understood(brief: "Brief", map_size: float = inf) -> str:
+    """What was understood of the words and what not, whether there is doubt, and what the map cannot keep."""
+    from roadgpt.brief import remarks
+
     told = f"I read this as: {reading(brief)}"
     if brief.confidence < SURE:
         told += f"; not sure of this ({100 * brief.confidence:.0f} %), so check it or say it in other words"
-    return told
+    return "\n".join([told, *(f"note: {remark}" for remark in remarks(brief, map_size))])
 
 
 def reading(brief: "Brief") -> str:

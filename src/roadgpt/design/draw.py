@@ -22,7 +22,9 @@ LONGEST_TURN = 170.0  # m along the curve
 SEEN_ARC = 6.5  # m: a shorter arc is not measured with its own radius, which is averaged over some 9 m
 SHORTEST_TURN = 11.0  # m along the arc, where no radius was asked for: less looks like a kink
 RAMPS = (0.12, 0.34)  # of the arc, for each clothoid
-RAMP_LIMITS = (3.0, 16.0)  # m
+RAMP_LIMITS = (3.0, 16.0)  # m, of roads as tight as most are; of wide turns, a clothoid has ...
+RADII_OF_RAMP = 9.0  # ... a parameter A of a third of the radius or more (RAS-L 1995), so A^2 / R of a ninth
+WIDE_ANGLE = 80.0  # degrees of a turn whose radius is wider than others
 LEAD = 16.5  # m: a straight before the first or after the last turn is measured as 10 m or more
 SEPARATE = 17.5  # m: turns of one hand with so much between them are measured as two
 KEPT = 0.5  # degrees by which a turn may still leave the angle that makes a sum right
@@ -125,7 +127,9 @@ def drawn_turns(
 
 def _longest(turns: int, outline: Outline, world: World) -> float:
     """Metres along the curve that one turn may take, so that all find room."""
-    by_map = min(2.2 * world.map_size / (turns + 1.2), LONGEST_TURN)
+    wide = outline.each_turn.radius
+    longest = max(LONGEST_TURN, wide.lo * radians(WIDE_ANGLE)) if wide and wide.lo > WIDEST else LONGEST_TURN
+    by_map = min(2.2 * world.map_size / (turns + 1.2), longest)
     if outline.length is None or outline.length.hi == inf:
         return by_map
     straights = 2 * LEAD + 0.4 * SEPARATE * (turns - 1)
@@ -201,7 +205,7 @@ def _ramp(room: TurnRoom, angle: float, radius: float, rng: np.random.Generator)
     """Length of the clothoids; short where a promised radius must still be seen."""
     arc = radius * radians(angle)
     share = RAMPS[0] + (RAMPS[1] - RAMPS[0]) * rng.random()
-    ramp = min(max(share * arc, RAMP_LIMITS[0]), RAMP_LIMITS[1])
+    ramp = min(max(share * arc, RAMP_LIMITS[0]), max(RAMP_LIMITS[1], radius / RADII_OF_RAMP))
     if room.tight:
         ramp = min(ramp, max(arc - SEEN_ARC, 1.0))
     return min(ramp, MOST_RAMP * arc / segments_of_turn(angle))

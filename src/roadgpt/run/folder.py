@@ -18,6 +18,7 @@ from typing import Any, Protocol
 from pydantic import ValidationError
 
 from roadgpt.brief.model import Brief
+from roadgpt.brief.motorway import remarks
 from roadgpt.chat import Spent
 from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
@@ -86,6 +87,7 @@ def _files(run: Run) -> list[tuple[str, bytes]]:
 
 def _card(run: Run) -> dict[str, Any]:
     asked = {"designing": run.designing, "spent": run.spent}
+    noted = remarks(run.brief, run.world.map_size) if run.brief else ()
     return {
         "format": FORMAT,
         "index": run.index,
@@ -94,6 +96,7 @@ def _card(run: Run) -> dict[str, Any]:
         "description": run.description,
         "findings": [asdict(finding) for finding in run.findings],
         "rounds": run.rounds,
+        **({"remarks": list(noted)} if noted else {}),
         "request": run.request.model_dump(mode="json"),
         "versions": dict(run.versions),
         **{name: value.model_dump(mode="json") for name, value in asked.items() if value is not None},

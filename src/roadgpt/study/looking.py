@@ -157,11 +157,13 @@ def kept_of(road: Road | None, prompt: Prompt, brief: Brief | None, world: World
     """Which criteria of a description a road keeps; none where there is no road."""
     points = road.centreline() if road is not None else BARE
     is_road = bool(np.isfinite(points).all()) and len(points) > 1
-    found = measure(points if is_road else BARE)
+    asked = promises_of(brief, world) if brief is not None else None
+    points = points if is_road else BARE
+    found = measure(points, asked.widest) if asked else measure(points)
     if prompt.truth is not None:
         kept = criteria_of_truth(found, prompt.truth)
-    elif brief is not None:
-        kept = criteria_of_outline(found, promises_of(brief, world))
+    elif asked is not None:
+        kept = criteria_of_outline(found, asked)
     else:
         return {}
     whole = road is not None and is_road and found.length >= SHORTEST

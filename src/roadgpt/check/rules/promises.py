@@ -32,13 +32,14 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
     """Says of every broken promise what was asked and what came out; nothing without a Brief."""
     if brief is None:
         return ()
-    broken = complaints(measure(road.centreline()), promises_of(brief, world))
+    asked = promises_of(brief, world)
+    broken = complaints(measure(road.centreline(), asked.widest), asked)
     return tuple(_finding(road, complaint) for complaint in broken)
 
 
 def promises_of(brief: Brief, world: World) -> Outline:
     """The Outline that a road on this map is held to."""
-    return outline(brief, roomy=world.map_size >= ROOMY)
+    return outline(brief, world.map_size >= ROOMY, world.map_size)
 
 
 def complaints(found: Measures, asked: Outline) -> list[Complaint]:

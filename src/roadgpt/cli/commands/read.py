@@ -12,6 +12,7 @@ from roadgpt.cli.options import chat_of, chat_options_but, setup_options, whole,
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
     from roadgpt.chat import ChatSettings
+    from roadgpt.road import World
 
 FEW = whole(1, 10, "the number of readings")
 LEAST = 0.01  # chance of a reading that is listed
@@ -35,7 +36,7 @@ def command(
     number: int,
     **asked: Any,
 ) -> None:
-    """Say how a description is read, and how sure the reader is.
+    """Say how a description is read, how sure the reader is, and whether the map has room for it.
 
     \b
     roadgpt read "uphill, 3 turns, the last one a hairpin"
@@ -44,35 +45,38 @@ def command(
     """
     from roadgpt.cli.work import understood
 
-    side = world_of({"map_size": map_size}).map_size
-    briefs = _readings(" ".join(words), reader, side, number, chat_of(asked, reader))
+    world = world_of({"map_size": map_size})
+    briefs = _readings(" ".join(words), reader, world, number, chat_of(asked, reader))
     if as_json:
-        found = [_as_data(brief) for brief in briefs]
+        found = [_as_data(brief, world.map_size) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
         return
     if number > 1:
         click.echo("\n".join(_list(briefs, as_table)))
         return
-    click.echo(understood(briefs[0]))
+    click.echo(understood(briefs[0], world.map_size))
     if as_table:
         click.echo(_table(briefs[0]))
 
 
 def _readings(
-    words: str, reader: str, map_size: float, number: int, chat: "ChatSettings | None"
+    words: str, reader: str, world: "World", number: int, chat: "ChatSettings | None"
 ) -> "tuple[Brief, ...]":
-    from roadgpt.brief import alternatives, read
+    from roadgpt.brief import alternatives
+    from roadgpt.run import Setup, brief_of
 
+    first = brief_of(words, world, Setup(reader=reader, chat=chat))
     if number == 1 or chat is not None:  # a language model says what it takes for likeliest
-        return (read(words, reader, map_size, chat=chat),)
-    return alternatives(words, number, reader, map_size, TEMPERATURE)
+        return (first,)
+    return alternatives(words, number, reader, world.map_size, TEMPERATURE)
 
 
-def _as_data(brief: "Brief") -> dict[str, object]:
-    from roadgpt.brief import sentence
+def _as_data(brief: "Brief", map_size: float) -> dict[str, object]:
+    from roadgpt.brief import remarks, sentence
     from roadgpt.brief.plan import plan
 
     told = {"sentence": sentence(brief), "plan": plan(brief), "confidence": brief.confidence}
+    told |= {"map_size": map_size, "remarks": remarks(brief, map_size)}
     return {**told, "unused": brief.unused, "brief": brief.model_dump(exclude_defaults=True)}
 
 

@@ -180,7 +180,7 @@ class _Search:
             pairs = zip(drafted.spans, heights, strict=True)
             segments = tuple(segment for span, inclines in pairs for segment in cut(span, inclines))
             points = np.stack([z.real, z.imag, profile_of(segments, 0.0).height(s)], axis=1)
-            broken = complaints(measure(points), self.outline)
+            broken = complaints(measure(points, self.outline.widest), self.outline)
             if not broken:
                 return segments
             self.failed[broken[0].sentence] += 1

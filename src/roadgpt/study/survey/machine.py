@@ -31,14 +31,12 @@ def match(run: Run, prompt: str) -> dict[str, float]:
     """Which criteria a road keeps; nothing for a description that is not the one it was made from."""
     if run.road is None or run.brief is None or prompt != run.words.strip():
         return {}
+    asked = promises_of(run.brief, run.world)
     try:
-        found = measure(run.road.centreline())
+        found = measure(run.road.centreline(), asked.widest)
     except UsageError:
         return {}
-    kept = {
-        str(name): good
-        for name, good in criteria_of_outline(found, promises_of(run.brief, run.world)).items()
-    }
+    kept = {str(name): good for name, good in criteria_of_outline(found, asked).items()}
     return {ours: float(kept[theirs]) for ours, theirs in MATCH.items() if theirs in kept}
 
 

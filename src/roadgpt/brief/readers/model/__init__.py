@@ -130,7 +130,7 @@ class ModelReader:
         return BriefError(reason or ADVICE[why])
 
     def _for_the_usual_map(self, words: str, text: Slotted) -> Brief | None:
-        """The Brief, read as if its numbers were ordinary; None where they are, or where it is refused again."""
+        """The Brief, read as if its numbers were ordinary; None where they are, or if it is refused then."""
         as_usual = usual(text)
         if as_usual.text == text:
             return None

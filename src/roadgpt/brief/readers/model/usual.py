@@ -1,9 +1,9 @@
 """A description as it would be for the usual map: its numbers without the marks of their size.
 
-The network was trained for one map, of 250 m, and refuses what fits on no such map. Whether a road fits is not
-for it to say: where it calls one impossible it is shown the same words with ordinary numbers, and what it
-reads then has the numbers that were said. The checks hold that against the map and the limits of the world.
-What is impossible on any map ("with a roundabout") it refuses again.
+The network was trained for one map, of 250 m, and refuses what fits on no such map. Whether a road fits is
+not for it to say: where it calls one impossible it is shown the same words with ordinary numbers, and what it
+reads then has the numbers that were said. The checks hold that against the real map and the limits of the
+world. What is impossible on any map ("with a roundabout") it refuses again.
 """
 
 from collections.abc import Sequence

@@ -1,0 +1,170 @@
+"""A motorway is one: radii of 600 m or more and 5 percent at most; or a sentence says what is not kept."""
+
+import json
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from roadgpt import check
+from roadgpt.brief import read, remarks, sentence
+from roadgpt.brief.motorway import says_motorway
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.cli.app import app
+from roadgpt.design import draft
+from roadgpt.errors import DesignError
+from roadgpt.road import Road, World, build
+
+NAMES = (
+    "a motorway",
+    "a highway with 3 turns",
+    "a freeway",
+    "eine Autobahn",
+    "une autoroute",
+    "una autopista",
+    "un'autostrada",
+    "an expressway 3 km long",
+)
+
+
+def tightest_and_steepest(road: Road) -> tuple[float, float]:
+    """Metres and percent, by three points of the centre line 20 m apart: no code of the project."""
+    x, y, z = np.asarray(road.centreline())[::20].T[:3]
+    a = np.hypot(np.diff(x), np.diff(y))
+    area = (x[1:-1] - x[:-2]) * (y[2:] - y[:-2]) - (y[1:-1] - y[:-2]) * (x[2:] - x[:-2])
+    chord = np.hypot(x[2:] - x[:-2], y[2:] - y[:-2])
+    curvature = 2 * np.abs(area) / (a[:-1] * a[1:] * chord)
+    return float(1 / curvature.max()), float(100 * np.abs(np.diff(z) / a).max())
+
+
+@pytest.mark.parametrize("words", NAMES)
+@pytest.mark.parametrize("size", [2000, 4000])
+def test_where_there_is_room_it_is_wide_and_nowhere_steep(words: str, size: float) -> None:
+    brief, world = read(words, map_size=size), World(map_size=size)
+    assert brief.motorway
+    for seed in range(3):
+        road = build(draft(brief, world, seed=seed))
+        radius, grade = tightest_and_steepest(road)
+        assert 590 < radius < 1500, "wide, and no straight road"
+        assert grade <= 5
+        assert check.inspect(road, brief, world) == ()
+    (remark,) = remarks(brief, size)
+    assert remark == "a motorway has turns of 600 m radius or more, and grades of 5 % or less"
+
+
+@pytest.mark.parametrize("words", [words for words in NAMES if "km" not in words])
+def test_where_there_is_none_that_is_said_and_grades_are_kept(words: str) -> None:
+    brief, world = read(words), World()
+    (remark,) = remarks(brief, 250)
+    assert "600 m radius" in remark
+    assert "map of 250 m cannot hold" in remark
+    size = float(remark.split("--map-size ")[1].split(";")[0])
+    assert remarks(brief, size) != (remark,)
+    assert "cannot" not in remarks(brief, size)[0], "the map that is proposed holds one"
+    for seed in range(3):
+        _, grade = tightest_and_steepest(build(draft(brief, world, seed=seed)))
+        assert grade <= 5
+    wide = build(draft(read(words, map_size=size), World(map_size=size), seed=1))
+    assert tightest_and_steepest(wide)[0] > 590
+
+
+def test_a_road_that_is_none_breaks_the_promise() -> None:
+    brief, world = read("a motorway"), World(map_size=4000)
+    tight = build(draft(read("a road with 2 sweeping turns"), World(map_size=4000), seed=1))
+    assert any("radius" in finding.sentence for finding in check.inspect(tight, brief, world))
+    assert any("600" in finding.sentence for finding in check.inspect(tight, brief, world))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "a motorway with a hairpin",
+        "a motorway with 3 sharp turns",
+        "a motorway with a turn of 50 m radius",
+    ],
+)
+def test_what_is_said_of_the_turns_wins_and_is_named(words: str) -> None:
+    brief = read(words, "grammar", map_size=4000)
+    assert "tighter ones are asked for" in remarks(brief, 4000)[0]
+    assert draft(brief, World(map_size=4000), seed=2)
+
+
+def test_a_short_road_is_too_short_for_one() -> None:
+    brief = read("a motorway 200 m long", "grammar", map_size=4000)
+    assert "200 m of road cannot hold one" in remarks(brief, 4000)[0]
+    assert draft(brief, World(map_size=4000), seed=2)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "a road", "a service road beside the motorway", "a road to the motorway", "no motorway, but a lane",
+        "a motorway exit", "eine Straße neben der Autobahn", "the autobahnesque lane", "a mountain road",
+    ],
+)  # fmt: skip
+def test_other_roads_are_none(words: str) -> None:
+    assert not says_motorway(words)
+
+
+@pytest.mark.parametrize("words", ["Autobahn!", "a DUAL CARRIAGEWAY", "voie rapide", "autovía", "highways"])
+def test_its_names_are_known(words: str) -> None:
+    assert says_motorway(words)
+
+
+def test_the_sentence_and_the_plan_hold_it() -> None:
+    brief = read("a motorway with 3 curves", "grammar")
+    assert sentence(brief) == "A motorway with 3 sweeping turns."
+    assert read(sentence(brief), "grammar").model_copy(update={"words": brief.words}) == brief
+    assert read_plan(plan(brief)).motorway
+    assert not read("a road with 3 curves", "grammar").motorway
+
+
+def test_a_turn_that_was_asked_to_be_wide_is_seen_as_one() -> None:
+    brief, world = (
+        read("a left turn with a radius of 600 m, then a right turn", map_size=4000),
+        World(map_size=4000),
+    )
+    road = build(draft(brief, world, seed=1))
+    assert check.inspect(road, brief, world) == ()
+
+
+def test_clothoids_of_wide_turns_are_long() -> None:
+    design = draft(read("a motorway", map_size=4000), World(map_size=4000), seed=4)
+    heading = build(design).sample().heading
+    bends = np.abs(np.diff(heading)) / np.diff(build(design).sample().s)
+    steps = [abs(b - a) for a, b in pairwise(bends)]
+    assert max(steps) < 1 / 600 / 20, "no jump of curvature"
+
+
+def typed(*words: str) -> str:
+    """What a command says, on both streams."""
+    done = CliRunner().invoke(app, words, standalone_mode=False)
+    assert done.exception is None, done.exception
+    return done.output
+
+
+def test_it_is_said_on_the_screen_in_json_and_in_the_record(tmp_path: Path) -> None:
+    said = typed("read", "a motorway")
+    assert "note: a motorway has turns of 600 m radius or more, and a map of 250 m cannot hold one" in said
+    data = json.loads(typed("read", "a motorway", "--json", "--map-size", "4000"))
+    assert data["map_size"] == 4000
+    assert data["remarks"] == ["a motorway has turns of 600 m radius or more, and grades of 5 % or less"]
+    assert "cannot hold one" in typed(
+        "run", "a motorway", "--seed", "7", "--no-drive", "--no-plot", "--out", str(tmp_path / "out")
+    )
+    folder = tmp_path / "out" / "runs" / "0001"
+    assert "cannot hold one" in json.loads((folder / "run.json").read_text())["remarks"][0]
+    assert "cannot hold one" in typed("show", str(folder))
+
+
+def test_enough_motorways_differ() -> None:
+    world, roads = World(map_size=2000), []
+    brief = read("a motorway", map_size=2000)
+    try:
+        for seed in range(12):
+            roads.append(draft(brief, world, earlier=roads, seed=seed))
+    except DesignError as error:
+        pytest.fail(str(error))
+    assert len({tuple(design.segments) for design in roads}) == 12

@@ -1,0 +1,76 @@
+"""The real map decides what can be built: for every reader, in every language, whatever it was trained on."""
+
+import pytest
+
+from roadgpt.brief import alternatives, exactly, read
+from roadgpt.brief.readers.model import ModelReader
+from roadgpt.brief.refusal import TooMuchError
+from roadgpt.errors import BriefError
+
+LONG = (
+    ("a straight road of 3 km", 3000, True),
+    ("a winding road of 2 km", 2000, False),
+    ("a road of ten kilometres", 10_000, False),
+    ("eine gerade Strasse von 3 km", 3000, True),
+    ("une route sinueuse de 2 km", 2000, False),
+    ("una strada dritta di 3 km", 3000, True),
+    ("un camino recto de 3 kilómetros", 3000, True),
+    ("three miles of winding road", 4828, False),
+)
+
+
+@pytest.mark.parametrize(("words", "metres", "is_straight"), LONG)
+def test_a_long_road_is_read_where_the_map_is_large(words: str, metres: float, is_straight: bool) -> None:
+    brief = read(words, map_size=10_000)
+    lengths = [brief.length, *(clause.length for clause in brief.clauses)]
+    assert [length for length in lengths if length] == [exactly(metres)]
+    assert (brief.turns == exactly(0)) == is_straight
+    assert brief.words == words
+
+
+@pytest.mark.parametrize(("words", "metres", "is_straight"), LONG)
+@pytest.mark.parametrize("size", [100, 250])
+def test_and_refused_where_it_is_small(words: str, metres: float, is_straight: bool, size: float) -> None:
+    with pytest.raises(BriefError, match=f"map of {size} m"):
+        read(words, map_size=size)
+
+
+def test_more_turns_than_the_network_knows() -> None:
+    brief = read("a road 5 km long with 20 turns", map_size=4000)
+    assert brief.clauses[0].count == exactly(20)
+    assert brief.length == exactly(5000)
+    assert read("40 turns", map_size=1000).clauses[0].count == exactly(40)
+
+
+def test_the_tightest_turn_is_that_of_the_world() -> None:
+    with pytest.raises(BriefError, match="too tight"):
+        read("a turn with a radius of 8 m")
+    assert read("a turn with a radius of 8 m", min_radius=5.0).clauses[0].radius == exactly(8)
+
+
+@pytest.mark.parametrize(
+    "words", ["a 3 km road with a roundabout", "a crossroads", "from Berlin to Munich", "a figure of eight"]
+)
+def test_what_no_map_holds_is_refused_on_every_map(words: str) -> None:
+    with pytest.raises(BriefError):
+        read(words, map_size=10_000)
+
+
+def test_the_reader_alone_says_what_it_was_asked_for() -> None:
+    with pytest.raises(TooMuchError) as refusal:
+        ModelReader().read("a straight road of 3 km")
+    assert refusal.value.brief.length == exactly(3000)
+
+
+def test_other_readings_of_a_long_road_are_asked_of_the_same_map() -> None:
+    assert alternatives("a winding road of 2 km", map_size=4000)[0].length == exactly(2000)
+    with pytest.raises(BriefError, match="250 m"):
+        alternatives("a winding road of 2 km")
+
+
+@pytest.mark.parametrize("size", [300, 1000, 4000])
+def test_a_single_straight_is_held_against_the_diagonal(size: float) -> None:
+    fits, large = 1.2 * size, 2 * size
+    read(f"a straight of {fits:.0f} m, then a left turn", "grammar", map_size=size)
+    with pytest.raises(BriefError, match=f"map of {size} m, which is .* from corner to corner"):
+        read(f"a straight of {large:.0f} m, then a left turn", "grammar", map_size=size)
