@@ -101,4 +101,4 @@ def test_oob_distance_is_that_of_shapelys_line() -> None:
     from shapely.geometry import Point
 
     theirs = [2 - middle.distance(Point(x, y)) for x, y in zip(drive["x"], drive["y"], strict=True)]
-    assert consult(drive, World()).oob_distance == pytest.approx(np.array(theirs), abs=2e-3)
+    assert consult(road, drive, World()).oob_distance == pytest.approx(np.array(theirs), abs=2e-3)

@@ -3,6 +3,7 @@
 import math
 import sqlite3
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,10 +17,13 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign.executors import Doing
 from roadgpt.campaign.model import Proposal, Result
 from roadgpt.campaign.record import STORE, Record
+from roadgpt.campaign.status import status_of
 from roadgpt.campaign.store import Store
+from roadgpt.campaign.table import write_tables
 from roadgpt.campaign.traces import STEPS, drive_of, read_traces, trace_of, write_traces
 from roadgpt.campaign.worker import Ended
 from roadgpt.chat import Spent, Usage
+from roadgpt.cli.campaigns import outside_lines
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import RoadGPTError, UsageError
 
@@ -48,6 +52,7 @@ def results(draw: st.DrawFn, number: int, proposal: Proposal) -> Result:
         length=draw(st.floats(0, 1e6)),
         margin=draw(maybe),
         max_oob=draw(maybe),
+        beyond=draw(maybe),
         at_s=draw(maybe),
         side="left" if failed else None,
         cause="stuck" if failed else None,
@@ -135,6 +140,38 @@ def test_what_is_no_store_is_told(tmp_path: Path) -> None:
     db.close()
     with pytest.raises(UsageError, match="another version of roadgpt"):
         Store.opened(tmp_path)
+
+
+def test_a_store_of_an_older_version_is_read_and_gone_on_with(tmp_path: Path) -> None:
+    made = Proposal(None, 1, "draft")
+    done = [Result(n, 0, made, "PASS", "kept", margin=0.5, max_oob=0.62, beyond=1.13) for n in (1, 2)]
+    with a_store(tmp_path) as store:
+        store.begin_sitting(1)
+        store.add_batch("c01", 0, 1, [made] * 2)
+        store.keep([("c01", Ended(done[0]))], None, [], {})
+        store.end_sitting()
+    with sqlite3.connect(tmp_path / STORE) as db:  # as it was before this column
+        db.execute("ALTER TABLE tests DROP COLUMN beyond")
+    db.close()
+    with Record.opened(tmp_path) as record:
+        assert record.missing == ("beyond",)
+        assert record.result("c01", 1) == replace(done[0], beyond=None)
+        write_tables(record, tmp_path)
+    lines = (tmp_path / "results.csv").read_text().splitlines()
+    assert dict(zip(lines[0].split(","), lines[1].split(","), strict=True))["beyond_m"] == ""
+    status = status_of(tmp_path)
+    assert (status.cells[0].mostly_outside, status.cells[0].max_oob, status.cells[0].beyond) == (
+        1,
+        0.62,
+        None,
+    )
+    (line,) = outside_lines(status)
+    assert "1 mostly outside" in line
+    assert "an unknown distance (an older version wrote this store) beyond the marking" in line
+    with Store.opened(tmp_path) as store:
+        store.begin_sitting(1)
+        store.keep([("c01", Ended(done[1]))], None, [], {})
+        assert [one.beyond for one in store.results("c01")] == [None, 1.13]
 
 
 def a_drive(steps: int, rng: np.random.Generator) -> Drive:

@@ -25,7 +25,7 @@ def slowly(record: Record) -> str:
     table.writerow([*COLUMNS, *features])
     for cell, one in record.results_by_cell():
         asked = (one.batch, one.proposal.origin, seed_of_driver(one.number, one.proposal))
-        came = (one.outcome, one.cause, one.side, one.length, one.margin, one.max_oob, one.at_s)
+        came = (one.outcome, one.cause, one.side, one.length, one.margin, one.max_oob, one.beyond, one.at_s)
         known = [one.features.get(name) for name in features]
         table.writerow([cell, one.number, *asked, *came, one.description, *known])
     return text.getvalue()

@@ -16,6 +16,7 @@ FIELDS = [
     "test_outcome",
     "description",
     "max_oob",
+    "beyond_m",
     "margin_m",
     "length_m",
     "seconds",

@@ -6,19 +6,23 @@ from dataclasses import replace
 
 import pytest
 
-from roadgpt.cli.rows import Row, metres, summary
+from roadgpt.cli.rows import COLOURS, Row, metres, summary
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
+from roadgpt.verdict import graded
 
-KEPT = Row("a.json", "PASS", "kept its lane", max_oob=0.2, margin_m=0.62, length_m=187.25, seconds=1.234567)
+KEPT = Row("a.json", "PASS", "kept its lane", max_oob=0.0, margin_m=0.62, length_m=187.25, seconds=1.234567)
 LEFT = Row(
     "b.json", "FAIL", "left its lane", cause="out of lane", max_oob=0.97, margin_m=-0.06, length_m=90.0
 )
+NEARLY = replace(KEPT, file="n.json", max_oob=0.62, beyond_m=1.1349)
 WRONG = Row("c.json", "INVALID", "it is too sharp", is_valid=False, validation_message="it is too sharp")
 
 
 def test_json_has_the_fields_that_were_promised_in_their_order() -> None:
-    names = "file is_valid validation_message test_outcome description max_oob margin_m length_m seconds"
+    names = (
+        "file is_valid validation_message test_outcome description max_oob beyond_m margin_m length_m seconds"
+    )
     assert [*json.loads(KEPT.to_json())] == names.split()
     assert json.loads(KEPT.to_json())["seconds"] == 1.2346
     assert json.loads(WRONG.to_json())["margin_m"] is None
@@ -39,10 +43,27 @@ def test_a_line_carries_the_cause_of_a_failure_and_the_sentence_of_a_rule() -> N
 def test_the_summary_counts_each_outcome_and_finds_the_least_margin() -> None:
     closer = Row("d.json", "PASS", "kept its lane", margin_m=0.11)
     assert summary([LEFT, KEPT, WRONG, closer]) == [
-        ("PASS", 2, "50 %", "+0.110 m"),
-        ("FAIL (out of lane)", 1, "25 %", "-0.060 m"),
-        ("INVALID", 1, "25 %", "-"),
+        ("PASS", 2, "50 %", "+0.110 m", "inside"),
+        ("FAIL (out of lane)", 1, "25 %", "-0.060 m", "97 % out"),
+        ("INVALID", 1, "25 %", "-", "-"),
     ]
+
+
+def test_a_pass_outside_the_lane_does_not_look_like_one_inside() -> None:
+    assert NEARLY.to_line().startswith("PASS (62 % out, 1.13 m)")
+    assert KEPT.to_line().startswith("PASS    ")
+    assert replace(NEARLY, beyond_m=None).to_line().startswith("PASS (62 % out) ")
+    assert replace(NEARLY, max_oob=1e-5).to_line().startswith("PASS (0.001 % out, ")
+    slightly = replace(NEARLY, max_oob=0.2, beyond_m=0.3)
+    assert len({row.colour for row in (KEPT, slightly, NEARLY, LEFT, WRONG)}) == 5
+    assert summary([NEARLY, KEPT, slightly, replace(NEARLY, max_oob=0.9, beyond_m=1.5)]) == [
+        ("PASS", 1, "25 %", "+0.620 m", "inside"),
+        ("PASS (partly outside)", 1, "25 %", "+0.620 m", "20 % out, 0.30 m"),
+        ("PASS (mostly outside)", 2, "50 %", "+0.620 m", "90 % out, 1.50 m"),
+    ]
+    assert json.loads(NEARLY.to_json())["beyond_m"] == 1.1349
+    grades = {graded("PASS", share) for share in (0.0, 0.2, 0.9)}
+    assert grades <= {*COLOURS}
 
 
 def show(**how: bool) -> None:
@@ -86,6 +107,8 @@ def test_a_line_of_a_driven_road_fits_into_80_columns() -> None:
     far = replace(LEFT, file="roadgpt-runs/a-very-long-description/test.0001.json", name="test.0001.json")
     assert far.to_line().endswith("  test.0001.json")
     assert len(f"1000/1000  {far.to_line()}") <= 80
+    outside = replace(NEARLY, max_oob=0.9999, beyond_m=10.0, name="test.0001.json")
+    assert len(f"1000/1000  {outside.to_line()}") <= 80
     assert json.loads(far.to_json())["file"] == far.file
 
 

@@ -8,10 +8,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
-from roadgpt.road import World
+from roadgpt.road import Road, World
 from roadgpt.run.execution import FIELDS, Record, records_of
 
 WORLD = World()
+ROAD = Road.through([[0, 0], [100, 0]])
 STEPS = 101  # 2 s
 
 
@@ -34,17 +35,17 @@ def test_a_record_has_the_competition_s_17_fields_in_their_order() -> None:
 
 
 def test_ten_records_a_second_and_the_last_step() -> None:
-    timers = [record.timer for record in records_of(drive(), WORLD)]
+    timers = [record.timer for record in records_of(ROAD, drive(), WORLD)]
     assert timers == pytest.approx([0.1 * i for i in range(21)])
     shorter = drive(time=0.02 * np.arange(STEPS) * 0.99)
-    assert records_of(shorter, WORLD)[-1].timer == pytest.approx(1.98)
+    assert records_of(ROAD, shorter, WORLD)[-1].timer == pytest.approx(1.98)
 
 
 def test_the_step_that_leaves_the_lane_is_recorded_though_it_lies_between() -> None:
     outside = np.zeros(STEPS)
     outside[53:60] = 0.97
     outside[88:] = 1.0
-    records = records_of(drive(outside=outside), WORLD)
+    records = records_of(ROAD, drive(outside=outside), WORLD)
     first = next(record for record in records if record.is_oob)
     assert first.timer == pytest.approx(1.06)
     assert [record.timer for record in records] == sorted({record.timer for record in records})
@@ -56,6 +57,7 @@ def test_the_step_that_leaves_the_lane_is_recorded_though_it_lies_between() -> N
 def test_directions_and_speeds_in_space() -> None:
     heading, pitch = np.full(STEPS, np.pi / 2), np.full(STEPS, 0.1)
     records = records_of(
+        ROAD,
         drive(
             heading=heading,
             pitch=pitch,
@@ -75,11 +77,11 @@ def test_a_car_that_falls_moves_down() -> None:
     rng = np.random.default_rng(4)
     heading, pitch, roll = (np.full(STEPS, angle) for angle in (2.0, -0.7, 0.5))
     vx, vy, vz = rng.normal(0, 5, (3, STEPS))
-    record = records_of(drive(heading=heading, pitch=pitch, roll=roll, vx=vx, vy=vy, vz=vz), WORLD)[0]
+    record = records_of(ROAD, drive(heading=heading, pitch=pitch, roll=roll, vx=vx, vy=vy, vz=vz), WORLD)[0]
     turned = Rotation.from_euler("ZYX", [2.0, 0.7, 0.5])  # scipy's pitch is positive nose down
     assert record.vel == pytest.approx(turned.apply([vx[0], vy[0], vz[0]]), abs=1e-4)
     assert record.dir == pytest.approx(turned.apply([1, 0, 0]), abs=1e-4)
-    sinking = records_of(drive(vz=np.full(STEPS, -9.81)), WORLD)[0]
+    sinking = records_of(ROAD, drive(vz=np.full(STEPS, -9.81)), WORLD)[0]
     assert sinking.vel == [0.0, 0.0, -9.81]
 
 
@@ -87,7 +89,7 @@ def test_steering_is_told_at_the_wheel_in_degrees_and_as_a_share_of_the_car_s_lo
     steer = np.full(STEPS, 0.31)
     steer[10:] = -0.7
     turning = replace(drive(steer=steer), car=Box(4.7, 1.86, 0.0, 0.62))
-    first, *_, last = records_of(turning, WORLD)
+    first, *_, last = records_of(ROAD, turning, WORLD)
     assert first.steering == pytest.approx(15 * 17.7617, abs=1e-3)
     assert first.steering_input == pytest.approx(0.5)
     assert last.steering_input == -1.0
@@ -95,13 +97,13 @@ def test_steering_is_told_at_the_wheel_in_degrees_and_as_a_share_of_the_car_s_lo
 
 def test_the_distance_to_the_edge_of_the_lane() -> None:
     offset = np.linspace(-2.0, -4.5, STEPS)  # from the middle of the lane to half a metre off the road
-    records = records_of(drive(t=offset), WORLD)
+    records = records_of(ROAD, drive(t=offset), WORLD)
     assert records[0].oob_distance == pytest.approx(2.0)
     assert records[-1].oob_distance == pytest.approx(-0.5)
 
 
 def test_records_are_plain_json() -> None:
-    text = json.dumps(records_of(drive(x=np.linspace(0, 1 / 3, STEPS), t=np.full(STEPS, -0.0)), WORLD))
+    text = json.dumps(records_of(ROAD, drive(x=np.linspace(0, 1 / 3, STEPS), t=np.full(STEPS, -0.0)), WORLD))
     assert "-0.0" not in text
     record = json.loads(text)[-1]
     assert record[1] == [0.3333, 0.0, 0.0]

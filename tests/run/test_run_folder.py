@@ -185,3 +185,19 @@ def test_a_campaign_is_no_run(runs: dict[str, Run], tmp_path: Path) -> None:
         read_run(tmp_path)
     with pytest.raises(UsageError, match="there is no run"):
         read_run(tmp_path / "runs" / "0009")
+
+
+def test_what_an_older_verdict_does_not_tell_is_measured_on_its_drive(
+    runs: dict[str, Run], tmp_path: Path
+) -> None:
+    for outcome in ("PASS", "FAIL"):
+        folder = write_run(runs[outcome], tmp_path)
+        file = folder / "verdict.json"
+        told = json.loads(file.read_text())
+        assert told.pop("beyond") is not None
+        file.write_text(json.dumps(told))
+        assert read_run(folder).verdict == runs[outcome].verdict
+        (folder / "drive.npz").unlink()
+        without = read_run(folder).verdict
+        assert without is not None
+        assert without.beyond is None

@@ -75,7 +75,7 @@ def test_a_car_that_leaves_its_lane_at_the_step_of_the_goal_has_arrived(keep_dri
     # That step counts neither for the margin (2 m to the middle of the box) nor for the shares.
     assert verdict.margin == pytest.approx(2.0)
     assert (verdict.max_oob, drive.max_outside, verdict.oob_counter) == (0.0, 0.0, 0)
-    record = consult(drive, WORLD)
+    record = consult(ROAD, drive, WORLD)
     assert not record.is_oob.any()
     assert not record.max_oob_percentage.any()
     assert record.oob_percentage[-1] == 1.0

@@ -143,7 +143,7 @@ def test_a_verdict_survives_json() -> None:
 def test_the_record_of_the_competition_step_by_step() -> None:
     shares = [0, 0.96, 0.99, 0.97, 0.2, 0.955, 0.953]
     drive = drive_at([-2, 0, 0, 0, -2.5, 0, 0], outside=shares, ended="timeout")
-    record = consult(drive, WORLD)
+    record = consult(STRAIGHT, drive, WORLD)
     assert record.is_oob.tolist() == [False, True, True, True, False, True, True]
     assert record.oob_counter.tolist() == [0, 1, 1, 1, 1, 2, 2]
     assert record.max_oob_percentage.tolist() == [0, 0.96, 0.99, 0.99, 0.99, 0.955, 0.955]
@@ -155,7 +155,7 @@ def test_the_record_of_a_long_way_outside_takes_no_longer_per_step() -> None:
     # two hours at 50 Hz, all but its first step outside; a quadratic record takes half a minute
     drive = drive_at([-2.0] + [2.0] * 400_000, ended="timeout")
     begun = time.process_time()
-    record = consult(drive, WORLD)
+    record = consult(STRAIGHT, drive, WORLD)
     assert time.process_time() - begun < 5.0
     assert record.max_oob_percentage[[0, 1, -1]].tolist() == [0.0, 1.0, 1.0]
 

@@ -81,7 +81,7 @@ def test_told_to_keep_driving_it_fails_at_the_same_place() -> None:
         assert (first.cause, first.at_s, first.side) == (last.cause, last.at_s, last.side)
         assert last.max_oob >= first.max_oob
         assert last.margin <= first.margin
-        assert consult(on, World()).oob_counter[-1] == last.oob_counter
+        assert consult(road, on, World()).oob_counter[-1] == last.oob_counter
 
 
 def test_a_car_that_stands_is_stuck_and_one_that_crawls_runs_out_of_time() -> None:

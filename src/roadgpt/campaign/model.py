@@ -70,6 +70,8 @@ class Result:
     """Metres, see ``roadgpt.verdict.margin``; None where nobody drove."""
     max_oob: float | None = None
     """Largest share of the car outside its lane, 0 to 1."""
+    beyond: float | None = None
+    """Metres that its body reached beyond the marking, at most; None, too, in stores of older versions."""
     at_s: float | None = None
     """Metres along the road where it failed."""
     side: Side | None = None

@@ -60,6 +60,7 @@ class WorldTable(_Strict):
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0
     speed_limit_kmh: Annotated[float, Field(ge=5, le=300)] = 70.0
     oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
+    lane_departure: bool = False
     min_radius: Positive = 14.326
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 

@@ -14,6 +14,8 @@ from roadgpt.run.card import CARD, read_card
 STORE = "campaign.sqlite"
 FORMAT = 1
 PATIENCE = 30.0  # s for another process
+LATER = ("beyond",)
+"""Columns of ``tests`` that stores of older versions do not have; what they would hold is not known there."""
 
 
 def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
@@ -38,6 +40,11 @@ def _opened(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
         db.close()
         raise
     return db, version
+
+
+def _missing(db: sqlite3.Connection) -> tuple[str, ...]:
+    there = {row[1] for row in db.execute("PRAGMA table_info(tests)")}
+    return tuple(name for name in LATER if name not in there)
 
 
 def no_campaign(folder: Path) -> UsageError:
@@ -69,6 +76,8 @@ class Record:
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
         self._db = db
+        self.missing: tuple[str, ...] = ()
+        """Columns of ``tests`` that this store lacks; they read as empty."""
 
     @classmethod
     def opened(cls, folder: Path) -> Self:
@@ -93,7 +102,12 @@ class Record:
         if version != FORMAT:
             db.close()
             raise UsageError(f"{path} was written by another version of roadgpt; start the campaign anew")
-        return cls(path, db)
+        record = cls(path, db)
+        record.missing = _missing(db)
+        if record.missing and mode == "ro":
+            empty = ", ".join(f"NULL AS {name}" for name in record.missing)
+            db.execute(f"CREATE TEMP VIEW tests AS SELECT *, {empty} FROM main.tests")  # noqa: S608 - ours
+        return record
 
     @property
     def folder(self) -> Path:

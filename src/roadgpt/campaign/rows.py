@@ -13,7 +13,8 @@ from roadgpt.run.atomic import to_bytes
 from roadgpt.run.model import Request
 
 RESULT = (
-    "tests.cell, tests.number, batch, seed, given, outcome, cause, side, length, margin, max_oob, at_s, "
+    "tests.cell, tests.number, batch, seed, given, outcome, cause, side, length, margin, max_oob, "
+    "beyond, at_s, "
     "origin, design, description, features"
 )
 """Columns of a result, of the tables ``tests`` and ``details`` together."""
@@ -42,7 +43,7 @@ def proposal_rows(
 
 def result_values(result: Result) -> tuple[Any, ...]:
     """What is set in ``tests`` when a test has ended."""
-    numbers = (result.length, result.margin, result.max_oob, result.at_s)
+    numbers = (result.length, result.margin, result.max_oob, result.beyond, result.at_s)
     return (result.outcome, result.cause, result.side, *map(_number, numbers))
 
 
@@ -66,8 +67,8 @@ def _number(value: float | None) -> float | None:
 
 def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
     """Cell and result, of a row with the columns ``RESULT``."""
-    cell, number, batch, seed, given, outcome, cause, side, length, margin, max_oob, at_s = row[:12]
-    origin, text, description, features = row[12:]
+    cell, number, batch, seed, given, outcome, cause, side, length, margin, max_oob, beyond, at_s = row[:13]
+    origin, text, description, features = row[13:]
     design = design_of(text)
     proposal = Proposal(design if given else None, seed, origin)
     return cell, Result(
@@ -80,6 +81,7 @@ def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
         length=length,
         margin=margin,
         max_oob=max_oob,
+        beyond=beyond,
         at_s=at_s,
         side=side,
         cause=cause,

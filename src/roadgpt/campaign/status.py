@@ -10,9 +10,11 @@ from typing import Any
 from roadgpt.campaign.launch import plan_of
 from roadgpt.campaign.model import Goal
 from roadgpt.campaign.record import Record
+from roadgpt.verdict.severity import MOSTLY
 
 FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
 ONE_SIDED = 0.05  # share of driven roads that ended otherwise, below which there is hardly a boundary
+NOTHING = (None, 0, 0, None, None)  # what is told of tests that passed where none did
 LATELY = 60.0  # s over which the speed of the moment is taken
 
 
@@ -29,6 +31,14 @@ class CellStatus:
     outcomes: Mapping[str, int]
     least_margin: float | None
     """Metres, of drives that kept their lane; one that leaves it ends there, within centimetres of 0."""
+    partly_outside: int
+    """Of the tests that passed: with up to half of the car outside its lane."""
+    mostly_outside: int
+    """Likewise: with more than half of it outside."""
+    max_oob: float | None
+    """Largest share outside, of tests that passed."""
+    beyond: float | None
+    """Farthest beyond the marking, metres, of tests that passed; None, too, in stores of older versions."""
     goal: Goal | None
     closed: str | None
     """Why nothing more is asked for, where that is not that all were."""
@@ -163,12 +173,15 @@ def _ended_since(record: Record, since: float) -> int:
 
 def _cells(record: Record) -> tuple[CellStatus, ...]:
     counts: dict[str, dict[str, int]] = {}
-    least: dict[str, float] = {}
-    grouped = "SELECT cell, outcome, count(*), min(margin) FROM tests WHERE outcome IS NOT NULL GROUP BY 1, 2"
-    for cell, outcome, count, margin in record.stream(grouped):
+    passed: dict[str, tuple[Any, ...]] = {}
+    grouped = (
+        "SELECT cell, outcome, count(*), min(margin), sum(max_oob > 0 AND max_oob <= ?), sum(max_oob > ?), "
+        "max(max_oob), max(beyond) FROM tests WHERE outcome IS NOT NULL GROUP BY 1, 2"
+    )
+    for cell, outcome, count, *rest in record.stream(grouped, (MOSTLY, MOSTLY)):
         counts.setdefault(cell, {})[outcome] = count
-        if outcome == "PASS" and margin is not None:
-            least[cell] = margin
+        if outcome == "PASS":
+            passed[cell] = tuple(rest)
     asked = dict(record.query("SELECT cell, sum(n) FROM batches GROUP BY cell"))
     closed = dict(record.query("SELECT name, closed FROM cells"))
     return tuple(
@@ -180,7 +193,11 @@ def _cells(record: Record) -> tuple[CellStatus, ...]:
             seed=cell.request.seed,
             asked=asked.get(cell.name, 0),
             outcomes=counts.get(cell.name, {}),
-            least_margin=least.get(cell.name),
+            least_margin=passed.get(cell.name, NOTHING)[0],
+            partly_outside=passed.get(cell.name, NOTHING)[1] or 0,
+            mostly_outside=passed.get(cell.name, NOTHING)[2] or 0,
+            max_oob=passed.get(cell.name, NOTHING)[3],
+            beyond=passed.get(cell.name, NOTHING)[4],
             goal=cell.goal,
             closed=closed[cell.name],
         )

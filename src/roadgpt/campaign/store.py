@@ -42,7 +42,7 @@ CREATE TABLE batches(cell TEXT, batch INTEGER, first INTEGER NOT NULL, n INTEGER
   left INTEGER NOT NULL, PRIMARY KEY(cell, batch)) WITHOUT ROWID;
 CREATE TABLE tests(cell TEXT, number INTEGER, batch INTEGER NOT NULL, seed INTEGER NOT NULL,
   given INTEGER NOT NULL, outcome TEXT, cause TEXT, side TEXT, length REAL, margin REAL, max_oob REAL,
-  at_s REAL, ended REAL, design_s REAL, drive_s REAL, tokens INTEGER, cost REAL, trace INTEGER,
+  beyond REAL, at_s REAL, ended REAL, design_s REAL, drive_s REAL, tokens INTEGER, cost REAL, trace INTEGER,
   PRIMARY KEY(cell, number)) WITHOUT ROWID;
 CREATE TABLE details(cell TEXT, number INTEGER, origin TEXT NOT NULL, design TEXT, description TEXT,
   features TEXT, error TEXT, PRIMARY KEY(cell, number));
@@ -110,6 +110,8 @@ class Store(Record):
         """
         store = cls._opened(folder, "rw")
         try:
+            for name in store.missing:  # of a store that an older version made
+                store._db.execute(f"ALTER TABLE tests ADD COLUMN {name} REAL")
             store._db.execute("PRAGMA journal_mode = WAL")
             store._db.execute("PRAGMA synchronous = NORMAL")
         except sqlite3.Error as error:
@@ -218,7 +220,7 @@ class Store(Record):
                 db.execute("INSERT INTO traces VALUES (?, ?)", trace)
             db.executemany(
                 "UPDATE tests SET outcome = ?, cause = ?, side = ?, length = ?, margin = ?, max_oob = ?, "
-                "at_s = ?, ended = ?, design_s = ?, drive_s = ?, tokens = ?, cost = ?, trace = ? "
+                "beyond = ?, at_s = ?, ended = ?, design_s = ?, drive_s = ?, tokens = ?, cost = ?, trace = ? "
                 "WHERE cell = ? AND number = ?",
                 [_test_values(cell, one, now, trace) for cell, one in ended],
             )

@@ -2,7 +2,8 @@
 
 results.csv    one row per test: what was asked for, what came of it, its features
 cells.csv      one row per cell: what its tests share, how many of them ended how, and in how many cells of
-               the map of behaviour (over the features of its search, or the usual ones) there are failures
+               the map of behaviour (over the features of its search, or the usual ones) there are failures;
+               how far outside its lane the car was where it passed
 """
 
 import csv
@@ -19,6 +20,7 @@ from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import PART
+from roadgpt.verdict.severity import MOSTLY
 
 RESULTS, CELLS = "results.csv", "cells.csv"
 COLUMNS = (
@@ -33,6 +35,7 @@ COLUMNS = (
     "length_m",
     "margin_m",
     "max_oob",
+    "beyond_m",
     "at_s_m",
     "description",
 )
@@ -40,7 +43,7 @@ AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
 """The map of behaviour, where a search names no other: its features, and cells along each."""
 EVERY = (
     "SELECT tests.cell, tests.number, batch, origin, seed, given, outcome, cause, side, length, margin, "
-    "max_oob, at_s, description, features FROM tests JOIN details USING (cell, number) "
+    "max_oob, beyond, at_s, description, features FROM tests JOIN details USING (cell, number) "
     "WHERE outcome IS NOT NULL ORDER BY tests.cell, tests.number"
 )
 OUTCOMES = {
@@ -100,10 +103,12 @@ def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
             )
         )
     )
-    ((least, left),) = record.query(
-        "SELECT min(margin) FILTER (WHERE outcome = 'PASS'), sum(outcome = 'FAIL' AND side = 'left') "
+    ((least, left, partly, mostly, most, beyond),) = record.query(
+        "SELECT min(margin) FILTER (WHERE outcome = 'PASS'), sum(outcome = 'FAIL' AND side = 'left'), "
+        "sum(outcome = 'PASS' AND max_oob > 0 AND max_oob <= ?), sum(outcome = 'PASS' AND max_oob > ?), "
+        "max(max_oob) FILTER (WHERE outcome = 'PASS'), max(beyond) FILTER (WHERE outcome = 'PASS') "
         "FROM tests WHERE cell = ?",
-        (cell.name,),
+        (MOSTLY, MOSTLY, cell.name),
     )
     setup = cell.request.setup
     return {
@@ -121,6 +126,10 @@ def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
         "failed_left": left or 0,
         "failing_cells": _failing_cells(record, cell),
         "least_margin_m": least,
+        "passed_partly_outside": partly or 0,
+        "passed_mostly_outside": mostly or 0,
+        "passed_max_oob": most,
+        "passed_beyond_m": beyond,
     }
 
 

@@ -136,7 +136,7 @@ def result_of(run: Run, cell: Cell, task: Task) -> Result:
     verdict = run.verdict
     features: dict[str, float] = {}
     if run.is_valid and run.road is not None:
-        records = records_of(run.drive, run.world) if run.drive is not None else []
+        records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
         features = features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, cell.brief)
     return Result(
         number=task.number,
@@ -148,6 +148,7 @@ def result_of(run: Run, cell: Cell, task: Task) -> Result:
         length=run.length,
         margin=verdict.margin if verdict else None,
         max_oob=verdict.max_oob if verdict else None,
+        beyond=verdict.beyond if verdict else None,
         at_s=verdict.at_s if verdict else None,
         side=verdict.side if verdict else None,
         cause=verdict.cause if verdict else None,

@@ -105,7 +105,26 @@ def told(status: "Status") -> Iterator[str]:
         yield LINE.format(*cell_columns(cell))
     if len(status.cells) > MOST_CELLS:
         yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"
+    yield from outside_lines(status)
     yield from [cell.remark for cell in status.cells[:MOST_CELLS] if cell.remark]
+
+
+def outside_lines(status: "Status") -> Iterator[str]:
+    """How many tests passed with the car outside its lane, and how far, where any did."""
+    passed = status.outcomes.get("PASS", 0)
+    partly = sum(cell.partly_outside for cell in status.cells)
+    mostly = sum(cell.mostly_outside for cell in status.cells)
+    if not partly + mostly:
+        return
+    from roadgpt.verdict import percent
+
+    share = max(cell.max_oob or 0.0 for cell in status.cells)
+    far = [cell.beyond for cell in status.cells if cell.beyond is not None]
+    beyond = f"{max(far):.2f} m" if far else "an unknown distance (an older version wrote this store)"
+    yield (
+        f"of {passed:,} PASS, {partly:,} were partly and {mostly:,} mostly outside their lane, within the "
+        f"tolerance: at most {percent(share)} of the car, {beyond} beyond the marking"
+    )
 
 
 def _pace(status: "Status") -> str:

@@ -113,6 +113,12 @@ WORLD = (
         1.0,
     ),
     Flag(
+        "--lane-departure",
+        "lane_departure",
+        False,
+        "Fail, too, where the outer edge of a front tyre passes the outer edge of a lane marking (UN R157).",
+    ),
+    Flag(
         "--lane-width",
         "lane_width",
         4,

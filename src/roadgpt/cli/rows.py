@@ -13,7 +13,25 @@ if TYPE_CHECKING:
 
 Outcome = Literal["PASS", "FAIL", "VALID", "INVALID", "ERROR"]
 
-COLOURS = {"PASS": "green", "VALID": "green", "FAIL": "red", "INVALID": "yellow", "ERROR": "magenta"}
+COLOURS = {
+    "PASS": "green",
+    "PASS (partly outside)": "yellow",
+    "PASS (mostly outside)": "bright_red",
+    "VALID": "green",
+    "FAIL": "red",
+    "INVALID": "cyan",
+    "ERROR": "magenta",
+}
+"""Of outcomes on a terminal, from the best to the worst of what was driven."""
+WIDEST = max(len(name) for name in (*COLOURS, "FAIL (out of lane)"))
+
+
+MOST_TOLD = len("PASS (100 % out, 10.00 m)")
+
+
+def colour_of(outcome: str) -> str:
+    """Of an outcome on a terminal, however it is told."""
+    return COLOURS.get(outcome) or COLOURS[outcome.split(" ")[0]]
 
 
 @dataclass(frozen=True)
@@ -30,6 +48,8 @@ class Row:
     """Of a FAIL: out of lane, fell, stuck or timeout; of an ERROR: unreadable, where the file is at fault."""
     max_oob: float | None = None
     """Largest share of the car outside its lane, 0 to 1."""
+    beyond_m: float | None = None
+    """Metres that its body reached beyond the marking, at most."""
     margin_m: float | None = None
     length_m: float | None = None
     seconds: float = 0.0
@@ -40,8 +60,24 @@ class Row:
 
     @property
     def outcome(self) -> str:
-        """With its cause: 'FAIL (out of lane)'."""
-        return f"{self.test_outcome} ({self.cause})" if self.cause else self.test_outcome
+        """With its cause or how far outside it was: 'FAIL (out of lane)', 'PASS (mostly outside)'."""
+        if self.cause:
+            return f"{self.test_outcome} ({self.cause})"
+        from roadgpt.verdict import graded
+
+        return graded(self.test_outcome, self.max_oob)
+
+    @property
+    def told(self) -> str:
+        """The outcome as a line has it: a PASS with the share that was outside, and how far out."""
+        if self.test_outcome != "PASS" or not self.max_oob:
+            return self.outcome
+        return f"PASS ({outside(self.max_oob, self.beyond_m)})"
+
+    @property
+    def colour(self) -> str:
+        """On a terminal."""
+        return colour_of(self.outcome)
 
     def to_json(self) -> str:
         """One line."""
@@ -58,6 +94,7 @@ class Row:
                 "test_outcome": self.test_outcome,
                 "description": self.description,
                 "max_oob": _rounded(self.max_oob),
+                "beyond_m": _rounded(self.beyond_m),
                 "margin_m": _rounded(self.margin_m),
                 "length_m": _rounded(self.length_m),
                 "seconds": _rounded(self.seconds),
@@ -69,9 +106,20 @@ class Row:
         """Outcome, length, margin, file, and the sentence where something is wrong."""
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
-        line = f"{self.outcome:<18} {length:>9}  {margin:<15} {self.seconds:5.2f} s  {self.name or self.file}"
+        line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
         wrong = self.test_outcome in ("INVALID", "ERROR")
         return f"{line}  {self.description.removeprefix(f'{self.file}: ')}" if wrong else line
+
+
+def outside(share: float | None, beyond: float | None) -> str:
+    """How far outside its lane a car was at most: '62 % out, 1.13 m'; empty where nobody drove."""
+    if share is None:
+        return ""
+    if not share:
+        return "inside"
+    from roadgpt.verdict import percent
+
+    return f"{percent(share)} out" + ("" if beyond is None else f", {beyond:.2f} m")
 
 
 def metres(margin: float) -> str:
@@ -92,19 +140,23 @@ def _rounded(number: float | None) -> float | None:
     return None if number is None or not math.isfinite(number) else round(number, 4)
 
 
-def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str]]:
-    """Per outcome: its name, how many roads, their share, and the smallest margin among them."""
+def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
+    """Per outcome: its name, how many roads, their share, the smallest margin, and the most outside."""
     counted = Counter(row.outcome for row in rows)
     table = []
     for outcome, count in sorted(counted.items(), key=lambda item: (_rank(item[0]), item[0])):
         margins = [row.margin_m for row in rows if row.outcome == outcome and row.margin_m is not None]
         least = metres(min(margins)) if margins else "-"
-        table.append((outcome, count, f"{100 * count / len(rows):.0f} %", least))
+        shares = [row.max_oob for row in rows if row.outcome == outcome and row.max_oob is not None]
+        farthest = [row.beyond_m for row in rows if row.outcome == outcome and row.beyond_m is not None]
+        most = outside(max(shares, default=None), max(farthest, default=None)) or "-"
+        table.append((outcome, count, f"{100 * count / len(rows):.0f} %", least, most))
     return table
 
 
 def _rank(outcome: str) -> int:
-    return [*COLOURS].index(outcome.split(" ")[0])
+    every = [*COLOURS]
+    return every.index(outcome if outcome in COLOURS else outcome.split(" ")[0])
 
 
 def row_of(run: "Run", file: str, name: str = "") -> Row:
@@ -118,6 +170,7 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
         validation_message=run.validation_message,
         cause=verdict.cause if verdict else None,
         max_oob=verdict.max_oob if verdict else None,
+        beyond_m=verdict.beyond if verdict else None,
         margin_m=verdict.margin if verdict else None,
         length_m=run.length if run.road else None,
         seconds=run.seconds.total,

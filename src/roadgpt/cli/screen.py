@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 import click
 
-from roadgpt.cli.rows import COLOURS, Row, summary
+from roadgpt.cli.rows import WIDEST, Row, colour_of, summary
 from roadgpt.cli.streams import is_coloured
 
 if TYPE_CHECKING:
@@ -81,10 +81,10 @@ class Screen:
         if self.quiet or self.as_json or not self.rows:
             return
         _show("")
-        _show(f"{'outcome':<19} {'roads':>7} {'share':>7}  {'least margin':>12}")
-        for outcome, count, share, least in summary(self.rows):
-            colour = COLOURS[outcome.split(" ")[0]]
-            _show(click.style(f"{outcome:<19}", fg=colour) + f" {count:>7} {share:>7}  {least:>12}")
+        _show(f"{'outcome':<{WIDEST}} {'roads':>7} {'share':>7}  {'least margin':>12}  {'most outside':>18}")
+        for outcome, count, share, least, most in summary(self.rows):
+            told = click.style(f"{outcome:<{WIDEST}}", fg=colour_of(outcome))
+            _show(f"{told} {count:>7} {share:>7}  {least:>12}  {most:>18}")
         rate = len(self.rows) / max(self.seconds, 1e-9)
         _show(f"{self._number()} roads in {self.seconds:.1f} s ({rate:.1f} roads/s)")
 
@@ -100,8 +100,8 @@ def _show(line: str, on_stderr: bool = False) -> None:
 
 def _coloured(row: Row) -> str:
     line = row.to_line()
-    head = len(row.outcome)
-    return click.style(line[:head], fg=COLOURS[row.test_outcome], bold=True) + line[head:]
+    head = len(row.told)
+    return click.style(line[:head], fg=row.colour, bold=True) + line[head:]
 
 
 def new_bar() -> "Progress":

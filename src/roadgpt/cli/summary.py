@@ -11,12 +11,14 @@ from roadgpt.campaign.record import STORE
 from roadgpt.chat import Spent
 from roadgpt.cli.campaigns import told
 from roadgpt.cli.replay import replay_lines
-from roadgpt.cli.rows import metres, row_of, spending
+from roadgpt.cli.rows import WIDEST, metres, row_of, spending
 from roadgpt.errors import UsageError
 from roadgpt.run.campaign import finished
 from roadgpt.run.card import CARD, read_card
 from roadgpt.run.folder import is_run, read_run, run_folder
 from roadgpt.run.model import Run
+from roadgpt.verdict import Verdict
+from roadgpt.verdict.severity import percent
 
 
 def show(path: Path | str) -> str:
@@ -62,8 +64,8 @@ def _run_lines(run: Run, folder: Path) -> Iterator[str]:
         )
     if run.verdict is not None:
         yield (
-            f"  verdict   at most {run.verdict.max_oob:.0%} of the car outside its lane, "
-            f"margin {metres(run.verdict.margin)}"
+            f"  verdict   {_outside_line(run.verdict)}, tolerance {percent(run.world.oob_tolerance)}"
+            f"{', lane departures count' * run.world.lane_departure}, margin {metres(run.verdict.margin)}"
         )
     yield from _asked_lines(run)
     yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")
@@ -71,6 +73,11 @@ def _run_lines(run: Run, folder: Path) -> Iterator[str]:
     yield f"  took      {run.seconds.design * 1000:.1f} ms to design, {run.seconds.drive:.2f} s to drive"
     for number, line in enumerate(replay_lines(run, folder)):
         yield f"  {'again' if number == 0 else 'or':<8}  {line}"
+
+
+def _outside_line(verdict: Verdict) -> str:
+    beyond = "an unknown distance" if verdict.beyond is None else f"{verdict.beyond:.2f} m"
+    return f"at most {percent(verdict.max_oob)} of the car outside its lane, {beyond} beyond the marking"
 
 
 def _asked_lines(run: Run) -> Iterator[str]:
@@ -96,7 +103,7 @@ def _road_line(run: Run) -> str:
 def _campaign_lines(folder: Path) -> Iterator[str]:
     card = read_card(folder)
     yield f"{card.request.words or 'roads that were given'} (seed {card.request.seed})"
-    yield f"{'road':>6}  {'outcome':<18} {'length':>7} {'margin':>9}  description"
+    yield f"{'road':>6}  {'outcome':<{WIDEST}} {'length':>7} {'margin':>9}  description"
     counts: Counter[str] = Counter()
     spent = Spent()
     for index in finished(folder):
@@ -110,7 +117,7 @@ def _campaign_lines(folder: Path) -> Iterator[str]:
         spent = spent + (run.spent or Spent())
         row = row_of(run, "")
         margin = metres(row.margin_m) if row.margin_m is not None else ""
-        yield f"{index:>6}  {row.outcome:<18} {run.length:>5.0f} m {margin:>9}  {run.description}"
+        yield f"{index:>6}  {row.outcome:<{WIDEST}} {run.length:>5.0f} m {margin:>9}  {run.description}"
     told = ", ".join(f"{number} {outcome}" for outcome, number in counts.most_common())
     if spent.calls:
         yield f"language model: {spending(spent)}"

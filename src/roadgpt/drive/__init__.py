@@ -55,8 +55,9 @@ class Simulator(Protocol):
         """Drive from the start of the road until the drive ends.
 
         At every control step it is asked, in this order: is the car at the goal, is it stuck, is more than
-        ``world.oob_tolerance`` of its box outside the right lane (unless ``keep_driving``), has it fallen,
-        is time out? The first yes ends the drive.
+        ``world.oob_tolerance`` of its box outside the right lane or, with ``world.lane_departure``, a front
+        tyre beyond a marking (unless ``keep_driving``), has it fallen, is time out? The first yes ends the
+        drive.
 
         Raises:
             DriverError: the driver raised, answered with what is no command, or hung.

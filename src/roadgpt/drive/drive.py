@@ -45,7 +45,10 @@ FORMAT = 2
 
 
 class Box(NamedTuple):
-    """The car's outline in plan, and how far its front wheels turn."""
+    """The car's outline, and where its front wheels stand and how far they turn.
+
+    What a file of an older version does not say has the numbers of RoadGPT's saloon.
+    """
 
     length: float
     """Metres."""
@@ -55,6 +58,14 @@ class Box(NamedTuple):
     """Metres, from the centre of gravity forward to the middle of the box."""
     lock: float = 0.6
     """Radians, the angle of the front wheels at full lock; saloons have 0.5 to 0.7."""
+    axle: float = 1.36
+    """Metres, from the centre of gravity forward to the front axle."""
+    tyres: float = 1.805
+    """Metres, across the front axle from the outer edge of one tyre to that of the other."""
+    height: float = 0.56
+    """Metres, of the centre of gravity above the road."""
+    under: float = 0.42
+    """Metres, of the centre of gravity above the car's underside."""
 
 
 class Columns(Mapping[str, FloatArray]):

@@ -114,7 +114,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         self._words = brief.words
         self.road = road = self._drawn(brief)
         self._vehicle = Vehicle.on(road, self._world, ETK_LIKE)
-        self._course = Course(road, self._world.oob_tolerance)
+        self._course = Course(road, self._world, ETK_LIKE.box)
         self._vehicle.put(self._course.start, -self._world.lane_width / 2)
         self._preview = Preview(road)
         self._eyes = None if self._camera is None else Eyes(self._camera, road, self._world)

@@ -7,6 +7,8 @@ from pydantic import BaseModel, ConfigDict, Field
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
+LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, RMS-1)
+
 
 class World(BaseModel):
     """All in metres, seconds and ratios; the defaults are RoadGPT's, whose map is 250 m wide."""
@@ -24,6 +26,9 @@ class World(BaseModel):
     """m/s; the competition's 70 km/h."""
     oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
     """Share of the car that may be outside its lane."""
+    lane_departure: bool = False
+    """Has the car failed, too, where the outer edge of a front tyre passes the outer edge of a marking of its
+    lane (UN Regulation No. 157, 5.2.1)?"""
     min_radius: Positive = 14.326
     """47 ft: the tightest turn of the SBFT rules."""
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
@@ -36,3 +41,12 @@ class World(BaseModel):
     def road_width(self) -> float:
         """Of the carriageway: one lane each way."""
         return 2 * self.lane_width
+
+    @property
+    def marking_edges(self) -> tuple[float, float]:
+        """Outer edges of the markings left and right of the driven lane, metres to the left of the middle.
+
+        The centre line is painted over the middle of the road; the edge line lies within the lane and ends
+        where the lane does.
+        """
+        return LINE / 2, -self.lane_width

@@ -7,7 +7,8 @@
     brake, brake_input, throttle, throttle_input     0 to 1
     wheelspeed       m/s
     vel_kmh          whole km/h
-    is_oob           more than the tolerated share of the car's box is outside its lane
+    is_oob           more than the tolerated share of the car's box is outside its lane, or it has departed
+                     from the lane where that counts
     oob_counter      how often it has left the lane so far
     max_oob_percentage    0 to 1: largest share while outside
     oob_distance     m: half a lane less the distance from the middle of the lane; negative outside
@@ -23,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.drive import Drive
-from roadgpt.road import World
+from roadgpt.road import Road, World
 from roadgpt.verdict import consult
 
 RATE = 10.0  # Hz, of the records; the Drive itself has 50
@@ -72,9 +73,9 @@ class Record(NamedTuple):
     oob_percentage: float
 
 
-def records_of(drive: Drive, world: World) -> list[Record]:
+def records_of(road: Road, drive: Drive, world: World) -> list[Record]:
     """The Drive at 10 Hz, and at its last step and at every step that leaves the lane."""
-    oracle = consult(drive, world)
+    oracle = consult(road, drive, world)
     keep = _steps(drive["time"], np.diff(oracle.oob_counter, prepend=0) > 0)
     ahead, velocity = _directions(drive)
     place = np.stack([drive["x"], drive["y"], drive["z"]], axis=-1)

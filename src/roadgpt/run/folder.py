@@ -11,7 +11,7 @@ campaign/
 """
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -28,7 +28,7 @@ from roadgpt.road import Road, read_design
 from roadgpt.run.atomic import json_text, to_bytes, whole_folder, write_whole
 from roadgpt.run.model import Request, Run, Seconds
 from roadgpt.run.sbft_json import test_name, test_text
-from roadgpt.verdict import Verdict
+from roadgpt.verdict import Verdict, most_beyond
 
 FORMAT = 1
 RUNS = "runs"
@@ -169,7 +169,7 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
 
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
     trace = folder / "error.txt"
-    return Run(
+    found = Run(
         request=Request.model_validate(card["request"]).came_with(folder / "run.json"),
         index=card["index"],
         seed=card["seed"],
@@ -188,6 +188,15 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
         trace=trace.read_text(encoding="utf-8") if trace.is_file() else "",
         seconds=Seconds(**(value("seconds.json") or {})),
     )
+    return _completed(found)
+
+
+def _completed(run: Run) -> Run:
+    """A Run that an older version wrote, with what its verdict does not tell measured on its drive."""
+    road, drive, verdict = run.road, run.drive, run.verdict
+    if road is None or drive is None or verdict is None or verdict.beyond is not None:
+        return run
+    return replace(run, verdict=replace(verdict, beyond=most_beyond(road, drive, run.world)))
 
 
 def _loaded(path: Path) -> Any:

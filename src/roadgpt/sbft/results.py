@@ -118,7 +118,7 @@ def test_of(run: Run) -> dict[str, Any]:
     }
     if not run.is_valid:
         return test
-    records = records_at_their_height(run.drive, run.world)
+    records = records_at_their_height(run)
     return test | {
         "execution_data": records,
         "test_outcome": run.outcome,

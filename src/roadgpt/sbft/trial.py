@@ -7,10 +7,9 @@ import numpy as np
 
 from roadgpt.check import Finding, sbft_verdict
 from roadgpt.check.sbft import TOO_FEW
-from roadgpt.drive import Drive
 from roadgpt.errors import PartError, RoadGPTError
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
+from roadgpt.road import Road
 from roadgpt.run import Request, Run, Seconds, prove
 from roadgpt.run.execution import Record, records_of
 from roadgpt.sbft.road_test import HEIGHT, WRONG_TYPE
@@ -67,11 +66,11 @@ def told(run: Run) -> str:
     return said if said == SUCCESS else f"{said} {run.request.setup.simulator}/{run.index:04d}"
 
 
-def records_at_their_height(drive: Drive | None, world: World) -> list[Record]:
+def records_at_their_height(run: Run) -> list[Record]:
     """Execution data; the competition's level lies 28 m below zero, and so does the car's road."""
-    if drive is None:
+    if run.road is None or run.drive is None:
         return []
-    return [_lowered(record) for record in records_of(drive, world)]
+    return [_lowered(record) for record in records_of(run.road, run.drive, run.world)]
 
 
 def _lowered(record: Record) -> Record:

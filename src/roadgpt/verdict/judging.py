@@ -6,7 +6,8 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.verdict.margin import NOTHING, margins
-from roadgpt.verdict.oracle import consult, is_outside
+from roadgpt.verdict.oracle import consult, has_departed, is_outside
+from roadgpt.verdict.severity import percent
 from roadgpt.verdict.verdict import Cause, Side, Verdict
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ CAUSES: dict[str, Cause] = {
     "stuck": "stuck",
     "timeout": "timeout",
 }
+
+LEAST = 0.005  # m beyond a marking that are told as any
 
 # The competition's own words; it adds the name of the simulation. A car that falls has left the lane, for it.
 SBFT: dict[Cause | None, str] = {
@@ -40,21 +43,27 @@ def judge(road: "Road", drive: "Drive", world: "World") -> Verdict:
     Raises:
         UsageError: the drive was ended at another, smaller tolerance than ``world.oob_tolerance``.
     """
-    step, cause = _first_failure(drive, world)
+    step, cause = _first_failure(road, drive, world)
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
     left = _left(drive, step, world)
     side: Side | None = ("left" if left else "right") if cause in ("out of lane", "fell") else None
     if cause == "fell":
         least = min(least, -NOTHING)
+    beyond = most_beyond(road, drive, world)
+    if cause is None:
+        description = _kept(road, drive, world, least, beyond)
+    else:
+        description = _failed(road, drive, world, step, cause, side)
     return Verdict(
         outcome="FAIL" if cause else "PASS",
         cause=cause,
-        description=_sentence(road, drive, step, cause, side, least),
+        description=description,
         sbft_description=SBFT[cause],
         max_oob=drive.max_outside,
         margin=least,
-        oob_counter=int(consult(drive, world).oob_counter[-1]),
+        oob_counter=int(consult(road, drive, world).oob_counter[-1]),
+        beyond=beyond,
         at_s=float(drive["s"][step]) if cause else None,
         at_xy=(float(drive["x"][step]), float(drive["y"][step])) if cause else None,
         at_time=float(drive["time"][step]) if cause else None,
@@ -62,10 +71,18 @@ def judge(road: "Road", drive: "Drive", world: "World") -> Verdict:
     )
 
 
-def _first_failure(drive: "Drive", world: "World") -> tuple[int, Cause | None]:
+def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:
+    """Metres that the car's body reached beyond the outer edge of a marking at most, 0 where it never did."""
+    from roadgpt.drive.marking import Marking
+
+    body = Marking.for_body(road, world, drive.car).along(drive, floor=0.0)
+    return max(float(body[: drive.lane_steps].max()), 0.0)
+
+
+def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, Cause | None]:
     """The step at which the drive failed and why; the last step and None when it did not."""
     last = len(drive) - 1
-    out = is_outside(drive, world)
+    out = is_outside(road, drive, world)
     if out.any():
         return int(np.argmax(out)), "out of lane"
     if drive.ended == "out_of_lane":
@@ -80,17 +97,28 @@ def _left(drive: "Drive", step: int, world: "World") -> bool:
     return bool(drive["t"][step] > -world.lane_width / 2)
 
 
-def _sentence(
-    road: "Road", drive: "Drive", step: int, cause: Cause | None, side: Side | None, margin: float
-) -> str:
+def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: float) -> str:
+    """Of a PASS: also how far outside the car was, since a tolerance lets it pass there."""
+    reached = f"to the goal after {drive['s'][-1]:.0f} m"
+    if not drive.max_outside:
+        return f"kept its lane {reached}, never closer than {margin:.2f} m to failing"
+    kept = f"kept its lane within the tolerance of {percent(world.oob_tolerance)}"
+    if world.lane_departure:
+        kept = "kept its front tyres within the markings"
+    far = f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
+    outside = f"at most {percent(drive.max_outside)} outside, {far}"
+    return f"{kept} {reached}: {outside}, {margin:.2f} m from failing"
+
+
+def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Cause, side: Side | None) -> str:
     reached = f"after {drive['s'][step]:.0f} m"
     fast = f"at {drive['speed'][step] * 3.6:.0f} km/h"
     if cause == "out of lane":
-        return f"left its lane to the {side} {reached} {fast}"
+        crossed = has_departed(road, drive, world)[step]
+        how = ": a front tyre passed the marking" if crossed else ""
+        return f"left its lane to the {side} {reached} {fast}{how}"
     if cause == "fell":
         return f"fell off the road to the {side} {reached} {fast}"
     if cause == "stuck":
         return f"was stuck {reached}: it moved less than 1 m in 10 s"
-    if cause == "timeout":
-        return f"ran out of time {reached} of {road.length:.0f} m"
-    return f"kept its lane to the goal {reached}, never closer than {margin:.2f} m to failing"
+    return f"ran out of time {reached} of {road.length:.0f} m"

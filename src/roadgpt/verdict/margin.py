@@ -5,7 +5,8 @@ r"""How many metres the car was from failing, at every step of a drive.
 It fails when more than the tolerance of its box is outside the right lane, or when its box reaches over the
 end of firm ground (carriageway and verge; on a mesh road without verge that end comes first, to the right).
 The share of a turned box beyond a straight line is the tail of a trapezoid, so the place where the share is
-the tolerance is known exactly; the bend of the lane under the box is counted to second order.
+the tolerance is known exactly; the bend of the lane under the box is counted to second order. Where lane
+departures count, it fails as soon as a front tyre's outer edge passes that of a marking.
 
                  ____________
                 /|          |\          density of the box across the lane, at an angle psi to it:
@@ -74,7 +75,11 @@ def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
     half = world.lane_width / 2
     in_lane = half + reach(world.oob_tolerance, box) - np.abs(box.middle + half)
     ground = world.lane_width + world.verge - np.abs(box.middle) - box.long - box.short
-    outside = is_outside(drive, world)
+    if world.lane_departure:
+        from roadgpt.drive.marking import Marking
+
+        in_lane = np.minimum(in_lane, -Marking.for_tyres(road, world, drive.car).along(drive))
+    outside = is_outside(road, drive, world)
     inside = np.maximum(np.minimum(in_lane, ground), 0.0)
     # The oracle's polygon and the formula differ by millimetres; the oracle decides on which side of 0 it is.
     return np.asarray(np.where(outside, np.minimum(in_lane, -NOTHING), inside), float)

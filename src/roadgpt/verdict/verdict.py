@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal, Self
 
 from roadgpt.errors import UsageError
+from roadgpt.verdict.severity import Severity, severity
 
 Outcome = Literal["PASS", "FAIL"]
 Cause = Literal["out of lane", "fell", "stuck", "timeout"]
@@ -30,6 +31,10 @@ class Verdict:
     closest; negative exactly when it left its lane or fell."""
     oob_counter: int
     """How many times the car went from inside the tolerance to outside it."""
+    beyond: float | None = None
+    """Metres that the car's body reached beyond the outer edge of a marking of its lane, at most and at the
+    same steps as ``max_oob``; 0 where it never did. The centre line bounds the lane on its left, the edge
+    line on its right. None in a file of an older version that has no drive beside it."""
     at_s: float | None = None
     """Metres along the road where it failed; None when it kept its lane."""
     at_xy: tuple[float, float] | None = None
@@ -38,6 +43,11 @@ class Verdict:
     """Seconds since the start."""
     side: Side | None = None
     """Where it left its lane or fell; None for other outcomes."""
+
+    @property
+    def severity(self) -> Severity:
+        """How far outside its lane the car was, whatever the outcome."""
+        return severity(self.max_oob)
 
     @property
     def kept(self) -> bool:

@@ -15,6 +15,7 @@ from exported import HILLY
 from roadgpt.drive import Camera, Command, View
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.marking import Marking
 from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
 from roadgpt.drive.simulators.beamng.session import leave_all, session_of
 from roadgpt.errors import DriverError, PartError, SimulationError, UsageError
@@ -142,6 +143,20 @@ def test_too_fast_into_a_bend_is_out_of_the_lane_at_the_very_moment(fake: FakeBe
         times.append(drive.duration)
     # interpolated: 50 ms between samples cost no 50 ms of doubt
     assert max(times) - min(times) < 0.03
+
+
+def test_a_lane_departure_ends_the_drive_at_the_very_moment(fake: FakeBeamNG) -> None:
+    road, watched = hairpin(), World(lane_departure=True)
+    for keep_driving in (False, True):
+        made = simulator(fake, aggression=1.0, rate=20)
+        drive = made.simulate(road, watched, BeamngLike(), 7, keep_driving)
+        beyond = Marking.for_tyres(road, watched, drive.car).along(drive)
+        first = int(np.argmax(beyond > 0))
+        assert 0 < beyond[first] < 1e-3
+        assert drive["outside"][first] < 0.2
+        assert (drive.ended == "out_of_lane") == (first == len(drive) - 1) == (not keep_driving)
+        verdict = judge(road, drive, watched)
+        assert (verdict.outcome, verdict.at_time) == ("FAIL", drive["time"][first])
 
 
 def test_keep_driving_goes_on_and_keeps_the_moment(fake: FakeBeamNG) -> None:

@@ -41,6 +41,8 @@ def _designers(parts: Sequence[LookedPart]) -> str:
 
 def _said(name: str, value: float) -> str:
     """A field of a World in the units in which people give it."""
+    if isinstance(value, bool):
+        return f"{name.replace('_', ' ')} {'counted' if value else 'not counted'}"
     factor, unit = UNITS.get(name, (1.0, " m"))
     return f"{name.replace('_', ' ')} {value * factor:.4g}{unit}"
 

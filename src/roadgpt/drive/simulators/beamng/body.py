@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 LOCK = 0.6  # rad, of the front wheels, where nobody steered to find out
+# Of a saloon: how far its front axle stands ahead of its box's middle, as a share of the length, and what
+# its front tyres span, as a share of the width. BeamNG tells of no wheel: the embedded car's shares.
+AXLE, TYRES = 0.31, 0.97
 SIZES = (1.0, 12.0), (0.5, 4.0)  # m, length and width that a car can have
 
 
@@ -63,7 +66,9 @@ class Body(NamedTuple):
 
     def box(self, lock: float) -> Box:
         """As a Drive has it."""
-        return Box(self.front - self.rear, 2 * self.half, (self.front + self.rear) / 2, lock)
+        length, width, ahead = self.front - self.rear, 2 * self.half, (self.front + self.rear) / 2
+        wheels = (ahead + AXLE * length, TYRES * width)
+        return Box(length, width, ahead, lock, *wheels, height=self.height, under=-self.under)
 
     @property
     def underside(self) -> FloatArray:

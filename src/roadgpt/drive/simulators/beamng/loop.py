@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
+from roadgpt.drive.marking import POSE, Marking
 from roadgpt.drive.seat import Seat
 from roadgpt.drive.simulators.beamng.body import LOCK, Moment, Track, between
 from roadgpt.drive.simulators.beamng.stage import Stage
@@ -47,8 +48,10 @@ class Recorder:
         """``seat`` is None where BeamNG's AI drives."""
         self.stage, self.road, self.world, self.seat = stage, road, world, seat
         self.track = Track(road, world, stage.body)
+        self.tyres = Marking.for_tyres(road, world, stage.body.box(LOCK)) if world.lane_departure else None
         self.end = np.asarray(road.at(road.length))[:2].tolist()
         self.samples: list[Sample] = []
+        self.has_left = False
 
     def drive(self, keep_driving: bool) -> Ended:
         """Until the drive ends.
@@ -62,7 +65,6 @@ class Recorder:
         if self.seat is None:
             stage.let_ai_drive(world.speed_limit)
         limit = self.road.length / SLOWEST + SPARE
-        tolerance = 2.0 if keep_driving else world.oob_tolerance
         since = self.samples[0].car
         while True:
             here = self.samples[-1]
@@ -75,10 +77,12 @@ class Recorder:
             elif now.time - since.time >= STUCK_TIME:
                 self._check_ai()
                 return "stuck"
-            if here.outside > world.oob_tolerance and self._is_first_out():
-                self._cut(lambda sample: sample.outside > world.oob_tolerance, keep=keep_driving)
-            if here.outside > tolerance:
-                return "out_of_lane"
+            if self._is_out(here):
+                if not self.has_left:
+                    self.has_left = True
+                    self._cut(self._is_out, keep=keep_driving)
+                if not keep_driving:
+                    return "out_of_lane"
             if now.z < self.track.place(now.x, now.y)[2] - FALLEN:
                 return "fell"
             if now.time >= limit:
@@ -133,8 +137,13 @@ class Recorder:
         # Where a road ends near its start, only a car that has come round has arrived.
         return s > self.road.length / 2 and math.hypot(now.x - self.end[0], now.y - self.end[1]) < GOAL
 
-    def _is_first_out(self) -> bool:
-        return not any(sample.outside > self.world.oob_tolerance for sample in self.samples[:-1])
+    def _is_out(self, sample: Sample) -> bool:
+        if sample.outside > self.world.oob_tolerance:
+            return True
+        if self.tyres is None:
+            return False
+        pose = [getattr(sample if name == "s" else sample.car, name) for name in POSE]
+        return bool(self.tyres.beyond(np.array([pose]))[0] > 0)
 
     def _cut(self, has_happened: Callable[[Sample], bool], keep: bool = False) -> None:
         """Put the moment at which it happened in the place of the last sample, or before it."""

@@ -172,8 +172,17 @@ class Car:
 
     @property
     def box(self) -> Box:
-        """Outline in plan, and lock."""
-        return Box(self.length, self.width, self.box_ahead, self.steer_limit)
+        """Outline, front wheels, and lock."""
+        return Box(
+            self.length,
+            self.width,
+            self.box_ahead,
+            self.steer_limit,
+            axle=self.front.place,
+            tyres=self.front.track + self.tread,
+            height=self.height,
+            under=self.height - self.clearance,
+        )
 
     def load(self, axle: Axle) -> float:
         """N on one wheel of the axle, at rest on level ground."""

@@ -5,12 +5,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.drive.drive import COLUMNS, Ended, FloatArray
+from roadgpt.drive.drive import COLUMNS, Box, Ended, FloatArray
+from roadgpt.drive.marking import POSE, Marking
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL
 from roadgpt.errors import SimulationError
 
 if TYPE_CHECKING:
-    from roadgpt.road import Road
+    from roadgpt.road import Road, World
 
 START = 2.5  # m along the road (RoadGPT, SBFT)
 GOAL = 8.0  # m from the end of the centre line (SBFT)
@@ -21,16 +22,20 @@ SPARE = 30.0  # s, on top
 
 _NAMES = tuple(COLUMNS)
 _SEEN = tuple(map(_NAMES.index, ("x", "y", "z", "speed", "s", "outside")))
+_POSE = list(map(_NAMES.index, POSE))
 
 
 class Course:
     """One drive along a road, watched from its first step on."""
 
-    def __init__(self, road: "Road", tolerance: float) -> None:
-        """Along the road; ``tolerance`` is the share of the car that may be outside its lane, 2: any."""
+    def __init__(self, road: "Road", world: "World", box: Box, keep_driving: bool = False) -> None:
+        """Along the road, by a car of this outline; ``keep_driving``: it may leave its lane."""
         self.start = min(START, road.length / 2)
         """Metres along the road where the car is put."""
-        self._length, self._tolerance = road.length, tolerance
+        self._length = road.length
+        self._tolerance = math.inf if keep_driving else world.oob_tolerance
+        is_watched = world.lane_departure and not keep_driving
+        self._tyres = Marking.for_tyres(road, world, box) if is_watched else None
         self._end = np.asarray(road.at(road.length)).tolist()
         self._last = math.ceil((road.length / SLOWEST + SPARE) / CONTROL)
         self._since, self._from = 0, (math.nan, math.nan)
@@ -53,11 +58,14 @@ class Course:
             return "goal"
         if self._is_stuck(x, y, step):
             return "stuck"
-        if outside > self._tolerance:
+        if outside > self._tolerance or self._has_departed(row):
             return "out_of_lane"
         if has_fallen:
             return "fell"
         return "timeout" if step >= self._last else None
+
+    def _has_departed(self, row: FloatArray) -> bool:
+        return self._tyres is not None and bool(self._tyres.beyond(row[None, _POSE])[0] > 0)
 
     def _is_stuck(self, x: float, y: float, step: int) -> bool:
         if step == 0 or math.hypot(x - self._from[0], y - self._from[1]) >= STUCK_WAY:

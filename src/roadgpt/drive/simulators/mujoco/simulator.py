@@ -36,7 +36,7 @@ class MujocoSimulator:
         seat, camera = Seat(driver), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
         eyes = None if camera is None else Eyes(camera, road, world)
-        course = Course(road, 2.0 if keep_driving else world.oob_tolerance)
+        course = Course(road, world, self.car.box, keep_driving)
         with seat.watched():
             seat.start(road, world, seed)
             vehicle.put(course.start, -world.lane_width / 2 + self.start_offset)

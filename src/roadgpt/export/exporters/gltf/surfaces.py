@@ -9,10 +9,11 @@ import numpy as np
 from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import goal_of, on_the_ground, start_of
 from roadgpt.export.exporters.gltf.container import Shape
-from roadgpt.export.exporters.opendrive.lanes import DASH, GAP, LINE, NO_VERGE
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP, NO_VERGE
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
+from roadgpt.road.world import LINE
 
 THICKNESS = 0.5  # m, of the slabs
 PAINT = 0.005  # m that markings lie above the road; less flickers where depth is coarse

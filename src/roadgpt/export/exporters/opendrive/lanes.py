@@ -7,8 +7,8 @@ id       2  |    1    |    -1    |  -2
 
 from roadgpt.export.markup import Element
 from roadgpt.road import World
+from roadgpt.road.world import LINE
 
-LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, RMS-1)
 DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
 NO_VERGE = 1e-3  # m; narrower ones are left out
 

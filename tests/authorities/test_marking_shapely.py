@@ -1,0 +1,88 @@
+"""Shapely's polygons against ``roadgpt.drive.marking``: how far a car reaches beyond its lane's markings."""
+
+import numpy as np
+import pytest
+from shapely.geometry import Point, Polygon
+from shapely.ops import nearest_points
+
+from authorities.test_verdict_shapely import bent, random_drive
+from drive.slippery_bicycle import SlipperyBicycle
+from roadgpt.drive import Box
+from roadgpt.drive.drivers.beamng_like import BeamngLike
+from roadgpt.drive.marking import Marking
+from roadgpt.road import Road, World
+from roadgpt.verdict import judge
+
+CENTRE_LINE = 0.12  # m, narrow mark of the German RMS-1: half of it lies beyond the middle of the road
+
+
+def between_markings(road: Road) -> Polygon:
+    s = np.linspace(0, road.length, int(road.length * 20))
+    left, right = road.at(s, CENTRE_LINE / 2)[:, :2], road.at(s[::-1], -4.0)[:, :2]
+    return Polygon(np.concatenate([left, right]))
+
+
+def farthest(lane: Polygon, points: np.ndarray) -> float:
+    """Metres outside the lane, of the point that is farthest outside; negative: inside, from its border."""
+    told = []
+    for point in map(Point, points):
+        near, _ = nearest_points(lane.exterior, point)
+        told.append(near.distance(point) * (-1 if lane.contains(point) else 1))
+    return max(told)
+
+
+@pytest.mark.parametrize("hand", [-1, 1])
+@pytest.mark.parametrize("radius", [15.0, 40.0])
+def test_body_and_tyres_reach_as_far_as_shapely_says(radius: float, hand: int) -> None:
+    road, world = bent(radius, hand), World()
+    drive = random_drive(road, seed=round(radius) + hand)
+    lane = between_markings(road)
+    body = Marking.for_body(road, world, drive.car).along(drive)
+    tyres = Marking.for_tyres(road, world, drive.car).along(drive)
+    for step in range(len(drive)):
+        box = Polygon(drive.corners(step))
+        sides = [box.exterior.interpolate(share, normalized=True) for share in np.linspace(0, 1, 400)]
+        assert body[step] == pytest.approx(farthest(lane, np.array([p.coords[0] for p in sides])), abs=0.02)
+        x, y, heading = (drive[name][step] for name in ("x", "y", "heading"))
+        ahead, left = (
+            np.array([np.cos(heading), np.sin(heading)]),
+            np.array([-np.sin(heading), np.cos(heading)]),
+        )
+        feet = [[x, y] + 1.36 * ahead + side * 0.9025 * left for side in (-1, 1)]
+        assert tyres[step] == pytest.approx(farthest(lane, np.array(feet)), abs=0.005)
+
+
+@pytest.mark.parametrize("hand", [-1, 1])
+def test_a_share_outside_and_a_distance_beyond_the_edge_line_go_together(hand: int) -> None:
+    road = bent(16.0, hand)
+    drive = SlipperyBicycle().simulate(road, World(), BeamngLike(), 0, keep_driving=True)
+    right_only = Marking.for_body(road, World(), drive.car)._replace(left=9.0)
+    both = right_only._replace(left=0.0)
+    is_out = drive["outside"] > 1e-3
+    assert is_out.any()
+    assert (both.along(drive)[is_out] > -0.02).all()
+    assert (both.along(drive)[drive["outside"] == 0] < 0.03).all()
+    floored = both.along(drive, floor=0.0)
+    assert (np.maximum(floored, 0) == np.maximum(both.along(drive), 0)).all()
+
+
+def test_the_farthest_of_a_whole_drive_is_told() -> None:
+    road, world = bent(15.0, -1), World(oob_tolerance=1.0)
+    drive = SlipperyBicycle().simulate(road, world, BeamngLike(), 0)
+    lane = between_markings(road)
+    every = [farthest(lane, drive.corners(step)) for step in range(drive.lane_steps)]
+    told = judge(road, drive, world).beyond
+    assert told is not None
+    # the middle of a side may reach farther over the inside of a bend than the corners do
+    assert max(every) - 0.01 <= told <= max(every) + 0.3
+
+
+def test_a_car_that_leans_is_turned_about_its_centre_of_gravity() -> None:
+    # on paper: heading east on a straight, leaning to its right, its feet are to the left of where it is
+    road = Road.through([[10, 20], [60, 20], [110, 20]])
+    box = Box(4.7, 1.86, height=0.5, under=0.4, tyres=1.8)
+    pose = np.array([[40.0, 18.0, 0.0, 0.0, 0.1, 30.0]])
+    feet = Marking.for_tyres(road, World(), box).beyond(pose)[0]
+    assert feet == pytest.approx(-2.0 + 0.9 * np.cos(0.1) + 0.5 * np.sin(0.1) - 0.06)
+    body = Marking.for_body(road, World(), box).beyond(pose)[0]
+    assert body == pytest.approx(-2.0 + 0.93 * np.cos(0.1) + 0.4 * np.sin(0.1) - 0.06)
