@@ -18,7 +18,7 @@ from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.pure_pursuit import PurePursuit
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.road import Design, Road, World, build
-from roadgpt.verdict import Verdict, judge
+from roadgpt.verdict import SEVERITIES, Verdict, judge
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "outcomes.md"
 BEGIN, END = "<!-- measured by benchmarks/bench_outcomes.py -->", "<!-- end of what was measured -->"
@@ -42,11 +42,17 @@ def planner_roads(count: int) -> list[Road]:
     return [build(design) for design in designs]
 
 
-def verdicts(roads: list[Road], driver: type[Any], world: World) -> list[Verdict]:
-    return [judge(road, simulate(road, world, driver(), seed=0), world) for road in roads]
+def verdicts(roads: list[Road], driver: type[Any], world: World) -> list[tuple[Verdict, Verdict]]:
+    """By the tolerance alone, and where lane departures count as well; of the same drives."""
+    watched = world.model_copy(update={"lane_departure": True})
+    drives = [simulate(road, world, driver(), seed=0) for road in roads]
+    return [(judge(r, d, world), judge(r, d, watched)) for r, d in zip(roads, drives, strict=True)]
 
 
-def row(name: str, world: World, found: list[Verdict]) -> tuple[str, int]:
+def row(name: str, world: World, pairs: list[tuple[Verdict, Verdict]]) -> tuple[str, int]:
+    found = [verdict for verdict, _ in pairs]
+    passed = Counter(v.severity for v in found if v.kept)
+    departed = sum(not strict.kept for _, strict in pairs)
     failed = Counter(v.cause for v in found if not v.kept)
     sides = Counter(v.side for v in found if v.side)
     margins = sorted(v.margin for v in found)
@@ -60,6 +66,8 @@ def row(name: str, world: World, found: list[Verdict]) -> tuple[str, int]:
         ", ".join(f"{failed[cause]} {cause}" for cause in CAUSES if failed[cause]) or "none",
         f"{sides['left']} / {sides['right']}",
         f"{margins[len(margins) // 2]:.2f} m",
+        " / ".join(str(passed[each]) for each in SEVERITIES),
+        f"{100 * departed / len(found):.1f} %",
     ]
     return f"| {' | '.join(cells)} |", failed.total()
 
@@ -74,6 +82,8 @@ TITLES = (
     "causes",
     "left / right",
     "median margin",
+    "passed inside / partly / mostly outside",
+    "failed with `--lane-departure`",
 )
 HEAD = f"| {' | '.join(TITLES)} |\n|{'---|' * len(TITLES)}"
 

@@ -85,7 +85,7 @@ def rewritten(tmp_path, change):
         (lambda parts: parts["header"].pop("format"), "format"),
         (lambda parts: parts["header"].update(format=1), "its format is 1"),
         (lambda parts: parts["header"].update(ended="bored"), "no drive ends with 'bored'"),
-        (lambda parts: parts["header"].update(car={"height": 2.0}), "height"),
+        (lambda parts: parts["header"].update(car={"colour": 2.0}), "colour"),
         (lambda parts: parts["header"].update(car=[1, 2]), "list"),
         (lambda parts: parts.update(header=np.array("[1, 2]")), "list"),
         (lambda parts: parts.update(header=np.array("{")), "Expecting property name"),
