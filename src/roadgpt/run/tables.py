@@ -41,7 +41,7 @@ class Tally:
         self.simulated += run.drive.duration if run.drive is not None else 0.0
         if run.outcome != "FAIL" or run.road is None or run.drive is None:
             return
-        found = departure(run.road.control_points(), records_of(run.drive, run.world))
+        found = departure(run.road.control_points(), records_of(run.road, run.drive, run.world))
         if found is None:
             return
         self.sides[found.side] += 1
