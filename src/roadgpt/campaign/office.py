@@ -14,6 +14,7 @@ from roadgpt.campaign.store import Store
 from roadgpt.campaign.traces import Trace, write_traces
 from roadgpt.campaign.worker import Broke, Ended, Task, do, failed
 from roadgpt.errors import BudgetError, RoadGPTError
+from roadgpt.stopping import look
 
 WAIT = 0.25  # s for results, before looking round
 GROUP_SECONDS = 1.0  # that a result waits to be kept: so much work is lost at most when the process is killed
@@ -76,6 +77,7 @@ class Office:
         """Work until nothing is left to do; tells how far it is after every group of results."""
         self._store.begin_sitting(self._staff.workers)
         while self._error is None:
+            look()
             self._fill()
             if not self._out and not self._poor:
                 break

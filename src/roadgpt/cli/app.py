@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from roadgpt import __version__
+from roadgpt import __version__, stopping
 from roadgpt.cli.crash import report_crash
 from roadgpt.cli.dashes import told_of_dashes
 from roadgpt.cli.streams import OutputError, drop_output, is_coloured
@@ -66,7 +66,7 @@ MISSING = {
     "OUT": "Name the folder to write into.",
 }
 
-INTERRUPTED = 130  # exit status after Ctrl-C, as shells have it: 128 + SIGINT
+INTERRUPTED = 130  # exit status where input was broken off; after a signal, ``stopping.status`` has it
 NO_READER = 141  # whoever read the output went away; as shells have it: 128 + SIGPIPE
 REFUSED = 1  # the machine does not take what was to be written
 INTERNAL = 70  # EX_SOFTWARE of sysexits.h
@@ -147,12 +147,15 @@ class Commands(click.Group):
             status = error.exit_code
         except RoadGPTError as error:
             click.echo(f"roadgpt: {error}", err=True)
-            status = error.exit_status
+            status = stopping.status() or error.exit_status
         except (KeyboardInterrupt, click.Abort):
-            status = INTERRUPTED
+            status = stopping.status() or INTERRUPTED
         except Exception as error:  # the last door: nothing may leave as a traceback
-            click.echo(f"roadgpt: {report_crash(error)}", err=True)
-            status = INTERNAL
+            status = stopping.status()
+            if not status:  # what breaks while it is being stopped is no news
+                click.echo(f"roadgpt: {report_crash(error)}", err=True)
+                status = INTERNAL
+        stopping.finish()
         sys.exit(status if isinstance(status, int) else 0)
 
 

@@ -5,6 +5,7 @@ import sys
 
 import click
 
+from roadgpt import stopping
 from roadgpt.cli import changing
 from roadgpt.cli.options import ROADS
 from roadgpt.cli.screen import Screen
@@ -65,7 +66,7 @@ def talk() -> None:
         except RoadGPTError as error:
             click.echo(f"roadgpt: {error}", err=True)
         except KeyboardInterrupt:
-            pass  # what was finished has been said; ask for the next description
+            stopping.forget()  # what was finished has been said; ask for the next description
         click.echo()
 
 

@@ -34,6 +34,7 @@ from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
 from roadgpt.run.seeds import seed_of
 from roadgpt.run.telling import told
 from roadgpt.run.versions import versions_of
+from roadgpt.stopping import look
 from roadgpt.verdict import judge
 
 __all__ = [
@@ -228,6 +229,7 @@ def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: i
     kept: _Made | None = None
     notes: tuple[str, ...] = ()
     for attempt in range(MOST_ROUNDS if getattr(designer, "redrafts", True) else 1):
+        look()
         try:
             # another seed each time, so that a designer that does not read notes draws anew
             design = designer.draft(brief, world, notes, earlier, seed + attempt)

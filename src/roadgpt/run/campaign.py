@@ -17,6 +17,7 @@ from roadgpt.run.naming import HOME, new_folder
 from roadgpt.run.sbft_json import test_name
 from roadgpt.run.seeds import seed_of
 from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, write_description
+from roadgpt.stopping import look
 
 LOCK = "campaign.lock"
 GIVE_UP = 3  # roads that cannot be designed, before any that could
@@ -150,6 +151,7 @@ class Campaign:
         lacking = [index for index in range(1, self.roads + 1) if index not in self._finished]
         held_back: list[Run] = []
         for index in lacking:
+            look()
             held_back.append(self._one(index))
             if held_back[-1].road is None and not self._tally.with_road:
                 if len(held_back) == min(GIVE_UP, len(lacking)):

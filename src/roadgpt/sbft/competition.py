@@ -14,6 +14,7 @@ from roadgpt.sbft.host import GoneError, Host
 from roadgpt.sbft.line import Message
 from roadgpt.sbft.results import LOG, Results, new_folder
 from roadgpt.sbft.trial import tried
+from roadgpt.stopping import look
 
 USUAL = World(map_size=200.0)
 GROUND = 0.0  # m: the competition's roads lie on the level, and points without heights are at this one
@@ -92,6 +93,7 @@ class Competition:
 
     def _work(self, host: Host) -> Iterator[Run]:
         while self.ending is None:
+            look()
             heard = host.hear(self._wait())
             if heard is None:
                 self.ending = self._silent()

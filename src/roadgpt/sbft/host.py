@@ -5,7 +5,6 @@ Two threads read and write, so that a process that neither speaks nor listens ho
 
 import os
 import queue
-import signal
 import subprocess
 import sys
 import threading
@@ -13,9 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
+from roadgpt import children
 from roadgpt.sbft.line import Message, received, send
-
-FAREWELL = 10.0  # s for a process that was killed to be gone
 
 
 class GoneError(Exception):
@@ -32,13 +30,12 @@ class Host:
     def __init__(self, log: Path) -> None:
         """Starts it; what it prints goes into the file."""
         self._log = log.open("wb")
-        self._process = subprocess.Popen(
+        self._process = children.start(
             [sys.executable, "-m", "roadgpt.sbft.inside"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._log,
             env={**os.environ, "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"},
-            start_new_session=True,  # processes that it starts itself end with it
         )
         self._heard: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
         self._to_tell: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
@@ -80,17 +77,12 @@ class Host:
 
     def _status(self) -> int | None:
         try:
-            return self._process.wait(FAREWELL)
+            return self._process.wait(children.FAREWELL)
         except subprocess.TimeoutExpired:
             return None
 
     def stop(self) -> None:
         """End the process and those that it started."""
         self._to_tell.put(None)
-        if hasattr(os, "killpg"):
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, signal.SIGKILL)
-        with suppress(ProcessLookupError):
-            self._process.kill()
-        self._status()
+        children.end(self._process)
         self._log.close()

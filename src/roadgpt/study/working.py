@@ -17,6 +17,7 @@ from roadgpt.errors import BriefError, DesignError, RoadGPTError
 from roadgpt.run import campaign
 from roadgpt.run.campaign import finished
 from roadgpt.run.folder import Draw
+from roadgpt.stopping import look, shielded
 from roadgpt.study.plan import Part, Plan
 
 LOOK = 0.3  # s between two looks at how far processes are
@@ -136,10 +137,12 @@ def _in_processes(
                 part = waiting.pop(0)
                 ours, theirs = context.Pipe(duplex=False)
                 process = context.Process(target=_child, args=(plan, part, folder, draw, theirs), daemon=True)
-                process.start()
+                with shielded():
+                    process.start()
                 theirs.close()
                 at_work[part] = process, ours
             time.sleep(LOOK)
+            look()
             for part in [part for part, (process, _) in at_work.items() if not process.is_alive()]:
                 problems += _ended(part, *at_work.pop(part))
             watch.look(", ".join(part.prompt.prompt for part in at_work))

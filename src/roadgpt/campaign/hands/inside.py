@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from typing import IO, Any, NamedTuple
 
 from roadgpt.campaign.hands.wire import frozen, receive, send, thawed
+from roadgpt.children import private_streams
 
 BEAT = 1.0  # s between signs of life
 ALIVE, READY, VALUE, ERROR = range(4)  # kinds of messages that go up
@@ -53,19 +54,10 @@ class _Mouth:
             self.say(ALIVE)
 
 
-def _private_streams() -> tuple[IO[bytes], IO[bytes]]:
-    """The wire, out of the way of drivers that print or read."""
-    heard, said = os.dup(0), os.dup(1)
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
-    os.dup2(2, 1)
-    return os.fdopen(heard, "rb"), os.fdopen(said, "wb")
-
-
 def main() -> None:
     """Work until the parent goes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears of Ctrl-C, and ends us
-    heard, said = _private_streams()
+    heard, said = private_streams()
     mouth = _Mouth(said)
     threading.Thread(target=mouth.beat, daemon=True).start()
     try:

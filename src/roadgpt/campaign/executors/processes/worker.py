@@ -1,8 +1,6 @@
 """Our end of one worker process: starts it, hands it jobs, hears it, ends it."""
 
 import os
-import signal
-import subprocess
 import sys
 import threading
 import time
@@ -11,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
+from roadgpt import children
 from roadgpt.campaign.hands.inside import ALIVE, Order
 from roadgpt.campaign.hands.wire import receive, send
 
@@ -42,19 +41,7 @@ class Worker:
         # every worker has a core of its own, so that libraries need no threads in it
         alone = {name: "1" for name in ONE_THREAD if name not in os.environ}
         with log.open("ab") as file:
-            self._process = subprocess.Popen(
-                [
-                    sys.executable,
-                    "-P",  # a module that lies where the user stands is not taken for one of ours
-                    "-c",
-                    "from roadgpt.campaign.hands.inside import main; main()",
-                ],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=file,
-                env={**os.environ, **alone, "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"},
-                start_new_session=True,  # Ctrl-C on the terminal is the parent's alone
-            )
+            self._process = children.python("roadgpt.campaign.hands.inside", stderr=file, env=alone)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._down: IO[bytes] = self._process.stdin
@@ -93,25 +80,16 @@ class Worker:
     def kill(self, fault: str = "") -> None:
         """End it at once, and what it has started."""
         self.fault = self.fault or fault
-        if hasattr(os, "killpg"):
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, signal.SIGKILL)
-        with suppress(ProcessLookupError):
-            self._process.kill()
+        children.kill(self._process)
 
     def bury(self) -> str:
         """See it off, and say how it ended; called by the thread that hears it, at the very end."""
-        self.kill()
-        with suppress(subprocess.TimeoutExpired):
-            self._process.wait(FAREWELL)
+        status = children.end(self._process)
         for stream in (self._down, self._process.stdout):
             with suppress(OSError):
                 if stream is not None:
                     stream.close()
-        status = self._process.returncode
-        if status is not None and status < 0:
-            return self.fault or f"was ended by signal {-status}"
-        return self.fault or f"ended with status {status}"
+        return self.fault or children.ending(status)
 
     def join(self) -> None:
         """Wait until its end was heard."""

@@ -4,14 +4,13 @@ The client could start it as well; but then it waits for minutes on a process th
 the newest versions' options. The command line is the one that beamngpy 1.36 writes.
 """
 
-import os
 import platform
-import signal
 import subprocess
 import time
 from contextlib import suppress
 from pathlib import Path
 
+from roadgpt import children
 from roadgpt.drive.simulators.beamng.settings import Settings
 from roadgpt.drive.simulators.beamng.wire import is_taken
 from roadgpt.errors import PartError, SimulationError
@@ -65,14 +64,8 @@ class Game:
         """
         self.words, self.host, self.port = words, host, port
         try:
-            # a session of its own, so that what it starts ends with it, and Ctrl-C comes to us first
-            self.process = subprocess.Popen(  # noqa: S603 - the program that the user named
-                words,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                start_new_session=os.name == "posix",
-            )
+            nothing = subprocess.DEVNULL
+            self.process = children.start(words, stdin=nothing, stdout=nothing, stderr=nothing)
         except OSError as error:
             raise SimulationError(f"BeamNG cannot be started ({error}); check --beamng-home") from error
 
@@ -105,14 +98,7 @@ class Game:
 
     def kill(self) -> None:
         """End it and what it started, whether it wants to or not."""
-        if os.name == "posix":
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(self.process.pid, signal.SIGKILL)
-        elif self.is_alive:
-            words = ["taskkill", "/F", "/T", "/PID", str(self.process.pid)]
-            subprocess.run(words, capture_output=True, check=False)  # noqa: S603
-        with suppress(subprocess.TimeoutExpired):
-            self.process.wait(GRACE)
+        children.end(self.process, GRACE)
 
     def end(self) -> None:
         """Let it end after it was told to quit; end it where it does not."""

@@ -13,6 +13,7 @@ from roadgpt.drive.simulators.beamng.body import LOCK, Moment, Track, between
 from roadgpt.drive.simulators.beamng.stage import Stage
 from roadgpt.drive.view import View
 from roadgpt.errors import SimulationError
+from roadgpt.stopping import look
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -90,6 +91,7 @@ class Recorder:
             self._go_on(here)
 
     def _go_on(self, here: Sample) -> None:
+        look()
         command = (0.0, 0.0, 0.0)
         if self.seat is not None:
             stage = self.stage

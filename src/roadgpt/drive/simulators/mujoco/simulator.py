@@ -11,6 +11,7 @@ from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car
 from roadgpt.drive.simulators.mujoco.course import Course
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import View
+from roadgpt.stopping import look
 
 if TYPE_CHECKING:
     from roadgpt.drive import Driver
@@ -73,6 +74,7 @@ def _drive(
             image,
         )
         vehicle.move(*seat.ask(view))
+        look()
         row = log.add(vehicle.row)
         step += 1
     return log.rows(), ended

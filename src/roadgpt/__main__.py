@@ -1,0 +1,20 @@
+"""The program ``roadgpt``, also as ``python -m roadgpt``: heeds Ctrl-C before it imports anything else."""
+
+import sys
+
+from roadgpt import stopping
+
+
+def main() -> None:
+    """Run a command; ends the process with its exit status."""
+    stopping.install()
+    try:
+        from roadgpt.cli import main as command
+
+        command()
+    except KeyboardInterrupt:
+        sys.exit(stopping.status())
+
+
+if __name__ == "__main__":
+    main()

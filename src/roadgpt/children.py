@@ -1,0 +1,93 @@
+"""Processes that we start: out of reach of a terminal's Ctrl-C, and ended with all that they started."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from typing import IO, Any
+
+FAREWELL = 10.0  # s for a process that was killed to be gone
+_APART: Mapping[str, Any] = (
+    {"start_new_session": True}
+    if os.name == "posix"
+    else {"creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)}
+)
+_running: "set[subprocess.Popen[bytes]]" = set()
+
+
+def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
+    """Start a process in a session of its own; ``how`` is as ``subprocess.Popen`` has it.
+
+    Raises:
+        OSError: the system refuses.
+    """
+    process: subprocess.Popen[bytes] = subprocess.Popen(words, **_APART, **how)  # noqa: S603 - our callers' words
+    _running.add(process)
+    return process
+
+
+def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
+    """Start a Python of ours that runs ``main()`` of a module and speaks through its standard streams.
+
+    Raises:
+        OSError: the system refuses.
+    """
+    words = [
+        sys.executable,
+        "-P",  # a module that lies where the user stands is not taken for one of ours
+        "-c",
+        f"from {entry} import main; main()",
+    ]
+    extra = how.pop("env", {})
+    env = {**os.environ, **extra, "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"}
+    return start(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env, **how)
+
+
+def kill(process: "subprocess.Popen[bytes]") -> None:
+    """End a process and what it started, and do not wait for it; one that is gone may be killed again."""
+    if os.name == "posix":
+        # its group may outlive it, so that it is asked for even where the process has ended
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGKILL)
+    elif process.poll() is None:
+        words = ["taskkill", "/F", "/T", "/PID", str(process.pid)]
+        subprocess.run(words, capture_output=True, check=False)  # noqa: S603
+    with suppress(OSError):
+        process.kill()
+
+
+def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
+    """End a process and what it started; its exit status, None where it does not go."""
+    kill(process)
+    with suppress(subprocess.TimeoutExpired):
+        process.wait(patience)
+    _running.discard(process)
+    return process.returncode
+
+
+def kill_all() -> None:
+    """End every process that was started here and is not seen off yet."""
+    for process in [*_running]:
+        kill(process)
+
+
+def ending(status: int | None) -> str:
+    """How a process ended, to follow its name: 'was ended by signal 9'."""
+    if status is not None and status < 0:
+        return f"was ended by signal {-status}"
+    return f"ended with exit status {status}"
+
+
+def private_streams() -> tuple[IO[bytes], IO[bytes]]:
+    """In a process of ours: its standard input and output for us alone, unbuffered.
+
+    From then on whatever else reads finds nothing, and whatever else prints goes to standard error.
+    """
+    heard, said = os.dup(0), os.dup(1)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    os.dup2(2, 1)
+    return os.fdopen(heard, "rb"), os.fdopen(said, "wb")
