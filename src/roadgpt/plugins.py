@@ -71,6 +71,11 @@ def find(shelf: str, name: str) -> Any:
         ) from error
 
 
+def module_of(shelf: str, name: str) -> str:
+    """The module that a part comes from, which is not imported for it; empty where there is no such part."""
+    return next((part.module for part in _registered(shelf).get(name, ())), "")
+
+
 def origin(shelf: str, name: str) -> str:
     """Which distribution a part comes from, as 'name version'; all of them, where it is more than one."""
     parts = _registered(shelf)[name]

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from roadgpt.brief.model import Brief
-from roadgpt.drive.custom import load_in_time
+from roadgpt.drive.apart import driver_of
 from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
 from roadgpt.road import Road, World
 from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, campaign, perform, prove, read_run, seed_of
@@ -195,9 +195,9 @@ def test_a_driver_that_hangs_while_it_is_made_is_given_up(tmp_path: Path) -> Non
         "    def steer(self, view): ...\n"
     )
     with pytest.raises(DriverError, match=r"slow\.py:Slow was not made within 0\.5 s: let its __init__"):
-        load_in_time(f"{file}:Slow", limit=0.5)
+        driver_of(f"{file}:Slow", limit=0.5)
     with pytest.raises(UsageError, match="has no class 'Fast'; it has Slow"):
-        load_in_time(f"{file}:Fast")
+        driver_of(f"{file}:Fast")
 
 
 ALWAYS_LEFT = """

@@ -21,7 +21,7 @@ from roadgpt.campaign.traces import SUFFIX, TRACES
 from roadgpt.campaign.worker import Ready
 from roadgpt.chat import Meter, Spent
 from roadgpt.chat.config import key_for
-from roadgpt.drive.custom import load_in_time
+from roadgpt.drive.apart import driver_of
 from roadgpt.drive.trust import admit
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup, brief_of
@@ -105,7 +105,7 @@ def _drivers_come(plan: Plan) -> None:
     """A driver whose name is mistyped is told of before anything is kept or paid for."""
     if plan.drives:
         for driver in dict.fromkeys(plan.drivers):
-            load_in_time(driver)
+            driver_of(driver)
 
 
 def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:

@@ -13,7 +13,7 @@ Two shelves. ``simulators/`` hold the car and its physics; ``drivers/`` hold tho
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
-from roadgpt.drive.custom import load_driver
+from roadgpt.drive.apart import driver_of
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
 from roadgpt.drive.view import Camera, Command, View
 
@@ -87,7 +87,7 @@ def simulate(
         UsageError: the user's file makes no driver.
         DriverError: the driver raised, answered with what is no command, or hung.
     """
-    made: Any = load_driver(driver) if isinstance(driver, str) else driver
+    made: Any = driver_of(driver) if isinstance(driver, str) else driver
     if isinstance(made, type):
         made = made()
     engine: Any = plugins.find("simulators", simulator) if isinstance(simulator, str) else simulator

@@ -10,13 +10,12 @@ from types import ModuleType
 from typing import Any
 
 from roadgpt import plugins
-from roadgpt.drive.seat import BEFORE_START, Seat
 from roadgpt.drive.trust import admit, parted
-from roadgpt.errors import DriverError, UsageError
+from roadgpt.errors import UsageError
 
 
 def load_driver(spec: str) -> Any:
-    """The driver that a user named, ready to be handed to ``simulate``.
+    """The driver that a user named, in this process; ``apart.driver_of`` decides which one that is.
 
     Runs the user's file; one that only a run, a campaign or a plan names is not run: see ``drive.trust``.
 
@@ -50,42 +49,6 @@ def located(spec: str, folder: Path) -> str:
     return f"{whole}:{wanted}" if wanted else str(whole)
 
 
-def load_in_time(spec: str, limit: float = BEFORE_START) -> Any:
-    """As ``load_driver``, and a driver that is not made within so many seconds of wall time is given up.
-
-    Raises:
-        PartError, UsageError: as ``load_driver``.
-        DriverError: it hung.
-    """
-    admit(spec)  # who is asked may take their time
-    door = _Door(spec)
-    seat = Seat(door, before_start=limit)
-    try:
-        with seat.watched():
-            seat.start(None, None, 0)  # type: ignore[arg-type]
-    except DriverError as error:
-        if isinstance(cause := error.__cause__, Exception):
-            raise cause from cause.__cause__
-        raise DriverError(
-            f"the driver {spec} was not made within {limit:g} s: let its __init__ return at once and prepare "
-            "in start(road, world, seed)"
-        ) from error
-    return door.driver
-
-
-class _Door:
-    """Sits in for a driver that is being made, so that the seat's clock runs for it."""
-
-    def __init__(self, spec: str) -> None:
-        self.spec = spec
-        self.driver: Any = None
-
-    def steer(self, view: Any) -> None:
-        """Never asked."""
-
-    def start(self, *_: Any) -> None:
-        """Make the driver."""
-        self.driver = load_driver(self.spec)
 
 
 def _run(path: Path) -> ModuleType:

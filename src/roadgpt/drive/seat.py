@@ -7,7 +7,8 @@ Whatever a driver does wrong becomes one DriverError. A driver that hangs is sto
 - elsewhere (other threads, Windows): by an exception that Python raises in the driver's thread between two
   of its instructions. That ends endless loops, but a ``time.sleep(60)`` ends only when it is over.
 
-A driver that hangs inside compiled code which never looks up cannot be stopped from within its own process.
+A driver that hangs inside compiled code which never looks up cannot be stopped from within its own process:
+drivers that users name sit in another one (``roadgpt.drive.apart``), and it is ended.
 """
 
 import contextlib
@@ -31,6 +32,10 @@ ONE_ANSWER = 2.0  # s of wall time for one `steer`
 BEFORE_START = 30.0  # s for `start`: a driver may plan, or load a network
 WHOLE_DRIVE = 600.0  # s for all answers of a drive together
 TICK = 0.2  # s between two looks at the clock
+
+
+class ToldError(DriverError):
+    """What the seat of a driver in another process has said already."""
 
 
 class _HungError(BaseException):
@@ -90,7 +95,7 @@ class Seat:
         try:
             answer = self._steer(view)  # type: ignore[misc]
             self._due = math.inf
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, ToldError):
             raise
         except BaseException as error:  # a driver may raise anything; it costs this drive only
             raise self._failure(error, view.time) from error
@@ -114,7 +119,7 @@ class Seat:
         try:
             action()
             self._due = math.inf
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, ToldError):
             raise
         except BaseException as error:  # as in `ask`
             late = f"was not ready within {limit:g} s: make start() return sooner"

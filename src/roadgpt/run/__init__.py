@@ -24,7 +24,7 @@ from roadgpt.design import designer_of
 from roadgpt.design.offers import no_room
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import simulate
-from roadgpt.drive.custom import load_in_time
+from roadgpt.drive.apart import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError
 from roadgpt.road import Design, Geometry, Road, World, build, in_hops
 from roadgpt.run.campaign import Campaign
@@ -208,7 +208,7 @@ def roll_call(setup: Setup) -> None:
     rules_of(setup.rules)
     if setup.drives:
         plugins.find("simulators", setup.simulator)
-        load_in_time(setup.driver)
+        driver_of(setup.driver)
 
 
 class _Made(NamedTuple):
@@ -258,7 +258,7 @@ def _driven(run: Run) -> Run:
         return run
     begun = time.perf_counter()
     try:
-        driver = load_in_time(setup.driver)  # a new one each time: what it learnt on one road stays there
+        driver = driver_of(setup.driver)  # a new one each time: what it learnt on one road stays there
         drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving)
         verdict = judge(run.road, drive, run.world)
     except PartError:

@@ -9,7 +9,7 @@ from scipy.stats import beta
 from roadgpt import plugins
 from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
 from roadgpt.drive import Simulator, simulate
-from roadgpt.drive.custom import load_in_time
+from roadgpt.drive.apart import driver_of
 from roadgpt.drive.trust import admit
 from roadgpt.errors import RoadGPTError
 from roadgpt.run import Run
@@ -102,7 +102,7 @@ def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
     """
     road, world, setup = run.road, run.world, run.request.setup
     assert road is not None
-    driver = LateDriver(load_in_time(setup.driver), disturbance.delay, world)
+    driver = LateDriver(driver_of(setup.driver), disturbance.delay, world)
     slippery = world.model_copy(update={"friction": world.friction * disturbance.friction})
     drive = simulate(road, slippery, driver, run.seed, _engine(setup.simulator, disturbance), False)
     return judge(road, drive, slippery)

@@ -1,0 +1,123 @@
+"""One Ctrl-C is enough, wherever it strikes; SIGTERM alike; a second one ends the program at once."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends signals")
+
+HEAD = """
+import sys, time, weakref
+from roadgpt import stopping
+stopping.install()
+print("begun", flush=True)
+"""
+# Python spends nearly all of its time in a callback from which it drops what is raised.
+DROPS = (
+    HEAD
+    + """
+class Thing: ...
+def callback(_):
+    due = time.perf_counter() + 0.05
+    while time.perf_counter() < due: pass
+def work():
+    while True:
+        thing = Thing()
+        kept = weakref.ref(thing, callback)
+        del thing
+        {between}
+try:
+    work()
+except KeyboardInterrupt:
+    print("told", flush=True)
+    time.sleep(0.5)  # cleaning up is left alone
+    print("clean", flush=True)
+    sys.exit(stopping.status())
+"""
+)
+HANGS = (
+    HEAD.partition("print")[0]
+    + """
+try:
+    print("begun", flush=True)
+    time.sleep(60)
+finally:
+    print("cleaning", flush=True)
+    time.sleep(60)
+"""
+)
+
+
+def begun(code: str) -> "subprocess.Popen[str]":
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begun\n"
+    return process
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("between", ["stopping.look()", "pass"])
+def test_one_that_python_drops_is_told_all_the_same(sent: signal.Signals, between: str) -> None:
+    for wait in (0.1, 0.25):
+        process = begun(DROPS.replace("{between}", between))
+        time.sleep(wait)
+        process.send_signal(sent)
+        said, complained = process.communicate(timeout=20)
+        assert (process.returncode, said, complained) == (128 + sent, "told\nclean\n", "")
+
+
+def test_a_second_one_ends_it_at_once() -> None:
+    process = begun(HANGS)
+    process.send_signal(signal.SIGINT)
+    assert process.stdout is not None
+    assert process.stdout.readline() == "cleaning\n"
+    process.send_signal(signal.SIGINT)  # one press may come twice, from the terminal and from a wrapper
+    time.sleep(0.5)
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    assert process.wait(5) == 130
+    process.communicate()
+
+
+def test_signals_that_whoever_started_us_had_ignored_stay_so() -> None:
+    code = HEAD + "time.sleep(1); print('end')"
+    ignoring = (
+        f"import os, signal; signal.signal(signal.SIGINT, signal.SIG_IGN); os.execv({sys.executable!r}, "
+    )
+    process = begun(ignoring + f"[{sys.executable!r}, '-c', {code!r}])")
+    process.send_signal(signal.SIGINT)
+    said, _ = process.communicate(timeout=20)
+    assert (process.returncode, said) == (0, "end\n")
+
+
+@pytest.mark.parametrize("words", [["run"], ["campaign", "-j", "2"]])
+def test_a_command_is_stopped_by_one_at_any_moment(words: list[str], tmp_path: Path) -> None:
+    clock = random.Random(len(words))
+    for number, sent in enumerate((signal.SIGINT, signal.SIGTERM, signal.SIGINT)):
+        folder = tmp_path / str(number)
+        command = [sys.executable, "-m", "roadgpt", words[0], "a winding road", *words[1:], "-n", "5000"]
+        process = subprocess.Popen(
+            [*command, "--seed", "3", "--out", str(folder)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        due = time.monotonic() + 60
+        while not folder.exists() and time.monotonic() < due:
+            time.sleep(0.05)
+        time.sleep(clock.uniform(0.0, 3.0))
+        process.send_signal(sent)
+        begins = time.monotonic()
+        said, _ = process.communicate(timeout=60)
+        assert process.returncode == 128 + sent, said
+        assert time.monotonic() - begins < 20
+        assert "Traceback" not in said
+        assert "ignored" not in said
