@@ -77,7 +77,7 @@ def ending(status: int | None) -> str:
     """How a process ended, to follow its name: 'was ended by signal 9'."""
     if status is not None and status < 0:
         return f"was ended by signal {-status}"
-    return f"ended with exit status {status}"
+    return f"ended with status {status}"
 
 
 def private_streams() -> tuple[IO[bytes], IO[bytes]]:

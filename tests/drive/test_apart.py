@@ -117,7 +117,7 @@ def test_what_a_driver_does_to_its_process_is_its_own_affair(spec, nuisance: str
     [
         ("sys.exit(3)", r"driver 'D' raised SystemExit at 0.00 s of its drive \(.*d.py, line \d+\): 3"),
         ("1 / 0", r"driver 'D' raised ZeroDivisionError at 0.00 s .*line \d+"),
-        ("os._exit(3)", r"driver 'D' ended its own process \(it ended with exit status 3\), at 0.00 s"),
+        ("os._exit(3)", r"driver 'D' ended its own process \(it ended with status 3\), at 0.00 s"),
         ("ctypes.string_at(0)", r"driver 'D' ended its own process \(it was ended by signal 11\)"),
         ("os.kill(os.getpid(), 9)", r"driver 'D' ended its own process \(it was ended by signal 9\)"),
         ("raise KeyboardInterrupt", r"the driver raised KeyboardInterrupt"),
@@ -158,7 +158,7 @@ def test_start_and_init_that_hang_are_told_so(spec, monkeypatch: pytest.MonkeyPa
     slow = spec("    def start(self, *_): time.sleep(3600)\n    def steer(self, view): return keep(view)")
     with pytest.raises(DriverError, match=r"was not ready within 0.5 s: make start\(\) return sooner"):
         went(slow)
-    with pytest.raises(UsageError, match=r"cannot be made: it ended its own process \(it ended with exit"):
+    with pytest.raises(UsageError, match=r"cannot be made: it ended its own process \(it ended with status"):
         driver_of(spec("    def __init__(self): os._exit(1)\n    def steer(self, view): ..."))
 
 
