@@ -49,8 +49,6 @@ def located(spec: str, folder: Path) -> str:
     return f"{whole}:{wanted}" if wanted else str(whole)
 
 
-
-
 def _run(path: Path) -> ModuleType:
     """The user's file as a module; its neighbours can be imported from it."""
     if not path.is_file():
