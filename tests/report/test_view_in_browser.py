@@ -233,6 +233,51 @@ def test_keys(page: Page) -> None:
     assert page.run("keys.open")
 
 
+def test_lines_on_the_land_are_for_who_looks_from_above(page: Page) -> None:
+    assert page.run("roadgpt.grids") == [False]
+    page.key("3")
+    page.settle()
+    assert page.run("roadgpt.grids") == [True]
+
+
+def test_asphalt_has_grain_and_the_road_begins_on_the_ground(page: Page) -> None:
+    picture = page.picture(".stage .scene")[..., :3]
+    high, wide = picture.shape[:2]
+    asphalt = picture[int(0.78 * high) : int(0.82 * high), int(0.25 * wide) : int(0.35 * wide)].mean(axis=-1)
+    asphalt = asphalt[asphalt < 0.45]  # a marking may cross it
+    assert len(asphalt) > 100
+    assert 0.006 < asphalt.std() < 0.1
+    before = picture[int(0.93 * high) :, int(0.4 * wide) : int(0.6 * wide)].mean(axis=-1)
+    assert np.median(before) > 0.22, "the black side of a slab that floats"
+
+
+@pytest.mark.parametrize("camera", ["behind", "free"])
+def test_plates_that_stand_close_together_do_not_cover_each_other(
+    tab: Page, driven: Run, tmp_path: Path, camera: str
+) -> None:
+    assert driven.road is not None
+    made = view.scene(driven)
+    place = driven.road.at(40.0)
+    texts = ["left its lane\nto the right", "too tight", "overlaps itself", "leaves the map"]
+    made["places"] = [
+        {"x": float(place[0]) + n, "y": float(place[1]), "s": 40.0 + n, "text": text}
+        for n, text in enumerate(texts)
+    ]
+    path = tmp_path / "plates.html"
+    path.write_text(view.page_of([made]), encoding="utf-8")
+    tab.size(1000, 700)
+    tab.open(path, f"#camera={camera}")
+    tab.settle()
+    (plates,) = tab.run("roadgpt.plates")
+    assert len(plates) == len(texts)
+    for n, one in enumerate(plates):
+        for other in plates[n + 1 :]:
+            beside = one["right"] <= other["left"] or other["right"] <= one["left"]
+            over = one["bottom"] >= other["top"] - 1e-9 or other["bottom"] >= one["top"] - 1e-9
+            assert beside or over
+    assert tab.told == []
+
+
 def test_nothing_is_drawn_while_nothing_changes(page: Page) -> None:
     page.settle()
     before = page.run("roadgpt.frames")

@@ -25,6 +25,7 @@ HERE = Path(__file__).parent
 SCRIPTS = (
     "numbers.js",
     "trip.js",
+    "grain.js",
     "ribbon.js",
     "land.js",
     "signs.js",

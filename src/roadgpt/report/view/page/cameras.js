@@ -15,6 +15,7 @@ function makeCameras(stage, trip, onDrag) {
   controls.zoomSpeed = 1.4;
   let mode = "behind";
   let isHeld = false;
+  let isOverview = false; // and nobody has moved it since
 
   const spot = (pose) => new THREE.Vector3(pose.x - origin.x, pose.y - origin.y, pose.z - origin.z);
 
@@ -64,9 +65,11 @@ function makeCameras(stage, trip, onDrag) {
     camera.position.copy(stage.middle).addScaledVector(back, far);
     controls.update();
     near(0.5);
+    isOverview = true;
   }
 
   function toCar(time) {
+    isOverview = false;
     const car = spot(trip.at(time));
     const away = camera.position.clone().sub(controls.target).setLength(24);
     if (away.z < 6) away.setZ(9);
@@ -81,13 +84,20 @@ function makeCameras(stage, trip, onDrag) {
     camera.updateProjectionMatrix();
   }
 
-  controls.addEventListener("start", () => { isHeld = true; });
+  controls.addEventListener("start", () => {
+    isHeld = true;
+    isOverview = false;
+  });
   controls.addEventListener("end", () => { isHeld = false; });
   controls.addEventListener("change", () => onDrag(isHeld && mode !== "free"));
 
   return {
     controls, overview, toCar,
     get mode() { return mode; },
+    // On a window of another shape the whole road is shown anew.
+    fit() {
+      if (mode === "free" && isOverview) overview();
+    },
     choose(name) {
       mode = name;
       near(name === "bonnet" ? 0.2 : 0.5);

@@ -109,7 +109,7 @@ function smooth({ wide, high }, heights, fixed) {
   }
 }
 
-function landMesh(net, origin) {
+function landMesh(net, origin, grain) {
   const shape = new Shape3(origin);
   const colours = MEADOW.map(colourOf);
   const { xs, ys, wide, high } = net;
@@ -126,7 +126,7 @@ function landMesh(net, origin) {
   for (let j = 0; j + 1 < ys.all.length; j++) {
     for (let i = 0; i + 1 < row; i++) shape.quad(j * row + i, j * row + i + 1, (j + 1) * row + i + 1, (j + 1) * row + i);
   }
-  return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+  return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, map: grain });
 }
 
 function heightAt(net, x, y) {
@@ -139,7 +139,7 @@ function heightAt(net, x, y) {
 
 const lineStep = (span) => GRID.find((step) => span / step <= 24) || GRID[GRID.length - 1];
 
-// Lines on the land at whole multiples of a step, those of the plan too; and the border of the map.
+// For the free camera, which looks from above: lines on the land at whole multiples of a step, those of the plan too; and the border of the map.
 function landGrid(net, world, origin) {
   const group = new THREE.Group();
   const ends = [net.xs, net.ys].map(({ inner }) => [inner[0], inner[inner.length - 1]]);

@@ -101,5 +101,7 @@ window.roadgpt = {
   player,
   get frames() { return frames; },
   get poses() { return panels.map(({ pose }) => pose); },
+  get plates() { return panels.map(({ stage }) => stage && stage.plates); },
+  get grids() { return panels.map(({ stage }) => stage && stage.grid.visible); },
   get eyes() { return panels.map(({ stage }) => stage && stage.camera.position.toArray()); },
 };

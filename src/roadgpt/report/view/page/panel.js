@@ -23,7 +23,10 @@ function makePanel(scene, fastest, { moveTo, wentFree }) {
     isStale: true,
     pose: trip.at(0),
     fit() {
-      if (stage) stage.fit();
+      if (stage) {
+        stage.fit();
+        cameras.fit();
+      }
       sheets.forEach((sheet) => sheet.fit());
       panel.isStale = true;
     },
@@ -35,6 +38,7 @@ function makePanel(scene, fastest, { moveTo, wentFree }) {
       if (stage) {
         stage.place(pose);
         cameras.follow(Math.min(time, trip.duration));
+        stage.grid.visible = cameras.mode === "free";
         stage.draw();
       }
       panel.isStale = false;

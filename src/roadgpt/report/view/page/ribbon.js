@@ -3,6 +3,7 @@
 const PINCH = 0.95; // share of the radius; an offset line nearer to the centre of its bend would fold
 const LINE = 0.15, DASH = 4, GAP = 8; // m, as in our OpenDRIVE files, a little wider to be seen
 const THICK = 0.3; // m of asphalt
+const APRON = 4; // m of shoulder beyond each end of the road
 const ASPHALT = 0x44474d, SIDE = 0x33353a, GRAVEL = 0x8d8672, BANK = 0x7b8a5f, PAINT = 0xf4f4ef, AGAINST = 0x4a4d53;
 
 // Gathers triangles of one look; colours are per vertex.
@@ -28,6 +29,9 @@ class Shape3 {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(this.points, 3));
     geometry.setAttribute("color", new THREE.Float32BufferAttribute(this.colours, 3));
+    // seen from above, in metres: what carries grain repeats it there
+    const seen = this.points.filter((_, at) => at % 3 < 2);
+    geometry.setAttribute("uv", new THREE.Float32BufferAttribute(seen, 2));
     geometry.setIndex(this.corners);
     geometry.computeVertexNormals();
     return geometry;
@@ -76,7 +80,36 @@ function cap(shape, road, s, half, colour, isEnd) {
   shape.quad(...corners);
 }
 
-function pavement(scene, origin, bank) {
+// Ground at an end of the road: the shoulder goes on a little, then a bank runs down into the land.
+function apron(shape, road, rim, bank, isEnd) {
+  const s = isEnd ? road.length : 0;
+  const place = placeIn(road.s, s);
+  const heading = read(road.heading, place) + (isEnd ? 0 : Math.PI);
+  const slope = read(road.grade, place) * (isEnd ? 1 : -1);
+  const foot = rim + bank * 1.3;
+  const row = (ahead, half, down, colour) => [1, -1].map((side) => {
+    const [x, y, z] = beside(road, s, isEnd ? side * half : -side * half);
+    return shape.point(x + ahead * Math.cos(heading), y + ahead * Math.sin(heading), z + Math.min(ahead, APRON) * slope - down, colour);
+  });
+  const gravel = colourOf(GRAVEL);
+  const grass = colourOf(BANK);
+  const strips = [[row(0, rim, 0.03, gravel), row(APRON, rim, 0.03, gravel)],
+    [row(APRON, rim, 0.03, grass), row(APRON + bank * 1.3, foot, bank, grass)]];
+  for (const [near, far] of strips) shape.quad(near[1], far[1], far[0], near[0]);
+  // the corners between the bank at the end and those beside the road
+  [0, 1].forEach((side) => {
+    const sign = side ? -1 : 1;
+    const at = (ahead, half, down) => {
+      const [x, y, z] = beside(road, s, (isEnd ? sign : -sign) * half);
+      return shape.point(x + ahead * Math.cos(heading), y + ahead * Math.sin(heading), z + Math.min(ahead, APRON) * slope - down, grass);
+    };
+    const corners = [at(0, rim, 0.03), at(APRON, rim, 0.03), at(APRON + bank * 1.3, foot, bank), at(0, foot, bank)];
+    if (side) corners.reverse();
+    shape.quad(...corners);
+  });
+}
+
+function pavement(scene, origin, bank, grain) {
   const { road, world } = scene;
   const shape = new Shape3(origin);
   const half = world.lane_width;
@@ -95,8 +128,9 @@ function pavement(scene, origin, bank) {
       band(shape, road, s, ...pair, colourOf(GRAVEL));
       band(shape, road, s, ...slope, colourOf(BANK));
     }
+    for (const isEnd of [false, true]) apron(shape, road, rim, bank, isEnd);
   }
-  return shape.mesh();
+  return shape.mesh(THREE.MeshLambertMaterial, { map: grain });
 }
 
 function markings(scene, origin) {

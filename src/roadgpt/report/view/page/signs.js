@@ -57,7 +57,31 @@ function pin(x, y, z, text, colour, high = 3.4) {
   const sprite = plate(text, css(rgbOf(colour)));
   sprite.position.set(x, y, z + high + 0.35);
   group.add(pole, ball, sprite);
-  return group;
+  return { group, sprite };
+}
+
+// Moves plates up that would cover another one on the screen: the nearest stays where it is. Gives back where they
+// are, from the middle of the screen, which reaches from -1 to 1 either way.
+function keepApart(pins, camera) {
+  camera.updateMatrixWorld();
+  const tall = 2 * Math.tan((camera.fov * Math.PI) / 360);
+  const plates = pins.map(({ sprite }) => {
+    const seen = sprite.position.clone().project(camera);
+    const [wide, high] = [(2 * sprite.scale.x) / (tall * camera.aspect), (2 * sprite.scale.y) / tall];
+    return { sprite, x: seen.x, y: seen.y, wide, high, far: camera.position.distanceTo(sprite.position), isSeen: seen.z < 1 };
+  });
+  const placed = [];
+  for (const plate of plates.filter(({ isSeen }) => isSeen).sort((a, b) => a.far - b.far)) {
+    let bottom = plate.y;
+    for (const other of placed) {
+      const isBeside = Math.abs(other.x - plate.x) >= (other.wide + plate.wide) / 2;
+      if (!isBeside && bottom < other.bottom + other.high && bottom + plate.high > other.bottom) bottom = other.bottom + other.high;
+    }
+    placed.push({ ...plate, bottom });
+    placed.sort((a, b) => a.bottom - b.bottom);
+    plate.sprite.center.set(0.5, -(bottom - plate.y) / plate.high);
+  }
+  return placed.map(({ x, bottom, wide, high }) => ({ left: x - wide / 2, right: x + wide / 2, bottom, top: bottom + high }));
 }
 
 // A dot that tells from afar where the car is.
@@ -104,7 +128,7 @@ function plate(text, colour) {
   pen.textBaseline = "middle";
   rows.forEach((row, i) => pen.fillText(row, 16, 29 + i * 36));
   const sprite = onScreen(canvas);
-    sprite.scale.set(wide * PLATE, high * PLATE, 1);
+  sprite.scale.set(wide * PLATE, high * PLATE, 1);
   sprite.center.set(0.5, 0);
   sprite.renderOrder = 10;
   return sprite;

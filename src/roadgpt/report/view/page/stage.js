@@ -20,15 +20,17 @@ function makeStage(canvas, scene, trip, fastest) {
   world.add(sun);
 
   const net = landOf(scene);
-  world.add(landMesh(net, origin), landGrid(net, scene.world, origin));
-  world.add(pavement(scene, origin, net.bank), markings(scene, origin), startAndGoal(scene, origin));
+  const grid = landGrid(net, scene.world, origin);
+  world.add(landMesh(net, origin, meadowGrain(renderer)), grid);
+  world.add(pavement(scene, origin, net.bank, asphaltGrain(renderer)), markings(scene, origin), startAndGoal(scene, origin));
   if (scene.world.verge > 0.5) world.add(posts(scene, origin));
   const line = scene.drive ? drivenLine(scene, origin, fastest) : new THREE.Group();
   world.add(line);
-  for (const place of scene.places) {
+  const pins = scene.places.map((place) => {
     const z = onRoad(scene.road, place.s, 0).z;
-    world.add(pin(place.x - origin.x, place.y - origin.y, z - origin.z, place.text, 0xc04f00));
-  }
+    return pin(place.x - origin.x, place.y - origin.y, z - origin.z, place.text, 0xc04f00);
+  });
+  pins.forEach(({ group }) => world.add(group));
   const car = trip.isDriven ? makeCar(trip.car) : makePointer();
   const dot = beacon();
   world.add(car.group, dot);
@@ -40,7 +42,8 @@ function makeStage(canvas, scene, trip, fastest) {
   const { x, y, z } = scene.road;
 
   return {
-    camera, canvas, origin, radius, line, middle,
+    camera, canvas, origin, radius, line, middle, grid,
+    plates: [],
     outline: x.map((each, i) => new THREE.Vector3(each - origin.x, y[i] - origin.y, z[i] - origin.z).sub(middle)),
     fit() {
       const [wide, high] = [canvas.clientWidth, canvas.clientHeight];
@@ -57,6 +60,7 @@ function makeStage(canvas, scene, trip, fastest) {
     draw() {
       dome.position.copy(camera.position);
       dot.visible = camera.position.distanceTo(dot.position) > SMALL;
+      this.plates = keepApart(pins, camera);
       renderer.render(world, camera);
     },
   };
