@@ -1,15 +1,22 @@
-"""Failures that a campaign looks into when it is done, by its own options; what its report says of them."""
+"""Failures that a campaign looks into: distinct faults, then one of each; what status and report say."""
 
 import csv
 import json
+import shutil
+import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt.campaign.faults import Simplest
-from roadgpt.campaign.faults.book import Counted, counted
+from roadgpt.campaign.again import kept_run, read_trace, run_again
+from roadgpt.campaign.faults import Simplest, book, failures_of, faults_in
+from roadgpt.campaign.faults.book import Looked
+from roadgpt.campaign.faults.stability import repeated
 from roadgpt.cli import app
+from roadgpt.cli.pool import shared
+from roadgpt.cli.progress import watched
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 
@@ -22,6 +29,11 @@ def roadgpt(*words: object) -> Result:
     return done
 
 
+def table(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8") as file:
+        return [*csv.DictReader(file)]
+
+
 @pytest.fixture(scope="module")
 def looked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A campaign whose roads fail, and were looked into when it was done."""
@@ -29,29 +41,136 @@ def looked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     done = roadgpt("campaign", *WORDS, "--out", folder, "--faults", "--repeat", 2, "--json")
     (line,) = done.stdout.splitlines()
     assert json.loads(line)["outcomes"] == {"FAIL": 2}
-    assert "2 failures, of which" in done.stderr
+    assert "distinct fault" in done.stderr
+    return folder
+
+
+@pytest.fixture(scope="module")
+def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A campaign with more failures than faults."""
+    folder = tmp_path_factory.mktemp("many") / "c"
+    words = ["a flat road", "--goal", "failures", "-n", 40, "--seed", 7, "--reader", "grammar", "-q"]
+    roadgpt("campaign", *words, "--map-size", 200, "--oob-tolerance", 0.5, "--out", folder)
     return folder
 
 
 def test_a_campaign_looks_into_its_failures_when_it_is_done(looked: Path) -> None:
-    with (looked / "faults" / "c01" / "faults.csv").open() as file:
-        rows = [*csv.DictReader(file)]
-    assert sorted(row["road"] for row in rows) == ["1", "2"]
+    found = faults_in(looked)
+    rows = table(looked / "faults" / "faults.csv")
+    assert [int(row["failures"]) for row in rows] == [len(fault.members) for fault in found.them]
     assert {row["drives"] for row in rows} == {"2"}
-    found = counted(looked / "faults" / "c01")
-    assert found == Counted(
-        2, sum(2 * int(row["failed_again"]) >= 2 for row in rows), len({row["fault"] for row in rows})
-    )
+    failures = table(looked / "faults" / "failures.csv")
+    assert [row["test"] for row in failures] == ["c01/1", "c01/2"]
+    assert {row["fault"] for row in failures} == {row["fault"] for row in rows}
+    assert found.failures == found.compared == 2
 
 
-def test_the_report_says_how_many_faults_they_are(looked: Path) -> None:
-    roadgpt("report", looked)
-    with (looked / "tables" / "faults.csv").open() as file:
-        ((_, *row),) = [row for row in csv.reader(file) if row[0] == "c01"]
-    found = counted(looked / "faults" / "c01")
-    assert found is not None
-    assert [int(number) for number in row] == [2, found.failures, found.stable, found.faults]
-    assert 'href="faults/c01/faults.csv"' in (looked / "report.html").read_text(encoding="utf-8")
+def test_only_a_typical_failure_of_each_fault_is_driven_again(
+    many: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On 154 failures in minutes: what is alike is found first, from what is kept."""
+    folder = shutil.copytree(many, tmp_path / "c")
+    driven: list[int] = []
+    monkeypatch.setattr(book, "repeated", lambda run, times: driven.append(run.index) or repeated(run, times))
+    found = faults_in(folder)
+    assert len(found.them) < found.failures / 2
+    assert not driven
+    roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
+    most = sum(min(len(fault.members), 3) for fault in found.them)
+    assert len(found.them) <= len(driven) <= most < found.failures
+    mates = [{each.name.number for each in fault.members} for fault in found.them]
+    for row, its in zip(table(folder / "faults" / "faults.csv"), mates, strict=True):
+        assert int(row["test"].removeprefix("c01/")) in its
+    before = [*driven]
+    roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
+    assert driven == before, "what was done is not done again"
+
+
+def test_what_is_done_is_kept_when_it_is_stopped(
+    many: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = shutil.copytree(many, tmp_path / "c")
+    asked: list[int] = []
+
+    def stopped(run: Run, times: int) -> object:
+        asked.append(run.index)
+        if len(asked) == 2:
+            raise KeyboardInterrupt
+        return repeated(run, times)
+
+    monkeypatch.setattr(book, "repeated", stopped)
+    done = CliRunner().invoke(app, ["faults", str(folder), "--repeat", "1", "--no-plot"])
+    assert done.exit_code == 130
+    assert f"go on with: roadgpt faults {folder} --repeat 1 --no-plot" in done.output
+    roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
+    assert asked.count(asked[0]) == 1
+    assert asked.count(asked[1]) == 2
+
+
+def test_where_the_most_typical_failure_is_a_fluke_others_are_tried(
+    many: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = shutil.copytree(many, tmp_path / "c")
+    largest = faults_in(folder).them[0]
+    first, second = largest.names[:2]
+
+    class Share:
+        def __init__(self, run: Run) -> None:
+            self.share = 0.1 if run.index == first.number else 0.9
+            self.is_stable = self.share >= 0.5
+            self.sentence, self.drives = "", ()
+
+    monkeypatch.setattr(book, "repeated", lambda run, times: Share(run))
+    _, found = book.look_into(book.Look(folder, 1, largest.names, 1))
+    assert found.name == second
+    monkeypatch.setattr(book, "repeated", lambda run, times: pytest.fail("no more drives are needed"))
+
+
+def test_status_and_screen_count_faults_before_failures(many: Path) -> None:
+    found = faults_in(many)
+    for said in (roadgpt("status", many).output, roadgpt("show", many).output):
+        assert (
+            f"{len(found.them)} distinct faults in {found.failures} failures: the car cut the inside" in said
+        )
+        assert said.index("distinct faults") < said.index(f"{found.failures} FAIL")
+    told = json.loads(roadgpt("status", many, "--json").output)["distinct"]
+    assert told == {"faults": len(found.them), "failures": found.failures, "compared": found.failures}
+
+
+def test_of_very_many_failures_an_even_sample_is_compared(many: Path) -> None:
+    every, some = failures_of(many), failures_of(many, 9)
+    assert (len(every.known), every.every) == (every.every, some.every)
+    assert len(some.known) == 9
+    assert [each.name for each in some.known][::8] == [every.known[0].name, every.known[-1].name]
+    assert faults_in(many, 9).sentence.startswith("at least ")
+
+
+def test_the_report_begins_with_the_faults(looked: Path, many: Path) -> None:
+    for folder in (looked, many):
+        roadgpt("report", folder)
+        found = faults_in(folder)
+        text = (folder / "report.md").read_text(encoding="utf-8")
+        assert text.index("distinct fault") < text.index(" FAIL")
+        heads = [line.removeprefix("## ") for line in text.splitlines() if line.startswith("## ")]
+        assert heads[0] == "Distinct faults"
+        assert heads[1:3] == ["Feature map", "Outcomes"] or heads[1] == "Outcomes"
+        page = (folder / "report.html").read_text(encoding="utf-8")
+        assert page.count("<article>") == min(len(found.them), 24)
+        rows = table(folder / "tables" / "faults.csv")
+        assert [int(row["tests"]) for row in rows] == [len(fault.members) for fault in found.them]
+
+
+def test_the_report_says_what_was_not_measured_and_how_to(looked: Path, many: Path) -> None:
+    said = "How often they fail again was not measured"
+    for folder, is_measured in ((looked, True), (many, False)):
+        roadgpt("report", folder)
+        text = (folder / "report.md").read_text(encoding="utf-8")
+        assert (said in text) is not is_measured
+        assert ("of 2 disturbed drives" in text or "of 2 times" in text) is is_measured
+        assert (f"`roadgpt faults {folder} --minimise`" in text) is not is_measured
+        assert {row["failed again"] == "" for row in table(folder / "tables" / "faults.csv")} == {
+            not is_measured
+        }
 
 
 def test_the_simplest_road_is_looked_for_once(looked: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,16 +180,99 @@ def test_the_simplest_road_is_looked_for_once(looked: Path, monkeypatch: pytest.
         asked.append(run.index)
         return Simplest(run, 1, 1, True)
 
-    monkeypatch.setattr("roadgpt.campaign.faults.simplest", quick)
+    monkeypatch.setattr(book, "simplest", quick)
     for _ in range(2):
         roadgpt("resume", looked, "--minimise", "--repeat", 2, "--quiet")
-    found = counted(looked / "faults" / "c01")
-    assert found is not None
-    assert len(asked) == found.faults == len([*(looked / "faults" / "c01").glob("simplest-*")])
+    rows = table(looked / "faults" / "faults.csv")
+    assert len(asked) == len(rows)
+    for row, number in zip(rows, asked, strict=True):
+        assert row["test"] == f"c01/{number}"
+        assert row["simplest"].startswith("1 segment -> ")
+        assert (looked / "faults" / "simplest" / "c01" / "runs" / f"{number:04d}" / "run.json").is_file()
 
 
-def test_a_table_that_somebody_spoilt_is_told(tmp_path: Path) -> None:
-    assert counted(tmp_path) is None
-    (tmp_path / "faults.csv").write_text("fault,share\n1,often\n")
-    with pytest.raises(UsageError, match=r"faults.csv cannot be read .* make it again with roadgpt faults"):
-        counted(tmp_path)
+def test_what_somebody_spoilt_is_told(looked: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(looked, tmp_path / "c")
+    for page in (folder / "faults" / "c01").glob("*.json"):
+        page.write_text('{"seed": 1')
+    for command in ("report", "faults"):
+        done = CliRunner().invoke(app, [command, str(folder)])
+        assert isinstance(done.exception, UsageError) or done.exit_code == 2
+        assert "cannot be read" in f"{done.output} {done.exception}"
+        assert "remove it, and it is made again" in " ".join(f"{done.output} {done.exception}".split())
+
+
+def test_a_test_as_it_was_kept_is_the_test_as_it_is_driven_again(looked: Path) -> None:
+    for number in (1, 2):
+        kept, (again, _) = kept_run(looked, "c01", number), run_again(looked, "c01", number)
+        assert kept.drive is not None
+        assert kept.verdict is not None
+        assert again.drive is not None
+        assert again.verdict is not None
+        for name in ("outcome", "description", "seed", "design", "request", "findings", "length"):
+            assert getattr(kept, name) == getattr(again, name)
+        for name in ("outcome", "cause", "side", "margin", "at_s", "max_oob", "oob_counter"):
+            assert getattr(kept.verdict, name) == getattr(again.verdict, name)
+        assert kept.verdict.at_xy == pytest.approx(again.verdict.at_xy, abs=0.001)
+        assert np.abs(kept.drive["x"] - again.drive["x"]).max() <= 0.00051
+        assert len(kept.drive) == len(read_trace(looked, "c01", number))
+
+
+def test_nobody_drives_where_a_test_is_taken_as_it_was_kept(
+    looked: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("roadgpt.run.simulate", "roadgpt.campaign.again.run_of"):
+        monkeypatch.setattr(name, lambda *_: pytest.fail("somebody drives"))
+    assert kept_run(looked, "c01", 1).outcome == "FAIL"
+
+
+def test_a_line_now_and_then_says_how_long_it_takes(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+
+    def steps() -> object:
+        for number in range(20):
+            now[0] += 4.0
+            yield number
+
+    assert [*watched(steps(), 20, "faults")] == [*range(20)]  # type: ignore[call-overload]
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "roadgpt: 3 of 20 faults, about 1 min 08 s to go"
+    assert len(lines) == 6
+    assert [*watched(iter([1]), 1, "faults", quiet=True)] == [1]
+    assert capsys.readouterr().err == ""
+
+
+def twice(number: int) -> int:
+    if number > 100:
+        raise UsageError("too large")
+    time.sleep(60 if number == 50 else 0)
+    return 2 * number
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_work_is_shared_and_what_goes_wrong_comes_back(workers: int) -> None:
+    assert sorted(shared(twice, [3, 1, 2], workers)) == [2, 4, 6]
+    with pytest.raises(UsageError, match="too large"):
+        [*shared(twice, [101, 1], workers)]
+
+
+def test_who_stops_listening_stops_the_workers() -> None:
+    from multiprocessing import active_children
+
+    work = shared(twice, [1, 50, 50, 50], 2)
+    assert next(work) == 2
+    begun = time.perf_counter()
+    work.close()
+    assert time.perf_counter() - begun < 10
+    assert not active_children()
+
+
+def test_a_page_that_was_looked_into_is_read_as_it_was(looked: Path) -> None:
+    for fault in faults_in(looked).them:
+        found = book.looked_into(looked, fault)
+        assert isinstance(found, Looked)
+        _, again = book.look_into(book.Look(looked, fault.number, fault.names, 2))
+        assert (found.name, found.why, found.stability) == (again.name, again.why, again.stability)

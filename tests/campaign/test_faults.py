@@ -15,6 +15,7 @@ from roadgpt.campaign.faults import (
     Repeated,
     Stability,
     faults_of,
+    manner_of,
     repeated,
     simplest,
     smallest_change,
@@ -22,8 +23,17 @@ from roadgpt.campaign.faults import (
     why,
 )
 from roadgpt.campaign.faults import minimise as minimising
-from roadgpt.campaign.faults.distinct import BEND, GRADE, SHIFT, Surroundings, distances, surroundings
+from roadgpt.campaign.faults.distinct import (
+    BEND,
+    GRADE,
+    SHIFT,
+    Surroundings,
+    distances,
+    surroundings,
+    typical,
+)
 from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
+from roadgpt.campaign.faults.fault import WAYS
 from roadgpt.campaign.faults.stability import drive_disturbed
 from roadgpt.check import inspect
 from roadgpt.cli.app import app
@@ -105,6 +115,17 @@ def test_a_crest_takes_grip_and_is_named() -> None:
     assert "crest" not in flat.sentence
     assert crest.hill < 0
     assert crest.needed > flat.needed * 1.05
+
+
+def test_the_way_of_a_failure_needs_no_drive() -> None:
+    road = build(design(straight(60), bend(-80, 20)))
+    run = failed(road, 72.0, t=1.5)
+    assert run.verdict is not None
+    found, reason = manner_of(road, WORLD, 72.0, run.verdict.cause, run.verdict.side), why(run)
+    assert (found.way, found.side, found.radius) == (reason.way, reason.side, reason.radius)
+    assert manner_of(road, WORLD, 72.0, "out of lane", "right").way == "inside"
+    assert manner_of(road, WORLD, 20.0, "out of lane", "right") == ("off", None, None)
+    assert manner_of(road, WORLD, 72.0, "stuck", None) == ("stopped", None, None)
 
 
 def test_a_straight_a_standstill_and_a_car_that_kept_its_lane() -> None:
@@ -355,6 +376,40 @@ def test_the_smallest_change_is_one_field_at_its_border(monkeypatch: pytest.Monk
         smallest_change(kept, replace(failing, design=WET))
 
 
+profiles_of_many = st.lists(st.sampled_from([-0.06, -0.03, 0.0, 0.03, 0.06]), min_size=1, max_size=40)
+
+
+@given(profiles_of_many, st.integers(1, 12))
+@settings(max_examples=40)
+def test_many_failures_fall_into_the_same_faults_as_few(bends: list[float], most: int) -> None:
+    """Steady bends so far apart that they are alike or not, whoever is compared with whom."""
+    many = [Surroundings(np.full(77, bend), np.zeros(77), "x") for bend in bends]
+    numbers: dict[float, int] = {}
+    assert faults_of(many, most=most) == [numbers.setdefault(bend, len(numbers)) for bend in bends]
+
+
+@given(st.lists(st.floats(-0.005, 0.005), min_size=1, max_size=12))
+@settings(max_examples=30)
+def test_the_most_typical_failure_is_nearest_to_all_others(bends: list[float]) -> None:
+    """Of steady bends the distance is the difference of curvature, so it is the one nearest to the mean."""
+    members = [Surroundings(np.full(77, bend), np.zeros(77), "x") for bend in bends]
+    order = typical(members)
+    assert sorted(order) == [*range(len(bends))]
+    squares = [sum((one - other) ** 2 for other in bends) / BEND**2 for one in bends]
+    assert squares[order[0]] == pytest.approx(min(squares), abs=1e-8)
+
+
+@pytest.mark.parametrize("other", ["driver", "world", "same"])
+def test_a_fault_belongs_to_a_driver_and_a_world(tmp_path: Path, other: str) -> None:
+    """Cells of one driver in one world share their faults."""
+    from roadgpt.campaign.faults.failed import system_of
+    from roadgpt.run import Setup
+
+    drivers = {"driver": Setup(driver="pure_pursuit"), "world": Setup(), "same": Setup(reader="grammar")}
+    world = World(friction=0.9) if other == "world" else WORLD
+    assert (system_of(WORLD, Setup()) == system_of(world, drivers[other])) is (other == "same")
+
+
 def test_the_command_looks_into_failures_once(
     slid: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -363,7 +418,8 @@ def test_the_command_looks_into_failures_once(
     words = ["faults", str(tmp_path), "--repeat", "2"]
     first = CliRunner().invoke(app, [*words, "--no-plot"], standalone_mode=False)
     assert first.exception is None
-    assert "\n1 failure, of which" in first.output
+    bend = f"a left bend of R {why(slid).radius:.0f} m"
+    assert f"\n1 distinct fault in 1 failure: the car {WAYS[why(slid).way]} {bend}\n" in first.output
     assert not (tmp_path / "faults" / "0001.png").exists()
     with monkeypatch.context() as patch:
         patch.setattr("roadgpt.campaign.faults.book.repeated", lambda *_: pytest.fail("driven again"))

@@ -25,6 +25,7 @@ _MODULES = {
     "Record": "record",
     "begin": "launch",
     "read_plan": "plan_file",
+    "kept_run": "again",
     "read_trace": "again",
     "run_again": "again",
     "status_of": "status",

@@ -12,10 +12,12 @@ from roadgpt.cli.rows import COLOURS, metres
 from roadgpt.cli.screen import new_bar
 
 if TYPE_CHECKING:
+    from roadgpt.campaign.faults import Faults
     from roadgpt.campaign.office import Progress
     from roadgpt.campaign.status import CellStatus, Status
 
 MOST_WORKERS = 4096
+COMPARED = 500  # failures of a campaign, evenly spread, whose faults are counted: under a second
 MOST_CELLS = 40  # that are shown one by one
 HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
 LINE = "{:<6} {:>9} {:>7} {:>7} {:>7} {:>13}  {}"
@@ -61,19 +63,30 @@ def sum_up(folder: Path, as_json: bool, quiet: bool) -> None:
     from roadgpt.campaign.status import status_of
 
     status = status_of(folder)
+    found = None if quiet and not as_json else faults_of(status)
     if as_json:
-        click.echo(as_line(status))
+        click.echo(as_line(status, found))
     elif not quiet:
-        for line in told(status):
+        for line in told(status, found):
             click.echo(line)
         click.echo(f"tables: {folder / 'results.csv'} and {folder / 'cells.csv'}")
 
 
-def as_line(status: "Status") -> str:
+def faults_of(status: "Status") -> "Faults | None":
+    """The distinct faults among failures that are compared in a moment; None: nobody drove."""
+    from roadgpt.campaign.faults import faults_in
+
+    if not status.outcomes.get("PASS") and not status.outcomes.get("FAIL"):
+        return None
+    return faults_in(Path(status.folder), COMPARED)
+
+
+def as_line(status: "Status", found: "Faults | None") -> str:
     """A status as one line of JSON."""
     import json
 
-    return json.dumps(status.to_json())
+    counts = found and {"faults": len(found.them), "failures": found.failures, "compared": found.compared}
+    return json.dumps({**status.to_json(), "distinct": counts})
 
 
 def _with_bar(steps: "Iterator[Progress]") -> None:
@@ -90,12 +103,16 @@ def outcomes_line(outcomes: Mapping[str, int]) -> str:
     return ", ".join(f"{outcomes[name]:,} {name}" for name in COLOURS if outcomes.get(name)) or "nothing yet"
 
 
-def told(status: "Status") -> Iterator[str]:
-    """A status in lines to read."""
+def told(status: "Status", found: "Faults | None") -> Iterator[str]:
+    """A status in lines to read, its distinct faults first."""
     state = "finished" if status.is_finished else "at work" if status.is_running else "interrupted"
     of = "" if status.total is None else f" of {status.total:,}"
     yield f"{status.folder}: {state}, {status.done:,}{of} tests in {duration(status.seconds)}" + _pace(status)
+    if found is not None and found.failures:
+        yield f"  {found.headline}"
     yield f"  {outcomes_line(status.outcomes)}"
+    if found is not None and found.them:
+        yield f"  why, how often again, and pictures: roadgpt faults {status.folder}"
     if status.tokens:
         yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
     if not status.is_finished and not status.is_running:

@@ -1,21 +1,22 @@
 """How commands look into failures: ``roadgpt faults``, and a campaign that has come to its end."""
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import shlex
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from roadgpt.cli.options import together, whole
+from roadgpt.cli.pool import shared
+from roadgpt.cli.progress import watched
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.faults import Failure, Line
+    from roadgpt.campaign.faults import Faults, Looked
     from roadgpt.campaign.faults.book import Draws
-    from roadgpt.run import Run
 
-REPEAT = 10  # disturbed drives of each failure, where nobody says how many
+REPEAT = 10  # disturbed drives of each fault, where nobody says how many
 DRIVES = whole(1, 1000, "drives")
 
 fault_options = together(
@@ -24,7 +25,10 @@ fault_options = together(
     ),
     click.option("--minimise", is_flag=True, help="The same, and look for the simplest road of each fault."),
     click.option(
-        "--repeat", type=DRIVES, default=None, help=f"The same; disturbed drives of each. [default: {REPEAT}]"
+        "--repeat",
+        type=DRIVES,
+        default=None,
+        help=f"The same; disturbed drives of each fault. [default: {REPEAT}]",
     ),
 )
 
@@ -40,19 +44,18 @@ class Look(NamedTuple):
     is_apart: bool = False
     """Standard output is for something else."""
 
+    @property
+    def words(self) -> list[str]:
+        """What ``roadgpt faults`` is told, to look into them like this."""
+        asked = [] if self.repeat == REPEAT else ["--repeat", str(self.repeat)]
+        asked += ["--minimise"] if self.minimise else []
+        asked += ["-j", str(self.workers)] if self.workers > 1 else []
+        return asked + ([] if self.has_pictures else ["--no-plot"])
+
     def say(self, text: str, is_news: bool = False) -> None:
         """Tell, unless nothing is to be said; what is news on the way goes to standard error."""
         if not self.is_quiet:
             click.echo(text, err=is_news or self.is_apart)
-
-
-class _Cell(NamedTuple):
-    """One cell whose failures are looked into."""
-
-    place: Path
-    name: str
-    base: Path
-    """Folder of what is found."""
 
 
 def asked(
@@ -67,45 +70,39 @@ def asked(
 
 
 def look_into_failures(place: Path, look: Look) -> None:
-    """Look into all failures of a run or a campaign, and tell.
+    """Find the distinct faults of a run or a campaign, look into one failure of each, and tell.
 
     Raises:
         UsageError: there are no roads, or a file cannot be read.
         RoadGPTError: a file cannot be written.
     """
-    from roadgpt.campaign.faults import cells_of
-    from roadgpt.campaign.faults.book import FOLDER
+    from roadgpt.campaign.faults import book, faults_in, look_into, write_tables
+    from roadgpt.campaign.faults.failed import drivers_of
+    from roadgpt.drive.trust import admit
 
-    found = 0
-    try:
-        with _spread(look.workers) as spread:
-            for name in cells_of(place):
-                found += _looked_into(_Cell(place, name, place / FOLDER / name), look, spread)
-    except KeyboardInterrupt:
-        click.echo(f"roadgpt: stopped; what is done is kept, go on with: roadgpt faults {place}", err=True)
-        raise
-    if not found:
+    found = faults_in(place)
+    if not found.failures:
         look.say("no road failed: there is no fault to look into")
-
-
-def _looked_into(cell: _Cell, look: Look, spread: Callable[..., Any]) -> int:
-    """Look into the failures of a cell; how many there are."""
-    from roadgpt.campaign.faults import failed_runs, look_into, table, write_table
-
-    found: list[Failure] = []
-    runs = failed_runs(cell.place, cell.name)
-    for failure in look_into(runs, cell.base, look.repeat, _draws(look.has_pictures), spread):
-        found.append(failure)
-        look.say(_line(failure), is_news=True)
-    if not found:
-        return 0
-    lines = table(found)
-    path = write_table(lines, cell.base)
-    look.say("\n".join([*([cell.name] if cell.name else []), _summary(lines)]))
-    if look.minimise:
-        _minimise(cell, lines, look)
-    look.say(f"table: {path}; pictures: {cell.base}/*.png")
-    return len(found)
+        return
+    for driver in sorted(drivers_of(place)):
+        admit(driver)  # here, where the user can be asked, and not in each of the workers
+    look.say(f"{found.sentence}; looking into a typical one of each fault", is_news=True)
+    draw = _draws(look.has_pictures)
+    tasks = [
+        book.Look(place, each.number, each.names, look.repeat, look.minimise, draw) for each in found.them
+    ]
+    steps = shared(look_into, tasks, look.workers)
+    try:
+        looked = dict(watched(steps, len(tasks), "faults", look.is_quiet))
+    except KeyboardInterrupt:
+        go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
+        click.echo(f"roadgpt: stopped; what is done is kept, go on with: {go_on}", err=True)
+        raise
+    table = write_tables(found.them, looked, place)
+    look.say("\n".join(_summary(place, found, looked)))
+    look.say(f"tables: {table} and {table.with_name(book.FAILURES)}")
+    if look.has_pictures:
+        look.say(f"pictures: {_pictures(place, found)}")
 
 
 def _draws(has_pictures: bool) -> "Draws | None":
@@ -116,64 +113,28 @@ def _draws(has_pictures: bool) -> "Draws | None":
     return draw_fault
 
 
-@contextmanager
-def _spread(workers: int) -> "Iterator[Callable[..., Any]]":
-    """A map over so many processes."""
-    if workers == 1:
-        yield map
-        return
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
-
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        yield pool.map
-
-
-def _line(failure: "Failure") -> str:
-    its = failure.stability
-    return f"road {failure.number}: failed again {its.failed}/{len(its.drives)}; {failure.why.sentence}"
-
-
-def _summary(lines: "list[Line]") -> str:
-    """One row per fault: how often, how stable its most stable failure is, and why that one failed."""
+def _summary(place: Path, found: "Faults", looked: "Mapping[int, Looked]") -> Iterator[str]:
+    """One row per fault: how many tests, and of a typical one how stable it is, and why it failed."""
     from roadgpt.study.chapters.saying import plural
 
-    first = {line.fault: line for line in reversed(lines)}
-    rows = [f"{'fault':>5} {'failures':>8} {'again':>7}  road  why"]
-    for number in sorted(first):
-        line, its = first[number], first[number].failure.stability
-        again = f"{its.failed}/{len(its.drives)}"
-        what = f"{line.failure.number:>4}  {line.failure.why.sentence}"
-        rows.append(f"{number:>5} {line.of_it:>8} {again:>7}  {what}")
-    stable = sum(line.failure.stability.is_stable for line in lines)
-    rows.append(
-        f"{plural(len(lines), 'failure')}, of which {stable} fail every second time or oftener; "
-        f"{plural(len(first), 'fault')}"
-    )
-    return "\n".join(rows)
+    wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
+    yield f"{'fault':>5} {'failures':>8} {'again':>7}  {'test':<{wide}}  why"
+    for fault in found.them:
+        its = looked[fault.number]
+        again = f"{its.stability.failed}/{len(its.stability.drives)}"
+        name = f"{its.name!s:<{wide}}"
+        yield f"{fault.number:>5} {len(fault.members):>8,} {again:>7}  {name}  {its.why.sentence}"
+        if its.simplest:
+            yield f"{'':>{wide + 26}}simplest: {its.simplest}"
+    stable = sum(its.stability.is_stable for its in looked.values())
+    yield found.headline
+    yield f"{stable:,} of {plural(len(found.them), 'fault')} fail every second time or oftener"
+    if looked:
+        yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"
 
 
-def _minimise(cell: _Cell, lines: "list[Line]", look: Look) -> None:
-    """The simplest road of each fault's most stable failure, beside its picture."""
-    from roadgpt.campaign.faults import failed_runs, simplest
-    from roadgpt.run.folder import run_folder, write_run
+def _pictures(place: Path, found: "Faults") -> str:
+    from roadgpt.campaign.faults.book import FOLDER
 
-    faults = {line.failure.number: line.fault for line in reversed(lines)}
-    first = {fault: number for number, fault in faults.items()}
-    for run in failed_runs(cell.place, cell.name, {*first.values()}):
-        place = cell.base / f"simplest-{faults[run.index]:02d}"
-        if run.design is None or _is_there(run_folder(place, run.index), run):
-            continue
-        found = simplest(run)
-        written = write_run(found.run, place)
-        look.say(f"fault {faults[run.index]}: {found.sentence}: {written}", is_news=True)
-
-
-def _is_there(folder: Path, failure: "Run") -> bool:
-    """Does the simplest road of this failure lie there already?"""
-    from roadgpt.run.folder import is_run, read_run
-
-    if not is_run(folder):
-        return False
-    there = read_run(folder)
-    return (there.request, there.seed) == (failure.request, failure.seed)
+    cells = sorted({fault.typical[0].name.cell for fault in found.them})
+    return ", ".join(f"{place / FOLDER / cell}/*.png" for cell in cells)

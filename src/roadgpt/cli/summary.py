@@ -9,7 +9,7 @@ import numpy as np
 from roadgpt.campaign import status_of
 from roadgpt.campaign.record import STORE
 from roadgpt.chat import Spent
-from roadgpt.cli.campaigns import told
+from roadgpt.cli.campaigns import faults_of, told
 from roadgpt.cli.replay import replay_lines
 from roadgpt.cli.rows import WIDEST, metres, row_of, spending
 from roadgpt.errors import UsageError
@@ -35,7 +35,8 @@ def show(path: Path | str) -> str:
         return "\n".join(_campaign_lines(path))
     if (path / STORE).is_file():
         again = f"one test as the folder of a run: roadgpt redrive {path} NUMBER"
-        return "\n".join([*told(status_of(path)), again])
+        status = status_of(path)
+        return "\n".join([*told(status, faults_of(status)), again])
     run = read_run(path)
     folder = path if path.is_dir() else run_folder(path.parent, run.index)
     return "\n".join(_run_lines(run, folder))

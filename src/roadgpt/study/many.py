@@ -4,12 +4,14 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from roadgpt.campaign.faults import faults_in
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.report.page import Block, Cell, Figure, Page, Section, Table, cell, linked, write
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
-from roadgpt.study.chapters.many import coverage, failures, faults, margins
+from roadgpt.study.chapters.faults import faults, headline, told_of
+from roadgpt.study.chapters.many import coverage, failures, margins
 from roadgpt.study.chapters.saying import (
     decimal,
     interval_cell,
@@ -22,6 +24,7 @@ from roadgpt.study.chapters.saying import (
 )
 from roadgpt.study.statistics import chi_squared, wilson
 
+COMPARED = 2000  # failures, evenly spread: their faults are found in seconds
 MOST_CELLS = 12  # whose curves and shares are drawn
 TABLES = ("results.csv", "cells.csv")
 
@@ -49,17 +52,21 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
     lead = f"{status.done:,} tests in {plural(len(status.cells), 'cell')}"
     lead += "" if status.is_finished else "; the campaign goes on"
+    found = faults_in(folder, COMPARED)
+    told = told_of(folder, found)
     pairs = nearest(record, [each for each in fields if each.goal == "boundary"][:MOST_CELLS])
-    sections = [Section("Outcomes", _outcomes(record, status, fields))]
+    gallery, covered = faults(folder, found, told), coverage(record, status.done)
+    sections = [gallery] if gallery else []
+    sections += [Section("Feature map", covered)] if covered else []
+    sections.append(Section("Outcomes", _outcomes(record, status, fields)))
     if any(c.outcomes.get("PASS") or c.outcomes.get("FAIL") for c in fields):
         goes_on = _drives_on(record)
-        blocks = [*failures(folder, record, fields[:MOST_CELLS], goes_on), *faults(folder, fields)]
-        sections.append(Section("Failures", blocks))
+        sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
         sections.append(Section("How near to failing", [margins(record, goes_on)]))
     sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
-    covered = coverage(record, status.done)
-    sections += [Section("Coverage", covered)] if covered else []
-    summary = [*_summary(record, status, fields), *nearest_sentence(pairs)]
+    driven = status.outcomes.get("PASS", 0) + status.outcomes.get("FAIL", 0)
+    summary = headline(found, told) if driven else []
+    summary += [*_summary(record, status, fields), *nearest_sentence(pairs)]
     return Page(title, summary, sections, _card(command, record, status), lead)
 
 

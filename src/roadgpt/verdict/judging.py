@@ -33,7 +33,9 @@ SBFT: dict[Cause | None, str] = {
 }
 
 
-def judge(road: "Road", drive: "Drive", world: "World") -> Verdict:
+def judge(
+    road: "Road", drive: "Drive", world: "World", known: tuple[int, Cause | None] | None = None
+) -> Verdict:
     """Whether the car kept its lane, by how many metres, and where it first did not.
 
     What comes first decides: a car that left its lane and later came to the goal, fell or got stuck (it was
@@ -43,7 +45,7 @@ def judge(road: "Road", drive: "Drive", world: "World") -> Verdict:
     Raises:
         UsageError: the drive was ended at another, smaller tolerance than ``world.oob_tolerance``.
     """
-    step, cause = _first_failure(road, drive, world)
+    step, cause = known or _first_failure(road, drive, world)
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
     left = _left(drive, step, world)

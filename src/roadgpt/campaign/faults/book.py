@@ -1,34 +1,44 @@
-"""The failures of a campaign, one by one, and which of them are the same fault.
+"""The book of a folder's faults: of each its most typical failure, repeated and made simpler.
 
-DIR/faults/  (of a campaign of several cells: DIR/faults/c01/ and so on)
-  0017.json    why, and every disturbed drive; where it is, the failure has been looked into
-  0017.png     what happened, from above
-  faults.csv   one line per failure, those of one fault together, the most stable first
+DIR/faults/
+  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; where it is, that is done
+  c01/0017.png     what happened, from above
+  simplest/c01/    a folder of runs: the simplest roads that fail alike, under the numbers of the failures
+  faults.csv       one line per fault, the one with most failures first
+  failures.csv     one line per failure, and the fault that it belongs to
+
+Of a folder of runs without c01/.
 """
 
 import csv
 import io
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
-from roadgpt.campaign.faults.distinct import Surroundings, faults_of, surroundings
 from roadgpt.campaign.faults.disturbed import Disturbance
-from roadgpt.campaign.faults.stability import STABLE, Repeated, Stability, repeated
+from roadgpt.campaign.faults.failed import failed_run
+from roadgpt.campaign.faults.fault import Fault
+from roadgpt.campaign.faults.minimise import simplest
+from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.faults.why import Why, why
+from roadgpt.campaign.names import Name
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.run import Run
+from roadgpt.run import Run, write_run
 from roadgpt.run.atomic import json_text, write_whole
+from roadgpt.run.folder import is_run, run_folder
 
 FOLDER = "faults"
-TABLE = "faults.csv"
+SIMPLEST = "simplest"
+TABLE, FAILURES = "faults.csv", "failures.csv"
 HEAD = (
-    "fault", "failures_of_it", "road", "failed_again", "drives", "share", "way", "side", "radius_m",
-    "entered_kmh", "needed_g", "grade", "station_m", "reason",
+    "fault", "failures", "test", "failed_again", "drives", "share", "way", "side", "radius_m",
+    "entered_kmh", "needed_g", "grade", "station_m", "reason", "simplest",
 )  # fmt: skip
+HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob")
 
 
 class Draws(Protocol):
@@ -39,138 +49,165 @@ class Draws(Protocol):
         ...
 
 
-@dataclass(frozen=True, eq=False)
-class Failure:
-    """One failure, looked into."""
+class Look(NamedTuple):
+    """One fault that is to be looked into; goes to another process."""
 
-    number: int
-    why: Why
-    stability: Stability
-    around: Surroundings
+    folder: Path
+    fault: int
+    """Its number."""
+    names: tuple[Name, ...]
+    """Of its typical failures, the most typical first."""
+    times: int
+    """Disturbed drives."""
+    minimise: bool = False
+    draw: Draws | None = None
 
 
 @dataclass(frozen=True)
-class Line:
-    """A failure as the table has it."""
+class Looked:
+    """One failure, looked into."""
 
-    fault: int
-    """From 1, in the order of the table."""
-    of_it: int
-    """Failures of the same fault."""
-    failure: Failure
+    name: Name
+    why: Why
+    stability: Stability
+    simplest: str = ""
+    """What is left of its road, in a sentence; empty where nobody has looked for that."""
 
 
-def look_into(
-    runs: Iterable[Run],
-    place: Path,
-    times: int,
-    draw: Draws | None = None,
-    spread: Callable[..., Iterable[Repeated]] = map,
-) -> Iterator[Failure]:
-    """Why each failed Run failed and how often it does, written into the folder ``place`` as it goes.
+def look_into(task: Look) -> tuple[int, Looked]:
+    """Why a fault's failure happens, how often, and what is left of its road; with the fault's number.
 
-    What is there already, with as many drives of the same road, is read and not driven again.
-
-    Args:
-        runs: those that did not fail are passed over.
-        place: ``DIR/faults``; made where it is not there.
-        times: disturbed drives of each.
-        draw: makes the picture; None makes none.
-        spread: as for ``repeated``.
+    It is the most typical failure that fails every second time or oftener; where none of ``task.names`` does,
+    the one that fails most often. What stands in the book already, with as many drives of the same road, is
+    read and not driven again.
 
     Raises:
+        UsageError: the run, or what stands in the book, cannot be read; a part is not installed.
         RoadGPTError: a file cannot be written.
     """
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RoadGPTError(f"cannot make {place}: {error.strerror}; make room there") from error
-    for run in runs:
-        if run.outcome != "FAIL" or run.verdict is None or run.road is None or run.drive is None:
-            continue
-        reason = why(run)
-        around = surroundings(run.road, run.world, reason.station, f"{run.verdict.cause} {run.verdict.side}")
-        path = place / f"{run.index:04d}.json"
-        stability = _read(path, run, times)
-        is_new = stability is None
-        stability = stability or repeated(run, times, spread)
-        picture = path.with_suffix(".png")
-        if draw is not None and (is_new or not picture.is_file()):
-            draw(run, reason, stability.sentence, picture)
-        if is_new:
-            write_whole(path, json_text(_written(run, reason, stability)))
-        yield Failure(run.index, reason, stability, around)
+    best: Looked | None = None
+    for name in task.names:
+        found = _repeated(task, name)
+        if best is None or found.stability.share > best.stability.share:
+            best = found
+        if best.stability.is_stable:
+            break
+    assert best is not None, "every fault has a failure"
+    return task.fault, _least(task, best) if task.minimise else best
 
 
-def table(failures: Sequence[Failure]) -> list[Line]:
-    """Faults with most failures first; within one the most stable failure first."""
-    clusters = faults_of([failure.around for failure in failures])
-    members: dict[int, list[Failure]] = {}
-    for cluster, failure in zip(clusters, failures, strict=True):
-        members.setdefault(cluster, []).append(failure)
-    ordered = sorted(members.values(), key=lambda its: (-len(its), its[0].number))
-    return [
-        Line(number, len(its), failure)
-        for number, its in enumerate(ordered, 1)
-        for failure in sorted(its, key=lambda failure: (-failure.stability.share, failure.number))
-    ]
+def _repeated(task: Look, name: Name) -> Looked:
+    """One failure, driven again and drawn, where that has not been done."""
+    run, path = failed_run(task.folder, name), _page(task.folder, name)
+    there = _read(path, run, name, task.times)
+    found = there or Looked(name, why(run), repeated(run, task.times))
+    _made(path.parent)
+    picture = path.with_suffix(".png")
+    if task.draw is not None and (there is None or not picture.is_file()):
+        task.draw(run, found.why, found.stability.sentence, picture)
+    if there is None:
+        write_whole(path, json_text(_written(run, found)))
+    return found
 
 
-def write_table(lines: Sequence[Line], place: Path) -> Path:
-    """``faults.csv``; the same failures give the same bytes."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(HEAD)
-    for line in lines:
-        its, reason = line.failure.stability, line.failure.why
-        writer.writerow(
-            [
-                line.fault, line.of_it, line.failure.number, its.failed, len(its.drives), f"{its.share:.3f}",
-                reason.way, reason.side or "", "" if reason.radius is None else f"{reason.radius:.1f}",
-                f"{reason.entered * 3.6:.1f}", f"{reason.needed:.3f}", f"{reason.grade:.3f}",
-                f"{reason.station:.1f}", reason.sentence,
-            ]
-        )  # fmt: skip
-    path = place / TABLE
-    write_whole(path, text.getvalue())
-    return path
+def _least(task: Look, found: Looked) -> Looked:
+    """The same with its simplest road, looked for where that has not been done."""
+    place = simplest_of(task.folder, found.name)
+    if found.simplest and is_run(place):
+        return found
+    run = failed_run(task.folder, found.name)
+    least = simplest(run)
+    write_run(least.run, _made(place.parent.parent))
+    found = replace(found, simplest=least.sentence)
+    write_whole(_page(task.folder, found.name), json_text(_written(run, found)))
+    return found
 
 
-class Counted(NamedTuple):
-    """What ``faults.csv`` comes to."""
-
-    failures: int
-    stable: int
-    """Of them, that fail every second time or oftener."""
-    faults: int
-
-
-def counted(place: Path) -> Counted | None:
-    """What ``place/faults.csv`` comes to; None where there is none.
+def looked_into(folder: Path, fault: Fault) -> Looked | None:
+    """What stands in the book of a fault, by the rule of ``look_into``; None: nobody has looked into it.
 
     Raises:
         UsageError: it cannot be read.
     """
+    pages = [name for name in fault.names if _page(folder, name).is_file()]
+    found = [its for name in pages if (its := _read(_page(folder, name), failed_run(folder, name), name))]
+    # of equals max takes the first, which is the most typical
+    return max(found, key=lambda its: its.stability.is_stable or its.stability.share, default=None)
+
+
+def simplest_of(folder: Path, name: Name) -> Path:
+    """The folder of the simplest road that fails as this one does."""
+    return run_folder(folder / FOLDER / SIMPLEST / name.cell, name.number)
+
+
+def _page(folder: Path, name: Name) -> Path:
+    return folder / FOLDER / name.cell / f"{name.number:04d}.json"
+
+
+def _made(place: Path) -> Path:
     try:
-        with (place / TABLE).open(encoding="utf-8", newline="") as file:
-            rows = [(int(row["fault"]), float(row["share"])) for row in csv.DictReader(file)]
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise UsageError(
-            f"{place / TABLE} cannot be read ({error}); remove it, and make it again with roadgpt faults"
-        ) from error
-    return Counted(len(rows), sum(share >= STABLE for _, share in rows), len({fault for fault, _ in rows}))
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RoadGPTError(f"cannot make {place}: {error.strerror}; make room there") from error
+    return place
 
 
-def _written(run: Run, reason: Why, stability: Stability) -> dict[str, Any]:
+def write_tables(faults: Sequence[Fault], looked: Mapping[int, Looked], folder: Path) -> Path:
+    """``faults.csv`` and ``failures.csv``; the same failures give the same bytes. Gives back the first.
+
+    Args:
+        faults: of the folder.
+        looked: into them, by their numbers.
+        folder: of the campaign, or of runs.
+
+    Raises:
+        RoadGPTError: a file cannot be written.
+    """
+    place = _made(folder / FOLDER)
+    members = [(each, fault.number) for fault in faults for each in fault.members]
+    of_failures = [
+        [
+            str(each.name), number, each.manner.way, each.manner.side or "", _decimal(each.manner.radius, 1),
+            f"{each.station:.1f}", _decimal(each.outside, 3),
+        ]
+        for each, number in sorted(members, key=lambda pair: pair[0].name)
+    ]  # fmt: skip
+    write_whole(place / FAILURES, _csv(HEAD_OF_FAILURES, of_failures))
+    write_whole(place / TABLE, _csv(HEAD, [_line(fault, looked[fault.number]) for fault in faults]))
+    return place / TABLE
+
+
+def _line(fault: Fault, looked: Looked) -> list[Any]:
+    its, reason = looked.stability, looked.why
+    return [
+        fault.number, len(fault.members), str(looked.name), its.failed, len(its.drives), f"{its.share:.3f}",
+        reason.way, reason.side or "", _decimal(reason.radius, 1), f"{reason.entered * 3.6:.1f}",
+        f"{reason.needed:.3f}", f"{reason.grade:.3f}", f"{reason.station:.1f}", reason.sentence,
+        looked.simplest,
+    ]  # fmt: skip
+
+
+def _decimal(value: float | None, digits: int) -> str:
+    return "" if value is None else f"{value:.{digits}f}"
+
+
+def _csv(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def _written(run: Run, found: Looked) -> dict[str, Any]:
     return {
-        "road": run.index,
+        "test": str(found.name),
         "seed": run.seed,
         "description": run.description,
-        "why": asdict(reason),
-        "stability": stability.sentence,
-        "drives": [_drive(drive) for drive in stability.drives],
+        "why": asdict(found.why),
+        "stability": found.stability.sentence,
+        "drives": [_drive(drive) for drive in found.stability.drives],
+        "simplest": found.simplest,
     }
 
 
@@ -179,16 +216,19 @@ def _drive(drive: Repeated) -> dict[str, Any]:
     return {**asdict(drive), "margin": drive.margin if math.isfinite(drive.margin) else None}
 
 
-def _read(path: Path, run: Run, times: int) -> Stability | None:
-    """The drives that were made before, where they are of this Run and as many."""
+def _read(path: Path, run: Run, name: Name, times: int | None = None) -> Looked | None:
+    """What was found before, where it is of this Run and, if that matters, of as many drives."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        if data["seed"] != run.seed or data["description"] != run.description or len(data["drives"]) != times:
+        if data["seed"] != run.seed or data["description"] != run.description:
             return None
-        return Stability(tuple(_drive_of(drive) for drive in data["drives"]))
+        if not data["drives"] or len(data["drives"]) != (times or len(data["drives"])):
+            return None
+        stability = Stability(tuple(_drive_of(drive) for drive in data["drives"]))
+        return Looked(name, Why(**data["why"]), stability, str(data.get("simplest", "")))
     except FileNotFoundError:
         return None
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"{path} cannot be read ({error}); remove it, and it is made again") from error
 
 

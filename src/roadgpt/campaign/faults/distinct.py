@@ -7,11 +7,12 @@ one cluster are alike; the number of clusters is the number of distinct failures
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, linkage
-from scipy.spatial.distance import squareform
+from scipy.spatial.distance import cdist, squareform
 
 from roadgpt.campaign.faults.why import lane_curvature
 from roadgpt.road import Road, World
@@ -26,6 +27,7 @@ ALIKE = 1.0  # distance up to which two failures are one fault
 BEND = 0.012  # 1/m, root mean square: so different bends count 1 (R 15 m against R 18 m all along)
 GRADE = 0.04  # ratio, likewise
 COUNT = round(AROUND / STEP)
+MOST = 1000  # failures that are compared each with each at a time: a second, and memory for a million numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,37 +66,92 @@ def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
     Road that only one of the two has counts as straight and level against the other's. Infinite for failures
     of different kinds. The same both ways round.
     """
-    if not others:
-        return np.empty(0)
-    bends, grades = np.stack([o.bends for o in others]), np.stack([o.grades for o in others])
-    least = np.full(len(others), np.inf)
+    return np.asarray(between([one], others)[0])
+
+
+def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Array:
+    """The distances of each to each, shape ``(len(some), len(others))``; see ``distances``."""
+    least = np.full((len(some), len(others)), np.inf)
+    if not least.size:
+        return least
+    one, other = _Stacked.of(some), _Stacked.of(others)
     for shift in range(-SHIFT, SHIFT + 1):
         # each takes half of the shift, so that neither of the two is the one that is moved
-        first, second = shift // 2, shift // 2 - shift
-        apart = _apart(one.bends, bends, first, second) / BEND**2
-        apart += _apart(one.grades, grades, first, second) / GRADE**2
-        least = np.minimum(least, np.sqrt(apart))
-    return np.where([o.kind == one.kind for o in others], least, np.inf)
+        a, b = one.moved(shift // 2), other.moved(shift // 2 - shift)
+        apart = cdist(a.bends, b.bends, "sqeuclidean") / BEND**2
+        apart += cdist(a.grades, b.grades, "sqeuclidean") / GRADE**2
+        # over the stretch that at least one of the two has
+        np.minimum(least, apart / (a.beyond.shape[1] - a.beyond @ b.beyond.T), out=least)
+    alike = np.equal.outer(one.kinds, other.kinds)
+    return np.where(alike, np.sqrt(least), np.inf)
 
 
-def _apart(one: Array, others: Array, first: int, second: int) -> Array:
-    """Mean square of the difference along the stretch that at least one of the two has."""
-    length = len(one) - 2 * SHIFT
-    a = one[SHIFT + first : SHIFT + first + length]
-    b = others[:, SHIFT + second : SHIFT + second + length]
-    known = ~(np.isnan(a) & np.isnan(b))
-    gap = np.where(known, np.nan_to_num(a) - np.nan_to_num(b), 0.0)
-    return np.asarray((gap**2).sum(axis=1) / known.sum(axis=1))
+class _Stacked(NamedTuple):
+    """Surroundings under each other; zeros beyond their roads."""
+
+    bends: Array
+    grades: Array
+    beyond: Array
+    """1 where there is no road."""
+    kinds: NDArray[np.object_]
+
+    @classmethod
+    def of(cls, them: Sequence[Surroundings]) -> Self:
+        bends, grades = np.stack([o.bends for o in them]), np.stack([o.grades for o in them])
+        kinds = np.array([o.kind for o in them], object)
+        return cls(np.nan_to_num(bends), np.nan_to_num(grades), np.isnan(bends).astype(float), kinds)
+
+    def moved(self, steps: int) -> Self:
+        """Where the departure lies so many steps on."""
+        part = slice(SHIFT + steps, self.bends.shape[1] - SHIFT + steps)
+        return self._replace(
+            bends=self.bends[:, part], grades=self.grades[:, part], beyond=self.beyond[:, part]
+        )
 
 
-def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE) -> list[int]:
-    """The fault that each failure belongs to, from 0, numbered in order of their first failure."""
-    if len(failures) < 2:
-        return [0] * len(failures)
-    apart = np.zeros((len(failures), len(failures)))
-    far = 1e6  # stands for infinity, which linkage does not take
-    for i, one in enumerate(failures):
-        apart[i, :i] = apart[:i, i] = np.minimum(distances(one, failures[:i]), far)
-    grown = fcluster(linkage(squareform(apart), "complete"), alike, "distance")
+def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int = MOST) -> list[int]:
+    """The fault that each failure belongs to, from 0, numbered in order of their first failure.
+
+    Args:
+        failures: all of them.
+        alike: distance up to which two are one fault.
+        most: failures that are compared each with each; of those beyond, one joins the fault whose most
+            typical failure is nearest to it and near enough, and the others are compared with each other.
+    """
+    found, left, count = np.full(len(failures), -1), np.arange(len(failures)), 0
+    while len(left):
+        now, left = left[:most], left[most:]
+        some = [failures[i] for i in now]
+        grown = _grown(some, alike)
+        found[now] = grown + count
+        middles = []
+        for cluster in range(grown.max() + 1) if len(left) else ():
+            members = [each for each, own in zip(some, grown, strict=True) if own == cluster]
+            middles.append(members[typical(members)[0]])
+        for start in range(0, len(left), most):
+            block = left[start : start + most]
+            apart = between([failures[i] for i in block], middles)
+            near = apart.min(axis=1) <= alike
+            found[block[near]] = apart.argmin(axis=1)[near] + count
+        left = left[found[left] < 0]
+        count += int(grown.max()) + 1
     numbers: dict[int, int] = {}
-    return [numbers.setdefault(int(cluster), len(numbers)) for cluster in grown]
+    return [numbers.setdefault(int(cluster), len(numbers)) for cluster in found]
+
+
+def _grown(some: Sequence[Surroundings], alike: float) -> NDArray[np.intp]:
+    """Clusters by complete linkage, numbered from 0."""
+    if len(some) < 2:
+        return np.zeros(len(some), int)
+    far = 1e6  # stands for infinity, which linkage does not take
+    apart = np.minimum(between(some, some), far)
+    apart = (apart + apart.T) / 2
+    np.fill_diagonal(apart, 0.0)
+    return np.asarray(fcluster(linkage(squareform(apart), "complete"), alike, "distance"), np.intp) - 1
+
+
+def typical(members: Sequence[Surroundings]) -> list[int]:
+    """Numbers of the failures of a fault, from 0: first the one that is nearest to all others of it."""
+    some = members[:MOST]
+    squares = between(some, some) ** 2
+    return [int(i) for i in np.argsort(np.round(squares.sum(axis=1), 9), kind="stable")]

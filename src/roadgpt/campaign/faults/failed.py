@@ -1,29 +1,70 @@
-"""The failed Runs of a folder, whoever made it."""
+"""The failures of a folder, whoever made it: where each happened, and its Run. Nobody drives."""
 
-from collections.abc import Container, Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from roadgpt.campaign.again import run_again
+import numpy as np
+
+from roadgpt.campaign.again import kept_run
+from roadgpt.campaign.faults.distinct import Surroundings, surroundings
+from roadgpt.campaign.faults.why import Manner, manner_of
+from roadgpt.campaign.model import Cell, Result
+from roadgpt.campaign.names import Name
 from roadgpt.campaign.record import STORE, Record
-from roadgpt.errors import UsageError
-from roadgpt.run import Run, read_run
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.road import Road, World, build
+from roadgpt.run import Run, Setup, read_run
 from roadgpt.run.campaign import finished
-from roadgpt.run.card import read_card
+from roadgpt.run.card import CARD, read_card
 from roadgpt.run.folder import is_run, run_folder
+from roadgpt.verdict.verdict import Cause, Side
 
 
-def cells_of(folder: Path) -> list[str]:
-    """Names of the cells of a campaign; one without a name for what ``roadgpt run`` made.
+@dataclass(frozen=True, eq=False)
+class Departure:
+    """Where one failure happened."""
+
+    name: Name
+    around: Surroundings
+    manner: Manner
+    station: float
+    """Metres along the road."""
+    outside: float | None
+    """Largest share of the car outside its lane, 0 to 1."""
+
+
+@dataclass(frozen=True)
+class Failures:
+    """The failures of a folder, all or an even sample."""
+
+    known: tuple[Departure, ...]
+    every: int
+    """How many there are, with those that are not in the sample or whose road is not known."""
+
+
+def failures_of(folder: Path, most: int | None = None) -> Failures:
+    """All failures of a run, of a folder of runs, or of a campaign, cell by cell.
+
+    Args:
+        folder: of any of these.
+        most: where there are more, so many of them, evenly spread; None: all.
 
     Raises:
         UsageError: nothing of the kind is there, or a file cannot be read.
     """
     if (folder / STORE).is_file():
         with Record.opened(folder) as record:
-            return [cell.name for cell in record.cells()]
-    if is_run(folder) or finished(folder):
-        return [""]
-    raise UsageError(f"there are no roads in {folder}; give the folder of a run or of a campaign")
+            names = record.query(
+                "SELECT cell, number FROM tests WHERE outcome = 'FAIL' ORDER BY cell, number"
+            )
+            some = [Name(*names[at]) for at in _spread(len(names), most)]
+            return Failures(tuple(_of_campaign(record, some)), len(names))
+    if not is_run(folder) and not finished(folder):
+        raise UsageError(f"there are no roads in {folder}; give the folder of a run or of a campaign")
+    runs = [run for run in _runs(folder) if run.outcome == "FAIL"]
+    some_runs = [runs[at] for at in _spread(len(runs), most)]
+    return Failures(tuple(map(_of_run, some_runs)), len(runs))
 
 
 def drivers_of(folder: Path) -> set[str]:
@@ -37,30 +78,81 @@ def drivers_of(folder: Path) -> set[str]:
     if (folder / STORE).is_file() or not finished(folder):
         with Record.opened(folder) as record:
             return {cell.request.setup.driver for cell in record.cells()}
-    return {read_card(folder).request.setup.driver}
+    if (folder / CARD).is_file():
+        return {read_card(folder).request.setup.driver}
+    return {run.request.setup.driver for run in _runs(folder)}
 
 
-def failed_runs(folder: Path, cell: str = "", only: Container[int] | None = None) -> Iterator[Run]:
-    """Those of one run, of a folder of runs, or of a cell of a campaign, one after another.
+def _spread(count: int, most: int | None) -> Sequence[int]:
+    if most is None or count <= most:
+        return range(count)
+    return [int(at) for at in np.linspace(0, count - 1, most)]
 
-    A campaign keeps no whole Runs, so its failures are driven again, which gives the same.
 
-    Args:
-        folder: of any of these.
-        cell: of a campaign.
-        only: numbers of the roads that are wanted; None: all.
+def _runs(folder: Path) -> Iterator[Run]:
+    for each in [folder] if is_run(folder) else [run_folder(folder, index) for index in finished(folder)]:
+        yield read_run(each)
+
+
+def _of_run(run: Run) -> Departure:
+    assert run.road is not None
+    assert run.verdict is not None
+    its = run.verdict
+    return _departure(
+        Name("", run.index), run.road, run.request.world, "", its.at_s, its.cause, its.side, its.max_oob
+    )
+
+
+def _of_campaign(record: Record, some: Sequence[Name]) -> Iterator[Departure]:
+    cells: dict[str, Cell] = {cell.name: cell for cell in record.cells()}
+    wanted = {name: {each.number for each in some if each.cell == name} for name in cells}
+    for name, cell in cells.items():
+        if not wanted[name]:
+            continue
+        whose = system_of(cell.request.world, cell.request.setup)
+        for its in record.results(name, "outcome = 'FAIL'"):
+            if its.number in wanted[name] and (found := _of_result(cell, its, whose)) is not None:
+                yield found
+
+
+def _of_result(cell: Cell, its: Result, whose: str) -> Departure | None:
+    """None where its road is not known any more."""
+    if its.design is None:
+        return None
+    try:
+        road = build(its.design, cell.request.setup.geometry)
+    except RoadGPTError:  # of another version, which built it
+        return None
+    name = Name(cell.name, its.number)
+    return _departure(name, road, cell.request.world, whose, its.at_s, its.cause, its.side, its.max_oob)
+
+
+def system_of(world: World, setup: Setup) -> str:
+    """What a fault belongs to: cells of the same driver, simulator and world share their faults."""
+    return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
+
+
+def _departure(
+    name: Name,
+    road: Road,
+    world: World,
+    whose: str,
+    at_s: float | None,
+    cause: Cause | None,
+    side: Side | None,
+    outside: float | None,
+) -> Departure:
+    station = at_s or 0.0
+    around = surroundings(road, world, station, f"{cause} {side} {whose}")
+    return Departure(name, around, manner_of(road, world, station, cause, side), station, outside)
+
+
+def failed_run(folder: Path, name: Name) -> Run:
+    """The Run of a failure, as it was kept.
 
     Raises:
         UsageError: a file cannot be read.
     """
-    if cell:
-        with Record.opened(folder) as record:
-            numbers = [result.number for result in record.results(cell, "outcome = 'FAIL'")]
-        for number in numbers:
-            if only is None or number in only:
-                yield run_again(folder, cell, number)[0]
-        return
-    for each in [folder] if is_run(folder) else [run_folder(folder, index) for index in finished(folder)]:
-        run = read_run(each)
-        if run.outcome == "FAIL" and (only is None or run.index in only):
-            yield run
+    if name.cell:
+        return kept_run(folder, name.cell, name.number)
+    return read_run(folder if is_run(folder) else run_folder(folder, name.number))

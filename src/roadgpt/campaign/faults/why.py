@@ -7,7 +7,7 @@ Dynamics and Control, 2nd ed., 2.6; k is that of the right lane's middle, not of
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.verdict import Verdict
+from roadgpt.verdict.verdict import Cause
 
 Array = NDArray[np.float64]
 Way = Literal["wide", "inside", "off", "stopped", "late"]
@@ -29,6 +30,16 @@ ENTRY = 0.5  # share of a bend's curvature at which it is said to begin
 JUST_BEFORE = 25.0  # m, from a bend of the other side, so that the two are told together
 HILL = 0.02  # of gravity that a crest takes or a dip adds, before it is told
 SLOPE = 0.03  # of grade, likewise
+
+
+class Manner(NamedTuple):
+    """In which way a car failed, in brief."""
+
+    way: Way
+    side: Literal["left", "right"] | None
+    """Of the bend; None on a straight."""
+    radius: float | None
+    """Metres, of the centre line where it bends most."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +85,34 @@ def lane_curvature(road: Road, world: World, stations: Array) -> Array:
     return np.asarray(bend / np.maximum(1 + bend * world.lane_width / 2, 0.2))
 
 
+def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
+    """Stations around a departure, the tightest curvature of the lane among them, and where that is."""
+    near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
+    bends = lane_curvature(road, world, near)
+    tightest = int(np.argmax(np.abs(bends)))
+    return near, float(bends[tightest]), float(near[tightest])
+
+
+def manner_of(
+    road: Road, world: World, station: float, cause: Cause | None, left_to: Literal["left", "right"] | None
+) -> Manner:
+    """In which way a car failed, from the road and the place alone: no drive is needed.
+
+    Args:
+        road, world: where.
+        station: of the departure, metres.
+        cause: of the failure.
+        left_to: the side to which it left.
+    """
+    if cause in ("stuck", "timeout"):
+        return Manner("stopped" if cause == "stuck" else "late", None, None)
+    _, bend, place = _bend_at(road, world, station)
+    if abs(bend) < STRAIGHT:
+        return Manner("off", None, None)
+    side: Literal["left", "right"] = "left" if bend > 0 else "right"
+    return Manner("inside" if left_to == side else "wide", side, 1 / float(np.abs(road.curvature(place))))
+
+
 def _standing(road: Road, drive: Drive, world: World, station: float, is_stuck: bool) -> Why:
     grade = float(road.grade(station))
     speed = float(drive["speed"][-1])
@@ -85,10 +124,7 @@ def _standing(road: Road, drive: Drive, world: World, station: float, is_stuck: 
 
 
 def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station: float) -> Why:
-    near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
-    bends = lane_curvature(road, world, near)
-    tightest = int(np.argmax(np.abs(bends)))
-    bend, place = float(bends[tightest]), float(near[tightest])
+    near, bend, place = _bend_at(road, world, station)
     begin = _entry(road, world, place, bend)
     entered = _speed_at(drive, min(begin, station))
     speed = _speed_at(drive, min(place, station))
@@ -96,21 +132,19 @@ def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station:
     hill = speed**2 * float(np.mean(road.vertical_curvature(near))) / GRAVITY
     needed = _needed(road, drive, world, begin, station)
     told = _slope_told(grade, hill)
-    if abs(bend) < STRAIGHT:
+    how = manner_of(road, world, station, verdict.cause, verdict.side)
+    if how.side is None or how.radius is None:
         sentence = (
             f"left a straight to the {verdict.side} at {speed * 3.6:.0f} km/h after {station:.0f} m{told}"
         )
         return Why("off", sentence, station, None, None, entered, needed, world.friction, grade, hill)
-    side: Literal["left", "right"] = "left" if bend > 0 else "right"
-    way: Way = "inside" if verdict.side == side else "wide"
-    radius = 1 / float(np.abs(road.curvature(place)))
     before = _after(road, begin, bend)
-    did = "and ran wide" if way == "wide" else "and cut its inside"
+    did = "and ran wide" if how.way == "wide" else "and cut its inside"
     sentence = (
-        f"entered an R {radius:.0f} m {side} at {entered * 3.6:.0f} km/h{before}{told} {did} after "
+        f"entered an R {how.radius:.0f} m {how.side} at {entered * 3.6:.0f} km/h{before}{told} {did} after "
         f"{station:.0f} m; the lane's middle needs {needed:.2f} g of {world.friction:.2f}"
     )
-    return Why(way, sentence, station, radius, side, entered, needed, world.friction, grade, hill)
+    return Why(how.way, sentence, station, how.radius, how.side, entered, needed, world.friction, grade, hill)
 
 
 def _needed(road: Road, drive: Drive, world: World, begin: float, station: float) -> float:

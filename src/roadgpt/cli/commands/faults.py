@@ -1,4 +1,4 @@
-"""``roadgpt faults``: why roads failed, how often they fail again, and which failures are one fault."""
+"""``roadgpt faults``: which failures are one fault, why each fails, and how often it fails again."""
 
 from pathlib import Path
 
@@ -10,9 +10,13 @@ from roadgpt.cli.options import driver_again_option, folder, whole
 
 @click.command()
 @click.argument("place", type=folder, metavar="DIR")
-@click.option("--repeat", type=DRIVES, default=REPEAT, show_default=True, help="Disturbed drives of each.")
+@click.option(
+    "--repeat", type=DRIVES, default=REPEAT, show_default=True, help="Disturbed drives of each fault."
+)
 @click.option("--minimise", is_flag=True, help="Also look for the simplest road that fails alike, per fault.")
-@click.option("-j", "workers", type=whole(1, 256, "processes"), default=1, show_default=True)
+@click.option(
+    "-j", "workers", type=whole(1, 256, "processes"), default=1, show_default=True, help="Faults at a time."
+)
 @driver_again_option
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
@@ -25,11 +29,12 @@ def command(
     no_plot: bool,
     quiet: bool,
 ) -> None:
-    """Look into failures, of a folder of runs or a campaign: why, how often again, and how many faults.
+    """Tell the distinct faults in a folder of runs or a campaign: why, how often again, and how many tests.
 
-    Each failing road is driven again and again with friction, start and the age of what the driver sees off
-    a little. Failures whose 60 m of road around the departure are alike are one fault. DIR/faults gets a
-    picture and a sentence of each, and faults.csv. What was done before is not done again.
+    Failures whose 60 m of road around the departure are alike are one fault. The most typical failure of each
+    fault is driven again and again with friction, start and the age of what the driver sees off a little.
+    DIR/faults gets a picture and a sentence of each, faults.csv with one line per fault, and failures.csv
+    with one per failure. What was done before is not done again, so Ctrl-C loses nothing.
 
     \b
     roadgpt faults roadgpt-runs/hairpins-7

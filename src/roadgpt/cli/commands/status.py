@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from roadgpt.cli.campaigns import as_line, told
+from roadgpt.cli.campaigns import as_line, faults_of, told
 
 
 @click.command()
@@ -15,5 +15,6 @@ def command(campaign: Path, as_json: bool) -> None:
     from roadgpt.campaign.status import status_of
 
     status = status_of(campaign)
-    for line in [as_line(status)] if as_json else told(status):
+    found = faults_of(status)
+    for line in [as_line(status, found)] if as_json else told(status, found):
         click.echo(line)

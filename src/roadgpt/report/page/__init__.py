@@ -8,20 +8,38 @@ card that says how it was made. ``write`` puts it into a folder:
     tables/NAME.csv .tex   every table, with plain numbers and for LaTeX (booktabs)
 
 Figures are SVG that takes its colours from the page; the modules here draw them: ``forest`` (shares with
-their intervals), ``heat`` (a matrix, or a map of cells), ``lines``, ``bars`` and ``gallery`` (roads by the
-hundred, each a link).
+their intervals), ``heat`` (a matrix, or a map of cells), ``lines``, ``bars``, ``gallery`` (roads by the
+hundred, each a link) and ``spot`` (the place of a failure).
 """
 
 from roadgpt.report.page.html import html_of
-from roadgpt.report.page.model import Block, Cell, Details, Figure, Page, Section, Table, cell, linked
+from roadgpt.report.page.model import (
+    Block,
+    Card,
+    Cards,
+    Cell,
+    Command,
+    Details,
+    Figure,
+    Line,
+    Page,
+    Section,
+    Table,
+    cell,
+    linked,
+)
 from roadgpt.report.page.text import csv_of, latex_of, markdown_of
 from roadgpt.report.page.writing import write
 
 __all__ = [
     "Block",
+    "Card",
+    "Cards",
     "Cell",
+    "Command",
     "Details",
     "Figure",
+    "Line",
     "Page",
     "Section",
     "Table",

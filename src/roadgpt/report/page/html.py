@@ -4,7 +4,20 @@ from functools import cache
 from html import escape
 from pathlib import Path
 
-from roadgpt.report.page.model import Block, Cell, Details, Figure, Line, Page, Section, Table, pieces_of
+from roadgpt.report.page.model import (
+    Block,
+    Card,
+    Cards,
+    Cell,
+    Command,
+    Details,
+    Figure,
+    Line,
+    Page,
+    Section,
+    Table,
+    pieces_of,
+)
 
 STYLE = Path(__file__).parent / "style.css"
 SHORT = 24  # letters of a cell that is not broken into lines
@@ -55,14 +68,27 @@ def _block(block: Block) -> str:
             f'<figure><div class="wide">{block.svg}</div>'
             f"<figcaption>{escape(block.caption)}</figcaption></figure>"
         )
+    if isinstance(block, Cards):
+        return f'<div class="cards">{"".join(map(_carded, block.cards))}</div>'
     if isinstance(block, Details):
         inside = "\n".join(_block(each) for each in block.blocks)
         return f"<details><summary>{escape(block.title)}</summary>\n{inside}\n</details>"
     return f"<p>{_line(block)}</p>"
 
 
+def _carded(card: Card) -> str:
+    lines = "".join(f"<p>{_line(line)}</p>" for line in card.lines)
+    return f"<article>{card.svg}<h3>{_line(card.title)}</h3>{lines}</article>"
+
+
 def _line(line: Line) -> str:
-    return "".join(escape(piece) if isinstance(piece, str) else _anchored(piece) for piece in pieces_of(line))
+    return "".join(map(_piece, pieces_of(line)))
+
+
+def _piece(piece: str | Cell) -> str:
+    if isinstance(piece, Command):
+        return f"<code>{escape(piece)}</code>"
+    return escape(piece) if isinstance(piece, str) else _anchored(piece)
 
 
 def _anchored(cell: Cell) -> str:

@@ -62,9 +62,32 @@ class Details:
     blocks: Sequence["Block"]
 
 
+class Command(str):
+    """What can be typed, among the words of a line."""
+
+    __slots__ = ()
+
+
 Line = str | Sequence[str | Cell]
-"""A paragraph: words, or words with links among them."""
-Block = Line | Table | Figure | Details
+"""A paragraph: words, or words with links and commands among them."""
+
+
+class Card(NamedTuple):
+    """One of many pictures with what has to be said of it."""
+
+    title: Line
+    svg: str
+    lines: Sequence[Line]
+
+
+@dataclass(frozen=True)
+class Cards:
+    """Pictures side by side, as many in a row as there is room for."""
+
+    cards: Sequence[Card]
+
+
+Block = Line | Table | Figure | Details | Cards
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,19 @@ import csv
 import io
 from collections.abc import Sequence
 
-from roadgpt.report.page.model import Block, Cell, Details, Figure, Line, Page, Raw, Table, pieces_of
+from roadgpt.report.page.model import (
+    Block,
+    Cards,
+    Cell,
+    Command,
+    Details,
+    Figure,
+    Line,
+    Page,
+    Raw,
+    Table,
+    pieces_of,
+)
 
 LATEX = {
     "\\": r"\textbackslash{}",
@@ -58,6 +70,8 @@ def _blocks(blocks: Sequence[Block]) -> list[str]:
             out.append(_table(block))
         elif isinstance(block, Figure):
             out.append(f"*{_told(block.caption)}* (figure: see report.html)")
+        elif isinstance(block, Cards):
+            out += [f"**{_line(card.title)}** {' '.join(map(_line, card.lines))}" for card in block.cards]
         elif isinstance(block, Details):
             out += [f"**{_told(block.title)}**", *_blocks(block.blocks)]
         else:
@@ -66,7 +80,13 @@ def _blocks(blocks: Sequence[Block]) -> list[str]:
 
 
 def _line(line: Line) -> str:
-    return "".join(_told(piece) if isinstance(piece, str) else _linked(piece) for piece in pieces_of(line))
+    return "".join(map(_piece, pieces_of(line)))
+
+
+def _piece(piece: str | Cell) -> str:
+    if isinstance(piece, Command):
+        return f"`{piece}`"
+    return _told(piece) if isinstance(piece, str) else _linked(piece)
 
 
 def _linked(cell: Cell) -> str:

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.campaign.behaviour import BOUNDS
-from roadgpt.campaign.faults.book import FOLDER, TABLE, counted
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
 from roadgpt.report.page import Block, Cell, Figure, Table, cell
@@ -22,6 +21,7 @@ STEPS = 200  # of a curve
 SAMPLE = 100_000  # tests whose features are read, evenly spread
 SIDE = 25  # cells of a map along each axis
 MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is in the outermost
+FEW = 10  # cells of a map, below which it shows nothing where all hold the same number
 MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))
 
 
@@ -76,20 +76,6 @@ def _caption(shown: int, every: int, drives_on: bool) -> str:
         if drives_on
         else f"The first {shown} of {every:,} failures"
     )
-
-
-def faults(folder: Path, cells: Sequence[CellStatus]) -> list[Block]:
-    """How many faults the failures are, of the cells that ``roadgpt faults`` has looked into."""
-    rows = []
-    for each in cells:
-        found = counted(folder / FOLDER / each.name)
-        if found is not None:
-            name = cell(each.name, href=f"{FOLDER}/{each.name}/{TABLE}")
-            failed = cell(each.outcomes.get("FAIL", 0))
-            rows.append([name, failed, cell(found.failures), cell(found.stable), cell(found.faults)])
-    heads = ["cell", "failures", "looked into", "fail again every second time", "faults"]
-    caption = "Faults: failures that are alike are one"
-    return [Table("faults", caption, heads, rows)] if rows else []
 
 
 def again(folder: Path, name: str, number: int) -> str:
@@ -172,7 +158,7 @@ def coverage(record: Record, done: int) -> list[Block]:
             continue
         across, upwards = pair
         sums = _map(record, across, upwards, every)
-        if not sums.any():
+        if not is_map(sums):
             continue
         filled = int(np.count_nonzero(sums))
         part = f" of every {every:,}th test" if every > 1 else ""
@@ -180,6 +166,12 @@ def coverage(record: Record, done: int) -> list[Block]:
         axes = (Axis(CALLED[across], *BOUNDS[across]), Axis(CALLED[upwards], *BOUNDS[upwards]))
         blocks.append(Figure(f"map-{across.lower()}", caption, heat(sums, *axes, "tests", caption)))
     return blocks
+
+
+def is_map(values: NDArray[np.float64]) -> bool:
+    """Do cells with numbers tell anything? Not if there is one at most, or a few that all hold the same."""
+    filled = values[np.isfinite(values) & (values > 0)]
+    return len(np.unique(filled)) > 1 or len(filled) >= FEW
 
 
 def _map(record: Record, across: str, upwards: str, every: int) -> NDArray[np.float64]:

@@ -1,0 +1,118 @@
+"""The distinct faults of a folder: its failures, those that are alike together. Nobody drives."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadgpt.campaign.faults.distinct import faults_of, typical
+from roadgpt.campaign.faults.failed import Departure, failures_of
+from roadgpt.campaign.faults.why import Way
+from roadgpt.campaign.names import Name
+
+DEFINED = (
+    "Two failures are one fault where the same driver, in the same world, left its lane for the same cause, "
+    "to the same side, and where the road bends and climbs alike from 30 m before the place to 30 m after it."
+)
+MOST_WAYS = 3  # that a headline tells
+TRIED = 3  # typical failures of a fault that are repeated, until one fails every second time
+WAYS: dict[Way, str] = {
+    "wide": "ran wide of",
+    "inside": "cut the inside of",
+    "off": "left a straight",
+    "stopped": "came to a standstill",
+    "late": "ran out of time",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Fault:
+    """Failures that are alike."""
+
+    number: int
+    """From 1; the fault with most failures first."""
+    members: tuple[Departure, ...]
+    """In the order of their tests."""
+    typical: tuple[Departure, ...]
+    """A few of them, first the one that is nearest to all others of the fault."""
+
+    @property
+    def names(self) -> tuple[Name, ...]:
+        """Of the typical ones."""
+        return tuple(each.name for each in self.typical)
+
+
+@dataclass(frozen=True, eq=False)
+class Faults:
+    """The faults of a folder."""
+
+    them: tuple[Fault, ...]
+    failures: int
+    """All failures of the folder."""
+    compared: int
+    """How many of them were compared; the others are not in any fault."""
+
+    @property
+    def headline(self) -> str:
+        """How many, and how the car failed: '3 distinct faults in 9 failures: the car ran wide of ...'."""
+        ways = "; it ".join(self.ways[:MOST_WAYS])
+        more = len(self.ways) - MOST_WAYS
+        also = f"; and in {more} other way{'s' * (more > 1)}" if more > 0 else ""
+        return f"{self.sentence}: the car {ways}{also}" if ways else self.sentence
+
+    @property
+    def sentence(self) -> str:
+        """'17 distinct faults in 170 failures'."""
+        count = len(self.them)
+        if not self.failures:
+            return "no road failed"
+        faults = f"{count:,} distinct fault{'s' * (count != 1)}"
+        failures = f"{self.failures:,} failure{'s' * (self.failures != 1)}"
+        if self.compared == self.failures:
+            return f"{faults} in {failures}"
+        if not self.compared:
+            return f"{failures}; their roads are not known, so nobody can tell how many faults they are"
+        return f"at least {faults} in {failures} ({self.compared:,} of them compared)"
+
+    @property
+    def ways(self) -> list[str]:
+        """In which ways the car failed, the commonest first: 'ran wide of right bends of R 15 m to 17 m'."""
+        found: dict[tuple[Way, str | None], list[Departure]] = {}
+        for fault in self.them:
+            for each in fault.members:
+                found.setdefault((each.manner.way, each.manner.side), []).append(each)
+        ordered = sorted(found.items(), key=lambda item: -len(item[1]))
+        return [_told(way, side, members) for (way, side), members in ordered]
+
+
+def _told(way: Way, side: str | None, members: Sequence[Departure]) -> str:
+    radii = sorted(each.manner.radius for each in members if each.manner.radius is not None)
+    if side is None or not radii:
+        return WAYS[way]
+    if len(radii) == 1:
+        return f"{WAYS[way]} a {side} bend of R {radii[0]:.0f} m"
+    low, high = f"{radii[0]:.0f}", f"{radii[-1]:.0f}"
+    return f"{WAYS[way]} {side} bends of R {low} m" + (f" to {high} m" if low != high else "")
+
+
+def faults_in(folder: Path, most: int | None = None) -> Faults:
+    """The distinct faults of a run, of a folder of runs, or of a campaign.
+
+    Args:
+        folder: of any of these.
+        most: failures at most that are compared, evenly spread; None: all.
+
+    Raises:
+        UsageError: nothing of the kind is there, or a file cannot be read.
+    """
+    failures = failures_of(folder, most)
+    return Faults(tuple(_grouped(failures.known)), failures.every, len(failures.known))
+
+
+def _grouped(known: Sequence[Departure]) -> Iterator[Fault]:
+    members: dict[int, list[Departure]] = {}
+    for cluster, each in zip(faults_of([each.around for each in known]), known, strict=True):
+        members.setdefault(cluster, []).append(each)
+    ordered = sorted(members.values(), key=lambda its: (-len(its), its[0].name))
+    for number, its in enumerate(ordered, 1):
+        some = typical([each.around for each in its])[:TRIED]
+        yield Fault(number, tuple(its), tuple(its[at] for at in some))

@@ -1,0 +1,60 @@
+"""Work shared among processes of this machine, in the order in which it ends."""
+
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from typing import TypeVar
+
+from roadgpt.provenance import Names, join, known
+from roadgpt.stopping import look, shielded
+
+T = TypeVar("T")
+U = TypeVar("U")
+
+
+def shared(function: Callable[[T], U], items: Iterable[T], workers: int) -> Iterator[U]:
+    """``function`` of every item, as each is done; by one worker, in this process.
+
+    Whoever stops listening, by Ctrl-C or otherwise, stops the workers.
+
+    Args:
+        function: stands at the top of a module.
+        items: what it is to be done with; so are they and what it gives back, if there are several workers.
+        workers: processes.
+
+    Raises:
+        What ``function`` raises.
+    """
+    if workers == 1:
+        for item in items:
+            look()
+            yield function(item)
+        return
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from multiprocessing import active_children, get_context
+
+    before = {*active_children()}
+    pool = ProcessPoolExecutor(
+        workers, mp_context=get_context("spawn"), initializer=_begun, initargs=(known(),)
+    )
+    try:
+        with shielded():
+            futures = [pool.submit(function, item) for item in items]
+        for future in as_completed(futures):
+            look()
+            yield future.result()
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        ours = {*active_children()} - before
+        for child in ours:
+            child.terminate()
+        for child in ours:
+            child.join()
+        raise
+    pool.shutdown()
+
+
+def _begun(names: tuple[Names, Names]) -> None:
+    """Ctrl-C goes to all processes of a terminal, and the first one sees to the others. Whose code may run,
+    they know from it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    join(names)

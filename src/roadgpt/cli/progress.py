@@ -1,0 +1,51 @@
+"""Progress of things that take long: a bar on a terminal, else a line now and then, with the time to go."""
+
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from typing import TypeVar
+
+import click
+
+from roadgpt.cli.campaigns import duration
+from roadgpt.cli.screen import new_bar
+
+T = TypeVar("T")
+EVERY = 10.0  # s between two lines where there is no terminal
+
+
+def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
+    """The steps, while standard error tells how many of them are done and how long the others will take.
+
+    Args:
+        steps: each is handed out when it is done.
+        total: how many there are.
+        what: they are, in the plural: 'faults'.
+        quiet: say nothing.
+    """
+    if quiet:
+        yield from steps
+    elif sys.stderr.isatty():
+        yield from _with_bar(steps, total, what)
+    else:
+        yield from _with_lines(steps, total, what)
+
+
+def _with_bar(steps: Iterable[T], total: int, what: str) -> Iterator[T]:
+    bar = new_bar()
+    task = bar.add_task(what, total=total, rate="")
+    with bar:
+        for step in steps:
+            bar.advance(task)
+            yield step
+
+
+def _with_lines(steps: Iterable[T], total: int, what: str) -> Iterator[T]:
+    begun = told = time.monotonic()
+    for done, step in enumerate(steps, 1):
+        now = time.monotonic()
+        if now - told >= EVERY and done < total:
+            left = (now - begun) / done * (total - done)
+            click.echo(f"roadgpt: {done:,} of {total:,} {what}, about {duration(left)} to go", err=True)
+            told = now
+        yield step

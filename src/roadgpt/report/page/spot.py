@@ -1,0 +1,93 @@
+"""The place of one failure from above: road, lane, the way that the car took, and the car where it failed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.drive import Drive
+from roadgpt.report.page.svg import chart, line, number, tag, words
+from roadgpt.road import Road, World
+
+Array = NDArray[np.float64]
+
+SIDE = 240.0  # px
+ACROSS = 52.0  # m that are shown
+BEHIND = 8.0  # m by which the middle of the picture lies before the failure: what led to it matters more
+REACH = 60.0  # m of road that are drawn, before and after
+SCALE = 10.0  # m, of the bar
+
+
+@dataclass(frozen=True, eq=False)
+class Spot:
+    """What is drawn, in metres ``(n, 2)``."""
+
+    left: Array
+    """Left edge of the road."""
+    middle: Array
+    right: Array
+    path: Array
+    """Of the middle of the car, up to the failure; empty where no drive is known."""
+    car: Array | None
+    """Its four corners at the failure."""
+    at: Array
+    """``(2,)``: the place on the road."""
+    heading: float
+    """Radians: which way is up, that of the road on the way there."""
+
+
+def spot_of(road: Road, world: World, drive: Drive | None, station: float) -> Spot:
+    """The place of a failure ``station`` metres along a road."""
+    s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
+    w = world.lane_width
+    left, middle, right = (road.at(s, np.full(len(s), t))[:, :2] for t in (w, 0.0, -w))
+    path, car = np.empty((0, 2)), None
+    if drive is not None:
+        last = _step(drive, station)
+        near = np.flatnonzero(drive["s"][: last + 1] >= station - REACH)[::5]
+        path = np.stack([drive["x"], drive["y"]], axis=1)[[*near, last]]
+        car = drive.corners(last)
+    heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
+    return Spot(left, middle, right, path, car, road.at(station, -w / 2)[:2], heading)
+
+
+def _step(drive: Drive, station: float) -> int:
+    """Of the drive, where the car first came to a station."""
+    reached = np.flatnonzero(drive["s"] >= station)
+    return int(reached[0]) if len(reached) else len(drive) - 1
+
+
+def spot(of: Spot, label: str) -> str:
+    """The picture; up is the way that the road led to the failure."""
+    turned = np.pi / 2 - of.heading
+    turn = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
+    size = SIDE / ACROSS
+
+    def placed(points: Array) -> Array:
+        there = (points - of.at) @ turn.T * size
+        return np.asarray([SIDE / 2, SIDE / 2 - BEHIND * size] + there * [1, -1])
+
+    left, middle, right = (placed(each) for each in (of.left, of.middle, of.right))
+    road = _points(np.concatenate([left, right[::-1]]))
+    out = [
+        tag("rect", width=SIDE, height=SIDE, fill="var(--wash)"),
+        tag("polygon", points=road, fill="var(--road)"),
+        *(_line(edge, "var(--edge)", 1.4) for edge in (left, right)),
+        _line(middle, "var(--edge)", 1.2, stroke_dasharray="9 7"),
+    ]
+    if len(of.path):
+        out.append(_line(placed(of.path), "var(--s0)", 2.4))
+    if of.car is not None:
+        car = _points(placed(of.car))
+        out.append(tag("polygon", points=car, fill="var(--fail)", fill_opacity=0.85, stroke="var(--paper)"))
+    bar, below = SCALE * size, SIDE - 12.0
+    out += [line(12, below, 12 + bar, below, "axis"), words(12, below - 5, f"{SCALE:.0f} m", 10.5)]
+    return chart(SIDE, SIDE, "".join(out), label)
+
+
+def _points(points: Array) -> str:
+    return " ".join(f"{number(x)},{number(y)}" for x, y in points.tolist())
+
+
+def _line(points: Array, colour: str, width: float, **more: str) -> str:
+    return tag("polyline", points=_points(points), fill="none", stroke=colour, stroke_width=width, **more)

@@ -1,0 +1,146 @@
+"""The section on distinct faults: a gallery, and all of them as a table. Nobody drives."""
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from roadgpt.campaign.faults import Fault, Faults, Looked, Why, failed_run, looked_into, why
+from roadgpt.campaign.faults.book import FOLDER, TABLE
+from roadgpt.campaign.faults.fault import DEFINED
+from roadgpt.campaign.names import Name
+from roadgpt.report.page import Block, Card, Cards, Cell, Command, Details, Line, Section, Table, cell, linked
+from roadgpt.report.page.spot import spot, spot_of
+from roadgpt.run import Run
+from roadgpt.study.chapters.saying import percent, plural
+
+SHOWN = 24  # faults with a picture
+LISTED = 300  # faults of the table
+DRAWN = (
+    "Each picture is of a typical failure: up is the way that the road led there, blue the way of the car, "
+    "orange the car where it failed."
+)
+
+
+class Told(NamedTuple):
+    """What is known of a fault."""
+
+    fault: Fault
+    run: Run
+    """Its typical failure."""
+    name: Name
+    looked: Looked | None
+    why: Why | None
+    """None where its drive is not known."""
+
+    @property
+    def reason(self) -> str:
+        """Why the car failed, in a sentence without a full stop."""
+        return self.why.sentence if self.why else self.run.description
+
+
+def told_of(folder: Path, found: Faults) -> list[Told]:
+    """What is known of the faults of a folder, up to the last that the page tells of.
+
+    Raises:
+        UsageError: a run cannot be read, or what ``roadgpt faults`` has written.
+    """
+    return [_told(folder, fault) for fault in found.them[:LISTED]]
+
+
+def _told(folder: Path, fault: Fault) -> Told:
+    looked = looked_into(folder, fault)
+    name = looked.name if looked else fault.names[0]
+    run = failed_run(folder, name)
+    reason = looked.why if looked else why(run) if run.drive is not None else None
+    return Told(fault, run, name, looked, reason)
+
+
+def headline(found: Faults, told: Sequence[Told]) -> list[str]:
+    """The first lines of a page: how many faults, how stable they are, and in which ways the car failed."""
+    if not found.failures:
+        return ["No road failed."]
+    measured = [each.looked.stability.is_stable for each in told if each.looked]
+    sure = f"{sum(measured)} of {len(measured)} that were driven again" if measured else ""
+    first = f"{found.headline[:1].upper()}{found.headline[1:]}."
+    return [first, *([f"Of the faults, {sure} fail every second time or oftener."] if sure else [])]
+
+
+def faults(folder: Path, found: Faults, told: Sequence[Told]) -> Section | None:
+    """A gallery of the faults with most failures, and a table; None where no failure was compared."""
+    if not told:
+        return None
+    blocks: list[Block] = [f"{DEFINED} {DRAWN}"]
+    missing = [each for each in told if each.looked is None]
+    if missing:
+        what = "was not measured" if len(missing) == len(told) else f"was not measured of {len(missing)}"
+        blocks.append(
+            [
+                f"How often they fail again {what}: ",
+                Command(shlex.join(["roadgpt", "faults", str(folder), "--minimise"])),
+                " drives a typical failure of each fault again and again, with friction, start and sensors "
+                "off a little, and looks for the simplest road that fails alike.",
+            ]
+        )
+    blocks.append(Cards([_card(folder, each, found) for each in told[:SHOWN]]))
+    blocks.append(_all(folder, found, told))
+    return Section("Distinct faults", blocks)
+
+
+def _card(folder: Path, told: Told, found: Faults) -> Card:
+    count = len(told.fault.members)
+    share = f" ({percent(count / found.compared, 0)} of failures)" if found.compared else ""
+    title: Line = [
+        f"{told.fault.number} · ",
+        Cell(count, plural(count, "test"), _picture(folder, told)),
+        share,
+    ]
+    reason = f"{told.reason[:1].upper()}{told.reason[1:]}."
+    lines: list[Line] = [reason, _stable(told)]
+    farthest = max((each.outside or 0.0 for each in told.fault.members), default=0.0)
+    if farthest:
+        lines.append(f"Largest share of the car outside its lane: {percent(farthest, 0)}.")
+    if told.looked and told.looked.simplest:
+        lines.append(f"Simplest road that fails alike: {told.looked.simplest}.")
+    lines.append([Command(shlex.join(["roadgpt", "view", f"{folder}/{told.name}"]))])
+    assert told.run.road is not None
+    station = told.why.station if told.why else told.fault.typical[0].station
+    picture = spot(spot_of(told.run.road, told.run.world, told.run.drive, station), reason)
+    return Card(title, picture, lines)
+
+
+def _stable(told: Told) -> str:
+    if told.looked is None:
+        return "Nobody has driven it again."
+    said = told.looked.stability.sentence
+    return f"{said[:1].upper()}{said[1:]}."
+
+
+def _picture(folder: Path, told: Told) -> str:
+    """Address of the picture of a typical failure; empty where none was drawn."""
+    place = "/".join(part for part in (FOLDER, told.name.cell, f"{told.name.number:04d}.png") if part)
+    return place if (folder / place).is_file() else ""
+
+
+def _all(folder: Path, found: Faults, told: Sequence[Told]) -> Block:
+    rows = []
+    for each in told:
+        its = each.looked.stability if each.looked else None
+        rows.append(
+            [
+                cell(each.fault.number),
+                cell(len(each.fault.members)),
+                cell(str(each.name), href=_picture(folder, each)),
+                cell(None) if its is None else cell(its.share, f"{its.failed} of {len(its.drives)}"),
+                cell(each.reason),
+            ]
+        )
+    heads = ["fault", "tests", "typical test", "failed again", "why"]
+    caption = f"All {plural(len(found.them), 'fault')}"
+    if len(told) < len(found.them):
+        caption = f"The first {len(told)} of {len(found.them):,} faults"
+    table = Table("faults", caption, heads, rows)
+    beside: list[Block] = []
+    if (folder / FOLDER / TABLE).is_file():
+        beside.append(["As roadgpt faults last wrote them: ", linked(TABLE, f"{FOLDER}/{TABLE}"), "."])
+    return Details("All faults as a table", [table, *beside])
