@@ -32,7 +32,24 @@ class DriverError(RoadGPTError):
 
 
 class SimulationError(RoadGPTError):
-    """The physics of a drive broke down: numbers that are not finite."""
+    """No drive came of it: the physics broke down, or the simulator failed."""
+
+
+class SimulatorError(SimulationError):
+    """The simulator itself failed: it could not be started, went away, or gave no answer."""
+
+
+class GivenUpError(RoadGPTError):
+    """A simulator that failed again and again is not asked any more."""
+
+    exit_status = 5
+
+    def __init__(self, why: str, again: str) -> None:
+        super().__init__(why, again)
+        self.why, self.again = why, again
+
+    def __str__(self) -> str:
+        return f"{self.why}; {self.again}"
 
 
 class PartError(UsageError):

@@ -21,6 +21,7 @@ from roadgpt.campaign.traces import SUFFIX, TRACES
 from roadgpt.campaign.worker import Ready
 from roadgpt.chat import Meter, Spent
 from roadgpt.chat.config import key_for
+from roadgpt.drive import refuse_ignored
 from roadgpt.drive.apart import driver_of
 from roadgpt.drive.trust import admit
 from roadgpt.errors import UsageError
@@ -102,8 +103,11 @@ def _admit(plan: Plan) -> None:
 
 
 def _drivers_come(plan: Plan) -> None:
-    """A driver whose name is mistyped is told of before anything is kept or paid for."""
+    """A driver whose name is mistyped is told of before anything is kept or paid for; and so is a setting
+    that a simulator cannot heed."""
     if plan.drives:
+        for simulator in plan.simulators:
+            refuse_ignored(plugins.find("simulators", simulator), plan.world)
         for driver in dict.fromkeys(plan.drivers):
             driver_of(driver)
 

@@ -14,6 +14,7 @@ from roadgpt.campaign.store import Store
 from roadgpt.campaign.traces import Trace, write_traces
 from roadgpt.campaign.worker import Broke, Ended, Task, do, failed
 from roadgpt.errors import BudgetError, RoadGPTError
+from roadgpt.run.losses import Losses
 from roadgpt.stopping import look
 
 WAIT = 0.25  # s for results, before looking round
@@ -68,6 +69,7 @@ class Office:
         self._shared: dict[str, set[int]] = {}
         self._pending: list[tuple[str, Ended]] = []
         self._oldest = self._looked = time.monotonic()
+        self._losses: Losses[_Out] = Losses()
         self._error: Exception | None = None
         self._may_write = True
         self._has_news = False
@@ -216,6 +218,19 @@ class Office:
             self._pending.append((out.course.cell.name, value))
             self.progress.outcomes[value.result.outcome] += 1
             out.course.ended(out.task.batch)
+            self._count_losses(out, value)
+
+    def _count_losses(self, out: _Out, ended: Ended) -> None:
+        """Where the simulator is dead, end the work, and leave the tests that it lost to whoever goes on."""
+        if not self._losses.count(out, ended.is_lost) or self._error is not None:
+            return
+        folder = self._store.folder
+        self._keep()
+        for lost in self._losses.lost:
+            self._store.reopen(lost.course.cell.name, lost.task.number, lost.task.batch)
+        self.progress.outcomes["ERROR"] -= len(self._losses.lost)
+        said = ended.result.description
+        self._error = self._losses.given_up(said, f"see to it and go on with: roadgpt resume {folder}")
 
     def _is_due(self) -> bool:
         waited = time.monotonic() - (self._oldest if self._pending else self._looked)

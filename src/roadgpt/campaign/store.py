@@ -170,6 +170,23 @@ class Store(Record):
                 [detail for _, detail in rows],
             )
 
+    def reopen(self, cell: str, number: int, batch: int) -> None:
+        """A test that has ended without a drive is to be done again."""
+        with self._whole() as db:
+            db.execute(
+                "UPDATE tests SET outcome = NULL, cause = NULL, side = NULL, length = NULL, margin = NULL, "
+                "max_oob = NULL, beyond = NULL, at_s = NULL, ended = NULL, design_s = NULL, drive_s = NULL, "
+                "trace = NULL WHERE cell = ? AND number = ?",
+                (cell, number),
+            )
+            db.execute(
+                "UPDATE details SET description = NULL, features = NULL, error = NULL, design = CASE "
+                "(SELECT given FROM tests WHERE cell = ? AND number = ?) WHEN 1 THEN design END "
+                "WHERE cell = ? AND number = ?",
+                (cell, number) * 2,
+            )
+            db.execute("UPDATE batches SET left = left + 1 WHERE cell = ? AND batch = ?", (cell, batch))
+
     def close_cell(self, cell: str, why: str) -> None:
         """No further batch is asked of it."""
         with self._whole() as db:

@@ -50,6 +50,8 @@ class Ended:
     spent: Spent | None = None
     error: str = ""
     """Of a test that failed: where in which file."""
+    is_lost: bool = False
+    """Did the simulator itself fail?"""
 
 
 @dataclass(frozen=True)
@@ -93,7 +95,7 @@ def do(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended | Broke:
     try:
         run = run_of(cell, task.number, task.proposal, earlier, meter)
         trace = trace_of(run.drive) if run.drive is not None else None
-        return Ended(result_of(run, cell, task), trace, run.seconds, run.spent, run.trace)
+        return Ended(result_of(run, cell, task), trace, run.seconds, run.spent, run.trace, run.is_lost)
     except (DesignError, ReplyError) as error:
         return Ended(failed(task, str(error)), spent=meter.spent if meter.spent.calls else None)
     except BudgetError as error:

@@ -114,7 +114,7 @@ def _study(
     plan = _plan(kind, prompts, source, roads, seed, drives, rest)
     plan = plan.model_copy(update={"command": _command(plan, place)})
     for designer in plan.designers:
-        roll_call(plan.setup_of(designer))
+        roll_call(plan.setup_of(designer), plan.world)
     open_folder(plan, place)
     total = len(plan.parts()) * plan.roads
     tell = None if quiet else _teller(total)

@@ -16,6 +16,7 @@ from roadgpt import plugins
 from roadgpt.drive.apart import driver_of
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
 from roadgpt.drive.view import Camera, Command, View
+from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -47,7 +48,8 @@ class Driver(Protocol):
 
 @runtime_checkable
 class Simulator(Protocol):
-    """A car and its physics."""
+    """A car and its physics. One that cannot heed some field of the World, such as "friction", names it in an
+    attribute ``ignores``: then who sets it is told so."""
 
     def simulate(
         self, road: "Road", world: "World", driver: Driver, seed: int, keep_driving: bool = False
@@ -61,6 +63,7 @@ class Simulator(Protocol):
 
         Raises:
             DriverError: the driver raised, answered with what is no command, or hung.
+            SimulatorError: the simulator itself failed; after three in a row nobody asks it any more.
             SimulationError: the physics broke down.
         """
         ...
@@ -84,7 +87,7 @@ def simulate(
 
     Raises:
         PartError: no simulator or driver of that name.
-        UsageError: the user's file makes no driver.
+        UsageError: the user's file makes no driver, or the simulator cannot heed what the world says.
         DriverError: the driver raised, answered with what is no command, or hung.
     """
     made: Any = driver_of(driver) if isinstance(driver, str) else driver
@@ -93,5 +96,28 @@ def simulate(
     engine: Any = plugins.find("simulators", simulator) if isinstance(simulator, str) else simulator
     if isinstance(engine, type):
         engine = engine()
+    refuse_ignored(engine, world)
     drive: Drive = engine.simulate(road, world, made, seed, keep_driving)
     return drive
+
+
+def refuse_ignored(simulator: Any, world: "World") -> None:
+    """What a simulator cannot heed is refused where somebody sets it.
+
+    Args:
+        simulator: the part, or its class.
+        world: a field that is as usual counts as not set.
+
+    Raises:
+        UsageError: names the setting.
+    """
+    from roadgpt.road import World
+
+    usual = World()
+    for name in getattr(simulator, "ignores", ()):
+        if (value := getattr(world, name)) != getattr(usual, name):
+            said = name.replace("_", " ")
+            raise UsageError(
+                f"{said} {value:g} has no effect in this simulator, whose roads have a {said} of their own; "
+                f"leave out --{name.replace('_', '-')}, or drive in the simulator mujoco"
+            )

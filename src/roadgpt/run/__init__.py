@@ -23,9 +23,9 @@ from roadgpt.check import Finding, inspect, rules_of
 from roadgpt.design import designer_of
 from roadgpt.design.offers import no_room
 from roadgpt.design.report import DesignReport
-from roadgpt.drive import simulate
+from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.apart import driver_of
-from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError
+from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.road import Design, Geometry, Road, World, build, in_hops
 from roadgpt.run.campaign import Campaign
 from roadgpt.run.card import seed_in
@@ -87,7 +87,7 @@ def perform(
         ChatError: a language model could not be asked, or did not answer as it should.
         UsageError: a part is not installed, or the driver's file makes no driver.
     """
-    roll_call(setup)
+    roll_call(setup, world)
     begun = time.perf_counter()
     meter = meter or Meter.of(setup.chat)
     before = meter.spent
@@ -144,7 +144,7 @@ def prove(
     Raises:
         UsageError: a part is not installed, or the driver's file makes no driver.
     """
-    roll_call(setup)
+    roll_call(setup, world)
     begun = time.perf_counter()
     design = blueprint if isinstance(blueprint, Design) else None
     road = build(blueprint, setup.geometry) if isinstance(blueprint, Design) else blueprint
@@ -189,7 +189,7 @@ def campaign(
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     designer_of(setup.designer, setup.chat)
-    roll_call(setup)
+    roll_call(setup, world)
 
     def one(index: int, earlier: Sequence[Design]) -> Run:
         return perform(brief, seed, world, setup, index, earlier, meter)
@@ -198,16 +198,17 @@ def campaign(
 
 
 @cache
-def roll_call(setup: Setup) -> None:
+def roll_call(setup: Setup, world: World = USUAL) -> None:
     """Find rules, simulator and driver before work begins; one that fails after that costs one road.
 
     Raises:
-        UsageError: a part is not installed, or the driver's file makes no driver.
+        UsageError: a part is not installed, the driver's file makes no driver, or the simulator cannot heed
+            what the world says.
         DriverError: the driver hung while it was made.
     """
     rules_of(setup.rules)
     if setup.drives:
-        plugins.find("simulators", setup.simulator)
+        refuse_ignored(plugins.find("simulators", setup.simulator), world)
         driver_of(setup.driver)
 
 
@@ -264,10 +265,16 @@ def _driven(run: Run) -> Run:
     except PartError:
         raise
     except Exception as error:  # whatever a driver or a simulator raises costs this road, not the campaign
-        said = str(error) if isinstance(error, RoadGPTError) else f"the simulation failed: {error!r}"
-        trace = traceback.format_exc()
-        driving = replace(run.seconds, drive=time.perf_counter() - begun)
-        return replace(run, outcome="ERROR", description=said, trace=trace, seconds=driving)
+        return replace(
+            run,
+            outcome="ERROR",
+            description=str(error)
+            if isinstance(error, RoadGPTError)
+            else f"the simulation failed: {error!r}",
+            trace=traceback.format_exc(),
+            is_lost=isinstance(error, SimulatorError),
+            seconds=replace(run.seconds, drive=time.perf_counter() - begun),
+        )
     driving = replace(run.seconds, drive=time.perf_counter() - begun)
     ended: Outcome = verdict.outcome
     return replace(

@@ -5,13 +5,15 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NoReturn
 
 from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design
 from roadgpt.run.atomic import PART, held, json_text, missing, sweep, take_away, write_whole
 from roadgpt.run.card import CARD, Card, read_card
-from roadgpt.run.folder import RUNS, Draw, read_run, run_folder, write_run
+from roadgpt.run.folder import RUNS, Draw, read_run, remove_run, run_folder, write_run
+from roadgpt.run.losses import Losses
 from roadgpt.run.model import Request, Run
 from roadgpt.run.naming import HOME, new_folder
 from roadgpt.run.sbft_json import test_name
@@ -42,6 +44,7 @@ class Campaign:
     """Counts what is asked of language models, earlier roads included."""
     _finished: set[int] = field(default_factory=set)
     _tally: Tally = field(default_factory=Tally)
+    _losses: Losses[Run] = field(default_factory=Losses)
     # Numbers of the roads that have a design, in their order, and those designs.
     _numbers: list[int] = field(default_factory=list)
     _designs: list[Design] = field(default_factory=list)
@@ -103,6 +106,7 @@ class Campaign:
         Raises:
             DesignError: no road could be designed; there is no folder then, unless it was there before.
             ChatError: a language model cannot be asked, or a limit is reached; roads before it are complete.
+            GivenUpError: the simulator failed three times in a row; these roads are to be made again.
             UsageError: a part is not installed, or another process is at work in the folder.
             RoadGPTError: a file cannot be written.
         """
@@ -163,7 +167,20 @@ class Campaign:
                     self._count(run)
                     self._tally.write(self.folder)
                 yield run
+                if self._losses.count(run, run.is_lost):
+                    self._give_up(run)
             held_back = []
+
+    def _give_up(self, last: Run) -> NoReturn:
+        """Leave the roads that the simulator lost to whoever goes on."""
+        with self._writing():
+            for run in self._losses.lost:
+                remove_run(run.index, self.folder)
+                self._tally.take_back(run)
+                self._finished.discard(run.index)
+        raise self._losses.given_up(
+            last.description, f"see to it and go on with the same command and --out {self.folder}"
+        )
 
     def _go_without_trace(self) -> None:
         """Take away what was made for roads that cannot be; what was there before stays."""

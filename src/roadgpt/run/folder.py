@@ -11,6 +11,7 @@ campaign/
 """
 
 import json
+import shutil
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Protocol
@@ -66,6 +67,12 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
             draw.of_run(run, draft)
     write_whole(campaign / test_name(run.index), test_text(run) if test is None else test)
     return folder
+
+
+def remove_run(index: int, campaign: Path) -> None:
+    """Take a Run out of a campaign's folder, its test file first: from then on it is to be made."""
+    (campaign / test_name(index)).unlink(missing_ok=True)
+    shutil.rmtree(run_folder(campaign, index), ignore_errors=True)
 
 
 def _files(run: Run) -> list[tuple[str, bytes]]:

@@ -108,6 +108,8 @@ class Run:
     """Name of the file that the road was read from, to be shown; not kept on the disk."""
     trace: str = ""
     """Of a simulator or a driver that failed: where."""
+    is_lost: bool = False
+    """Did the simulator itself fail? Not kept on the disk."""
     seconds: Seconds = Seconds()
 
     def __repr__(self) -> str:

@@ -33,11 +33,7 @@ class Tally:
 
     def add(self, run: Run) -> None:
         """Count one more Run."""
-        self.outcomes[run.outcome] += 1
-        self.valid += run.is_valid
-        self.with_road += run.road is not None
-        self.designing += run.seconds.design
-        self.driving += run.seconds.drive
+        self._count(run, 1)
         self.simulated += run.drive.duration if run.drive is not None else 0.0
         if run.outcome != "FAIL" or run.road is None or run.drive is None:
             return
@@ -47,6 +43,17 @@ class Tally:
         self.sides[found.side] += 1
         if found.segment is not None:
             self.spread.add(run.index, found.segment)
+
+    def take_back(self, run: Run) -> None:
+        """Count a Run no more; it had no drive."""
+        self._count(run, -1)
+
+    def _count(self, run: Run, times: int) -> None:
+        self.outcomes[run.outcome] += times
+        self.valid += times * run.is_valid
+        self.with_road += times * (run.road is not None)
+        self.designing += times * run.seconds.design
+        self.driving += times * run.seconds.drive
 
     def write(self, folder: Path) -> None:
         """Write the tables that change from road to road."""

@@ -9,6 +9,7 @@ from typing import Any
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.road import Road, World
 from roadgpt.run import Draw, Request, Run, Setup, prove, roll_call
+from roadgpt.run.losses import Losses
 from roadgpt.sbft.experiment import Ending, Experiment
 from roadgpt.sbft.host import GoneError, Host
 from roadgpt.sbft.line import Message
@@ -38,6 +39,7 @@ class Competition:
     """How the generator ended; None while it works."""
     tests: int = 0
     _deadline: float = field(default=0.0, repr=False)
+    _losses: Losses[int] = field(default_factory=Losses, repr=False)
     _is_begun: bool = field(default=False, repr=False)
     """Is there a generator, whose results or whose log somebody may want to see?"""
 
@@ -47,6 +49,7 @@ class Competition:
         Raises:
             UsageError: the generator cannot be loaded.
             PartError: a part is not installed.
+            GivenUpError: the simulator failed three times in a row.
             RoadGPTError: a file cannot be written, or the simulator or the driver fails on a first road.
         """
         host = Host(self.folder / LOG)
@@ -117,6 +120,12 @@ class Competition:
         test = self.results.add(run)
         answer(_answer(run, test))
         yield run
+        if self._losses.count(run.index, run.is_lost):
+            raise self._losses.given_up(
+                run.description,
+                f"the tests until then are in {self.folder}; a generator cannot go on, so see to the "
+                "simulator and let it begin anew",
+            )
 
     def _number(self, asked: Any) -> int:
         """The generator's own number of a test, where a file can have it and none has."""
@@ -186,7 +195,7 @@ def compete(
         raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")
     setup = setup.model_copy(update={"rules": "sbft"})
     world = world.model_copy(update={"z_floor": GROUND})
-    roll_call(setup)
+    roll_call(setup, world)
     request = Request(seed=seed, world=world, setup=setup)
     folder, made = new_folder(experiment, out)
     results = Results(folder, request, draw, made)

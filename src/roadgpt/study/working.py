@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from roadgpt.chat import ChatError, Meter, ReplyError
-from roadgpt.errors import BriefError, DesignError, RoadGPTError
+from roadgpt.errors import BriefError, DesignError, GivenUpError, RoadGPTError
 from roadgpt.run import campaign
 from roadgpt.run.campaign import finished
 from roadgpt.run.folder import Draw
@@ -120,9 +120,12 @@ def make(
     place.parent.mkdir(parents=True, exist_ok=True)
     setup = plan.setup_of(part.designer)
     made = campaign(part.prompt.prompt, plan.roads, plan.seed, plan.world, setup, place, draw, meter)
-    for _ in made:
-        if watch is not None:
-            watch.look(part.prompt.prompt)
+    try:
+        for _ in made:
+            if watch is not None:
+                watch.look(part.prompt.prompt)
+    except GivenUpError as error:
+        raise GivenUpError(error.why, "see to it, and the same command goes on") from error
 
 
 def _in_processes(

@@ -3,17 +3,22 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from beamngpy.connection import Connection
+from click.testing import CliRunner
 
 from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
 from misbehaving import write
+from roadgpt.campaign import Budget, Plan, begin, status_of, work
+from roadgpt.campaign.faults.stability import once
+from roadgpt.cli import app
 from roadgpt.drive.simulators.beamng.session import leave_all
-from roadgpt.errors import RoadGPTError
-from roadgpt.road import World
-from roadgpt.run import Setup, campaign
+from roadgpt.errors import GivenUpError, RoadGPTError
+from roadgpt.road import Road, World
+from roadgpt.run import Request, Setup, campaign, prove
 from roadgpt.sbft import Experiment, compete
 
 OURS = Connection.PROTOCOL_VERSION
@@ -46,8 +51,8 @@ def test_a_hundred_roads_and_ten_faults_lose_nothing(
     home = fake_home(tmp_path / "home", protocol=OURS, faults=FAULTS)
     settings(monkeypatch, home, port, recycle=40)
     setup = Setup(reader="grammar", simulator="beamng")
-    work = campaign(SHORTEST, ROADS, 5, World(), setup, tmp_path / "out")
-    outcomes = [run.outcome for run in work]
+    made = campaign(SHORTEST, ROADS, 5, World(), setup, tmp_path / "out")
+    outcomes = [run.outcome for run in made]
     assert outcomes == ["PASS"] * ROADS
     assert json.loads((home / "state.json").read_text())["fired"] == list(range(len(FAULTS)))
     kept = [json.loads(path.read_text()) for path in sorted((tmp_path / "out").glob("test.*.json"))]
@@ -119,3 +124,94 @@ def test_a_generator_of_the_competition_is_driven_on_the_levels_ground(
     test = json.loads((tmp_path / "out" / "test.0002.json").read_text())
     assert test["execution_data"][0][1][2] == pytest.approx(-28 + 0.56, abs=0.02)
     assert test["execution_data"][-1][0] == pytest.approx(runs[1].drive.duration, abs=0.001)
+
+
+def test_a_dead_simulator_is_given_up_and_no_road_is_lost(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
+    monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
+    setup, out = Setup(reader="grammar", simulator="beamng"), tmp_path / "out"
+    with pytest.raises(
+        GivenUpError, match=r"failed 3 times in a row .*nobody listens on .*same command and --out .*out"
+    ) as caught:
+        list(campaign(SHORTEST, 8, 5, World(), setup, out))
+    assert caught.value.exit_status == 5
+    assert not [*out.glob("test.*.json"), *(out / "runs").iterdir()]
+    with FakeBeamNG(port, protocol=OURS):
+        again = list(campaign(SHORTEST, 8, 5, World(), setup, out))
+        leave_all()
+    parked = setup.model_copy(update={"drives": False})
+    whole = list(campaign(SHORTEST, 8, 5, World(), parked, tmp_path / "whole"))
+    assert [run.outcome for run in again] == ["PASS"] * 8
+    assert [run.design for run in again] == [run.design for run in whole]
+    table = (out / "generation_stats.csv").read_text().splitlines()[1]
+    assert table.startswith("8,8,0,8,0,0,")
+
+
+def test_roads_before_a_simulator_died_are_kept(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
+    monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
+    setup, out, told = Setup(reader="grammar", simulator="beamng"), tmp_path / "out", []
+    fake = FakeBeamNG(port, protocol=OURS)
+    runs = iter(campaign(SHORTEST, 9, 5, World(), setup, out))
+    told += [next(runs).outcome, next(runs).outcome]
+    fake.stop()
+    leave_all()
+    told += [next(runs).outcome for _ in range(3)]
+    with pytest.raises(GivenUpError):
+        next(runs)
+    assert told == ["PASS", "PASS", "ERROR", "ERROR", "ERROR"]
+    assert sorted(path.name for path in out.glob("test.*.json")) == ["test.0001.json", "test.0002.json"]
+    assert (out / "generation_stats.csv").read_text().splitlines()[1].startswith("2,2,0,2,0,0,")
+
+
+def test_a_campaign_of_many_workers_gives_up_and_resumes(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
+    monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
+    budget = Budget(tests=8)
+    plan = Plan(prompts=(SHORTEST,), reader="grammar", simulators=("beamng",), budget=budget, seeds=(5,))
+    begin(plan, tmp_path / "c")
+    with pytest.raises(GivenUpError, match=r"nobody listens on .*go on with: roadgpt resume .*c"):
+        list(work(tmp_path / "c", 2))
+    before = status_of(tmp_path / "c")
+    assert before.outcomes.get("ERROR", 0) <= 1  # what was under way beside the three
+    assert not before.is_finished
+    home = fake_home(tmp_path / "home", protocol=OURS)
+    monkeypatch.setenv("ROADGPT_BEAMNG_HOME", str(home))
+    *_, last = work(tmp_path / "c", 1)
+    assert last.outcomes["PASS"] >= 7
+    assert last.done == 8
+    assert status_of(tmp_path / "c").is_finished
+
+
+def test_a_simulator_that_dies_does_not_make_a_failure_stable(
+    port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
+    run = prove(Road.through([[40, 100], [70, 100], [100, 100]]), setup=Setup(drives=False))
+    lost = replace(run, request=Request(setup=Setup(simulator="beamng")))
+    with pytest.raises(GivenUpError, match="nobody listens on"):
+        once((lost, 1))
+    with FakeBeamNG(port, protocol=OURS):
+        assert not once((lost, 1)).failed
+        leave_all()
+
+
+def test_roads_of_files_are_given_up_as_well(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = [f"{number}.json" for number in range(5)]
+    for name in names:
+        Path(name).write_text("[[40, 100], [70, 100], [100, 100]]")
+    done = CliRunner().invoke(app, ["drive", *names, "--simulator", "beamng", "--beamng-port", str(port)])
+    monkeypatch.delenv("ROADGPT_BEAMNG_PORT", raising=False)
+    assert done.exit_code == 5
+    assert "given up" in done.output
+    assert "drive the roads from 0.json on again" in done.output
+    assert "3.json" not in done.output

@@ -11,8 +11,9 @@ from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
 from roadgpt.drive import Simulator, simulate
 from roadgpt.drive.apart import driver_of
 from roadgpt.drive.trust import admit
-from roadgpt.errors import RoadGPTError
+from roadgpt.errors import RoadGPTError, SimulatorError
 from roadgpt.run import Run
+from roadgpt.run.losses import Losses
 from roadgpt.verdict import Verdict, judge
 
 SURE = 0.95  # of the interval
@@ -84,13 +85,26 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
 
 
 def once(task: tuple[Run, int]) -> Repeated:
-    """One disturbed drive of a Run's road; a driver that breaks down has failed."""
+    """One disturbed drive of a Run's road; a driver that breaks down has failed.
+
+    A simulator that does shows nothing of the road: the drive is done again.
+
+    Raises:
+        GivenUpError: the simulator failed three times in a row.
+    """
     run, number = task
     disturbance = draw(run.seed, number)
-    try:
-        verdict = drive_disturbed(run, disturbance)
-    except RoadGPTError:
-        return Repeated(number, disturbance, True, float("nan"), None)
+    losses: Losses[int] = Losses()
+    while True:
+        try:
+            verdict = drive_disturbed(run, disturbance)
+        except SimulatorError as error:
+            if losses.count(number, is_lost=True):
+                raise losses.given_up(str(error), "see to it, and the same command goes on") from error
+            continue
+        except RoadGPTError:
+            return Repeated(number, disturbance, True, float("nan"), None)
+        break
     return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)
 
 
@@ -103,7 +117,9 @@ def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
     road, world, setup = run.road, run.world, run.request.setup
     assert road is not None
     driver = LateDriver(driver_of(setup.driver), disturbance.delay, world)
-    slippery = world.model_copy(update={"friction": world.friction * disturbance.friction})
+    heeds = "friction" not in getattr(plugins.find("simulators", setup.simulator), "ignores", ())
+    grip = world.friction * (disturbance.friction if heeds else 1.0)
+    slippery = world.model_copy(update={"friction": grip})
     drive = simulate(road, slippery, driver, run.seed, _engine(setup.simulator, disturbance), False)
     return judge(road, drive, slippery)
 

@@ -21,6 +21,7 @@ from roadgpt.cli.screen import Screen
 
 if TYPE_CHECKING:
     from roadgpt.road import World
+    from roadgpt.run.losses import Losses
     from roadgpt.run.model import Setup
 
 UNREADABLE = 2  # exit status
@@ -48,17 +49,21 @@ def command(
     driven. The exit status is 0 when all roads could be read.
     """
     from roadgpt.run import Setup, roll_call
+    from roadgpt.run.losses import Losses
 
     world = world_of(rest)
     setup = Setup(**rest)
     with redirect_stdout(sys.stderr):
-        roll_call(setup)  # a driver that does not exist is told of before any road is looked at
+        roll_call(setup, world)  # a driver that does not exist is told of before any road is looked at
     screen = Screen(len(files), as_json, quiet, verbose)
-    each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup))
+    losses: Losses[str] = Losses()
+    each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup, losses))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
 
 
-def _driven(screen: Screen, file: str, seed: int, world: "World", setup: "Setup") -> Row:
+def _driven(
+    screen: Screen, file: str, seed: int, world: "World", setup: "Setup", losses: "Losses[str]"
+) -> Row:
     from roadgpt.run import prove
 
     blueprint, remarks = blueprint_of(file)
@@ -67,4 +72,8 @@ def _driven(screen: Screen, file: str, seed: int, world: "World", setup: "Setup"
     with redirect_stdout(sys.stderr):  # what a user's driver prints is no row
         run = prove(blueprint, seed, world, setup)
     screen.detail(f"{file}: {run.description}")
+    if losses.count(file, run.is_lost):
+        raise losses.given_up(
+            run.description, f"see to it and drive the roads from {losses.lost[0]} on again"
+        )
     return row_of(run, file)

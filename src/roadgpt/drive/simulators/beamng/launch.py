@@ -13,7 +13,7 @@ from pathlib import Path
 from roadgpt import children
 from roadgpt.drive.simulators.beamng.settings import Settings
 from roadgpt.drive.simulators.beamng.wire import is_taken
-from roadgpt.errors import PartError, SimulationError
+from roadgpt.errors import PartError, SimulatorError
 
 BINARIES = {
     "Linux": ("BinLinux/BeamNG.tech.x64", "BinLinux/BeamNG.x64", "BinLinux/BeamNG.drive.x64"),
@@ -60,32 +60,32 @@ class Game:
         """Starts it.
 
         Raises:
-            SimulationError: the system does not start it.
+            SimulatorError: the system does not start it.
         """
         self.words, self.host, self.port = words, host, port
         try:
             nothing = subprocess.DEVNULL
             self.process = children.start(words, stdin=nothing, stdout=nothing, stderr=nothing)
         except OSError as error:
-            raise SimulationError(f"BeamNG cannot be started ({error}); check --beamng-home") from error
+            raise SimulatorError(f"BeamNG cannot be started ({error}); check --beamng-home") from error
 
     def wait(self, patience: float) -> None:
         """Until it listens.
 
         Raises:
-            SimulationError: it ended, or does not listen within so many seconds; it is ended then.
+            SimulatorError: it ended, or does not listen within so many seconds; it is ended then.
         """
         due = time.monotonic() + patience
         while not is_taken(self.host, self.port):
             status = self.process.poll()
             if status is not None:
-                raise SimulationError(
+                raise SimulatorError(
                     f"BeamNG ended at once (exit status {status}); start it by hand to see why: "
                     f"{' '.join(self.words)}"
                 )
             if time.monotonic() > due:
                 self.kill()
-                raise SimulationError(
+                raise SimulatorError(
                     f"BeamNG does not listen on port {self.port} after {patience:g} s; give it more time "
                     "(ROADGPT_BEAMNG_START_TIMEOUT), and see that it is BeamNG.tech and has its key"
                 )

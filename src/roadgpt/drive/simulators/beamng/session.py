@@ -16,7 +16,7 @@ from roadgpt.drive.simulators.beamng.pairs import cure
 from roadgpt.drive.simulators.beamng.settings import Settings
 from roadgpt.drive.simulators.beamng.watchdog import Watchdog
 from roadgpt.drive.simulators.beamng.wire import protocol_at
-from roadgpt.errors import PartError, SimulationError
+from roadgpt.errors import PartError, SimulatorError
 
 # Levels that are flat, in the order of our liking, and the heights of their ground in metres.
 LEVELS = {"tig": -28.0, "tech_ground": 0.0, "smallgrid": 0.0}
@@ -72,7 +72,7 @@ class Session:
         Raises:
             PartError: beamngpy is not installed or of another version than BeamNG, BeamNG is not where it is
                 said to be or not BeamNG.tech, or has no level for our roads: no road could be driven.
-            SimulationError: it does not start or does not answer.
+            SimulatorError: it does not start or does not answer.
         """
         if self.bng is not None and self.settings.launches and self.roads >= self.settings.recycle:
             self.close()
@@ -105,7 +105,7 @@ class Session:
         try:
             theirs = protocol_at(host, port, ours, self.settings.start_timeout)
         except OSError as error:
-            raise SimulationError(
+            raise SimulatorError(
                 f"BeamNG on {host}:{port} does not answer ({error}); end it and start it anew"
             ) from error
         if theirs != ours:

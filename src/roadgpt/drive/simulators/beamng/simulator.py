@@ -9,7 +9,7 @@ from roadgpt.drive.simulators.beamng.loop import record
 from roadgpt.drive.simulators.beamng.session import Session, session_of
 from roadgpt.drive.simulators.beamng.settings import Settings
 from roadgpt.drive.simulators.beamng.stage import Stage
-from roadgpt.errors import RoadGPTError, SimulationError
+from roadgpt.errors import RoadGPTError, SimulatorError
 
 if TYPE_CHECKING:
     from roadgpt.drive import Driver
@@ -24,8 +24,10 @@ class BeamngSimulator:
 
     Where the driver is ``beamng_like``, BeamNG's own AI, which it imitates, takes its seat (Drive.driver is
     ``beamng_ai`` then). A BeamNG that hangs, ends or loses its socket costs one more try of one road on a new
-    BeamNG; a second time it is a SimulationError of that road.
+    BeamNG; a second time it is a SimulatorError of that road.
     """
+
+    ignores = ("friction",)  # the surfaces are those of the level's materials
 
     def __init__(self, settings: Settings | None = None) -> None:
         """With these settings; None: what the environment says.
@@ -51,7 +53,7 @@ class BeamngSimulator:
             except Exception as error:  # whatever a client raises whose game is gone
                 session.drop()
                 if tried + 1 == TRIES:
-                    raise SimulationError(
+                    raise SimulatorError(
                         f"BeamNG failed {TRIES} times on this road: {str(error) or type(error).__name__}"
                     ) from error
             except BaseException:

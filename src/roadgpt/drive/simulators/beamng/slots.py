@@ -15,7 +15,7 @@ from typing import IO
 
 from roadgpt.drive.simulators.beamng.settings import Settings
 from roadgpt.drive.simulators.beamng.wire import is_taken
-from roadgpt.errors import SimulationError, UsageError
+from roadgpt.errors import SimulatorError, UsageError
 
 try:
     import fcntl
@@ -52,7 +52,7 @@ def take(settings: Settings) -> Slot:
     Where BeamNG is to be started, a port that somebody listens on is passed over: it may be anybody's.
 
     Raises:
-        SimulationError: all are taken, or no BeamNG listens that could be asked.
+        SimulatorError: all are taken, or no BeamNG listens that could be asked.
     """
     if settings.user is not None and " " in str(settings.user):
         raise UsageError(f"BeamNG does not start with a user folder that has a space: '{settings.user}'")
@@ -67,11 +67,11 @@ def take(settings: Settings) -> Slot:
             return Slot(port, _user(settings, number), lock)
         lock.close()
         if not settings.launches:
-            raise SimulationError(
+            raise SimulatorError(
                 f"nobody listens on {settings.host}:{port}; give --beamng-home to have BeamNG started, or "
                 f"start it with -tcom -tport {port}"
             )
-    raise SimulationError(f"no free port from {settings.port} on; name another --beamng-port")
+    raise SimulatorError(f"no free port from {settings.port} on; name another --beamng-port")
 
 
 def _locked(host: str, port: int) -> IO[str] | None:

@@ -8,7 +8,7 @@ import struct
 from importlib import import_module
 from typing import Any
 
-from roadgpt.errors import SimulationError
+from roadgpt.errors import SimulatorError
 
 MOST = 1 << 20  # bytes of an answer to Hello; who sends more is no BeamNG
 
@@ -27,7 +27,7 @@ def protocol_at(host: str, port: int, protocol: str, patience: float) -> str:
 
     Raises:
         OSError: nobody listens there, or no answer came in time.
-        SimulationError: somebody listens who is no BeamNG.
+        SimulatorError: somebody listens who is no BeamNG.
     """
     msgpack: Any = import_module("msgpack")
 
@@ -54,7 +54,7 @@ def _exactly(link: socket.socket, length: int) -> bytes:
     return parts
 
 
-def _stranger(host: str, port: int) -> SimulationError:
-    return SimulationError(
+def _stranger(host: str, port: int) -> SimulatorError:
+    return SimulatorError(
         f"what listens on {host}:{port} does not speak as BeamNG.tech does; name another --beamng-port"
     )
