@@ -13,6 +13,7 @@ FIELDS = [
     "file",
     "is_valid",
     "validation_message",
+    "findings",
     "test_outcome",
     "description",
     "max_oob",
@@ -142,12 +143,58 @@ def test_drive_gives_the_same_row_twice() -> None:
     assert [{**row, "seconds": 0} for row in first] == [{**row, "seconds": 0} for row in second]
 
 
-def test_drive_does_not_drive_an_invalid_road() -> None:
+def test_drive_drives_a_road_despite_what_the_rules_say_and_tells_it_beside_the_verdict() -> None:
     result = invoke("drive", "corner.json", "--json")
     assert result.exit_code == 0
     (row,) = rows(result)
+    assert (row["test_outcome"], row["is_valid"]) == ("FAIL", False)
+    said = str(row["validation_message"])
+    assert said.endswith("is tighter than 14.33 m")
+    assert row["findings"] == [said]
+    assert said not in str(row["description"])
+    assert f"finding: {said}" in invoke("drive", "corner.json").stdout
+
+
+def test_the_competition_s_rules_still_stop_a_drive() -> None:
+    (row,) = rows(invoke("drive", "corner.json", "--json", "--rules", "sbft"))
     assert (row["test_outcome"], row["is_valid"], row["max_oob"]) == ("INVALID", False, None)
     assert row["validation_message"] == row["description"]
+
+
+def test_python_and_campaigns_keep_invalid() -> None:
+    from roadgpt import prove, read_road
+
+    road = read_road("corner.json")
+    assert prove(road).outcome == "INVALID"
+    driven = prove(road, despite_findings=True)
+    assert driven.outcome == "FAIL"
+    assert driven.verdict is not None
+    assert driven.findings
+    assert not driven.is_valid
+
+
+@pytest.mark.parametrize(
+    ("length", "outcome"), [(0.5, "INVALID"), (10.4, "INVALID"), (10.6, "PASS"), (19, "PASS")]
+)
+def test_a_road_without_room_for_a_car_says_so(length: float, outcome: str) -> None:
+    Path("short.json").write_text(json.dumps([[60, 60], [60 + length, 60]]))
+    (row,) = rows(invoke("drive", "short.json", "--json"))
+    assert row["test_outcome"] == outcome
+    said = (
+        "too short to be driven: a car starts 2.5 m along a road"
+        if outcome == "INVALID"
+        else "longer than 20"
+    )
+    assert said in str(row["validation_message"])
+
+
+def test_a_road_of_600_points_is_driven_and_all_rules_are_asked() -> None:
+    Path("dense.json").write_text(json.dumps([[10 + 0.5 * i, 5 + 0.3 * i] for i in range(600)]))
+    (row,) = rows(invoke("drive", "dense.json", "--json"))
+    assert row["test_outcome"] == "PASS"
+    found = [str(sentence) for sentence in row["findings"]]  # type: ignore[attr-defined]
+    assert found[0] == "the road has 600 points; give 2 to 500"
+    assert any("leaves the map" in sentence for sentence in found)
 
 
 def test_a_driver_that_never_steers_fails_a_bend_and_says_how() -> None:

@@ -35,8 +35,6 @@ RULE_SETS = {
 }
 """Rules in the order in which they are asked; the first objection is the verdict."""
 
-GUARDS = frozenset({"finite", "number_of_points"})  # where these object, there is nothing to measure
-
 
 class Rule(Protocol):
     """Looks at one thing about a road."""
@@ -60,10 +58,10 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
         PartError: the shelf is empty, or a rule of the set is not on it; no road passes for want of rules.
     """
     found: list[Finding] = []
-    for name, rule in rules_of(rules):
+    for _, rule in rules_of(rules):
         found += rule(road, brief, world)
-        if found and name in GUARDS:
-            break
+        if any(finding.stops for finding in found):
+            break  # there is nothing that the others could measure
     return tuple(found)
 
 
@@ -85,4 +83,4 @@ def rules_of(rules: str) -> tuple[tuple[str, Rule], ...]:
     return tuple((name, cast(Rule, plugins.find("rules", name))) for name in ours)
 
 
-__all__ = ["GUARDS", "RULE_SETS", "Finding", "Rule", "inspect", "rules_of", "sbft_verdict"]
+__all__ = ["RULE_SETS", "Finding", "Rule", "inspect", "rules_of", "sbft_verdict"]

@@ -12,3 +12,5 @@ class Finding:
     s: float | None = None
     x: float | None = None
     y: float | None = None
+    stops: bool = False
+    """Nobody can drive in spite of it: there is no road, or no room for a car."""

@@ -39,6 +39,12 @@ def bulge(samples: Samples, half_width: float) -> float:
     return float(step**2 * bend * (1 + bend * half_width) / 8)
 
 
+def extent(samples: Samples, half_width: float) -> tuple[Array, Array]:
+    """Least and largest x and y, ``(2,)`` each in metres, that no edge of the road lies beyond."""
+    edges, slack = np.concatenate(sides(samples, half_width)), bulge(samples, half_width)
+    return edges.min(axis=0) - slack, edges.max(axis=0) + slack
+
+
 def quads_of(left: Array, right: Array) -> Array:
     """Quads ``(n - 1, 4, 2)`` between edge points ``(n, 2)`` on the left and on the right."""
     return np.stack((left[:-1], left[1:], right[1:], right[:-1]), axis=1)

@@ -44,6 +44,8 @@ class Row:
     """One sentence: what the verdict, the rule or the error says."""
     is_valid: bool = True
     validation_message: str = ""
+    findings: tuple[str, ...] = ()
+    """All that the rules say of the road, the first one as ``validation_message``."""
     cause: str | None = None
     """Of a FAIL: out of lane, fell, stuck or timeout; of an ERROR: unreadable, where the file is at fault."""
     max_oob: float | None = None
@@ -91,6 +93,7 @@ class Row:
                 "file": self.file,
                 "is_valid": self.is_valid,
                 "validation_message": self.validation_message,
+                "findings": [*self.findings],
                 "test_outcome": self.test_outcome,
                 "description": self.description,
                 "max_oob": _rounded(self.max_oob),
@@ -107,8 +110,16 @@ class Row:
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
-        wrong = self.test_outcome in ("INVALID", "ERROR")
-        return f"{line}  {self.description.removeprefix(f'{self.file}: ')}" if wrong else line
+        if self.test_outcome in ("INVALID", "ERROR"):
+            return f"{line}  {self.description.removeprefix(f'{self.file}: ')}"
+        return f"{line}{self._despite}" if self.findings else line
+
+    @property
+    def _despite(self) -> str:
+        """What the rules say of a road that was driven all the same."""
+        rest = len(self.findings) - 1
+        more = f" and {rest} more finding{'s' * (rest > 1)}" if rest else ""
+        return f"  finding: {self.findings[0]}{more}"
 
 
 def outside(share: float | None, beyond: float | None) -> str:
@@ -168,6 +179,7 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
         run.description,
         is_valid=run.is_valid,
         validation_message=run.validation_message,
+        findings=tuple(finding.sentence for finding in run.findings),
         cause=verdict.cause if verdict else None,
         max_oob=verdict.max_oob if verdict else None,
         beyond_m=verdict.beyond if verdict else None,

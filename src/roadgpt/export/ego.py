@@ -11,12 +11,11 @@ import numpy as np
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
+from roadgpt.road.ends import GOAL, START
 
 GRAVITY = 9.81  # m/s^2
 COMFORT = 3.0  # m/s^2, lateral, ISO 11270
 GRIP = 0.5  # share of the friction that a calm driver uses
-START = 2.5  # m along the road where the car's centre of gravity starts (RoadGPT, SBFT)
-GOAL = 8.0  # m from the end of the road, where the drive is over (SBFT)
 
 
 @dataclass(frozen=True)

@@ -4,15 +4,25 @@ from dataclasses import replace
 
 import numpy as np
 
-from roadgpt.geometry import PieceCurve
+from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve, Profile
 from roadgpt.road.road import Road
 
 
-def moved(road: Road, x: float, y: float) -> Road:
-    """A road of pieces, or through nodes, so many metres farther along each axis."""
+def moved(road: Road, x: float, y: float, z: float = 0.0) -> Road:
+    """A road of pieces, or through nodes, so many metres farther along each axis; nodes of two numbers have
+    no height that could change."""
     shift = np.array([x, y])
     if road.nodes is not None:
-        nodes = road.nodes + np.r_[shift, np.zeros(road.nodes.shape[1] - 2)]
+        nodes = road.nodes + np.array([x, y, z])[: road.nodes.shape[1]]
         return Road.through(nodes, None if road.road_points is None else road.road_points + shift)
     assert isinstance(road.plan, PieceCurve)
-    return Road(replace(road.plan, x=road.plan.x + x, y=road.plan.y + y), road.profile)
+    plan = replace(road.plan, x=road.plan.x + x, y=road.plan.y + y)
+    return Road(plan, _lifted(road.profile, z) if z else road.profile)
+
+
+def _lifted(profile: Profile, z: float) -> Profile:
+    if isinstance(profile, GradeProfile):
+        return replace(profile, z0=profile.z0 + z)
+    assert isinstance(profile, CubicProfile)
+    rows = tuple((a + z, b, c, d) for a, b, c, d in profile.coefficients)
+    return replace(profile, coefficients=rows)

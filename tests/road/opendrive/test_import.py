@@ -195,21 +195,103 @@ def test_kinks_are_rounded_off_and_told_of(tmp_path: Path) -> None:
     x, y = 1 + 40 * math.cos(0.5), 2 + 40 * math.sin(0.5)
     more = f'<geometry s="40" x="{x!r}" y="{y!r}" hdg="0.7" length="30"><line/></geometry>'
     found = read_opendrive(file(tmp_path, LINE + more))
-    assert found.remarks[0].startswith("1 kink of 11.5 degrees is rounded off by a spline, at most 0.")
+    assert found.remarks == (
+        "its line has 1 kink of 11.5 degrees (at s = 40.0); it is rounded off, "
+        "at most 0.15 m from the file's line",
+    )
     assert found.road.at(found.road.length)[:2] == pytest.approx(
         (1 + 40 * math.cos(0.5) + 30 * math.cos(0.7), 2 + 40 * math.sin(0.5) + 30 * math.sin(0.7)), abs=1e-6
     )
 
 
-def test_what_a_road_cannot_show_is_remarked_on(tmp_path: Path) -> None:
-    banked = '<lateralProfile><superelevation s="0" a="0.05" b="0" c="0" d="0"/></lateralProfile>'
-    wide = '<lane id="-1" type="driving"><width sOffset="0" a="3" b="0.025"/></lane>'
-    found = read_opendrive(file(tmp_path, rest=banked, right=wide, road='rule="LHT"'))
-    assert found.remarks == (
-        "its banking is left out: roads here are level across",
+def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> None:
+    rest = (
+        '<lateralProfile><superelevation s="0" a="0.05" b="0" c="0" d="0"/>'
+        '<shape s="0" t="1" a="0.1" b="0" c="0" d="0"/></lateralProfile>'
+        '<objects><object id="1"/><object id="2"/><tunnel id="3"/></objects>'
+        '<signals><signal id="1"/><signalReference id="2"/></signals><railroad/>'
+        "<surface><CRG/></surface><link><successor/></link>"
+    )
+    wide = (
+        '<lane id="-1" type="driving"><width sOffset="0" a="3" b="0.025"/></lane>'
+        '<lane id="-2" type="driving"><width sOffset="0" a="3"/><height sOffset="0" inner="1"/></lane>'
+        '<lane id="-3" type="sidewalk"><width sOffset="0" a="2"/></lane>'
+        '<lane id="-4" type="sidewalk"><width sOffset="0" a="2"/></lane>'
+    )
+    path = file(tmp_path, rest=rest, right=wide, road='rule="LHT" junction="7"')
+    header = "<geoReference><![CDATA[+proj=utm]]></geoReference><offset x='1' y='2'/>"
+    path.write_text(path.read_text().replace('revMinor="4"/>', f'revMinor="4">{header}</header>'))
+    assert read_opendrive(path).remarks == (
         "it is made for left-hand traffic, and is driven on the right here",
         "its lane is 3.00 to 4.00 m wide, and is taken as 3.50 m all along",
+        "left out: 3 further lanes (1 driving, 2 sidewalk), 2 objects, 1 railway, 2 signals, 1 surface, "
+        "1 tunnel, junction 7, banking of up to 2.9 degrees, the shape across it, heights of single lanes, "
+        "<geoReference> and <offset> of the map",
     )
+
+
+def test_a_road_of_one_direction_gets_another_lane_and_says_so(tmp_path: Path) -> None:
+    path = file(tmp_path)
+    path.write_text(path.read_text().replace('<lane id="1" type="driving">', '<lane id="1" type="border">'))
+    (remark,) = read_opendrive(path).remarks
+    assert remark == "it is one-way in its file; a second lane, for oncoming cars, is added here"
+
+
+SECTIONS = """<OpenDRIVE><road id="1" length="90"><planView>
+<geometry s="0" x="0" y="0" hdg="0" length="90"><line/></geometry></planView><lanes>
+{}</lanes></road></OpenDRIVE>"""
+
+
+def section(s: float, right: str, left: str = "driving") -> str:
+    width = '<width sOffset="0" a="3"/>'
+    return (
+        f'<laneSection s="{s}"><left><lane id="1" type="{left}">{width}</lane></left>'
+        f'<right><lane id="-1" type="{right}">{width}</lane></right></laneSection>'
+    )
+
+
+def test_a_lane_that_begins_later_is_driven_all_along_and_told_of(tmp_path: Path) -> None:
+    path = tmp_path / "later.xodr"
+    sections = section(0, "sidewalk", "none") + section(30, "driving", "none") + section(70, "none", "none")
+    path.write_text(SECTIONS.format(sections))
+    assert read_opendrive(path).remarks[0] == (
+        "cars drive only from s = 30 to 70 m in its file, and all along here"
+    )
+
+
+def test_the_side_that_is_driven_for_longer_is_taken(tmp_path: Path) -> None:
+    path = tmp_path / "side.xodr"
+    path.write_text(SECTIONS.format(section(0, "sidewalk") + section(80, "driving")))
+    found = read_opendrive(path)
+    assert found.road.at(0.0)[0] == pytest.approx(90)
+    assert "direction of its left lanes" in found.remarks[0]
+
+
+def test_the_default_road_is_the_longest_with_a_driving_lane(tmp_path: Path) -> None:
+    def road(id_: int, length: float, kind: str, junction: int = -1) -> str:
+        return SECTIONS.format(section(0, kind, "none")).replace(
+            '<road id="1" length="90">', f'<road id="{id_}" length="{length}" junction="{junction}">'
+        )[len("<OpenDRIVE>") : -len("</OpenDRIVE>")]
+
+    path = tmp_path / "choice.xodr"
+    roads = [road(1, 900, "rail"), road(2, 90, "driving"), road(3, 95, "driving", 4), road(4, 80, "driving")]
+    path.write_text(f"<OpenDRIVE>{''.join(roads)}</OpenDRIVE>")
+    found = read_opendrive(path)
+    assert found.id == "2"
+    assert (
+        found.remarks[0] == "road 2 is taken, the longest of 4 with a driving lane; say --road ID for another"
+    )
+    path.write_text(f"<OpenDRIVE>{roads[0]}{roads[2]}</OpenDRIVE>")
+    assert read_opendrive(path).id == "3"
+    path.write_text(f"<OpenDRIVE>{roads[0].replace('900', 'nan')}{roads[1]}</OpenDRIVE>")
+    assert read_opendrive(path).id == "2"
+
+
+def test_a_lane_without_a_width_is_given_one(tmp_path: Path) -> None:
+    right = '<lane id="-1" type="driving"><width sOffset="0" a="0"/></lane>'
+    found = read_opendrive(file(tmp_path, right=right))
+    assert found.lane_width == 2.0
+    assert "its lane is 0.00 to 0.00 m wide, and is taken as 2.00 m all along" in found.remarks
 
 
 def test_the_longest_road_outside_of_junctions_is_taken(tmp_path: Path) -> None:
@@ -268,3 +350,12 @@ def test_a_road_can_be_moved(name: str) -> None:
     road = ROADS[name]
     s = np.linspace(0, road.length, 50)
     assert moved(road, 5, -7).at(s) == pytest.approx(road.at(s) + [5, -7, 0], abs=1e-9)
+    up = moved(road, 5, -7, 30).at(s) - road.at(s)
+    assert up[:, 2] == pytest.approx(30 if road.nodes is None or road.nodes.shape[1] == 3 else 0, abs=1e-9)
+
+
+def test_a_speed_limit_that_changes_is_told_of(tmp_path: Path) -> None:
+    rest = '<type s="0"><speed max="50" unit="km/h"/></type><type s="20"><speed max="30" unit="km/h"/></type>'
+    found = read_opendrive(file(tmp_path, rest=rest))
+    assert found.remarks == ("its speed limit is 30 to 50 km/h, and is taken as 50 km/h all along",)
+    assert found.speed_limit == pytest.approx(50 / 3.6)

@@ -9,7 +9,7 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
-from roadgpt.check.ribbon import bulge, sides
+from roadgpt.check.ribbon import bulge, extent, sides
 from roadgpt.check.sbft import SPLINE_REACH, splines
 from roadgpt.check.sbft import edges as sbft_edges
 from roadgpt.road import Road, World
@@ -18,10 +18,11 @@ from roadgpt.road import Road, World
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Says where the road's edge first leaves the map, and whether it is too wide for any place on it."""
     half, size = world.road_width / 2, world.map_size
-    edges = np.stack(sides(road.sample(), half), axis=1)  # (n, 2 sides, 2)
-    slack, room = bulge(road.sample(), half), min(edges.min(), size - edges.max())
-    if room > slack:
+    low, high = extent(road.sample(), half)
+    room = min(low.min(), size - high.max())
+    if room > 0:
         return () if room > SPLINE_REACH else _on_sbft_s_spline(road, world)
+    edges, slack = np.stack(sides(road.sample(), half), axis=1), bulge(road.sample(), half)  # (n, 2 sides, 2)
     out = np.any((edges <= slack) | (edges >= size - slack), axis=2)
     first = int(out.any(axis=1).argmax())
     x, y = (float(v) for v in edges[first, int(out[first].argmax())])
@@ -30,9 +31,9 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
     place = f"({round(x)}, {round(y)})"
     sentence = f"at s = {s:.0f} m: the road {verb} {place}; the map runs from 0 to {size:g} m"
     found = [Finding("inside_map", sentence, s, x, y)]
-    for axis, extent in zip("xy", np.ptp(edges, axis=(0, 1)), strict=True):
-        if extent >= size:
-            wide = f"the road spans {extent:.0f} m along {axis}, and the map is only {size:g} m wide"
+    for axis, spanned in zip("xy", np.ptp(edges, axis=(0, 1)), strict=True):
+        if spanned >= size:
+            wide = f"the road spans {spanned:.0f} m along {axis}, and the map is only {size:g} m wide"
             found.append(Finding("inside_map", wide))
     return tuple(found)
 

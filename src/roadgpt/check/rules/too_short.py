@@ -1,10 +1,14 @@
-"""The road is longer than 20 m, on the curve itself and as the SBFT competition measures its least length."""
+"""The road is longer than 20 m, on the curve itself and as the SBFT competition measures its least length.
+
+Where it ends before a car that starts on it has anywhere to go, nobody can drive on it.
+"""
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import measured_length
 from roadgpt.geometry import interpolate
 from roadgpt.road import Road, World
+from roadgpt.road.ends import GOAL, LEAST, START
 
 DOUBT = 1.0  # m: longer by this much, SBFT's measure can only agree
 
@@ -12,6 +16,8 @@ DOUBT = 1.0  # m: longer by this much, SBFT's measure can only agree
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Says how long the road is, where that is too short."""
     length = road.length
+    if length <= LEAST:
+        return (_without_room(length),)
     if length > world.min_length + DOUBT:
         return ()
     length = min(length, measured_length(interpolate(road.control_points())))
@@ -19,3 +25,11 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
         return ()
     wanted = f"a road is longer than {world.min_length:g} m"
     return (Finding("too_short", f"the road is {length:.1f} m long, and {wanted}"),)
+
+
+def _without_room(length: float) -> Finding:
+    sentence = (
+        f"the road is {length:.1f} m long, too short to be driven: a car starts {START:g} m along a road and "
+        f"has arrived {GOAL:g} m before its end"
+    )
+    return Finding("too_short", sentence, stops=True)

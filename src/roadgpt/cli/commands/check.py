@@ -60,6 +60,7 @@ def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -
         sentence or f"valid by the rules '{rules}'",
         is_valid=not findings,
         validation_message=sentence,
+        findings=tuple(finding.sentence for finding in findings),
         length_m=road.length,
         seconds=seconds,
     )

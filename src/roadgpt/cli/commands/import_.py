@@ -11,7 +11,7 @@ from roadgpt.cli.flags import WORLD
 from roadgpt.errors import RoadGPTError
 
 if TYPE_CHECKING:
-    from roadgpt.road import Imported, Road
+    from roadgpt.road import Imported, Road, World
 
 ROOM = 20.0  # m kept free around a road that is moved onto the map
 LARGEST_MAP = 10_000.0  # m
@@ -20,7 +20,12 @@ ROUND = 50.0  # m, to which a map's size is rounded up
 
 @click.command()
 @click.argument("file", metavar="FILE.xodr", type=click.Path(path_type=Path))
-@click.option("--road", "wanted", default=None, help="Its id. [default: the longest outside of junctions]")
+@click.option(
+    "--road",
+    "wanted",
+    default=None,
+    help="Its id. [default: the longest with a driving lane]",
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path, dir_okay=False),
@@ -44,8 +49,8 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
     from roadgpt.road import World, read_opendrive
 
     found = read_opendrive(file, wanted)
-    road, size, told = (found.road, World().map_size, "") if keep_place else _on_a_map(found.road)
-    for remark in () if quiet else (*found.remarks, *([told] if told else [])):
+    road, world, told = (found.road, found.world(World()), []) if keep_place else _on_a_map(found)
+    for remark in () if quiet else (*found.remarks, *told):
         click.echo(f"roadgpt: {file}: {remark}", err=True)
     out = out or _new(Path.cwd(), f"{file.stem}-{found.id}")
     try:
@@ -56,30 +61,37 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
     if not quiet:
         name = f" ({found.name})" if found.name else ""
         click.echo(f"road {found.id}{name}: {sentence(describe(road))}")
-        click.echo(f"written to {out}; drive it: {_drive(out, found, size)}")
+        click.echo(f"written to {out}; drive it: {_drive(out, world)}")
 
 
-def _on_a_map(road: "Road") -> tuple["Road", float, str]:
-    """The road on a map that is large enough, the map's size, and what was done."""
+def _on_a_map(found: "Imported") -> tuple["Road", "World", list[str]]:
+    """The road on a map that the rules find it on, that map with its lanes and limits, and what was done."""
+    from roadgpt.check.extremes import lowest
+    from roadgpt.check.ribbon import extent
+    from roadgpt.check.sbft import SPLINE_REACH
     from roadgpt.road import World, moved
 
-    points = road.centreline()[:, :2]
-    low, high = points.min(axis=0), points.max(axis=0)
+    road, world, remarks = found.road, found.world(World()), []
+    low, high = extent(road.sample(), world.road_width / 2)
     wide = float((high - low).max()) + 2 * ROOM
-    size = max(World().map_size, ROUND * -(-wide // ROUND))
+    size = max(world.map_size, ROUND * -(-wide // ROUND))
     if size > LARGEST_MAP:
-        return road, LARGEST_MAP, f"it is {wide:.0f} m wide, too large for a map; its place is kept"
-    if (low >= 0).all() and (high <= size).all():
-        return road, size, ""
-    x, y = (round(float(each), 3) for each in size / 2 - (low + high) / 2)
-    return moved(road, x, y), size, f"it is moved by ({x:g}, {y:g}) m into the middle of the map"
+        remarks.append(f"with its lanes it is {wide:.0f} m wide, too large for a map; its place is kept")
+        size, x, y = LARGEST_MAP, 0.0, 0.0
+    elif (low > SPLINE_REACH).all() and (high < size - SPLINE_REACH).all():
+        x, y = 0.0, 0.0
+    else:
+        x, y = (round(float(each), 3) for each in size / 2 - (low + high) / 2)
+        remarks.append(f"it is moved by ({x:g}, {y:g}) m into the middle of the map")
+    deepest = lowest(road.profile, road.length)[1]
+    z = round(-deepest, 3) if deepest < world.z_floor else 0.0
+    if z:
+        remarks.append(f"it is lifted by {z:g} m: its lowest place was below the ground of the map")
+    return moved(road, x, y, z), world.model_copy(update={"map_size": size}), remarks
 
 
-def _drive(file: Path, found: "Imported", size: float) -> str:
+def _drive(file: Path, world: "World") -> str:
     """The command that drives the road, with lanes and limits as the OpenDRIVE file has them."""
-    from roadgpt.road import World
-
-    world = found.world(World(map_size=size))
     # as a sign shows it: files in m/s are no whole km/h to the last digit
     world = world.model_copy(update={"speed_limit": round(world.speed_limit * 3.6, 3) / 3.6})
     words = [word for flag in WORLD for word in flag.written(getattr(world, flag.field))]

@@ -4,7 +4,9 @@ tree       the XML, bounded and without entities; one road of the file
 stretch    lines, arcs, spirals, poly3, paramPoly3
 lanes      which lane is driven, and where its inner edge runs: the centre line of our Road
 line       the plan: as it is where it can be, else clothoids through poses a metre apart
+joins      where elements do not meet to the last digit, and what is done about it
 heights    elevation, as it is
+left_out   what our roads have no place for
 """
 
 import math
@@ -16,9 +18,10 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.heights import carried_over, elevation, jumps, plain
-from roadgpt.road.opendrive.lanes import Lanes, friction, read_lanes, speed_limit
-from roadgpt.road.opendrive.line import KINK, Line, exact, fitted, lies_on_the_line, walk
-from roadgpt.road.opendrive.numbers import number
+from roadgpt.road.opendrive.joins import KINK, TOLD, Line, misses, turns_back
+from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, speed_limit, speed_limits
+from roadgpt.road.opendrive.left_out import is_one_way, left_out
+from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
 from roadgpt.road.opendrive.stretch import Stretch, stretches
 from roadgpt.road.opendrive.tree import Choice, Node, read_tree
 from roadgpt.road.opendrive.turning import turned_round
@@ -29,11 +32,13 @@ __all__ = ["Imported", "read_opendrive"]
 
 VARIES = 0.05  # m; lanes that vary by more are remarked on
 WIDTHS = (2.0, 10.0)  # m, of lanes that a World may have
+VERGES = (0.0, 100.0)  # m
 FRICTIONS = (0.05, 2.0)
 SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s
-TURNS_BACK = math.pi / 2  # rad; a line that jumps round by more goes back on itself
 NODES = 5.0  # m between the nodes of a spline that rounds off kinks
 CLOSEST = 0.5  # m between such nodes
+SAME_SPEED = 0.1  # m/s
+MOST_SPANS = 3  # that are told of
 PLACES = 1_000  # at which the spline is held against the line
 
 
@@ -66,7 +71,7 @@ def read_opendrive(path: Path | str, road: str | None = None) -> Imported:
 
     Args:
         path: the file.
-        road: the road's id; None takes the longest that is not part of a junction.
+        road: the road's id; None takes the longest with a driving lane that is not part of a junction.
 
     Raises:
         UsageError: the file cannot be read or is too large, there is no such road, or it has an element that
@@ -86,7 +91,8 @@ def read_opendrive(path: Path | str, road: str | None = None) -> Imported:
 def _imported(choice: Choice, id_: str, is_our_choice: bool) -> Imported:
     node, remarks = choice.road, []
     if is_our_choice and len(choice.others) > 1:
-        remarks.append(f"road {id_} is taken, the longest of {len(choice.others)}; say --road ID for another")
+        which = f"the longest of {len(choice.others)} with a driving lane"
+        remarks.append(f"road {id_} is taken, {which}; say --road ID for another")
     line = stretches(node)
     lanes = read_lanes(node, line[-1].s + line[-1].length)
     grown, said = _grown(node, line, lanes)
@@ -96,20 +102,26 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> Imported:
         remarks.append(
             "no lane is driven to the right of its line; it is taken in the direction of its left lanes"
         )
-    remarks += _unused(node)
-    widths, told = lanes.widths(), speed_limit(node, lanes)
+    remarks += _driven_otherwise(node, lanes)
+    widths, limit = lanes.widths(), speed_limit(node, lanes)
     width = float(np.clip(np.median(widths), *WIDTHS))
     if np.ptp(widths) > VARIES or abs(width - float(np.median(widths))) > VARIES:
         span = f"{widths.min():.2f} to {widths.max():.2f} m"
         remarks.append(f"its lane is {span} wide, and is taken as {width:.2f} m all along")
+    limits = speed_limits(node, lanes)
+    if limits and max(limits) - min(limits) > SAME_SPEED:
+        span = f"{min(limits) * 3.6:.0f} to {max(limits) * 3.6:.0f} km/h"
+        remarks.append(f"its speed limit is {span}, and is taken as {limits[0] * 3.6:.0f} km/h all along")
+    sentence = left_out(choice, lanes)
+    remarks += [sentence] if sentence else []
     rubbed = friction(lanes)
     return Imported(
         grown,
         id_,
         node.attributes.get("name", "")[:80],
         round(width, 4),
-        round(float(np.median(lanes.verges())), 4) + 0.0,
-        None if told is None or told <= 0 else float(np.clip(told, *SPEEDS)),
+        round(float(np.clip(np.median(lanes.verges()), *VERGES)), 4) + 0.0,
+        None if limit is None or limit <= 0 else float(np.clip(limit, *SPEEDS)),
         None if rubbed is None else float(np.clip(rubbed, *FRICTIONS)),
         tuple(remarks),
     )
@@ -125,52 +137,58 @@ def _grown(node: Node, line: list[Stretch], lanes: Lanes) -> tuple[Road, list[st
     if plan is not None:
         return Road(plan, plain(heights, plan.length)), remarks
     try:
-        found = walk(line, None if is_edge else lanes, heights.stations)
+        found = walk(line, None if is_edge else lanes)
     except UsageError as error:
         if is_edge:
             raise
-        found = walk(line, None, heights.stations)
+        found = walk(line, None)
         remarks.append(f"{error}; the reference line is taken instead")
-    fit = fitted(found) if np.abs(found.kinks).max() <= KINK else None
-    if fit is None:
-        road, sentence = _rounded(found, heights.height(found.s))
-        return road, [*remarks, sentence]
-    plan, stations = fit
-    profile = carried_over(heights, found.s, stations)
-    return Road(plan, plain(profile, plan.length)), remarks
-
-
-def _rounded(found: Line, heights: Array) -> tuple[Road, str]:
-    """A spline through a line that has kinks, and a sentence about how far it is from it."""
-    worst = int(np.abs(found.kinks).argmax())
-    degrees = math.degrees(abs(found.kinks[worst]))
-    if abs(found.kinks[worst]) > TURNS_BACK:
+    back = turns_back(found)
+    if back is not None:
         raise UsageError(
-            f"its line turns back by {degrees:.0f} degrees at s = {found.s[worst]:.1f}; mend the file"
+            f"its line turns back by {math.degrees(back[1]):.0f} degrees at s = {back[0]:.1f}; mend the file"
         )
+    fit = fitted(found)
+    if fit is None:
+        road, way = _rounded(found, heights.height(found.s)), "drawn as a spline"
+    else:
+        plan, s, stations = fit
+        road, way = Road(plan, plain(carried_over(heights, s, stations), plan.length)), "rounded off"
+    missed = misses(found)
+    if missed or fit is None:
+        what = f"its line has {missed}; it is {way}" if missed else f"its line is too rough; it is {way}"
+        remarks.append(f"{what}, at most {_away(found, road):.2f} m from the file's line")
+    return road, remarks
+
+
+def _away(found: Line, road: Road) -> float:
+    """The largest distance between poses of the file and the road, metres."""
+    beside = np.flatnonzero((np.abs(found.kinks) > KINK) | (found.gaps > TOLD))
+    some = np.r_[beside[:: max(1, len(beside) // PLACES)], 0 : len(found.s) : max(1, len(found.s) // PLACES)]
+    return float(np.abs(road.locate(*found.poses[some, :2].T)[1]).max())
+
+
+def _rounded(found: Line, heights: Array) -> Road:
+    """A spline through a line whose joins lie too close to each other for anything else."""
     kept = [0]
     for i in range(1, len(found.s) - 1):
         since = found.s[i] - found.s[kept[-1]]
         is_corner = abs(found.kinks[i]) > KINK / 10
         if (since >= NODES or (is_corner and since > CLOSEST)) and found.s[-1] - found.s[i] > CLOSEST:
             kept.append(i)
-    points = np.column_stack([found.poses[:, :2], heights])[[*kept, len(found.s) - 1]]
-    road = Road.through(points)
-    some = found.poses[:: max(1, len(found.s) // PLACES)]
-    _, away = road.locate(some[:, 0], some[:, 1])
-    count = int((np.abs(found.kinks) > KINK).sum())
-    what = {0: "bends that are too tight are", 1: f"1 kink of {degrees:.1f} degrees is"}.get(
-        count, f"{count} kinks of up to {degrees:.1f} degrees are"
-    )
-    return road, f"{what} rounded off by a spline, at most {np.abs(away).max():.2f} m away"
+    return Road.through(np.column_stack([found.poses[:, :2], heights])[[*kept, len(found.s) - 1]])
 
 
-def _unused(node: Node) -> list[str]:
-    """What of the road our geometry has no place for."""
+def _driven_otherwise(node: Node, lanes: Lanes) -> list[str]:
+    """How the traffic of the file differs from ours."""
     remarks = []
-    banked = [each for each in node.all("lateralProfile", "superelevation") if number(each, "a", 0.0)]
-    if banked or node.all("lateralProfile", "shape"):
-        remarks.append("its banking is left out: roads here are level across")
+    spans = lanes.spans()
+    if spans[0][0] > NEAR or spans[-1][1] < lanes.length - NEAR or len(spans) > 1:
+        where = " and ".join(f"{start:.0f} to {end:.0f}" for start, end in spans[:MOST_SPANS])
+        more = " and so on" if len(spans) > MOST_SPANS else ""
+        remarks.append(f"cars drive only from s = {where}{more} m in its file, and all along here")
+    if is_one_way(node, lanes):
+        remarks.append("it is one-way in its file; a second lane, for oncoming cars, is added here")
     if node.attributes.get("rule") == "LHT":
         remarks.append("it is made for left-hand traffic, and is driven on the right here")
     return remarks

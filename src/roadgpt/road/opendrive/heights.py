@@ -10,6 +10,7 @@ from roadgpt.road.opendrive.numbers import cubics
 from roadgpt.road.opendrive.tree import Node
 
 SAME = 1e-9  # m, and as a ratio: heights and grades that nothing tells apart
+CLOSE = 1e-6  # m between the starts of two cubics
 STEP = 0.05  # m; a larger one is remarked on
 
 
@@ -54,6 +55,11 @@ def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfi
         s: rising stations of the file, ``(n,)``.
         stations: of the Road at the same places, ``(n,)``.
     """
+    cuts = np.array(profile.stations)
+    behind = np.clip(np.searchsorted(s, cuts), 1, len(s) - 1)
+    apart = np.minimum(cuts - s[behind - 1], s[behind] - cuts)
+    places, s = s, np.sort(np.r_[s, cuts[apart > CLOSE]])
+    stations = np.interp(s, places, stations)
     # asked in the middle: rounding may have put a start just before the cubic that begins there
     half = np.diff(s) / 2
     table = shifted(profile.cubics(s[:-1] + half), -half)

@@ -4,7 +4,7 @@ Our roads have their centre line at the inner edge of the lane that is driven: t
 the right, or on the left where the right has none.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,12 +13,11 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.numbers import cubics, number
-from roadgpt.road.opendrive.tree import Node
+from roadgpt.road.opendrive.tree import DRIVING, Node
 
-DRIVING = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane")
 BESIDE = ("shoulder", "border")
 UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # in one m/s
-JUMP = 0.02  # m; a larger one of a lane's edge is no edge to drive along
+NEAR = 1.0  # m; gaps without a driving lane that nobody needs to know of
 PLACES = 64  # along a section, at which widths are looked at
 MOST_SECTIONS = 5_000
 
@@ -121,6 +120,17 @@ class Lanes:
             found.append(self._outer(section, last, s)[0] - self._outer(section, first - 1, s)[0])
         return np.concatenate(found)
 
+    def spans(self) -> list[tuple[float, float]]:
+        """From where to where something drives, metres."""
+        ends = [section.s for section in self.sections[1:]] + [self.length]
+        found: list[tuple[float, float]] = []
+        for section, end in zip(self.sections, ends, strict=True):
+            start = max(section.s, 0.0)
+            if section.driven < len(section.lanes) and end > start:
+                joins = bool(found) and start - found[-1][1] < NEAR
+                found = [*found[:-1], (found[-1][0], end)] if joins else [*found, (start, end)]
+        return found
+
     def driven(self) -> Iterator[Node]:
         """The driven lane of each section that has one."""
         return (each.lanes[each.driven].node for each in self.sections if each.driven < len(each.lanes))
@@ -139,10 +149,13 @@ def read_lanes(road: Node, length: float) -> Lanes:
         raise UsageError(f"it has more than {MOST_SECTIONS:,} lane sections; cut out the part that you need")
     nodes.sort(key=lambda node: number(node, "s"))
     offset = cubics(road.all("lanes", "laneOffset"), "s")
-    for side, name in ((-1, "right"), (1, "left")):
-        sections = tuple(_section(node, name) for node in nodes)
-        if any(section.driven < len(section.lanes) for section in sections):
-            return Lanes(side, sections, offset, length)
+    right, left = (
+        Lanes(side, tuple(_section(node, name) for node in nodes), offset, length)
+        for side, name in ((-1, "right"), (1, "left"))
+    )
+    on_right, on_left = (sum(end - start for start, end in lanes.spans()) for lanes in (right, left))
+    if on_right or on_left:
+        return right if on_right >= on_left / 2 else left
     kinds = {lane.attributes.get("type", "?") for node in nodes for lane in node.all("left", "lane")}
     kinds |= {lane.attributes.get("type", "?") for node in nodes for lane in node.all("right", "lane")}
     told = ", ".join(sorted(kinds)[:6]) or "none"
@@ -172,12 +185,22 @@ def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
 
 
 def speed_limit(road: Node, lanes: Lanes) -> float | None:
-    """In m/s, as the driven lane says it, or else the road; None where neither does."""
-    said = [node for lane in lanes.driven() for node in lane.all("speed")]
-    for node in [*said, *road.all("type", "speed")]:
-        if node.attributes.get("max") not in (None, "no limit", "undefined"):
-            return number(node, "max") / UNITS.get(node.attributes.get("unit", "m/s"), 1.0)
-    return None
+    """In m/s, as the driven lane says it first, or else the road; None where neither does."""
+    return next(iter(speed_limits(road, lanes)), None)
+
+
+def speed_limits(road: Node, lanes: Lanes) -> list[float]:
+    """All of them in m/s, in their order: those of the driven lane, or of the road where that has none."""
+    of_lane = [node for lane in lanes.driven() for node in lane.all("speed")]
+    return _speeds(of_lane) or _speeds(road.all("type", "speed"))
+
+
+def _speeds(nodes: Sequence[Node]) -> list[float]:
+    return [
+        number(node, "max") / UNITS.get(node.attributes.get("unit", "m/s"), 1.0)
+        for node in nodes
+        if node.attributes.get("max") not in (None, "no limit", "undefined")
+    ]
 
 
 def friction(lanes: Lanes) -> float | None:

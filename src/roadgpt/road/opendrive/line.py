@@ -1,12 +1,11 @@
 """From a file's reference line and the edge of its lane to the plan of a Road.
 
 exact      lines, arcs and spirals that meet, and the reference line is the edge: they are taken as they are
-fitted     anything else that is smooth: clothoids through poses a metre apart
-rounded    where directions jump: a spline
+fitted     anything else: clothoids through poses a metre apart, but for those beside joins that do not meet
+rounded    where nothing can be told but the joins: a spline
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -16,30 +15,20 @@ from roadgpt.geometry import PieceCurve, wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import advance, joined
 from roadgpt.road.opendrive.fit import clothoids
-from roadgpt.road.opendrive.lanes import JUMP, Lanes
+from roadgpt.road.opendrive.joins import Line, bridged
+from roadgpt.road.opendrive.lanes import Lanes
 from roadgpt.road.opendrive.stretch import Bend, Polynomial, Stretch
 
 MEETS = 5e-4  # m, between the end of an element and the start of the next
 SAME_WAY = 1e-4  # rad
-GAP = 0.1  # m; a larger one is no road any more
-KINK = 0.01  # rad; a larger one cannot be driven through at speed, and is rounded off
+GAP = 0.3  # m; a larger one is no road any more
 STEP = 1.0  # m between the poses that clothoids are fitted to, and less where they would stray
 CLOSE = 1e-4  # m, between clothoids and the line
 GENTLE = 0.02  # rad; over a turn so slight a clothoid strays by micrometres
 LEAST = 0.1  # m; nearer to each other no poses are taken
-FEWEST = 2
-
-
-@dataclass(frozen=True)
-class Line:
-    """Poses along the edge that is driven along, in stretches without a jump of direction."""
-
-    s: Array
-    """Station of each pose in the file, ``(n,)``."""
-    poses: Array
-    """Rows x, y, heading ``(n, 3)``."""
-    kinks: Array
-    """By how much the direction jumps at each pose, radians ``(n,)``."""
+FEWEST = 2  # stretches of an element: its middle tells its direction best
+TOGETHER = 1e-3  # m; nearer than this, joints are one
+LEFT_OVER = 0.05  # of a metre of the line, that a bend leaves to the edge of the lane
 
 
 def exact(line: list[Stretch]) -> PieceCurve | None:
@@ -65,63 +54,67 @@ def lies_on_the_line(lanes: Lanes, length: float) -> bool:
     return bool(np.abs(t).max() < 1e-9 and np.abs(slope).max() < 1e-9)
 
 
-def walk(line: list[Stretch], lanes: Lanes | None, cuts: Sequence[float]) -> Line:
+def walk(line: list[Stretch], lanes: Lanes | None) -> Line:
     """Poses along the edge of the lane, about a metre apart and wherever something changes.
 
     Args:
         line: the reference line.
         lanes: whose edge; None for the reference line itself.
-        cuts: stations that get a pose of their own.
 
     Raises:
         UsageError: the line has a gap, the edge jumps, or the edge folds in a bend.
     """
-    joints = np.unique([*cuts, *(lanes.joints() if lanes else [])])
-    parts = [_part(each, joints, lanes) for each in line]
+    joints = np.unique(lanes.joints()) if lanes else np.empty(0)
+    parts = [part for each in line for part in _parts(each, joints, lanes)]
+    gaps, kinks = [np.zeros(len(parts[0][0]) - 1)], [np.zeros(len(parts[0][0]) - 1)]
+    rows = [parts[0][1][:-1]]
     for (s, before), (_, after) in pairwise(parts):
-        gap = float(np.hypot(*(after[0, :2] - before[-1, :2])))
+        gap, kink = float(np.hypot(*(after[0, :2] - before[-1, :2]))), wrap_angle(after[0, 2] - before[-1, 2])
         if gap > GAP:
-            raise UsageError(f"its line jumps by {gap:.2f} m at s = {s[-1]:.1f}; mend the file")
+            what, advice = ("the edge of its lane", "") if lanes else ("its line", "; mend the file")
+            raise UsageError(f"{what} jumps by {gap:.2f} m at s = {s[-1]:.1f}{advice}")
+        nothing = np.zeros(len(after) - 2)
+        gaps.append(np.r_[gap, nothing])
+        kinks.append(np.r_[kink, nothing])
+        middle = [*(before[-1, :2] + after[0, :2]) / 2, after[0, 2] - kink / 2]
+        rows += [np.array([middle]), after[1:-1]]
     s = np.concatenate([part[0][:-1] for part in parts] + [parts[-1][0][-1:]])
-    kinks = [np.zeros(len(part[0]) - 1) for part in parts] + [np.zeros(1)]
-    rows = [part[1][:-1].copy() for part in parts] + [parts[-1][1][-1:].copy()]
-    for i in range(1, len(parts)):
-        end, start = parts[i - 1][1][-1], parts[i][1][0]
-        kinks[i][0] = wrap_angle(start[2] - end[2])
-        rows[i][0] = [*(end[:2] + start[:2]) / 2, start[2] - kinks[i][0] / 2]
-    return Line(s, np.concatenate(rows), np.concatenate(kinks))
+    end = np.zeros(1)
+    poses = np.concatenate([*rows, parts[-1][1][-1:]])
+    return Line(s, poses, np.concatenate([*gaps, end]), np.concatenate([*kinks, end]))
 
 
-def _part(stretch: Stretch, joints: Array, lanes: Lanes | None) -> tuple[Array, Array]:
-    """Stations ``(n,)`` and poses ``(n, 3)`` along one element, both ends included."""
-    inside = np.searchsorted(joints, [stretch.s, stretch.s + stretch.length])
-    cuts = (joints[inside[0] : inside[1]] - stretch.s) / stretch.length
-    count = max(1, int(np.ceil(stretch.length / STEP)))
+def _parts(stretch: Stretch, joints: Array, lanes: Lanes | None) -> Iterator[tuple[Array, Array]]:
+    """Stations ``(n,)`` and poses ``(n, 3)`` along one element, both ends included, cut at the joints."""
+    start, end = stretch.s, stretch.s + stretch.length
+    count = max(FEWEST, int(np.ceil(stretch.length / STEP)))
     while (
         isinstance(stretch.shape, Polynomial) and count * LEAST < stretch.length and _strays(stretch, count)
     ):
         count *= 2
-    even = np.linspace(0.0, 1.0, count + 1)
-    share = np.unique(np.r_[even, cuts[(cuts > 1e-6) & (cuts < 1 - 1e-6)]])
-    keep = np.r_[True, np.diff(share) * stretch.length > 1e-3]
-    share = share[keep]
-    share[-1] = 1.0
-    poses, s = stretch.poses(share), stretch.s + share * stretch.length
-    if lanes is None:
-        return s, poses
-    t, slope = lanes.edge(np.clip(s, stretch.s, stretch.s + stretch.length - 1e-9))
-    reach = np.diff(s)
-    bend = np.diff(poses[:, 2]) / reach
+    even = np.linspace(start, end, count + 1)
+    cuts = [start, *joints[(joints > start + TOGETHER) & (joints < end - TOGETHER)], end]
+    cuts = [start, *(b for a, b in pairwise(cuts[:-1]) if b - a > TOGETHER), end]
+    for a, b in pairwise(cuts):
+        s = np.r_[a, even[(even > a + TOGETHER) & (even < b - TOGETHER)], b]
+        share = np.clip((s - start) / stretch.length, 0.0, 1.0)
+        poses = stretch.poses(share)
+        yield s, poses if lanes is None else _moved_aside(s, poses, lanes)
+
+
+def _moved_aside(s: Array, poses: Array, lanes: Lanes) -> Array:
+    """The poses on the edge of the lane; at both ends as the lanes are between them."""
+    inside = min(TOGETHER, float(s[-1] - s[0]) / 4)
+    at = np.clip(s, s[0] + inside, s[-1] - inside)
+    t, slope = lanes.edge(at)
+    t = t + slope * (s - at)
+    bend = np.diff(poses[:, 2]) / np.diff(s)
     stays = 1 - t * np.r_[bend, bend[-1:]]
-    if (stays < 0.05).any():
+    if (stays < LEFT_OVER).any():
         raise UsageError(f"the edge of its lane folds in the bend at s = {s[int(stays.argmin())]:.1f}")
-    # a step shows as a change that the slopes at its ends do not explain
-    stepped = np.abs(np.diff(t)) - np.maximum(np.abs(slope[1:]), np.abs(slope[:-1])) * reach
-    if stepped.max() > JUMP:
-        raise UsageError(f"the edge of its lane jumps at s = {s[int(stepped.argmax())]:.1f}")
     x = poses[:, 0] - t * np.sin(poses[:, 2])
     y = poses[:, 1] + t * np.cos(poses[:, 2])
-    return s, np.stack([x, y, poses[:, 2] + np.arctan2(slope, stays)], -1)
+    return np.stack([x, y, poses[:, 2] + np.arctan2(slope, stays)], -1)
 
 
 def _strays(stretch: Stretch, count: int) -> bool:
@@ -140,11 +133,13 @@ def _strays(stretch: Stretch, count: int) -> bool:
     return bool(np.abs(aside).max() > CLOSE)
 
 
-def fitted(line: Line) -> tuple[PieceCurve, Array] | None:
-    """The plan through all poses, and its station at each; None where clothoids cannot follow."""
-    pieces = clothoids(line.poses)
-    if pieces is None:
+def fitted(line: Line) -> tuple[PieceCurve, Array, Array] | None:
+    """The plan through the poses away from joins, their stations in the file and on it; None where clothoids
+    cannot follow."""
+    kept = bridged(line)
+    pieces = clothoids(kept.poses) if kept is not None else None
+    if kept is None or pieces is None:
         return None
-    x, y, heading = line.poses[0].tolist()
+    x, y, heading = kept.poses[0].tolist()
     stations = np.r_[0.0, np.cumsum([piece.length for piece in pieces])]
-    return PieceCurve(x, y, heading, joined(pieces)), stations
+    return PieceCurve(x, y, heading, joined(pieces)), kept.s, stations

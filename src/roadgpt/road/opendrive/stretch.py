@@ -1,6 +1,7 @@
 """The elements of a reference line: each answers where it is, and which way it looks, at a distance."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -13,15 +14,16 @@ from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.numbers import Cubic, number
 from roadgpt.road.opendrive.tree import Node
-from roadgpt.road.road import check_length
+from roadgpt.road.road import LONGEST, check_length
 
 KNOWN = ("line", "arc", "spiral", "poly3", "paramPoly3")
-SHORTEST = 1e-6  # m; shorter elements are left out
+SHORTEST = 1e-3  # m; shorter elements are made one with those before them
 FINE = 0.1  # m between the places at which a polynomial's length is added up
 MOST_PLACES = 20_000
 MOST = 4_000  # elements of one line
 OFF = 0.1  # m, between the end of an element and the station of the next
 SMALLEST_RADIUS = 0.1  # m
+SMALLEST = 1e-9  # m, of an element of a run of tiny ones
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 
@@ -121,9 +123,12 @@ def stretches(road: Node) -> list[Stretch]:
     if len(nodes) > MOST:
         raise UsageError(f"its line has more than {MOST:,} elements; cut out the part that you need")
     check_length(sum(abs(number(node, "length")) for node in nodes) or 1.0)
-    kept = sorted((each for each in map(_stretch, nodes) if each.length > SHORTEST), key=lambda each: each.s)
+    nodes.sort(key=lambda node: number(node, "s"))
+    kept = [_stretch(node) for node in _long_enough(nodes)]
     if not kept:
         raise UsageError("its <planView> has no geometry; add the reference line")
+    if abs(kept[0].s) > LONGEST:
+        raise UsageError(f"its line begins at s = {kept[0].s:g}; let it begin at 0")
     out = []
     for each, following in pairwise(kept):
         reach = following.s - each.s
@@ -136,6 +141,18 @@ def stretches(road: Node) -> list[Stretch]:
     return [*out, kept[-1]]
 
 
+def _long_enough(nodes: list[Node]) -> Iterator[Node]:
+    """The elements, but for those that are shorter than their own errors."""
+    passed = 0.0
+    for node in nodes:
+        length = number(node, "length")
+        if 0 <= length < SHORTEST and passed + length < SHORTEST:
+            passed += length
+        else:
+            passed = 0.0
+            yield node
+
+
 def _stretch(node: Node) -> Stretch:
     s, x, y = (number(node, name) for name in ("s", "x", "y"))
     heading, length = number(node, "hdg"), number(node, "length")
@@ -145,7 +162,7 @@ def _stretch(node: Node) -> Stretch:
     if not shapes:
         what = f"is a <{node.children[0].tag[:40]}>" if node.children else "has no shape"
         raise UsageError(f"the geometry at s = {s:g} {what}; known are {', '.join(KNOWN)}")
-    return Stretch(s, x, y, heading, length, _shape(shapes[0], s, max(length, SHORTEST)))
+    return Stretch(s, x, y, heading, length, _shape(shapes[0], s, max(length, SMALLEST)))
 
 
 def _shape(node: Node, s: float, length: float) -> Shape:

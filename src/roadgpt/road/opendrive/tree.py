@@ -4,6 +4,9 @@ No DOCTYPE is allowed, so no entity can be declared, fetched or expanded. Size, 
 the length of one tag are bounded, and with them time and memory.
 """
 
+import math
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
@@ -21,6 +24,19 @@ CHUNK = 65_536  # bytes
 LEFT_OUT = frozenset(
     {"objects", "signals", "railroad", "userData", "surface", "include", "dataQuality", "link"}
 )
+# What of it is told of, in the words in which it is counted; of the header, whether it is there.
+COUNTED = {
+    "object": "object",
+    "bridge": "bridge",
+    "tunnel": "tunnel",
+    "signal": "signal",
+    "signalReference": "signal",
+    "railroad": "railway",
+    "CRG": "surface",
+}
+IN_HEADER = ("geoReference", "offset")
+OURS = "RoadGPT"  # vendor of files that we wrote: their maps lie nowhere on Earth
+DRIVING = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane")
 
 
 @dataclass(slots=True)
@@ -41,14 +57,24 @@ class Node:
 
 @dataclass(frozen=True)
 class Choice:
-    """The road that was taken, and the ids of all that there are."""
+    """The road that was taken, and what else there is."""
 
     road: Node
     others: tuple[str, ...]
+    """Ids of all roads."""
+    passed: Mapping[str, int]
+    """How many of COUNTED the road has."""
+    header: frozenset[str]
+    """Which of IN_HEADER the file has."""
+
+
+def is_driven(lane: Node) -> bool:
+    """Is it a lane for cars that go on?"""
+    return lane.attributes.get("type", "") in DRIVING
 
 
 def read_tree(path: Path, wanted: str | None) -> Choice:
-    """The road of an id; where none is given, the longest that is not part of a junction.
+    """The road of an id; where none is given, the longest with a driving lane that is not part of a junction.
 
     Raises:
         UsageError: the file cannot be read, is no OpenDRIVE, is too large, or has no such road.
@@ -90,7 +116,9 @@ class _Reader:
     def __init__(self, wanted: str | None) -> None:
         self.wanted = wanted
         self.ids: list[str] = []
-        self.best: tuple[bool, float, Node] | None = None
+        self.best: tuple[tuple[bool, bool, float], Node, Counter[str]] | None = None
+        self.header: set[str] = set()
+        self.passed: Counter[str] = Counter()
         self.elements = self.kept = self.depth = self.hidden = 0
         self.stack: list[Node] = []
 
@@ -106,6 +134,8 @@ class _Reader:
             raise UsageError(f"it is XML, but no OpenDRIVE: it begins with <{tag[:40]}>")
         if self.hidden or (self.stack and tag in LEFT_OUT):
             self.hidden += 1
+            if tag in COUNTED:
+                self.passed[COUNTED[tag]] += 1
         elif self.stack:
             node = Node(tag, attributes)
             self.kept += 1
@@ -120,6 +150,11 @@ class _Reader:
             if self.wanted is None or attributes.get("id") == self.wanted:
                 self.stack.append(Node(tag, attributes))
                 self.kept = 0
+                self.passed = Counter()
+        elif tag in IN_HEADER and not self.ids:
+            self.header.add(tag)
+        elif tag == "header" and attributes.get("vendor") == OURS:
+            self.header.add(OURS)
 
     def end(self, tag: str) -> None:
         """An element ends; a road that is complete is held against the best one so far."""
@@ -132,13 +167,18 @@ class _Reader:
                 self._compare(node)
 
     def _compare(self, road: Node) -> None:
+        lanes = [
+            lane for side in ("left", "right") for lane in road.all("lanes", "laneSection", side, "lane")
+        ]
         is_free = road.attributes.get("junction", "-1") == "-1"
         try:
             length = float(road.attributes.get("length", "0"))
         except ValueError:
             length = 0.0
-        if self.best is None or (is_free, length) > self.best[:2]:
-            self.best = (is_free, length, road)
+        length = length if math.isfinite(length) else 0.0
+        rank = (any(map(is_driven, lanes)), is_free, length)
+        if self.best is None or rank > self.best[0]:
+            self.best = (rank, road, self.passed)
 
     def choice(self) -> Choice:
         """What was found, once the file is at its end."""
@@ -147,4 +187,6 @@ class _Reader:
                 raise UsageError("there is no road in it")
             told = ", ".join(self.ids[:12]) + (", ..." if len(self.ids) > 12 else "")
             raise UsageError(f"there is no road {self.wanted} in it; there are: {told}")
-        return Choice(self.best[2], tuple(self.ids))
+        _, road, passed = self.best
+        header = set() if OURS in self.header else self.header
+        return Choice(road, tuple(self.ids), passed, frozenset(header))

@@ -13,12 +13,12 @@ from roadgpt.drive.simulators.beamng.body import LOCK, Moment, Track, between
 from roadgpt.drive.simulators.beamng.stage import Stage
 from roadgpt.drive.view import View
 from roadgpt.errors import SimulationError
+from roadgpt.road.ends import GOAL
 from roadgpt.stopping import look
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-GOAL = 8.0  # m from the end of the centre line (SBFT)
 STUCK_TIME = 10.0  # s in which a car must move ... (SBFT)
 STUCK_WAY = 1.0  # m ... this far
 SLOWEST = 2.0  # m/s, mean, before time is out

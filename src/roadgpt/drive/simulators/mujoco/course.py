@@ -9,12 +9,11 @@ from roadgpt.drive.drive import COLUMNS, Box, Ended, FloatArray
 from roadgpt.drive.marking import POSE, Marking
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL
 from roadgpt.errors import SimulationError
+from roadgpt.road.ends import GOAL, START
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-START = 2.5  # m along the road (RoadGPT, SBFT)
-GOAL = 8.0  # m from the end of the centre line (SBFT)
 STUCK_TIME = 10.0  # s in which a car must move ... (SBFT)
 STUCK_WAY = 1.0  # m ... this far
 SLOWEST = 2.0  # m/s, mean, before time is out
