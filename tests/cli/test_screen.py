@@ -21,7 +21,8 @@ WRONG = Row("c.json", "INVALID", "it is too sharp", is_valid=False, validation_m
 
 def test_json_has_the_fields_that_were_promised_in_their_order() -> None:
     names = (
-        "file is_valid validation_message test_outcome description max_oob beyond_m margin_m length_m seconds"
+        "file is_valid validation_message findings test_outcome description max_oob beyond_m margin_m length_m "
+        "seconds"
     )
     assert [*json.loads(KEPT.to_json())] == names.split()
     assert json.loads(KEPT.to_json())["seconds"] == 1.2346
@@ -38,6 +39,15 @@ def test_a_line_carries_the_cause_of_a_failure_and_the_sentence_of_a_rule() -> N
     assert "margin -0.060 m" in LEFT.to_line()
     assert "margin -0.003 m" in replace(LEFT, margin_m=-0.0029).to_line()
     assert WRONG.to_line().endswith("it is too sharp")
+
+
+def test_a_line_carries_what_the_rules_said_of_a_road_that_was_driven() -> None:
+    assert "finding" not in KEPT.to_line()
+    assert replace(KEPT, findings=("too tight",)).to_line().endswith("a.json  finding: too tight")
+    two = replace(LEFT, findings=("too tight", "too steep"))
+    assert two.to_line().endswith("finding: too tight and 1 more finding")
+    assert replace(KEPT, findings=("a", "b", "c")).to_line().endswith("finding: a and 2 more findings")
+    assert json.loads(two.to_json())["findings"] == ["too tight", "too steep"]
 
 
 def test_the_summary_counts_each_outcome_and_finds_the_least_margin() -> None:
