@@ -152,7 +152,10 @@ def test_drive_drives_a_road_despite_what_the_rules_say_and_tells_it_beside_the_
     assert said.endswith("is tighter than 14.33 m")
     assert row["findings"] == [said]
     assert said not in str(row["description"])
-    assert f"finding: {said}" in invoke("drive", "corner.json").stdout
+    told = invoke("drive", "corner.json", "straight.json").stdout
+    assert f"finding: {said}" in told
+    assert "driven despite findings of the rules: 1 (-v tells all of them)" in told
+    assert "despite" not in invoke("drive", "straight.json").stdout
 
 
 def test_the_competition_s_rules_still_stop_a_drive() -> None:
@@ -162,7 +165,8 @@ def test_the_competition_s_rules_still_stop_a_drive() -> None:
 
 
 def test_python_and_campaigns_keep_invalid() -> None:
-    from roadgpt import prove, read_road
+    from roadgpt.road import Road, read_road
+    from roadgpt.run import prove, read_run, write_run
 
     road = read_road("corner.json")
     assert prove(road).outcome == "INVALID"
@@ -171,6 +175,9 @@ def test_python_and_campaigns_keep_invalid() -> None:
     assert driven.verdict is not None
     assert driven.findings
     assert not driven.is_valid
+    kept = read_run(write_run(driven, Path("record")))
+    assert (kept.outcome, kept.findings, kept.is_valid) == ("FAIL", driven.findings, False)
+    assert prove(Road.through([[60, 60], [66, 60]]), despite_findings=True).outcome == "INVALID"
 
 
 @pytest.mark.parametrize(

@@ -85,6 +85,9 @@ class Screen:
         for outcome, count, share, least, most in summary(self.rows):
             told = click.style(f"{outcome:<{WIDEST}}", fg=colour_of(outcome))
             _show(f"{told} {count:>7} {share:>7}  {least:>12}  {most:>18}")
+        despite = sum(bool(row.findings) for row in self.rows if row.test_outcome in ("PASS", "FAIL"))
+        if despite:
+            _show(f"driven despite findings of the rules: {despite} (-v tells all of them)")
         rate = len(self.rows) / max(self.seconds, 1e-9)
         _show(f"{self._number()} roads in {self.seconds:.1f} s ({rate:.1f} roads/s)")
 

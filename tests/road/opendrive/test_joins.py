@@ -110,6 +110,23 @@ def test_a_spiral_without_a_length_is_passed_over(tmp_path: Path) -> None:
     assert found.road.length == pytest.approx(60, abs=1e-3)
 
 
+def test_a_tight_spiral_of_a_few_centimetres_is_a_kink(tmp_path: Path) -> None:
+    """As tools leave them where two bends do not quite meet: 3.8 cm that turn by 15 degrees."""
+    pen = Pen().line(22)
+    pen.tiny(0.0377, 0.0, '<spiral curvStart="0.11" curvEnd="13.8553"/>')
+    pen.x += 0.0377
+    found = pen.line(30, math.radians(15)).read(tmp_path)
+    assert found.remarks[0].startswith("its line has 1 kink of 15.0 degrees (at s = 22.0); it is rounded off")
+    assert tightest(found) > 8
+    assert pen.away(found) < 0.2
+
+
+def test_the_edge_of_a_lane_has_a_length_of_its_own(tmp_path: Path) -> None:
+    far = '<laneOffset s="0" a="1e9" b="1e9" c="0" d="0"/>'
+    with pytest.raises(UsageError, match=r"the road is .* m long.*; give one of up to 50 km"):
+        Pen().line(60).read(tmp_path, offset=far)
+
+
 @pytest.mark.parametrize("degrees", [0.2, 3.0, 12.0, 40.0])
 def test_what_is_told_of_a_kink_is_measured(tmp_path: Path, degrees: float) -> None:
     pen = Pen(3, 4, 0.7).line(40).line(50, math.radians(degrees))

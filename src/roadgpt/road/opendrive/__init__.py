@@ -25,7 +25,7 @@ from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
 from roadgpt.road.opendrive.stretch import Stretch, stretches
 from roadgpt.road.opendrive.tree import Choice, Node, read_tree
 from roadgpt.road.opendrive.turning import turned_round
-from roadgpt.road.road import Road
+from roadgpt.road.road import Road, check_length
 from roadgpt.road.world import World
 
 __all__ = ["Imported", "read_opendrive"]
@@ -153,6 +153,7 @@ def _grown(node: Node, line: list[Stretch], lanes: Lanes) -> tuple[Road, list[st
         road, way = _rounded(found, heights.height(found.s)), "drawn as a spline"
     else:
         plan, s, stations = fit
+        check_length(plan.length)  # the edge of a lane may lead anywhere
         road, way = Road(plan, plain(carried_over(heights, s, stations), plan.length)), "rounded off"
     missed = misses(found)
     if missed or fit is None:

@@ -172,6 +172,8 @@ def _shape(node: Node, s: float, length: float) -> Shape:
         names = ("curvStart", "curvEnd") if node.tag == "spiral" else ("curvature", "curvature")
         k0, k1 = (number(node, name) for name in names)
         if max(abs(k0), abs(k1)) * SMALLEST_RADIUS > 1:
+            if length < SMALLEST_RADIUS:
+                return Bend(Piece(length))  # too short to be a bend: its turn is a kink where it ends
             raise UsageError(f"the {node.tag} at s = {s:g} turns more tightly than {SMALLEST_RADIUS:g} m")
         return Bend(Piece(length, k0, k1))
     if node.tag == "poly3":
