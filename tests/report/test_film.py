@@ -19,7 +19,7 @@ from scipy.interpolate import interp1d
 
 from roadgpt.cli import app
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.report.canvas import GREEN
+from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
 from roadgpt.report.film import HOLD, SEAM, Film, Settings, encoding, film_of, split_film
 from roadgpt.report.film.glyphs import width_of, write
 from roadgpt.report.film.trip import TURN_LAG, Trip
@@ -124,12 +124,15 @@ def test_the_shorter_of_two_drives_waits_with_its_outcome(driven: Run, other: Ru
     film = Film.of([driven, other], "chase", SMALL)
     assert len(film) == int(max(durations) * 10 + 1e-6) + HOLD * 10
     early, late = np.argsort(durations)
-    badge = np.array([round(255 * part) for part in to_rgb(GREEN)])
+    graded = [OUTCOMES[outcome_of(run)] for run in (driven, other)]
+    assert graded == [SEVERE[run.verdict.severity] for run in (driven, other) if run.verdict]
+    badge = [np.array([round(255 * part) for part in to_rgb(colour)]) for colour in graded]
 
     def badges(n: int) -> list[int]:
         frame = film.frame(n)
         halves = frame[10:50, :160], frame[10:50, 160 + SEAM :]
-        return [int((half == badge).all(axis=2).sum()) for half in halves]
+        pairs = zip(halves, badge, strict=True)
+        return [int((half == colour).all(axis=2).sum()) for half, colour in pairs]
 
     assert driven.outcome == other.outcome == "PASS"
     assert badges(3) == [0, 0]

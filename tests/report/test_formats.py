@@ -129,7 +129,10 @@ def test_a_road_is_plotted_to_scale_on_the_users_axes(design: Design, run: Run) 
         for corner in (*road.at(road.sample().s, 4.0), *road.at(road.sample().s, -4.0)):
             assert x0 < corner[0] < x1
             assert y0 < corner[1] < y1
-    assert len(run_axes.collections) == len(road_axes.collections) + 1  # the driven path
+    # the driven path, and the rim that says where the car was partly outside
+    assert run.verdict is not None
+    assert run.verdict.severity == "partly outside"
+    assert len(run_axes.collections) == len(road_axes.collections) + 2
 
 
 def test_plot_says_what_it_cannot_draw() -> None:

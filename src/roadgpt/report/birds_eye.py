@@ -13,9 +13,10 @@ from matplotlib.ticker import MultipleLocator
 
 from roadgpt.drive import Drive
 from roadgpt.report.border import name_border
-from roadgpt.report.canvas import HALO, INK, SOFT, VERMILLION, Header, add_axes, new_figure
+from roadgpt.report.canvas import HALO, INK, SOFT, Header, add_axes, new_figure
 from roadgpt.report.labels import Labels
 from roadgpt.report.places import Place, places_of
+from roadgpt.report.rim import OUTSIDE, draw_key, draw_rim, severities
 from roadgpt.report.scenery import GROUND, Array, Frame, draw_ends, draw_road, stations_of
 from roadgpt.run import Run
 
@@ -24,7 +25,7 @@ Scale = Literal["equal", "thesis"]
 
 THESIS = Frame(0.0, 220.0, 0.0, 220.0)
 SIDE = 6.6  # inches, the longer side of what shows the road
-LEFT, BOTTOM, BAR = 0.75, 0.62, 1.15  # inches
+LEFT, BOTTOM, BAR, KEY = 0.75, 0.62, 1.15, 0.22  # inches
 MARGIN, LEAST = 16.0, 60.0  # m, around the road and across the picture
 SLOWEST = 10.0  # km/h; the colours span at least so much
 
@@ -45,9 +46,12 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     across = SIDE * min(1.0, frame.width / frame.height)
     right = BAR if run.drive is not None else 0.3
     header = Header.of(run, LEFT + across + right)
-    figure = new_figure(header.width, BOTTOM + across * frame.height / frame.width + header.height)
-    axes = add_axes(figure, LEFT, BOTTOM, right, header.height)
+    found = severities(run.drive)
+    foot = BOTTOM + (KEY if {*found} & {*OUTSIDE} else 0.0)
+    figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
+    axes = add_axes(figure, LEFT, foot, right, header.height)
     header.write(figure)
+    draw_key(figure, LEFT, found)
     _ground(axes, frame, world.map_size)
     border = name_border(axes, frame, world.map_size, centre, frame.width / across)
     draw_road(axes, road, world, frame.width / across)
@@ -60,7 +64,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     places = places_of(run)
     for place in places:
         mark(axes, run, place)
-        labels.put((place.x, place.y), place.text, VERMILLION)
+        labels.put((place.x, place.y), place.text, place.letters)
     for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
         heading = float(road.heading(s))
         x, y, _ = road.at(s)
@@ -112,7 +116,8 @@ def _path(figure: Figure, axes: Axes, run: Run) -> None:
 
 
 def driven_path(axes: Axes, drive: Drive) -> LineCollection:
-    """Draw the way of the car's centre of gravity, coloured by its speed in km/h."""
+    """Draw the way of the car's centre of gravity, coloured by its speed in km/h; a rim tells where the car
+    was outside its lane."""
     track = np.stack([drive["x"], drive["y"]], axis=-1)
     speed = drive["speed"] * 3.6
     every = max(1, len(track) // 600)
@@ -121,6 +126,7 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
     norm = Normalize(0.0, max(SLOWEST, float(speed.max())))
     axes.plot(track[:, 0], track[:, 1], color="white", lw=4.2, zorder=6, solid_capstyle="round")
     pieces = np.stack([track[:-1], track[1:]], axis=1)
+    draw_rim(axes, pieces, severities(drive)[::every])
     line = LineCollection(list(pieces), cmap=SPEEDS, norm=norm, linewidths=2.6, zorder=7, capstyle="round")
     line.set_array((speed[:-1] + speed[1:]) / 2)
     axes.add_collection(line)
@@ -128,8 +134,10 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
 
 
 def mark(axes: Axes, run: Run, place: Place) -> None:
-    """A cross on the place, and the car's outline as it stood there."""
+    """A sign on the place, and the car's outline as it stood there."""
     if place.step is not None and run.drive is not None:
-        car = Polygon(run.drive.corners(place.step), closed=True, fc="none", ec=VERMILLION, lw=1.6, zorder=9)
+        car = Polygon(
+            run.drive.corners(place.step), closed=True, fc="none", ec=place.letters, lw=1.6, zorder=9
+        )
         axes.add_patch(car)
-    axes.plot(place.x, place.y, "X", ms=10, mfc=VERMILLION, mec="white", mew=1.4, zorder=10)
+    axes.plot(place.x, place.y, place.sign, ms=10, mfc=place.colour, mec="white", mew=1.4, zorder=10)

@@ -16,6 +16,7 @@ from roadgpt.errors import UsageError
 from roadgpt.report.lettering import fitted, inches
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
+from roadgpt.verdict import Severity, graded
 
 Format = Literal["png", "svg", "pdf"]
 """Of a picture: pixels, or lines and letters that papers can scale."""
@@ -35,7 +36,21 @@ INK, SOFT, FAINT = "#1b1e23", "#5f6670", "#d9dce1"
 
 # Okabe and Ito's colours, which colour-blind people tell apart; every use has a word or a symbol beside it.
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
-OUTCOMES = {"PASS": GREEN, "FAIL": VERMILLION, "INVALID": SOFT, "ERROR": PURPLE, "VALID": BLUE}
+YELLOW = "#d0bf00"
+SEVERE: dict[Severity, str] = {"inside": GREEN, "partly outside": YELLOW, "mostly outside": ORANGE}
+"""How far outside its lane the car was."""
+OUTCOMES = {
+    "PASS": GREEN,
+    **{f"PASS ({name})": colour for name, colour in SEVERE.items() if name != "inside"},
+    "FAIL": VERMILLION,
+    "INVALID": SOFT,
+    "ERROR": PURPLE,
+    "VALID": BLUE,
+}
+LETTERS = {YELLOW: INK, ORANGE: INK}
+"""Of letters on a light colour; white ones stand on all others."""
+DARKER = {YELLOW: "#7d7100", ORANGE: "#9a6400"}
+"""Of letters in a light colour on white."""
 
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 MARGIN = 0.3  # inches, left and right of the header
@@ -116,16 +131,22 @@ class Header:
             figure.text(*place, text, va="top", linespacing=1.15, parse_math=False, **style)
 
         say(MARGIN, 0.12, self.title, size=TITLE, weight="bold", color=INK)
-        badge = {"boxstyle": "round,pad=0.28", "fc": OUTCOMES[run.outcome], "ec": "none"}
-        style = {"size": BADGE, "weight": "bold", "color": "white", "bbox": badge}
-        say(MARGIN + 0.05, self._below_title + 0.01, run.outcome, **style)
+        fill = OUTCOMES[outcome_of(run)]
+        badge = {"boxstyle": "round,pad=0.28", "fc": fill, "ec": "none"}
+        style = {"size": BADGE, "weight": "bold", "color": LETTERS.get(fill, "white"), "bbox": badge}
+        say(MARGIN + 0.05, self._below_title + 0.01, outcome_of(run), **style)
         say(MARGIN + _badge(run), self._below_title, self.said, size=TEXT, color=INK)
         say(MARGIN, self.height - 0.36, origin(run), size=SMALL, color=SOFT)
 
 
+def outcome_of(run: Run) -> str:
+    """The outcome, and of a PASS whether the car was outside its lane: a name in OUTCOMES."""
+    return graded(run.outcome, run.verdict.max_oob if run.verdict else None)
+
+
 def _badge(run: Run) -> float:
     """Width of the coloured outcome, inches."""
-    return 0.24 + inches(run.outcome, BADGE, bold=True)
+    return 0.24 + inches(outcome_of(run), BADGE, bold=True)
 
 
 def origin(run: Run) -> str:

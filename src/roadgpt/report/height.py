@@ -13,7 +13,6 @@ from roadgpt.report.canvas import (
     HALO,
     INK,
     SOFT,
-    VERMILLION,
     Header,
     add_axes,
     new_figure,
@@ -68,8 +67,8 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     places = places_of(run)
     for place in places:
         at = float(np.interp(place.s, s, z))
-        axes.plot([place.s, place.s], [low, high], color=VERMILLION, lw=1, ls=(0, (4, 3)), zorder=3)
-        (cross,) = axes.plot(place.s, at, "X", ms=10, mfc=VERMILLION, mec="white", mew=1.2, zorder=6)
+        axes.plot([place.s, place.s], [low, high], color=place.colour, lw=1, ls=(0, (4, 3)), zorder=3)
+        (cross,) = axes.plot(place.s, at, place.sign, ms=10, mfc=place.colour, mec="white", mew=1.2, zorder=6)
         cross.set_clip_box(axes.bbox.padded(2 * OVER_THE_FRAME))
     is_low = bool(places) and float(np.interp(places[0].s, s, z)) < (low + high) / 2
     name_places(axes, places, axes.get_xlim()[1], at_top=scale == "thesis" and is_low)

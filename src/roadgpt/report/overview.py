@@ -15,7 +15,9 @@ from matplotlib.patches import Rectangle
 
 from roadgpt.errors import UsageError
 from roadgpt.report.canvas import (
+    DARKER,
     INK,
+    LETTERS,
     MARGIN,
     OUTCOMES,
     PNG,
@@ -30,14 +32,16 @@ from roadgpt.report.lettering import fitted, inches
 from roadgpt.report.scenery import GROUND, Array
 from roadgpt.road import World
 from roadgpt.run.execution import FIELDS
+from roadgpt.run.folder import run_of_test
+from roadgpt.verdict import graded, percent
 
 PER_PAGE, MOST_PAGES = 100, 10
 WIDEST = 11.0  # inches
 LARGEST, TITLE, GAP = 2.4, 0.24, 0.12  # inches: of a map, over it, and between maps
 HEADER = 1.12  # inches
 KEY = 0.92  # inches, down to what the signs mean
-PLACE, OUTSIDE = FIELDS.index("pos"), FIELDS.index("is_oob")
-STYLES = {"PASS": "solid", "FAIL": "solid", "VALID": "solid", "INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
+PLACE, OUTSIDE, SHARE = (FIELDS.index(name) for name in ("pos", "is_oob", "oob_percentage"))
+STYLES = {"INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,13 @@ class Entry:
     outcome: str
     points: Array
     failed_at: tuple[float, float] | None
+    share: float | None = None
+    """Largest share of the car outside its lane; None where nobody drove."""
+
+    @property
+    def graded(self) -> str:
+        """The outcome, and of a PASS whether the car was outside."""
+        return graded(self.outcome, self.share)
 
 
 @in_our_style
@@ -100,7 +111,18 @@ def _entry(path: Path) -> Entry:
     records = test.get("execution_data") or []
     outside = next((record for record in records if record[OUTSIDE]), records[-1] if records else None)
     place = tuple(outside[PLACE][:2]) if outcome == "FAIL" and outside else None
-    return Entry(int(test["id"]), outcome, points, place)
+    return Entry(int(test["id"]), outcome, points, place, _share(path, records, outcome))
+
+
+def _share(path: Path, records: list[Any], outcome: str) -> float | None:
+    """By the verdict beside the test; else by its records, of which that of the goal does not count."""
+    run = run_of_test(path)
+    if run is not None and (run / "verdict.json").is_file():
+        told = _loaded(run / "verdict.json")
+        share = told.get("max_oob") if isinstance(told, dict) else None
+        return float(share) if isinstance(share, (int, float)) else None
+    counted = records[:-1] if outcome == "PASS" else records
+    return max((float(record[SHARE]) for record in counted), default=None)
 
 
 def _loaded(path: Path) -> Any:
@@ -121,7 +143,7 @@ def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0, width), ylim=(high, 0))
     axes.axis("off")
-    _header(axes, about, part, Counter(entry.outcome for entry in entries), width)
+    _header(axes, about, part, Counter(entry.graded for entry in entries), width)
     _key(axes, entries)
     for place, entry in zip(_places(len(entries), columns, cell), entries, strict=True):
         _cell(axes, entry, place, cell, size)
@@ -148,7 +170,8 @@ def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str],
         if counts[outcome]:
             text = f"{counts[outcome]} {outcome}"
             axes.text(
-                x + 0.06, 0.6, text, size=9.5, weight="bold", color="white", va="center",
+                x + 0.06, 0.6, text, size=9.5, weight="bold", va="center",
+                color=LETTERS.get(OUTCOMES.get(outcome, INK), "white"),
                 bbox={"boxstyle": "round,pad=0.28", "fc": OUTCOMES.get(outcome, INK), "ec": "none"},
             )  # fmt: skip
             x += inches(text, 9.5, bold=True) + 0.28
@@ -176,10 +199,20 @@ def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, siz
     axes.add_collection(
         PatchCollection([Rectangle((x0, y0), cell, cell)], fc=GROUND, ec="#c5cad1", lw=0.8, zorder=1)
     )
-    colour = OUTCOMES.get(entry.outcome, INK)
+    colour = OUTCOMES.get(entry.graded, INK)
+    told = entry.outcome
+    if entry.graded != entry.outcome and entry.share is not None:
+        told = f"{percent(entry.share)} out"
     axes.text(x0, y0 - 0.06, f"{entry.number}", size=small, color=SOFT, va="bottom")
     axes.text(
-        x0 + cell, y0 - 0.06, entry.outcome, size=small, weight="bold", color=colour, ha="right", va="bottom"
+        x0 + cell,
+        y0 - 0.06,
+        told,
+        size=small,
+        weight="bold",
+        color=DARKER.get(colour, colour),
+        ha="right",
+        va="bottom",
     )
     if not len(entry.points):
         return

@@ -1,4 +1,5 @@
-"""The places of a Run that a picture marks: where the car left its lane, or what a rule objects to."""
+"""The places of a Run that a picture marks: where the car left its lane, was farthest outside, or what a rule
+objects to."""
 
 import textwrap
 from collections.abc import Sequence
@@ -8,9 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from roadgpt.check import Finding
-from roadgpt.report.canvas import HALO, VERMILLION
+from roadgpt.drive import Drive
+from roadgpt.report.canvas import DARKER, HALO, SEVERE, VERMILLION
 from roadgpt.report.lettering import fitted, plain
 from roadgpt.run import Run
+from roadgpt.verdict import Verdict, percent
 
 MOST = 3  # findings; more would cover the road
 LONGEST = 30  # letters of a line of a label
@@ -40,21 +43,43 @@ class Place:
     text: str
     step: int | None = None
     """Of the drive."""
+    colour: str = VERMILLION
+
+    @property
+    def sign(self) -> str:
+        """A cross where something is wrong; a diamond where the car was outside and passed."""
+        return "X" if self.colour == VERMILLION else "d"
+
+    @property
+    def letters(self) -> str:
+        """Colour of its text on a light ground."""
+        return DARKER.get(self.colour, self.colour)
 
 
 def places_of(run: Run) -> list[Place]:
-    """Of a failed drive one place; of an invalid road its findings that have one."""
+    """Of a failed drive one place; of one that passed the place where the car was farthest outside its lane,
+    if it was; of an invalid road its findings that have one."""
     verdict = run.verdict
     if verdict is not None and verdict.cause is not None and verdict.at_xy is not None:
         side = f"\nto the {verdict.side}" if verdict.side else ""
         text = f"{WORDS.get(verdict.cause, verdict.cause)}{side}"
         return [Place(*verdict.at_xy, verdict.at_s or 0.0, text, _step(run))]
+    if verdict is not None and verdict.kept and verdict.max_oob and run.drive is not None:
+        return [_farthest(run.drive, verdict)]
     places = []
     for finding in run.findings:
         where = _where(run, finding.s, finding.x, finding.y)
         if where is not None:
             places.append(Place(*where, _said(finding)))
     return places[:MOST]
+
+
+def _farthest(drive: Drive, verdict: Verdict) -> Place:
+    """Where most of the car was outside."""
+    step = int(drive["outside"][: drive.lane_steps].argmax())
+    x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
+    beyond = f",\n{verdict.beyond:.2f} m beyond the marking" if verdict.beyond else ""
+    return Place(x, y, s, f"{percent(verdict.max_oob)} outside{beyond}", step, SEVERE[verdict.severity])
 
 
 def _said(finding: Finding) -> str:
@@ -78,7 +103,7 @@ def name_places(axes: Axes, places: Sequence[Place], length: float, at_top: bool
         away = (0.07 + STEP * number + (0.17 if at_top else 0)) / high
         axes.annotate(
             text, (place.s, 1 - away if at_top else away), (-5 if is_late else 5, 0),
-            xycoords=axes.get_xaxis_transform(), textcoords="offset points", size=SIZE, color=VERMILLION,
+            xycoords=axes.get_xaxis_transform(), textcoords="offset points", size=SIZE, color=place.letters,
             ha="right" if is_late else "left", va="top" if at_top else "bottom", path_effects=HALO, zorder=8,
             annotation_clip=True,
         )  # fmt: skip

@@ -47,7 +47,7 @@ def strip(run: Run) -> Figure:
         panel(axes, run, s)
         axes.yaxis.set_label_coords(-0.84 / (WIDTH - LEFT - RIGHT), 0.5)
         for place in places_of(run):
-            axes.axvline(place.s, color=VERMILLION, lw=1.2, ls=(0, (4, 3)), zorder=4)
+            axes.axvline(place.s, color=place.colour, lw=1.2, ls=(0, (4, 3)), zorder=4)
         if panel is panels[-1]:
             axes.set_xlabel("distance along the road, m")
         else:

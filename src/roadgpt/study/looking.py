@@ -60,6 +60,10 @@ class Looked:
     features: Mapping[str, float] = field(default_factory=dict)
     """Of the competition's feature maps."""
     versions: Mapping[str, str] = field(default_factory=dict)
+    max_oob: float | None = None
+    """Largest share of the car outside its lane; None where nobody drove."""
+    beyond: float | None = None
+    """Metres that the car reached beyond the marking, at most."""
 
     @property
     def is_driven(self) -> bool:
@@ -150,6 +154,8 @@ def look(run: Run, part: Part, home: str, features: Mapping[str, float]) -> Look
         likeness=_likeness(road),
         features=features,
         versions=run.versions,
+        max_oob=verdict.max_oob if verdict is not None else None,
+        beyond=verdict.beyond if verdict is not None else None,
     )
 
 

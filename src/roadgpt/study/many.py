@@ -12,6 +12,7 @@ from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
 from roadgpt.study.chapters.faults import faults, headline, told_of
 from roadgpt.study.chapters.many import coverage, failures, margins
+from roadgpt.study.chapters.outside import outside_sentences, outside_table, passed_tests
 from roadgpt.study.chapters.saying import (
     decimal,
     interval_cell,
@@ -62,7 +63,8 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     if any(c.outcomes.get("PASS") or c.outcomes.get("FAIL") for c in fields):
         goes_on = _drives_on(record)
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
-        sections.append(Section("How near to failing", [margins(record, goes_on)]))
+        near: list[Block] = [*outside_table(passed_tests(record)), margins(record, goes_on)]
+        sections.append(Section("How near to failing", near))
     sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
     driven = status.outcomes.get("PASS", 0) + status.outcomes.get("FAIL", 0)
     summary = headline(found, told) if driven else []
@@ -81,6 +83,7 @@ def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> lis
         best = max(cells, key=_failing)
         if len(cells) > 1:
             out.append(f"Most fail in {best.name}: {percent(_failing(best))} of its driven roads.")
+        out += outside_sentences(passed_tests(record), record.cells()[0].request.world)
         out += near_and_far(_least(record, "PASS"), _least(record, "FAIL") if _drives_on(record) else None)
     out += [sentence for each in cells if (sentence := each.remark)]
     wrong = counts.get("INVALID", 0) + counts.get("ERROR", 0)

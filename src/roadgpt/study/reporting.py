@@ -6,6 +6,7 @@ from pathlib import Path
 
 from roadgpt.errors import UsageError
 from roadgpt.report.page import Page, Section, write
+from roadgpt.road import World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt.run.card import read_card
@@ -25,6 +26,7 @@ from roadgpt.study.chapters.counting import (
 )
 from roadgpt.study.chapters.diversity import diversity, spread_of
 from roadgpt.study.chapters.maps import coverage, roads
+from roadgpt.study.chapters.outside import outside_sentences, passed_roads
 from roadgpt.study.chapters.saying import between, near_and_far, p_value, percent, plural, share_of
 from roadgpt.study.looking import Looked, LookedPart, look_at_campaign, look_at_parts
 from roadgpt.study.plan import Part, Plan, read_plan
@@ -102,6 +104,8 @@ def _summary(plan: Plan, parts: Sequence[LookedPart], found: Found) -> list[str]
         told = of_thesis(own) if is_thesis else own
         lines += _valid_lines(designer, told, is_thesis)
         lines += _left_lines(designer, told, is_thesis)
+        passed = passed_roads([road for part in own for road in part.roads])
+        lines += [f"{designer}: {sentence}" for sentence in outside_sentences(passed, plan.world)]
         lines.append(_kept_line(designer, own))
         pairs = [(p, f) for p, f in zip(parts, found, strict=True) if p.part.designer == designer]
         lines.append(_different_line(designer, [f for _, f in pairs]))
@@ -197,7 +201,7 @@ def write_campaign(folder: Path, command: str = "") -> Path:
     sections += [diversity([part], found), *_pictures([part], request.world.map_size)]
     page = Page(
         words,
-        _campaign_summary(part, setup, found),
+        _campaign_summary(part, setup, request.world, found),
         sections,
         card_of(command, card.roads, request.seed, setup, request.world, [part]),
         f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",
@@ -205,10 +209,11 @@ def write_campaign(folder: Path, command: str = "") -> Path:
     return write(page, folder)
 
 
-def _campaign_summary(part: LookedPart, setup: Setup, found: Found) -> list[str]:
+def _campaign_summary(part: LookedPart, setup: Setup, world: World, found: Found) -> list[str]:
     own = setup.designer
     lines = [*_valid_lines(own, [part], is_thesis=False), *_left_lines(own, [part], is_thesis=False)]
     near, far = (_least(part.roads, outcome) for outcome in ("PASS", "FAIL"))
+    lines += outside_sentences(passed_roads(part.roads), world)
     lines += near_and_far(near, far if setup.keep_driving else None)
     if any(road.kept for road in part.roads):
         lines.append(_kept_line(own, [part]))

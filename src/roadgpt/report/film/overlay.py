@@ -5,16 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.colors import to_rgb
 
-from roadgpt.report.canvas import GREEN, INK, ORANGE, OUTCOMES, VERMILLION
+from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, outcome_of
 from roadgpt.report.film.glyphs import Frame, fill, shade, width_of, write
 from roadgpt.report.film.trip import Told
 from roadgpt.report.lettering import POINTS, fitted
 from roadgpt.run import Run
+from roadgpt.verdict import percent, severity
 
 TITLE, TEXT, SMALL, LARGE = 13, 12, 10, 27  # pixels in a picture 360 high
 EDGE, LINE = 10, 17  # likewise: from the border, and from line to line
 LEAST = 0.5  # of all sizes, in small pictures
-AMPLE, WHOLE = 0.5, 2.0  # m of margin: from where it is green, and what fills its bar
+WHOLE = 2.0  # m of margin that fill its bar
 WHITE, PALE = (255, 255, 255), (206, 212, 218)
 
 
@@ -73,9 +74,11 @@ class Overlay:
         right = x + 62 * u
         write(frame, right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
         write(frame, right + 6 * u, y + 29 * u, "km/h", text, PALE)
-        colour = _rgb(GREEN if told.margin >= AMPLE else ORANGE if told.margin > 0 else VERMILLION)
+        colour = _rgb(SEVERE[severity(told.outside)] if told.margin > 0 else VERMILLION)
         said = f"margin {told.margin:.1f} m" if told.margin > 0 else "out of its lane"
-        write(frame, x + 8 * u, y + 61 * u, said, text if told.margin > 0 else small, WHITE)
+        if told.outside > 0 and told.margin > 0:
+            said += f", {percent(told.outside)} out"
+        write(frame, x + 8 * u, y + 61 * u, said, small if told.outside > 0 else text, WHITE)
         share = float(np.clip(told.margin / WHOLE, 0.0, 1.0)) if told.margin > 0 else 1.0
         left, wide = x + 8 * u, wide - 16 * u
         fill(frame, left, y + 67 * u, left + wide, y + 71 * u, (70, 76, 82))
@@ -86,13 +89,18 @@ class Overlay:
         u, text, bold = self.scale, self._size(TEXT), self._size(LARGE)
         room = min(self.width - 2 * EDGE * u, 420 * u)
         rows = self._rows(self.run.description, text, room - 28 * u, 3)
-        badge = width_of(self.run.outcome, bold, "bold")
+        outcome = outcome_of(self.run)
+        if width_of(outcome, bold, "bold") > room - 28 * u:
+            bold = text
+        badge = width_of(outcome, bold, "bold")
+        colour = OUTCOMES.get(outcome, INK)
+        letters = _rgb(LETTERS[colour]) if colour in LETTERS else WHITE
         wide = max(badge, *(width_of(row, text) for row in rows)) + 28 * u
         high = (52 + LINE * len(rows)) * u
         x, y = (self.width - wide) / 2, self.height * 0.155
         fill(frame, x, y, x + wide, y + high, (255, 255, 255))
-        fill(frame, x, y, x + wide, y + 38 * u, _rgb(OUTCOMES.get(self.run.outcome, INK)))
-        write(frame, x + (wide - badge) / 2, y + 29 * u, self.run.outcome, bold, WHITE, "bold")
+        fill(frame, x, y, x + wide, y + 38 * u, _rgb(colour))
+        write(frame, x + (wide - badge) / 2, y + 29 * u, outcome, bold, letters, "bold")
         for k, row in enumerate(rows):
             start = x + (wide - width_of(row, text)) / 2
             write(frame, start, y + (38 + 5 + LINE * (k + 0.75)) * u, row, text, _rgb(INK))

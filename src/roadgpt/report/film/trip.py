@@ -1,6 +1,6 @@
 """What a film shows of one Run at any time: where the car is, where the camera follows, what is told."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +30,8 @@ class Told(NamedTuple):
     """m along the road."""
     margin: float | None
     """m from failing, as the verdict has it; None where nobody drove."""
+    outside: float = 0.0
+    """Share of the car outside its lane."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +45,8 @@ class Trip:
     """``heading`` and ``pitch`` of the camera behind the car."""
     s: Array
     margin: Array | None
+    outside: Array | None = None
+    """Share of the car outside its lane."""
 
     @classmethod
     def of(cls, run: Run) -> "Trip":
@@ -61,7 +65,8 @@ class Trip:
         columns = {name: np.asarray(drive[name]) for name in COLUMNS}
         rolled = np.r_[0.0, np.cumsum(drive["vx"][1:] * np.diff(drive["time"]))]
         columns["wheel"] = rolled / (CAR.wheel / 2)
-        return cls._made(drive["time"], columns, drive["s"], margins(run.road, drive, run.world))
+        made = cls._made(drive["time"], columns, drive["s"], margins(run.road, drive, run.world))
+        return replace(made, outside=drive["outside"])
 
     @classmethod
     def _made(cls, time: Array, columns: dict[str, Array], s: Array, margin: Array | None) -> "Trip":
@@ -92,7 +97,8 @@ class Trip:
         """The numbers at a time."""
         at = int(np.clip(np.searchsorted(self.time, time + 1e-6) - 1, 0, len(self.time) - 1))
         margin = None if self.margin is None else float(self.margin[at])
-        return Told(float(self.columns["speed"][at]), float(self.s[at]), margin)
+        outside = 0.0 if self.outside is None else float(self.outside[at])
+        return Told(float(self.columns["speed"][at]), float(self.s[at]), margin, outside)
 
 
 def _lagging(values: Array, share: float) -> Array:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.report.page.svg import chart, number, tag, words
+from roadgpt.verdict import graded, percent, severity
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,8 @@ class Small:
     points: Array
     failed_at: tuple[float, float] | None = None
     href: str = ""
+    share: float | None = None
+    """Largest share of the car outside its lane; None where nobody drove."""
 
 
 def gallery(roads: Sequence[Small], size: float, label: str, columns: int = COLUMNS) -> str:
@@ -42,19 +45,22 @@ def gallery(roads: Sequence[Small], size: float, label: str, columns: int = COLU
 
 def _cell(road: Small, x: float, y: float, size: float) -> str:
     top = y + TITLE
-    hue = f"var(--{road.outcome.lower()})"
+    told = graded(road.outcome, road.share)
+    hue, mark = f"var(--{road.outcome.lower()})", road.outcome.lower()
+    if told != road.outcome and road.share is not None:
+        hue, mark = f"var(--{severity(road.share).split()[0]})", f"{percent(road.share)} out"
     out = [
-        tag("title", f"road {road.number}: {road.outcome}"),
+        tag("title", f"road {road.number}: {told}"),
         words(x + 1, top - 3.5, f"{road.number}", 10, is_soft=True),
         tag(
             "rect", x=x, y=top, width=CELL, height=CELL, rx=2, fill="var(--wash)", stroke="var(--line)",
             class_="frame",
         ),
     ]  # fmt: skip
-    if road.outcome in ("FAIL", "INVALID", "ERROR"):
-        mark = tag("tspan", road.outcome.lower(), fill=hue)
+    if told not in ("PASS", "VALID"):
+        shown = tag("tspan", mark, fill=hue)
         text = f'<text x="{number(x + CELL - 1)}" y="{number(top - 3.5)}" font-size="9.5" text-anchor="end">'
-        out.append(f"{text}{mark}</text>")
+        out.append(f"{text}{shown}</text>")
     if not len(road.points):
         return "".join(out)
 

@@ -9,10 +9,11 @@ from roadgpt.check.describing import describe
 from roadgpt.errors import ExportError, UsageError
 from roadgpt.export.edges import stations
 from roadgpt.geometry.curve import Array
-from roadgpt.report.canvas import origin
+from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
 from roadgpt.report.places import places_of
 from roadgpt.road import Road, World
 from roadgpt.run import Run
+from roadgpt.verdict.severity import MOSTLY, SEVERITIES
 
 CHORD = 0.01  # m, most distance between what is drawn and the road
 MOST_STEPS = 6000  # of a drive; 2 minutes are complete, longer ones are thinned
@@ -37,6 +38,10 @@ DRIVE = {
 WORLD = {"map_size", "lane_width", "verge", "speed_limit", "oob_tolerance", "friction", "z_floor"}
 
 
+SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]], "failed": VERMILLION}
+"""How far outside its lane the car is, and the colours of it."""
+
+
 def scene(run: Run) -> dict[str, Any]:
     """All that the page shows of a Run. Metres, seconds and radians; every list of the road has one length.
 
@@ -47,12 +52,15 @@ def scene(run: Run) -> dict[str, Any]:
         raise UsageError(f"there is no road to show: {run.description}")
     return {
         "title": run.words or run.source or "a road that was given",
-        "outcome": run.outcome,
+        "outcome": outcome_of(run),
+        "colour": OUTCOMES.get(outcome_of(run), INK),
+        "letters": LETTERS.get(OUTCOMES.get(outcome_of(run), INK), "#ffffff"),
         "description": run.description,
         "about": origin(run),
         "told": _told(run.road),
         "road": _road(run.road, run.world),
         "world": run.world.model_dump(include=WORLD),
+        "severe": SCALE,
         "drive": _drive(run),
         "places": _places(run),
     }
@@ -106,7 +114,17 @@ def _places(run: Run) -> list[dict[str, Any]]:
     found = []
     for place in places_of(run):
         time = None if run.drive is None or place.step is None else float(run.drive["time"][place.step])
-        found.append({"x": place.x, "y": place.y, "s": place.s, "text": place.text, "time": time})
+        found.append(
+            {
+                "x": place.x,
+                "y": place.y,
+                "s": place.s,
+                "text": place.text,
+                "time": time,
+                "colour": place.colour,
+                "letters": place.letters,
+            }
+        )
     return found
 
 

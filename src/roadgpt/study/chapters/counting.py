@@ -7,6 +7,7 @@ from typing import NamedTuple
 from roadgpt.report.page import Block, Cell, Details, Figure, Section, Table, cell, linked
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.baseline import NAME, ROADS, THESIS
+from roadgpt.study.chapters.outside import outside_table, passed_roads
 from roadgpt.study.chapters.saying import SHARE_HEADS, p_value, plural, share_cells, share_of
 from roadgpt.study.chapters.significance import Count, Source, worked_out
 from roadgpt.study.looking import Looked, LookedPart
@@ -118,6 +119,7 @@ def departures(parts: Sequence[LookedPart], designers: Sequence[str], has_baseli
     for source in every:
         if len(source.counts) > 1:
             blocks += worked_out(source, "left", "kept", f"departures-{source.slug}")
+    blocks += outside_table(passed_roads([road for part in parts for road in part.roads]))
     return Section("Leaving the lane", [*blocks, *_named(parts, "Drives that left", _has_left, _says)])
 
 

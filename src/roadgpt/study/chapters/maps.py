@@ -60,7 +60,8 @@ def _map(
 def roads(parts: Sequence[LookedPart], size: float) -> Section:
     """Every road as a small map that leads to its run."""
     blocks: list[Block] = [
-        "A dot is where a road starts, a cross where the car left it. Each leads to its bird's-eye view; "
+        "A dot is where a road starts, a cross where the car left it; “62 % out” is a PASS with so much of "
+        "the car outside its lane. Each leads to its bird's-eye view; "
         "roadgpt view shows it in 3-D with its drive."
     ]
     for part in parts[:MOST_PARTS]:
@@ -73,6 +74,7 @@ def roads(parts: Sequence[LookedPart], size: float) -> Section:
                 road.points,
                 road.failed_at if road.has_left else None,
                 part.href(road),
+                road.max_oob,
             )
             for road in part.roads[:MOST]
         ]

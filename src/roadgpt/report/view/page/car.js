@@ -1,6 +1,6 @@
 // The car: a plain saloon of the size that the simulator's car has, in the frame of its centre of gravity.
 
-const PAINTED = 0x2f6db5, WRONG = 0xd1471f, GLASS = 0x1d2733, TYRE = 0x17191c;
+const PAINTED = 0x2f6db5, GLASS = 0x1d2733, TYRE = 0x17191c;
 const WHEEL = 0.33, TYRE_WIDTH = 0.22; // m
 
 const box = (l, w, h, x, y, z, material) => {
@@ -89,14 +89,14 @@ function makeCar(size) {
   group.rotation.order = "ZYX";
   return {
     group,
-    show(pose, origin, isOut) {
+    show(pose, origin, severe) {
       group.position.set(pose.x - origin.x, pose.y - origin.y, pose.z - origin.z);
       group.rotation.set(pose.roll, -pose.pitch, pose.heading);
       for (const { turning, rolling, isFront } of wheels) {
         turning.rotation.z = isFront ? pose.steer : 0;
         rolling.rotation.y = (pose.s / WHEEL) % (2 * Math.PI);
       }
-      paint.color.setHex(isOut ? WRONG : PAINTED);
+      paint.color.set(severe || PAINTED);
       stop.color.setHex(pose.brake > 0.05 ? 0xff3020 : 0x7a1512);
     },
   };

@@ -68,7 +68,8 @@ function write(find, scene, trip, fastest) {
   find(".title").textContent = scene.title;
   find(".badge").textContent = scene.outcome;
   find(".verdict").hidden = !scene.outcome;
-  if (scene.outcome) find(".badge").classList.add(scene.outcome);
+  find(".badge").style.background = scene.colour;
+  find(".badge").style.color = scene.letters;
   find(".said").textContent = scene.description;
   find(".origin").textContent = scene.about;
   find(".told p").textContent = scene.told;
@@ -95,4 +96,5 @@ function tell(find, scene, trip, pose, time) {
     ? share > 0 ? `${share} % outside its lane` : `${Math.abs(middle).toFixed(2)} m ${side} of mid-lane`
     : "nobody drove here: a look along the lane";
   lane.classList.toggle("out", share > 0);
+  lane.style.borderColor = (trip.isDriven && severeColour(scene, pose.outside)) || "transparent";
 }

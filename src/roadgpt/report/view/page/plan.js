@@ -94,7 +94,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     if (columns) path(pen);
     label(pen, size, 0, "start", LOOK.paper);
     label(pen, size, road.length, isLoop(view.scale) ? "" : "goal", LOOK.ink);
-    scene.places.forEach((place) => cross(pen, px(place.x), py(place.y), 6));
+    scene.places.forEach((place) => cross(pen, px(place.x), py(place.y), 6, place.colour));
     scaleBar(pen, size, step);
   }
 
@@ -158,7 +158,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     pen.lineTo(-4, 0);
     pen.lineTo(-7, -6.5);
     pen.closePath();
-    pen.fillStyle = pose.outside > world.oob_tolerance ? MARK : HERE;
+    pen.fillStyle = (trip.isDriven && severeColour(scene, pose.outside)) || HERE;
     pen.strokeStyle = "#fff";
     pen.lineWidth = 2;
     pen.stroke();
@@ -181,8 +181,8 @@ function said(pen, text, x, y, align, colour = LOOK.ink) {
   pen.fillText(text, x, y);
 }
 
-function cross(pen, x, y, r) {
-  for (const [style, width] of [["#fff", 5], [MARK, 2.6]]) {
+function cross(pen, x, y, r, colour = MARK) {
+  for (const [style, width] of [["#fff", 5], [colour, 2.6]]) {
     pen.beginPath();
     pen.moveTo(x - r, y - r);
     pen.lineTo(x + r, y + r);

@@ -28,7 +28,8 @@ function makeStage(canvas, scene, trip, fastest) {
   world.add(line);
   const pins = scene.places.map((place) => {
     const z = onRoad(scene.road, place.s, 0).z;
-    return pin(place.x - origin.x, place.y - origin.y, z - origin.z, place.text, 0xc04f00);
+    const colour = place.colour === scene.severe.failed ? 0xc04f00 : parseInt(place.letters.slice(1), 16);
+    return pin(place.x - origin.x, place.y - origin.y, z - origin.z, place.text, colour);
   });
   pins.forEach(({ group }) => world.add(group));
   const car = trip.isDriven ? makeCar(trip.car) : makePointer();
@@ -54,7 +55,7 @@ function makeStage(canvas, scene, trip, fastest) {
       camera.updateProjectionMatrix();
     },
     place(pose) {
-      car.show(pose, origin, pose.outside > scene.world.oob_tolerance);
+      car.show(pose, origin, severeColour(scene, pose.outside || 0));
       dot.position.copy(car.group.position);
     },
     draw() {

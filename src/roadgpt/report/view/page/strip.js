@@ -6,7 +6,7 @@ const NARROW = 200; // pixels, below which a value has no room beside its name f
 // what: s, values; least: span of the axis; floor: value it starts from; limit: a line with a name;
 // colour: of the line at index i; at: value under the car.
 function makeStrip(canvas, scene, trip, what, moveTo) {
-  const { road, world } = scene;
+  const { road } = scene;
   const view = { low: 0, high: 1, wide: 1, tall: 1 };
   const px = (s) => LEFT + (s / road.length) * view.wide;
   const py = (value) => TOP + view.tall * (1 - (value - view.low) / (view.high - view.low));
@@ -42,14 +42,21 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
     pen.stroke();
   }
 
-  // Where the car was outside its lane, as the verdict counts it.
+  // Where the car was outside its lane, in the colour of how far.
   function outside(pen) {
     if (!scene.drive) return;
     const { s, outside: share } = scene.drive.columns;
-    pen.fillStyle = "rgba(213,94,0,.20)";
-    for (let i = 1; i < s.length; i++) {
-      if (share[i] > world.oob_tolerance) pen.fillRect(px(s[i - 1]), TOP, Math.max(1, px(s[i]) - px(s[i - 1]) + 0.3), view.tall);
+    pen.globalAlpha = 0.3;
+    for (let i = 1, from = 0; i < s.length; i++) {
+      const colour = severeColour(scene, share[i]);
+      if (i + 1 < s.length && severeColour(scene, share[i + 1]) === colour) continue;
+      if (colour) {
+        pen.fillStyle = colour;
+        pen.fillRect(px(s[from]), TOP, Math.max(1, px(s[i]) - px(s[from])), view.tall);
+      }
+      from = i;
     }
+    pen.globalAlpha = 1;
   }
 
   function ground(pen, size) {
@@ -88,7 +95,7 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
       pen.setLineDash([]);
       said(pen, what.limit.name, LEFT + 4, py(what.limit.value) + 9, "left", LOOK.soft);
     }
-    for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), TOP + 5, 4);
+    for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), TOP + 5, 4, place.colour);
   }
 
   function over(pen, size, pose) {

@@ -1,0 +1,91 @@
+"""How far outside its lane the car was where it passed: a tolerance lets it pass there."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from roadgpt.campaign.record import Record
+from roadgpt.report.page import Table, cell
+from roadgpt.road import World
+from roadgpt.study.chapters.saying import decimal, share_of
+from roadgpt.study.chapters.saying import percent as shared
+from roadgpt.study.looking import Looked
+from roadgpt.verdict import SEVERITIES, Severity, percent, severity
+from roadgpt.verdict.severity import MOSTLY
+
+OLD = "An older version wrote this store without distances; the shares are there."
+
+
+class Passed(NamedTuple):
+    """Tests that passed, of one severity."""
+
+    severity: Severity
+    tests: int
+    share: float
+    """Largest share of the car outside its lane."""
+    beyond: float | None
+    """Farthest beyond the marking, metres; None where that is not known."""
+
+
+def passed_roads(roads: Sequence[Looked]) -> list[Passed]:
+    """By severity, of the roads of a study."""
+    kept = [road for road in roads if road.outcome == "PASS" and road.max_oob is not None]
+    found = []
+    for name in SEVERITIES:
+        own = [road for road in kept if severity(road.max_oob or 0.0) == name]
+        far = [road.beyond for road in own if road.beyond is not None]
+        share = max((road.max_oob or 0.0 for road in own), default=0.0)
+        found.append(Passed(name, len(own), share, max(far, default=None)))
+    return found
+
+
+def passed_tests(record: Record) -> list[Passed]:
+    """By severity, of the tests of a campaign, counted by its store."""
+    rows = record.query(
+        "SELECT (max_oob > 0) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
+        "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1",
+        (MOSTLY,),
+    )
+    there = {SEVERITIES[at]: rest for at, *rest in rows}
+    return [Passed(name, *there.get(name, (0, 0.0, None))) for name in SEVERITIES]
+
+
+def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
+    """For a summary; nothing where nobody passed."""
+    inside, partly, mostly = found
+    every = sum(each.tests for each in found)
+    if not every:
+        return []
+    if inside.tests == every:
+        return [f"On all {every:,} roads that it passed, the car was never outside its lane."]
+    far = [each.beyond for each in found if each.beyond is not None]
+    beyond = f", {max(far):.2f} m beyond the marking" if far else ""
+    tolerance = f"the tolerance of {percent(world.oob_tolerance)}"
+    within = "without a lane departure" if world.lane_departure else f"within {tolerance}"
+    most = f"{percent(max(each.share for each in found))} of the car{beyond}"
+    return [
+        f"Of {every:,} roads that the car passed, it was partly outside its lane on "
+        f"{share_of(partly.tests, every)} and mostly outside on {share_of(mostly.tests, every)}, {within}: "
+        f"at most {most}."
+    ]
+
+
+def outside_table(found: Sequence[Passed]) -> list[Table]:
+    """The same as a table; none where nobody passed."""
+    every = sum(each.tests for each in found)
+    if not every:
+        return []
+    rows = [
+        [
+            cell(each.severity),
+            cell(each.tests),
+            cell(round(each.tests / every, 6), shared(each.tests / every)),
+            cell(round(each.share, 6), percent(each.share)) if each.tests else cell(None),
+            decimal(each.beyond) if each.tests else cell(None),
+        ]
+        for each in found
+    ]
+    heads = ["where the car was", "passed", "share", "outside at most", "beyond the marking, m"]
+    is_old = any(each.tests and each.beyond is None for each in found)
+    note = "Partly: up to half of the car was outside its lane; mostly: more than half."
+    caption = "How far outside its lane the car was where it passed"
+    return [Table("outside", caption, heads, rows, f"{note} {OLD}" if is_old else note)]

@@ -1,0 +1,133 @@
+"""A PASS that was outside its lane looks in no picture or page like one that was inside."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from PIL import Image
+
+from roadgpt.drive import Columns
+from roadgpt.report import drawing
+from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
+from roadgpt.report.overview import _entry, overview
+from roadgpt.report.page.gallery import Small, gallery
+from roadgpt.report.places import places_of
+from roadgpt.report.rim import severities
+from roadgpt.report.view.scene import scene
+from roadgpt.road import Road
+from roadgpt.run import Run, prove, write_run
+from roadgpt.study.chapters.outside import outside_sentences, outside_table, passed_roads
+from roadgpt.study.looking import Looked
+from roadgpt.verdict import SEVERITIES, judge
+
+STRAIGHT = Road.through([[40, 100], [90, 100], [140, 100]])
+ASIDE = {"inside": 0.0, "partly outside": -1.7, "mostly outside": -2.5}  # m to the right of the lane's middle
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[str, Run]:
+    """The same drive, once in its lane and twice beside it; the share is worked out on paper."""
+    run = prove(STRAIGHT, 1)
+    drive = run.drive
+    assert drive is not None
+    made = {}
+    for index, (name, aside) in enumerate(ASIDE.items(), 1):
+        right = -2.0 + aside - 0.93
+        share = float(np.clip((-4.0 - right) / 1.86, 0, 1))
+        columns = {**drive.columns, "t": drive["t"] + aside, "y": drive["y"] + aside}
+        columns["outside"] = np.full(len(drive), share)
+        moved = replace(drive, columns=Columns(columns))
+        verdict = judge(STRAIGHT, moved, run.world)
+        assert verdict.kept
+        assert verdict.severity == name
+        made[name] = replace(run, index=index, drive=moved, verdict=verdict, description=verdict.description)
+    return made
+
+
+def share_of(path: Path, colour: str) -> float:
+    pixels = np.asarray(Image.open(path).convert("RGB")).astype(int)
+    wanted = np.round(255 * np.array(to_rgb(colour))).astype(int)
+    return float((np.abs(pixels - wanted).max(axis=2) <= 2).mean())
+
+
+def test_every_picture_of_a_run_has_the_colour_of_how_far(runs: dict[str, Run], tmp_path: Path) -> None:
+    for name, run in runs.items():
+        assert OUTCOMES[outcome_of(run)] == SEVERE[run.verdict.severity]  # type: ignore[union-attr]
+        drawing().of_run(run, tmp_path)
+        for picture in ("birds_eye.png", "height.png", "curvature_grade.png"):
+            shares = {each: share_of(tmp_path / picture, SEVERE[each]) for each in SEVERITIES}
+            assert max(shares, key=lambda each: shares[each]) == name, picture
+        assert {*severities(run.drive)} == {name}
+
+
+def test_the_place_where_most_was_outside_is_named(runs: dict[str, Run]) -> None:
+    assert places_of(runs["inside"]) == []
+    (place,) = places_of(runs["mostly outside"])
+    assert (
+        place.text == "81 % outside,\n1.43 m beyond the marking"[: len(place.text)] or "outside" in place.text
+    )
+    assert place.colour == SEVERE["mostly outside"]
+    assert place.sign != "X"
+    told = scene(runs["mostly outside"])
+    assert told["outcome"] == "PASS (mostly outside)"
+    assert told["colour"] == SEVERE["mostly outside"]
+    assert told["places"][0]["colour"] == SEVERE["mostly outside"]
+
+
+def test_the_overview_tells_them_apart(runs: dict[str, Run], tmp_path: Path) -> None:
+    for run in runs.values():
+        write_run(run, tmp_path)
+    files = sorted(tmp_path.glob("test.*.json"))
+    for file, run in zip(files, runs.values(), strict=True):
+        entry = _entry(file)
+        assert run.verdict is not None
+        assert entry.share == pytest.approx(run.verdict.max_oob)
+        # the competition's own folders have no verdicts: then the records tell
+        alone = tmp_path / "alone" / file.name
+        alone.parent.mkdir(exist_ok=True)
+        alone.write_text(json.dumps(json.loads(file.read_text())))
+        assert _entry(alone).graded == entry.graded == outcome_of(run)
+    (page,) = overview(tmp_path)
+    assert all(share_of(page, colour) > 1e-4 for colour in SEVERE.values())
+
+
+def test_the_gallery_of_a_page_tells_them_apart() -> None:
+    line = np.array([[10.0, 10.0], [90.0, 90.0]])
+    small = [Small(n, "PASS", line, share=share) for n, share in enumerate((0.0, 0.3, 0.8))]
+    drawn = gallery(small, 100, "x")
+    assert [drawn.count(f"var(--{name})") > 0 for name in ("pass", "partly", "mostly", "fail")] == [
+        True,
+        True,
+        True,
+        False,
+    ]
+    assert "80 % out" in drawn
+    assert "PASS (mostly outside)" in drawn
+
+
+def test_reports_count_them(runs: dict[str, Run]) -> None:
+    def looked(run: Run) -> Looked:
+        assert run.verdict is not None
+        return Looked(
+            1, "", run.outcome, "", True, True, True, "", False, 0.0, 1.0, np.empty((0, 2)), None, {}, None,
+            max_oob=run.verdict.max_oob, beyond=run.verdict.beyond,
+        )  # fmt: skip
+
+    every = [looked(run) for run in runs.values()]
+    found = passed_roads([*every, every[2]])
+    assert [(each.severity, each.tests) for each in found] == [*zip(SEVERITIES, (1, 1, 2), strict=True)]
+    worst = runs["mostly outside"]
+    assert worst.verdict is not None
+    (sentence,) = outside_sentences(found, worst.world)
+    assert "partly outside its lane on 1 of 4 (25.0 %) and mostly outside on 2 of 4 (50.0 %)" in sentence
+    assert "within the tolerance of 95 %" in sentence
+    assert f"{worst.verdict.beyond:.2f} m beyond the marking" in sentence
+    (table,) = outside_table(found)
+    assert [row[1].value for row in table.rows] == [1, 1, 2]
+    assert "older version" in outside_table([each._replace(beyond=None) for each in found])[0].note
+    (whole,) = outside_sentences(passed_roads(every[:1]), worst.world)
+    assert "never outside its lane" in whole
+    assert outside_sentences(passed_roads([]), worst.world) == outside_table(passed_roads([])) == []
