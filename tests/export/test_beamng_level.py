@@ -16,6 +16,7 @@ from roadgpt.export import save
 from roadgpt.export.exporters.beamng import level_name
 from roadgpt.export.exporters.beamng.files import ground_model, rotation
 from roadgpt.export.exporters.beamng.scene import scene_of
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.road import Design, Segment, World, build
 
 Item = dict[str, Any]
@@ -71,7 +72,7 @@ def test_the_nodes_are_such_as_beamngs_own_client_takes(tmp_path: Path) -> None:
         assert each["position"] == each["nodes"][0][:3]
     for each in decals:
         Road("m").add_nodes(*each["nodes"])
-    assert [each["drivability"] for each in decals] == [1, -1, -1, -1]
+    assert [each["drivability"] for each in decals] == [1] + [-1] * (len(decals) - 1)
     assert [each["renderPriority"] for each in decals] == sorted(each["renderPriority"] for each in decals)
     assert {each["name"]: each["nodes"][0][3] for each in meshes} == {
         "verge": 2 * (WORLD.lane_width + WORLD.verge),
@@ -82,6 +83,35 @@ def test_the_nodes_are_such_as_beamngs_own_client_takes(tmp_path: Path) -> None:
 def test_without_a_verge_the_road_floats_alone(tmp_path: Path) -> None:
     found = objects(level(tmp_path, world=World(verge=0)))
     assert [each["name"] for each in found.values() if each["class"] == "MeshRoad"] == ["road"]
+
+
+def test_the_middle_line_is_broken_as_in_our_opendrive_files(tmp_path: Path) -> None:
+    road = ROADS["arcs"]
+    dashes = [each for name, each in objects(level(tmp_path)).items() if name.startswith("middle")]
+    ends = [np.array(each["nodes"])[[0, -1], :3] for each in dashes]
+    stations = [road.locate(*end[:, :2].T)[0] for end in ends]
+    # a map's metres: stations count metres in plan, paint lies on the slope
+    assert np.allclose([first for first, _ in stations], np.arange(len(dashes)) * (DASH + GAP), atol=0.3)
+    assert all(last - first == pytest.approx(DASH, abs=0.1) for first, last in stations[:-1])
+    assert stations[-1][1] > road.length - DASH - GAP
+    for end, (first, last) in zip(ends, stations, strict=True):
+        np.testing.assert_allclose(end, road.at([first, last]), atol=0.05)
+
+
+@pytest.mark.parametrize("incline", [0.0, 8.0, -8.0])
+def test_the_ground_lies_at_the_road_and_what_is_higher_stands_on_it(tmp_path: Path, incline: float) -> None:
+    parts = tuple(Segment(distance=60, direction="straight", incline=slope) for slope in (0, incline))
+    road = build(Design(starting_point=(60, 60, 12), theta=20, segments=parts))
+    (folder,) = save(road, tmp_path, ["beamng"], World(), "r")
+    found = objects(folder / "levels" / "roadgpt_r")
+    ground = found["ground"]["position"][2]
+    lowest = road.sample(0.5).z.min()
+    assert 0.02 < lowest - ground < 0.15
+    for node in found["verge"]["nodes"]:
+        assert node[2] - node[4] <= ground + 1e-3, "it floats"
+    (floating,) = save(road, tmp_path, ["beamng"], World(verge=0), "f")
+    far = objects(floating / "levels" / "roadgpt_f")["ground"]["position"][2]
+    assert far == pytest.approx(World().z_floor, abs=0.1)
 
 
 def catmull_rom(nodes: np.ndarray, parts: int = 8) -> np.ndarray:

@@ -7,11 +7,13 @@ outside the game checks such files: ``roadgpt beamng selftest`` loads one in the
 import json
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from roadgpt.export.exporters.beamng.scene import GOAL, OWN, Scene, Strip
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 
@@ -35,8 +37,12 @@ def items(name: str, scene: Scene, world: World) -> Mapping[str, Sequence[Item]]
     return {
         "": [_object(name, "MissionGroup", "SimGroup", "", enabled="1")],
         "MissionGroup": [_object(name, group, "SimGroup", "MissionGroup") for group in groups],
-        "MissionGroup/sky_and_ground": _surroundings(name, world),
-        "MissionGroup/roads": [_strip(name, strip, priority) for priority, strip in enumerate(scene.strips)],
+        "MissionGroup/sky_and_ground": _surroundings(name, world, scene.ground),
+        "MissionGroup/roads": [
+            _strip(name, part, priority)
+            for priority, strip in enumerate(scene.strips)
+            for part in (_dashes(strip) if strip.is_dashed else (strip,))
+        ],
         "MissionGroup/player": list(_player(name, scene)),
     }
 
@@ -46,10 +52,10 @@ def _object(level: str, name: str, kind: str, parent: str, **fields: Any) -> Ite
     return {**given, **({"__parent": parent} if parent else {}), **fields}
 
 
-def _surroundings(level: str, world: World) -> list[Item]:
+def _surroundings(level: str, world: World, height: float) -> list[Item]:
     group = "sky_and_ground"
     half = world.map_size / 2
-    ground = [half, half, world.z_floor - 0.05]  # just below a road that lies on the floor
+    ground = [half, half, round(height, DECIMALS)]
     return [
         _object(level, "level_info", "LevelInfo", group, gravity=-9.81, visibleDistance=4000, nearClip=0.1),
         _object(level, "tod", "TimeOfDay", group, time=0.1, startTime=0.1, play=False),
@@ -58,6 +64,24 @@ def _surroundings(level: str, world: World) -> list[Item]:
             level, "ground", "GroundPlane", group, position=ground, material="roadgpt_grass", squareSize=128
         ),
     ]
+
+
+def _dashes(strip: Strip) -> list[Strip]:
+    """A broken line as decals of its dashes, each with its ends and the nodes between them."""
+    nodes = strip.nodes
+    along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(nodes[:, :3], axis=0), axis=1))]
+
+    def at(stations: Array) -> Array:
+        return np.column_stack([np.interp(stations, along, column) for column in nodes.T])
+
+    out = []
+    for number, start in enumerate(np.arange(0.0, along[-1], DASH + GAP), 1):
+        end = min(start + DASH, float(along[-1]))
+        if end - start > DASH / 4:  # a shorter one has no room for a node between its ends
+            out.append(
+                replace(strip, name=f"{strip.name}_{number:03d}", nodes=at(np.linspace(start, end, 3)))
+            )
+    return out
 
 
 def _strip(level: str, strip: Strip, priority: int) -> Item:

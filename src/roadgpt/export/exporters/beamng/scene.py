@@ -5,7 +5,8 @@ r"""A road as BeamNG has roads, for a level's files and for a running simulator 
 
 RoadGPT lays both along one line and shakes the mesh's nodes, so that they do not flicker where they meet.
 Here the decal lies a little above the mesh as well, and what shakes is drawn from the seed. The verge is a
-second, wider mesh just below the first; the level's ground lies at ``world.z_floor``.
+second, wider mesh just below the first. It reaches down to the ground, which lies at the lowest place of the
+road; a road without verge floats above a ground at ``world.z_floor``.
 """
 
 from dataclasses import dataclass
@@ -28,6 +29,7 @@ SHAKE = 0.01  # m, most that a mesh node is moved aside
 ABOVE = 0.01, 0.02  # m that the decal lies above the mesh
 LINE = 0.2  # m, width of a painted line (RoadGPT)
 UNDER = 0.03  # m that the verge lies below the road
+CLEAR = 0.05  # m that the ground lies below what is laid on it
 DRIVABLE, NOT_DRIVABLE = 1, -1
 GOAL = "goal"
 
@@ -57,6 +59,8 @@ class Strip:
     nodes: Array
     """Shape (n, 5) of a mesh: x, y, z, width, depth; (n, 4) of a decal: x, y, z, width."""
     drivability: int = NOT_DRIVABLE
+    is_dashed: bool = False
+    """A decal whose paint is broken, by DASH and GAP of our OpenDRIVE files."""
 
     @property
     def is_mesh(self) -> bool:
@@ -76,6 +80,8 @@ class Scene:
     grade: float
     goal: Array
     """x, y, z at the middle of the right lane."""
+    ground: float
+    """Height of the level's ground, metres."""
 
 
 def scene_of(
@@ -101,7 +107,8 @@ def scene_of(
     middle = line(road, s, 0.0) + up
     if not np.isfinite(middle).all():
         raise ExportError("the road has a number that is not finite; check it before it is exported")
-    meshes = _meshes(middle, world, rng, materials, prefix)
+    ground = _ground(middle, world) + lift
+    meshes = _meshes(middle, world, rng, materials, prefix, ground)
     decals = _decals(road, world, s, up + above, materials, prefix)
     first, last = start_of(road), goal_of(road)
     right = -world.lane_width / 2
@@ -111,18 +118,32 @@ def scene_of(
         float(road.heading(first)),
         float(road.grade(first)),
         road.at((last + road.length) / 2, right) + up,
+        ground,
     )
 
 
+def _ground(middle: Array, world: World) -> float:
+    """Just below the lowest place of the verge, or of the floor where there is none; metres."""
+    if world.verge < NO_VERGE:
+        return world.z_floor - CLEAR
+    return float(middle[:, 2].min()) - UNDER - CLEAR
+
+
 def _meshes(
-    middle: Array, world: World, rng: np.random.Generator, materials: Materials, prefix: str
+    middle: Array,
+    world: World,
+    rng: np.random.Generator,
+    materials: Materials,
+    prefix: str,
+    ground: float,
 ) -> list[Strip]:
     """The verge, where there is one, and the road."""
     strips = []
     if world.verge >= NO_VERGE:
         broad = 2 * (world.lane_width + world.verge)
-        ground = _lengthened(middle) - np.array([0.0, 0.0, UNDER])
-        strips.append(_mesh(f"{prefix}verge", materials.verge, ground, broad))
+        below = _lengthened(middle) - np.array([0.0, 0.0, UNDER])
+        depths = np.maximum(DEPTH, below[:, 2] - ground)
+        strips.append(_mesh(f"{prefix}verge", materials.verge, below, broad, depths))
     shaken = _lengthened(middle)
     shaken[:, :2] += rng.uniform(-SHAKE, SHAKE, (len(shaken), 2))
     return [*strips, _mesh(f"{prefix}road", materials.road, shaken, world.road_width)]
@@ -141,13 +162,13 @@ def _decals(road: Road, world: World, s: Array, up: Array, materials: Materials,
     for name, material, t, width, drivability in wanted:
         points = line(road, s, t) + up
         nodes = np.column_stack([points, np.full(len(points), width)])
-        strips.append(Strip(prefix + name, material, nodes, drivability))
+        strips.append(Strip(prefix + name, material, nodes, drivability, is_dashed=name == "middle"))
     return strips
 
 
-def _mesh(name: str, material: str, points: Array, width: float) -> Strip:
-    sizes = np.tile([width, DEPTH], (len(points), 1))
-    return Strip(name, material, np.column_stack([points, sizes]))
+def _mesh(name: str, material: str, points: Array, width: float, depths: Array | None = None) -> Strip:
+    deep = np.full(len(points), DEPTH) if depths is None else depths
+    return Strip(name, material, np.column_stack([points, np.full(len(points), width), deep]))
 
 
 def _lengthened(points: Array) -> Array:
