@@ -4,11 +4,12 @@ from functools import cache
 
 import numpy as np
 
+from roadgpt.export.banks import FOOT, Bank, banks
 from roadgpt.export.edges import line, stations
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
-from roadgpt.scene.land import Land
 from roadgpt.scene.light import daylight, level_light
+from roadgpt.scene.meadow import Meadow
 from roadgpt.scene.mesh import GRASS, POST, ROAD, Mesh, Patch, attributes, grid
 from roadgpt.scene.paint import CONCRETE
 
@@ -16,20 +17,19 @@ CHORD = 0.004  # m
 LONGEST = 4.0  # m between stations: light and texture follow crests
 BLOCK = 24  # stations of a patch
 THICK = 0.5  # m of a road that floats
-BANK = 1.7  # run over fall of an embankment
-FOOT = 0.4  # m that an embankment ends below the land
 POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
 """m; half of what German rules ask for on straights, so that speed is seen."""
 POST_FROM_RIM = 0.6  # m
 
 
-def road_patches(road: Road, world: World, land: Land) -> list[Patch]:
+def road_patches(road: Road, world: World, meadow: Meadow) -> list[Patch]:
     """Everything that belongs to the road."""
     rim = world.lane_width + world.verge
     s = _stations(road, rim)
     if world.verge == 0:
         return [*_surface(road, world, s), *_slab(road, world, s)]
-    return [*_surface(road, world, s), *_banks(road, rim, s, land), *_posts(road, world)]
+    slopes = [patch for bank in banks(road, rim, s, meadow.land) for patch in _slope(bank, meadow)]
+    return [*_surface(road, world, s), *slopes, *_posts(road, world)]
 
 
 def _stations(road: Road, rim: float) -> Array:
@@ -64,39 +64,16 @@ def _upwards(road: Road, s: Array) -> Array:
     return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
 
 
-def _banks(road: Road, rim: float, s: Array, land: Land) -> list[Patch]:
-    """From both rims and both ends down into the land."""
-    out = []
-    for side in (-1.0, 1.0):
-        edge = line(road, s, side * rim)
-        foot = line(road, s, side * (rim + 2.0))
-        drop = edge[:, 2] - np.minimum(land.height(foot[:, 0], foot[:, 1]), edge[:, 2]) + FOOT
-        heading = road.heading(s)
-        outward = side * np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
-        out += _slope(edge, outward, drop, land, is_left=side > 0)
-    for end, sign in ((0.0, -1.0), (road.length, 1.0)):
-        across = np.linspace(rim, -rim, 7) * sign
-        edge = np.stack([line(road, np.array([end]), t)[0] for t in across])
-        to = float(road.heading(end))
-        way = sign * np.array([np.cos(to), np.sin(to)])
-        drop = edge[:, 2] - np.minimum(land.height(*(edge[:, :2] + 2 * way).T), edge[:, 2]) + FOOT
-        out += _slope(edge, np.repeat(way[None], len(edge), axis=0), drop, land, is_left=True)
-    return out
-
-
-def _slope(edge: Array, outward: Array, drop: Array, land: Land, is_left: bool) -> list[Patch]:
-    """A slope from an edge outward and down; the edge runs with its slope to the left or to the right.
-
-    A low one has the light of the land that it runs into, so that nothing shows where they meet.
-    """
-    foot = np.column_stack([edge[:, :2] + BANK * drop[:, None] * outward, edge[:, 2] - drop])
+def _slope(bank: Bank, meadow: Meadow) -> list[Patch]:
+    """A slope has the light of the land that it runs into, where it is low, so that nothing shows there."""
+    edge, foot, is_left = bank
     rows = np.stack([edge, foot] if is_left else [foot, edge], axis=1)
     along = np.gradient(edge, axis=0)
     down = foot - edge
     normals = np.cross(along, down) if is_left else np.cross(down, along)
     normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-9)
-    own, met = daylight(normals), land.light_at(foot[:, 0], foot[:, 1])
-    at_foot = met + (own - met) * np.clip((drop - FOOT - 1.5) / 4.0, 0.0, 1.0)
+    own, met = daylight(normals), meadow.light_at(foot[:, 0], foot[:, 1])
+    at_foot = met + (own - met) * np.clip((edge[:, 2] - foot[:, 2] - FOOT - 1.5) / 4.0, 0.0, 1.0)
     light = np.stack([np.full_like(own, level_light()), at_foot], axis=1)
     return _blocks(rows, attributes(0.0, 0.0, light if is_left else light[:, ::-1]), GRASS)
 

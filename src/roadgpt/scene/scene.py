@@ -10,9 +10,10 @@ from roadgpt.errors import UsageError
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
+from roadgpt.road.land import Land
 from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
-from roadgpt.scene.land import Land
+from roadgpt.scene.meadow import Meadow
 from roadgpt.scene.mesh import Mesh
 from roadgpt.scene.raster import PLANE, SAMPLES, draw
 from roadgpt.scene.ribbon import road_patches
@@ -58,7 +59,8 @@ class Scene:
             ExportError: the road has a number that is not finite.
         """
         land = Land.around(road, world)
-        ground = Mesh.of([*road_patches(road, world, land), *land.patches()])
+        meadow = Meadow(land)
+        ground = Mesh.of([*road_patches(road, world, meadow), *meadow.patches()])
         return cls(road, world, land, ground, plant(road, world, land))
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
-from roadgpt.scene.land import LONGEST_STEP, Land
+from roadgpt.road.land import LONGEST_STEP, Land
 from roadgpt.scene.light import SUN
 
 SEED = 11

@@ -12,7 +12,7 @@ from roadgpt.road import Road, World
 
 
 class Gltf:
-    """Binary glTF 2.0, road and verges with thickness, markings, materials, the path of the car; y is up."""
+    """Binary glTF 2.0, road, verges, markings, textures, the ground around, the path of the car; y is up."""
 
     name = "gltf"
     suffix = ".glb"

@@ -8,15 +8,19 @@ from typing import Any
 
 import numpy as np
 
+from roadgpt.export.exporters.gltf.grain import GRAINS, picture
 from roadgpt.geometry.curve import Array
 
 FLOAT, UINT = 5126, 5125  # component types
 VERTICES, INDICES = 34962, 34963  # targets of buffer views
+# A picture that goes on in both directions, blurred where it is small.
+REPEATED = {"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # x stays, up is y, left is -z
 
 MATERIALS = {
     "asphalt": ((0.06, 0.06, 0.065, 1.0), 0.9),
     "gravel": ((0.23, 0.20, 0.15, 1.0), 1.0),
+    "grass": ((0.21, 0.32, 0.13, 1.0), 1.0),
     "paint": ((0.85, 0.85, 0.85, 1.0), 0.6),
     "path": ((0.0, 0.30, 0.75, 1.0), 0.7),
 }
@@ -34,7 +38,7 @@ class Shape:
     normals: Array
     """Shape (n, 3), of length 1."""
     texture: Array
-    """Shape (n, 2): across and along, in metres."""
+    """Shape (n, 2): across and along, in metres; pictures of materials are repeated over it."""
     triangles: np.ndarray
     """Shape (m, 3), indices of points, counter-clockwise seen from outside."""
 
@@ -54,12 +58,16 @@ def to_bytes(shapes: Sequence[Shape], near: Array) -> bytes:
         where = {
             "POSITION": _put(data, content, (shape.points - origin) @ Y_UP.T, bounded=True),
             "NORMAL": _put(data, content, shape.normals @ Y_UP.T),
-            "TEXCOORD_0": _put(data, content, shape.texture),
+            "TEXCOORD_0": _put(data, content, shape.texture / _tile(shape.material)),
         }
         indices = _put(data, content, shape.triangles.reshape(-1))
         primitive = {"attributes": where, "indices": indices, "material": used.index(shape.material)}
         data["meshes"].append({"name": shape.name, "primitives": [primitive]})
-    data["buffers"].append({"byteLength": len(content)})
+    for name in used:
+        if name in GRAINS:
+            data["images"].append(_image(data, content, name))
+    data = {key: value for key, value in data.items() if value != []}
+    data["buffers"] = [{"byteLength": len(content)}]
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(content), b"BIN\0")
@@ -68,6 +76,7 @@ def to_bytes(shapes: Sequence[Shape], near: Array) -> bytes:
 
 def _scene(shapes: Sequence[Shape], origin: Array, materials: Sequence[str]) -> dict[str, Any]:
     """What is where, before any shape is put into the buffer."""
+    grained = [name for name in materials if name in GRAINS]
     return {
         "asset": {"version": "2.0", "generator": "RoadGPT"},
         "scene": 0,
@@ -80,12 +89,29 @@ def _scene(shapes: Sequence[Shape], origin: Array, materials: Sequence[str]) -> 
             },
             *({"name": shape.name, "mesh": i} for i, shape in enumerate(shapes)),
         ],
-        "materials": [_material(name) for name in materials],
+        "materials": [_material(name, grained) for name in materials],
+        "textures": [{"source": i, "sampler": 0} for i in range(len(grained))],
+        "samplers": [REPEATED] if grained else [],
+        "images": [],
         "meshes": [],
         "accessors": [],
         "bufferViews": [],
         "buffers": [],
     }
+
+
+def _tile(material: str) -> float:
+    """Metres that one repetition of a material's picture covers."""
+    return GRAINS[material].metres if material in GRAINS else 1.0
+
+
+def _image(data: dict[str, Any], content: bytearray, material: str) -> dict[str, Any]:
+    """Append a picture to the buffer, up to a multiple of 4 bytes."""
+    packed = picture(material)
+    view = {"buffer": 0, "byteOffset": len(content), "byteLength": len(packed)}
+    data["bufferViews"].append(view)
+    content += packed + b"\0" * (-len(packed) % 4)
+    return {"bufferView": len(data["bufferViews"]) - 1, "mimeType": "image/png", "name": material}
 
 
 def _put(data: dict[str, Any], content: bytearray, values: np.ndarray, bounded: bool = False) -> int:
@@ -107,7 +133,13 @@ def _put(data: dict[str, Any], content: bytearray, values: np.ndarray, bounded: 
     return len(data["accessors"]) - 1
 
 
-def _material(name: str) -> dict[str, Any]:
+def _material(name: str, grained: Sequence[str]) -> dict[str, Any]:
     colour, roughness = MATERIALS[name]
-    looks = {"baseColorFactor": list(colour), "metallicFactor": 0, "roughnessFactor": roughness}
+    looks: dict[str, Any] = {
+        "baseColorFactor": list(colour),
+        "metallicFactor": 0,
+        "roughnessFactor": roughness,
+    }
+    if name in grained:
+        looks["baseColorTexture"] = {"index": grained.index(name)}
     return {"name": name, "pbrMetallicRoughness": looks}

@@ -1,4 +1,4 @@
-r"""The shapes of a road: slabs that are closed all round, and thin strips that lie on them.
+r"""The shapes of a road: slabs closed all round, thin strips that lie on them, the ground around.
 
 verge   ______|____________:____________|______   verge        the slabs of road and verges touch;
        |______|_________________________|______|               lines and path lie a little above them
@@ -6,6 +6,7 @@ verge   ______|____________:____________|______   verge        the slabs of road
 
 import numpy as np
 
+from roadgpt.export.banks import Bank, banks
 from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import goal_of, on_the_ground, start_of
 from roadgpt.export.exporters.gltf.container import Shape
@@ -13,6 +14,7 @@ from roadgpt.export.exporters.opendrive.lanes import DASH, GAP, NO_VERGE
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
+from roadgpt.road.land import FAR, Land
 from roadgpt.road.world import LINE
 
 THICKNESS = 0.5  # m, of the slabs
@@ -37,7 +39,39 @@ def shapes(road: Road, world: World, poses: Poses | None = None) -> list[Shape]:
     mark = min(LINE, wide / 4)
     out.append(_strip("left edge line", "paint", road, s, wide, wide - mark))
     out.append(_strip("right edge line", "paint", road, s, mark - wide, -wide))
-    return [*out, _dashed(road, s, mark), _path(road, s, world, poses)]
+    out += [_dashed(road, s, mark), _path(road, s, world, poses)]
+    if verge >= NO_VERGE:  # without one, the road is to float
+        out.append(_ground(road, world, s))
+    return out
+
+
+def _ground(road: Road, world: World, s: Array) -> Shape:
+    """The land around the road, and the banks that run down into it from rims and ends."""
+    land = Land.around(road, world)
+    near = slice(len(FAR), -len(FAR))  # what lies farther is for horizons
+    x, y = np.meshgrid(land.x[near], land.y[near])
+    slope_y, slope_x = np.gradient(land.heights[near, near], land.y[near], land.x[near])
+    up = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1).reshape(-1, 3)
+    points = np.stack([x, y, land.heights[near, near]], axis=-1).reshape(-1, 3)
+    rows, columns = x.shape
+    at = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
+    low = np.stack([at, at + 1, at + columns + 1], axis=-1)
+    high = np.stack([at, at + columns + 1, at + columns], axis=-1)
+    normals = up / np.linalg.norm(up, axis=-1, keepdims=True)
+    parts = [Shape("", "grass", points, normals, points[:, :2], np.concatenate([low, high]))]
+    for bank in banks(road, world.lane_width + world.verge, s, land):
+        parts.append(_sloped(bank))
+    return _joined("ground", parts)
+
+
+def _sloped(bank: Bank) -> Shape:
+    """A bank, seen from outside."""
+    left, right = (bank.foot, bank.edge) if bank.is_left else (bank.edge, bank.foot)
+    along = np.gradient(bank.edge, axis=0)
+    facing = np.cross(along, left - right)
+    normals = facing / np.maximum(np.linalg.norm(facing, axis=-1, keepdims=True), 1e-9)
+    points, both, _, triangles = _band(left, right, normals, np.zeros(len(left)), np.zeros(2))
+    return Shape("", "grass", points, both, points[:, :2], triangles)
 
 
 def _dashed(road: Road, s: Array, width: float) -> Shape:

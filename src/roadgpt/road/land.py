@@ -1,22 +1,19 @@
 """The land around a road: it follows the road and never covers it; beyond it lie gentle hills."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy import ndimage
 
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
-from roadgpt.scene.light import daylight
-from roadgpt.scene.mesh import GRASS, Patch, attributes, grid
+from roadgpt.road.road import Road
+from roadgpt.road.world import World
 
 MARGIN = 130.0  # m around the road
 FINEST, CELLS = 4.0, 160  # m; along the longer side, at most
 FAR = (300.0, 900.0, 2500.0, 7000.0)  # m beyond the margin, so that the land reaches the horizon
 BELOW = 0.35  # m that the land stays below the road, at least
 LEAST = 40.0  # m across
-BLOCK = 8  # cells along a side of a patch
 LONGEST_STEP = 2.0  # m along the road
 
 
@@ -49,41 +46,17 @@ class Land:
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:
-        """Metres, between the rows and columns."""
-        return self._at(self.heights, x, y)
+        """Metres at points ``(n,)``, between the rows and columns."""
+        return self.between(self.heights, x, y)
 
-    def light_at(self, x: Array, y: Array) -> Array:
-        """How light the land is there."""
-        return self._at(self.light, x, y)
-
-    def _at(self, h: Array, x: Array, y: Array) -> Array:
+    def between(self, values: Array, x: Array, y: Array) -> Array:
+        """Values ``(rows, columns)`` of the net at points ``(n,)``."""
         i = np.clip(np.searchsorted(self.x, x) - 1, 0, len(self.x) - 2)
         j = np.clip(np.searchsorted(self.y, y) - 1, 0, len(self.y) - 2)
         u = np.clip((x - self.x[i]) / (self.x[i + 1] - self.x[i]), 0.0, 1.0)
         v = np.clip((y - self.y[j]) / (self.y[j + 1] - self.y[j]), 0.0, 1.0)
-        low = h[j, i] * (1 - u) + h[j, i + 1] * u
-        return np.asarray(low * (1 - v) + (h[j + 1, i] * (1 - u) + h[j + 1, i + 1] * u) * v)
-
-    @cached_property
-    def light(self) -> Array:
-        """(rows, columns), by the slope of the land."""
-        slope_y, slope_x = np.gradient(ndimage.gaussian_filter(self.heights, 1.0), self.y, self.x)
-        normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
-        return daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
-
-    def patches(self) -> list[Patch]:
-        """Its surface."""
-        x, y = np.meshgrid(self.x, self.y)
-        points, values = np.stack([x, y, self.heights], axis=-1), attributes(0.0, 0.0, self.light)
-        rows, columns = self.heights.shape
-        return [
-            grid(part.swapaxes(0, 1), value.swapaxes(0, 1), GRASS)
-            for j in range(0, rows - 1, BLOCK)
-            for i in range(0, columns - 1, BLOCK)
-            for part, value in [
-                (points[j : j + BLOCK + 1, i : i + BLOCK + 1], values[j : j + BLOCK + 1, i : i + BLOCK + 1])
-            ]
-        ]
+        low = values[j, i] * (1 - u) + values[j, i + 1] * u
+        return np.asarray(low * (1 - v) + (values[j + 1, i] * (1 - u) + values[j + 1, i + 1] * u) * v)
 
 
 def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple[Array, Array]:

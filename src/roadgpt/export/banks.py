@@ -1,0 +1,55 @@
+"""Embankments: slopes from a road's rims and ends down into the land around it."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from roadgpt.export.edges import line
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road
+from roadgpt.road.land import Land
+
+RUN = 1.7  # over fall
+FOOT = 0.4  # m that a slope ends below the land
+OUTSIDE = 2.0  # m beyond the rim, where the land's height is asked
+ACROSS = 7  # points of a rim at an end of the road
+
+
+class Bank(NamedTuple):
+    """One slope: its upper edge and its foot, points ``(n, 3)`` each, metres."""
+
+    edge: Array
+    foot: Array
+    is_left: bool
+    """Does it fall to the left of whoever walks along the edge?"""
+
+
+def banks(road: Road, rim: float, s: Array, land: Land) -> Iterator[Bank]:
+    """The slopes at both rims, ``rim`` metres beside the centre line, and at both ends.
+
+    Args:
+        road: what is banked.
+        rim: metres from the centre line to the end of the shoulder.
+        s: stations ``(n,)`` of the rims' points.
+        land: what the slopes run down into.
+    """
+    heading = road.heading(s)
+    for side in (-1.0, 1.0):
+        edge = line(road, s, side * rim)
+        near = line(road, s, side * (rim + OUTSIDE))
+        outward = side * np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
+        yield _bank(edge, near, outward, land, is_left=side > 0)
+    for end, sign in ((0.0, -1.0), (road.length, 1.0)):
+        across = np.linspace(rim, -rim, ACROSS) * sign
+        edge = np.stack([line(road, np.array([end]), t)[0] for t in across])
+        to = float(road.heading(end))
+        way = sign * np.array([np.cos(to), np.sin(to)])
+        near = edge[:, :2] + OUTSIDE * way
+        yield _bank(edge, near, np.repeat(way[None], len(edge), axis=0), land, is_left=True)
+
+
+def _bank(edge: Array, near: Array, outward: Array, land: Land, is_left: bool) -> Bank:
+    drop = edge[:, 2] - np.minimum(land.height(near[:, 0], near[:, 1]), edge[:, 2]) + FOOT
+    foot = np.column_stack([edge[:, :2] + RUN * drop[:, None] * outward, edge[:, 2] - drop])
+    return Bank(edge, foot, is_left)

@@ -1,0 +1,48 @@
+"""The land around a road as cameras see it: its light, and its surface in patches."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import ndimage
+
+from roadgpt.geometry.curve import Array
+from roadgpt.road.land import Land
+from roadgpt.scene.light import daylight
+from roadgpt.scene.mesh import GRASS, Patch, attributes, grid
+
+BLOCK = 8  # cells along a side of a patch
+
+
+@dataclass(frozen=True, eq=False)
+class Meadow:
+    """Land under the sun and the sky."""
+
+    land: Land
+
+    @cached_property
+    def light(self) -> Array:
+        """(rows, columns), by the slope of the land."""
+        land = self.land
+        slope_y, slope_x = np.gradient(ndimage.gaussian_filter(land.heights, 1.0), land.y, land.x)
+        normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
+        return daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
+
+    def light_at(self, x: Array, y: Array) -> Array:
+        """How light the land is there."""
+        return self.land.between(self.light, x, y)
+
+    def patches(self) -> list[Patch]:
+        """Its surface."""
+        land = self.land
+        x, y = np.meshgrid(land.x, land.y)
+        points, values = np.stack([x, y, land.heights], axis=-1), attributes(0.0, 0.0, self.light)
+        rows, columns = land.heights.shape
+        return [
+            grid(part.swapaxes(0, 1), value.swapaxes(0, 1), GRASS)
+            for j in range(0, rows - 1, BLOCK)
+            for i in range(0, columns - 1, BLOCK)
+            for part, value in [
+                (points[j : j + BLOCK + 1, i : i + BLOCK + 1], values[j : j + BLOCK + 1, i : i + BLOCK + 1])
+            ]
+        ]
