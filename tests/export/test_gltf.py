@@ -138,7 +138,7 @@ def test_no_road_folds_or_breaks_its_shapes(design: Design) -> None:
 
 
 def heights_of(ground: trimesh.Trimesh, points: np.ndarray) -> np.ndarray:
-    """The highest place of the ground over or under points ``(n, 3)``, by rays from the sky; NaN where none is."""
+    """The highest place of the ground at points ``(n, 3)``, by rays from the sky; NaN where none is."""
     found = np.full(len(points), np.nan)
     above = points + [0.0, 0.0, 500.0]
     down = np.tile([0.0, 0.0, -1.0], (len(points), 1))
