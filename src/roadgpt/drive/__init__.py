@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
 from roadgpt.drive.apart import driver_of
+from roadgpt.drive.continuity import check_motion
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
 from roadgpt.drive.view import Camera, Command, View
 from roadgpt.errors import UsageError
@@ -89,6 +90,7 @@ def simulate(
         PartError: no simulator or driver of that name.
         UsageError: the user's file makes no driver, or the simulator cannot heed what the world says.
         DriverError: the driver raised, answered with what is no command, or hung.
+        SimulationError: the physics broke down, or moved the car as none can move.
     """
     made: Any = driver_of(driver) if isinstance(driver, str) else driver
     if isinstance(made, type):
@@ -98,6 +100,7 @@ def simulate(
         engine = engine()
     refuse_ignored(engine, world)
     drive: Drive = engine.simulate(road, world, made, seed, keep_driving)
+    check_motion(drive)
     return drive
 
 

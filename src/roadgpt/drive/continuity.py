@@ -1,0 +1,52 @@
+"""A car is where its speed takes it: a drive in which it jumps, or stands though it is fast, is none.
+
+The bound between two samples is what a car can do, with room to spare:
+
+    way <= speed * dt + 1/2 A dt^2 + SLACK        speed: the larger of both samples, at most FASTEST
+"""
+
+import numpy as np
+
+from roadgpt.drive.drive import Drive
+from roadgpt.errors import SimulationError
+
+HARDEST = 300.0  # m/s^2, A: 30 g, more than a car survives in one piece
+SLACK = 0.5  # m by which samples may be read at other moments than they say
+FASTEST = 200.0  # m/s; the fastest cars that can be bought reach 135, one that falls 100 m 44
+STANDING = 20.0  # m of way by its speed ...
+SHARE = 1 / 3  # ... of which the car must have gone at least so much
+
+FAILED = ", so the simulation failed and nothing is said of the driver; drive the road again"
+
+
+def check_motion(drive: Drive) -> None:
+    """Whether the positions of a drive are those of a car.
+
+    Raises:
+        SimulationError: a position or a speed is no number, the car jumped, or it did not move as its speed
+            says.
+    """
+    place = np.stack([drive[name] for name in ("x", "y", "z")], axis=-1)
+    time, speed = drive["time"], np.abs(drive["speed"])
+    if not (np.isfinite(place).all() and np.isfinite(time).all() and np.isfinite(speed).all()):
+        raise SimulationError(
+            f"{drive.simulator} told of a car that is nowhere: a position, a time or a speed of its drive "
+            f"is no number{FAILED}"
+        )
+    way = np.linalg.norm(np.diff(place, axis=0), axis=1)
+    dt = np.maximum(np.diff(time), 0.0)
+    fast = np.minimum(np.maximum(speed[1:], speed[:-1]), FASTEST)
+    over = way - (fast * dt + HARDEST * dt**2 / 2 + SLACK)
+    if len(over) and over.max() > 0:
+        step = int(np.argmax(over > 0))
+        raise SimulationError(
+            f"{drive.simulator} moved the car by {way[step]:.1f} m within {np.diff(time)[step]:.2f} s, "
+            f"{drive['s'][step]:.0f} m along the road and at {speed[step] * 3.6:.0f} km/h: no car can do that"
+            f"{FAILED}"
+        )
+    told = float((np.minimum(speed[1:], speed[:-1]) * dt).sum())
+    if told > STANDING and way.sum() < SHARE * told:
+        raise SimulationError(
+            f"{drive.simulator} told of speeds that make {told:.0f} m, and of a way of {way.sum():.0f} m: no car "
+            f"does both{FAILED}"
+        )
