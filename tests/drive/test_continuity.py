@@ -1,4 +1,4 @@
-"""A jump of the car, or a speed that its places do not follow, is an error of the simulation and no verdict."""
+"""A jump of the car, or a speed that its places do not follow, is an error of the simulation."""
 
 from dataclasses import replace
 from typing import Any
@@ -13,6 +13,7 @@ from roadgpt.drive.continuity import check_motion
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
+from roadgpt.drive.simulators.beamng.session import leave_all
 from roadgpt.drive.simulators.beamng.stage import Stage
 from roadgpt.drive.simulators.mujoco import MujocoSimulator
 from roadgpt.errors import SimulationError
@@ -85,6 +86,7 @@ def test_a_car_that_beamng_puts_elsewhere_is_an_error(tmp_path: Any, monkeypatch
         settings = Settings(home=fake_home(tmp_path), host="127.0.0.1", port=fake.port)
         with pytest.raises(SimulationError, match="no car can do that"):
             simulate(STRAIGHT, World(), Reference(), simulator=BeamngSimulator(settings))
+        leave_all()
 
 
 def test_places_that_do_not_follow_the_speed_are_an_error(driven: Drive) -> None:

@@ -47,6 +47,6 @@ def check_motion(drive: Drive) -> None:
     told = float((np.minimum(speed[1:], speed[:-1]) * dt).sum())
     if told > STANDING and way.sum() < SHARE * told:
         raise SimulationError(
-            f"{drive.simulator} told of speeds that make {told:.0f} m, and of a way of {way.sum():.0f} m: no car "
-            f"does both{FAILED}"
+            f"{drive.simulator} told of speeds that make {told:.0f} m, and of a way of "
+            f"{way.sum():.0f} m: no car does both{FAILED}"
         )
