@@ -14,6 +14,7 @@ from misbehaving import SEARCHER, write
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 from roadgpt.sbft import Competition, Experiment, compete
+from roadgpt.sbft.host import NAMES
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "sbft"
 POSIX = os.name == "posix"
@@ -256,6 +257,11 @@ def test_the_same_seed_gives_the_same_tests(tmp_path: Path) -> None:
 
 
 def test_a_generators_process_needs_no_simulator() -> None:
-    code = "import sys, roadgpt.sbft.inside; print(*{name.split('.')[0] for name in sys.modules})"
+    code = (
+        f"import sys; sys.path.insert(0, {str(NAMES)!r}); import roadgpt_inside.task as task\n"
+        "from code_pipeline.tests_generation import RoadTestFactory\n"
+        "RoadTestFactory.create_road_test([(60, 100), (80, 100), (100, 100)])\n"
+        "print(*{name.split('.')[0] for name in sys.modules})"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"mujoco", "numba", "matplotlib"} & {*done.stdout.split()}

@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 
 from roadgpt.run.execution import FIELDS
-from roadgpt.sbft import inside
-from roadgpt.sbft.budget import Budget
+from roadgpt.sbft.host import NAMES
 
 # The folder of names stands first on the path, as in a generator's process.
-HEAD = f"import sys; sys.path.insert(0, {str(inside.NAMES)!r})\n"
+HEAD = f"import sys; sys.path.insert(0, {str(NAMES)!r})\n"
 
 
 def told(code: str, folder: Path | None = None) -> str:
@@ -116,9 +115,9 @@ def test_names_that_are_not_here_come_from_a_checkout_of_theirs(tmp_path: Path) 
     (tmp_path / "code_pipeline" / "validation.py").write_text("raise ImportError('not this one')")
     code = (
         "from code_pipeline.elsewhere import HERE; import code_pipeline.validation as v\n"
-        "print(HERE, v.TestValidator.__module__)"
+        "print(HERE, v.TestValidator.__module__); assert v.FEET_PER_METRE > 3"
     )
-    assert told(code, tmp_path) == "theirs roadgpt.sbft.road_test"
+    assert told(code, tmp_path) == "theirs code_pipeline.validation"
 
 
 def test_an_executor_without_a_line_says_where_it_comes_from() -> None:
@@ -131,18 +130,25 @@ def test_an_executor_without_a_line_says_where_it_comes_from() -> None:
 
 @pytest.mark.parametrize("values", [{"test_budget": 4}, {"time_budget": 100.0}])
 def test_a_budget_is_a_number_whatever_is_counted(values: dict[str, float]) -> None:
-    budget = Budget(**values)  # type: ignore[arg-type]
-    assert budget.can_run_a_test()
-    assert not budget.is_over()
-    assert budget.get_remaining_real_time() > 0.5 * budget.time_budget
-    left = budget.get_remaining_time()
-    assert left["time-budget"] == pytest.approx(float(left))
-    assert left > 0
-    assert left >= 1
-    assert not left < 1
-    assert not left <= 0
-    assert left - 1 < float(left) < 1 + left["time-budget"]
-    assert 1000 - left > 0
-    assert json.loads(json.dumps(left)) == dict(left)
-    budget.tests = 4
-    assert budget.is_over() == ("test_budget" in values)
+    code = f"""
+import copy, json
+from code_pipeline.executors import Budget
+budget = Budget(**{values})
+assert budget.can_run_a_test()
+assert not budget.is_over()
+assert budget.get_remaining_real_time() > 0.5 * budget.time_budget
+left = budget.get_remaining_time()
+assert abs(left["time-budget"] - float(left)) < 1e-9
+assert left > 0
+assert left >= 1
+assert not left < 1
+assert not left <= 0
+assert left - 1 < float(left) < 1 + left["time-budget"]
+assert 1000 - left > 0
+assert json.loads(json.dumps(left)) == dict(left)
+copied = copy.deepcopy(budget)
+budget.tests = 4
+assert budget.is_over() == copied.is_over() == {"test_budget" in values}
+print("well")
+"""
+    assert told(code) == "well"

@@ -41,32 +41,53 @@ class Departure(NamedTuple):
 
     side: str
     """left or right"""
-    segment: Array | None
-    """The road around the place, points ``(n, 2)``; None where it cannot be cut out."""
+    number: int
+    """The record in which it was first outside."""
+    first: int = 0
+    """The record in which it came to the segment."""
+    before: Array | None = None
+    """The road up to the place, points ``(n, 2)``; None where it cannot be cut out."""
+    after: Array | None = None
+    """The road from there on, ``(m, 2)``."""
+
+    @property
+    def segment(self) -> Array | None:
+        """Both together."""
+        return (
+            None if self.before is None or self.after is None else np.concatenate((self.before, self.after))
+        )
 
 
-def departure(points: ArrayLike, records: Sequence[Record]) -> Departure | None:
+def departure(
+    points: ArrayLike, records: Sequence[Record], before: float = AROUND, after: float = AROUND
+) -> Departure | None:
     """What the competition's analysis finds in a failed test; None where the car did not leave its lane.
 
     Args:
         points: control points of the road, ``(n, 2)`` or more columns, metres.
         records: its execution data.
+        before: metres of road that are cut out before the place; after: behind it.
     """
     number = next((i for i, record in enumerate(records) if record.is_oob), None)
     if number is None:
         return None
-    unknown = Departure("right", None)
+    unknown = Departure("right", number)
     line, place = _interpolated(points), records[number].pos[:2]
-    found = None if line is None else _cut_out(line, place)
-    if line is None or found is None or not _first_record(line, found[0], records) < number:
+    found = None if line is None else _cut_out(line, place, before, after)
+    if line is None or found is None:
         return unknown
-    return Departure("left" if _foot(line, place)[1] < LEFT else "right", found)
+    first = _first_record(line, found[0][0], records)
+    if first >= number:
+        return unknown
+    side = "left" if _foot(line, place)[1] < LEFT else "right"
+    return Departure(side, number, first, *found)
 
 
 def segment_around(points: ArrayLike, place: Sequence[float]) -> Array | None:
     """Points ``(n, 2)`` of a road, given by control points, around a place; None where there are none."""
     line = _interpolated(points)
-    return None if line is None else _cut_out(line, place)
+    found = None if line is None else _cut_out(line, place, AROUND, AROUND)
+    return None if found is None else np.concatenate(found)
 
 
 def _interpolated(points: ArrayLike) -> Array | None:
@@ -79,22 +100,20 @@ def _interpolated(points: ArrayLike) -> Array | None:
         return None
 
 
-def _cut_out(line: Array, place: Sequence[float]) -> Array | None:
-    """The line from 30 m before to 30 m after its point nearest to a place."""
+def _cut_out(line: Array, place: Sequence[float], before: float, after: float) -> tuple[Array, Array] | None:
+    """The line up to its point nearest to a place, and from there on, each as long as is asked for."""
     near, _ = _foot(line, place)
     nodes = np.flatnonzero(np.hypot(*(line - near).T) < NODE)
     if not nodes.size or not nodes[-1]:
         return None
-    before = _first_metres(np.concatenate((line[: nodes[-1]], [near]))[::-1])[::-1]
-    after = _first_metres(line[nodes[-1] :]) if nodes[-1] < len(line) - 1 else line[:0]
-    if len(before) < 2 or len(after) == 1:
-        return None
-    return np.concatenate((before, after))
+    behind = _first_metres(np.concatenate((line[: nodes[-1]], [near]))[::-1], before)[::-1]
+    ahead = _first_metres(line[nodes[-1] :], after) if nodes[-1] < len(line) - 1 else line[:0]
+    return None if len(behind) < 2 or len(ahead) == 1 else (behind, ahead)
 
 
-def _first_metres(line: Array) -> Array:
+def _first_metres(line: Array, metres: float) -> Array:
     walked = np.cumsum(np.hypot(*np.diff(line, axis=0).T))
-    return line[: 1 + int((walked < AROUND).sum())]
+    return line[: 1 + int((walked < metres).sum())]
 
 
 def _foot(line: Array, place: Sequence[float]) -> tuple[Array, float]:

@@ -24,6 +24,8 @@ WARM = [[60.0, 100.0], [100.0, 100.0], [140.0, 100.0]]  # a road to compile the 
 LARGEST_ID = 999_999_999
 LOADING = 120.0  # s of wall time for a generator's module to be imported
 
+NO_PYTHON = "{} does not run generators: {}; is it a Python of 3.8 or newer? Name another one with --python"
+
 OVER: Message = {"is_over": True}
 
 
@@ -52,13 +54,16 @@ class Competition:
             GivenUpError: the simulator failed three times in a row.
             RoadGPTError: a file cannot be written, or the simulator or the driver fails on a first road.
         """
-        host = Host(self.folder / LOG)
+        try:
+            host = Host(self.folder / LOG, self.experiment.python)
+        except UsageError:
+            self.results.discard()
+            raise
         try:
             self._begin(host)
             yield from self._work(host)
         except GoneError as error:
-            self._is_begun = True
-            self.ending = Ending(how="died", sentence=_died(error.status))
+            self.ending = self._gone(error.status)
         except OSError as error:
             raise RoadGPTError(
                 f"cannot write into {self.folder}: {error.strerror or error}; make room there"
@@ -69,7 +74,7 @@ class Competition:
                 self.results.close()
             else:
                 self.results.discard()
-        if self.ending is not None and self.ending.how == "unloadable":
+        if self.ending is not None and not self.ending.is_of_a_generator:
             raise UsageError(self.ending.sentence)
 
     def _begin(self, host: Host) -> None:
@@ -79,7 +84,9 @@ class Competition:
         )
         map_size = self.request.world.map_size
         whole = int(map_size) if map_size.is_integer() else map_size
-        host.tell({**task, "map_size": whole, "folder": str(self.folder.resolve())})
+        world = self.request.world
+        told = {"oob_tolerance": world.oob_tolerance, "max_speed_in_kmh": round(world.speed_limit * 3.6, 6)}
+        host.tell({**task, **told, "map_size": whole, "folder": str(self.folder.resolve())})
         first = prove(Road.through(WARM), 0, self.request.world, self.request.setup)
         if first.outcome == "ERROR":
             raise RoadGPTError(f"not even a straight road can be driven: {first.description}")
@@ -154,6 +161,12 @@ class Competition:
             sentence = "the budget is over; it had not noticed, and was stopped"
             return Ending(how="budget", sentence=sentence)
         return Ending(how="hung", sentence=f"it brought no test within {self._patience}, and was stopped")
+
+    def _gone(self, status: int | None) -> Ending:
+        if not self._is_begun and self.experiment.python is not None:
+            return Ending(how="unasked", sentence=NO_PYTHON.format(self.experiment.python, _died(status)))
+        self._is_begun = True
+        return Ending(how="died", sentence=_died(status))
 
     def _ended(self, heard: Message) -> Ending:
         said = heard.get("said", "")

@@ -7,8 +7,9 @@ from pydantic import Field
 from roadgpt.brief.model import Frozen
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-How = Literal["done", "budget", "exit", "raised", "hung", "died", "unloadable"]
+How = Literal["done", "budget", "exit", "raised", "hung", "died", "unloadable", "unasked"]
 FINE: tuple[How, ...] = ("done", "budget")
+UNBEGUN: tuple[How, ...] = ("unloadable", "unasked")
 
 
 class Experiment(Frozen):
@@ -19,6 +20,8 @@ class Experiment(Frozen):
     class_name: str
     module_path: str | None = None
     """A folder that Python is to look for modules in, too."""
+    python: str | None = None
+    """The interpreter that it runs in; None: RoadGPT's own."""
     time_budget: Positive | None = None
     """Seconds of wall time for generating and driving."""
     test_budget: Annotated[int, Field(ge=1)] | None = None
@@ -41,3 +44,8 @@ class Ending(Frozen):
     def is_fine(self) -> bool:
         """Did it work until it had enough, or until its budget was over?"""
         return self.how in FINE
+
+    @property
+    def is_of_a_generator(self) -> bool:
+        """Was there a generator that could work at all?"""
+        return self.how not in UNBEGUN

@@ -13,7 +13,11 @@ from pathlib import Path
 from typing import IO
 
 from roadgpt import children
+from roadgpt.errors import UsageError
 from roadgpt.sbft.line import Message, received, send
+
+NAMES = Path(__file__).with_name("names")  # our half in the generator's process; Python runs the folder
+OURS = "ROADGPT_PYTHON"  # tells that half which interpreter RoadGPT is installed in, where it is another one
 
 
 class GoneError(Exception):
@@ -27,16 +31,28 @@ class GoneError(Exception):
 class Host:
     """One generator's process."""
 
-    def __init__(self, log: Path) -> None:
-        """Starts it; what it prints goes into the file."""
+    def __init__(self, log: Path, python: str | None = None) -> None:
+        """Starts it in an interpreter, None: this one; what it prints goes into the file.
+
+        Raises:
+            UsageError: the interpreter cannot be started.
+        """
         self._log = log.open("wb")
-        self._process = children.start(
-            [sys.executable, "-m", "roadgpt.sbft.inside"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._log,
-            env={**os.environ, "PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"},
-        )
+        own = {"PYTHONUNBUFFERED": "1", "MPLBACKEND": "Agg"}
+        inherited = {name: value for name, value in os.environ.items() if name not in (OURS, "PYTHONHOME")}
+        try:
+            self._process = children.start(
+                [python or sys.executable, str(NAMES)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._log,
+                env=inherited | own | ({} if python is None else {OURS: sys.executable}),
+            )
+        except OSError as error:
+            self._log.close()
+            raise UsageError(
+                f"{python} cannot be started: {error.strerror}; name a Python with --python"
+            ) from error
         self._heard: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
         self._to_tell: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
         assert self._process.stdout is not None

@@ -1,5 +1,6 @@
 """``roadgpt sbft``: a generator of the SBFT tool competition, unchanged, in our simulator."""
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,26 @@ if TYPE_CHECKING:
 
 FAILED = 1  # exit status: the generator crashed, hung or left; its results are complete
 KMH = 3.6
+CLIENT = "roadgpt_client.py"
+
+
+def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None) -> None:
+    """Copy the client."""
+    del param
+    if path is None:
+        return
+    from roadgpt.errors import UsageError
+    from roadgpt.run.atomic import write_whole
+    from roadgpt.sbft.host import NAMES
+
+    if path.exists():
+        raise UsageError(f"{path} is there already; give another name")
+    try:
+        write_whole(path, (NAMES / CLIENT).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}; give another name") from error
+    click.echo(f"{path}; before it is used, set ROADGPT_PYTHON to {sys.executable}")
+    ctx.exit()
 
 
 @click.command()
@@ -37,6 +58,12 @@ KMH = 3.6
     type=click.Path(exists=True, file_okay=False),
     default=None,
     help="Folder that Python is to look for the module in, besides this one.",
+)
+@click.option(
+    "--python",
+    default=None,
+    help="Interpreter that the generator runs in, with libraries of its own, as old as Python 3.8. [default: "
+    "RoadGPT's]",
 )
 @click.option(
     "--time-budget",
@@ -73,6 +100,14 @@ KMH = 3.6
 @click.option("--no-plot", is_flag=True, help="Draw nothing.")
 @pictures_options
 @click.option("--debug", is_flag=True, help="Let the generator's log hold more.")
+@click.option(
+    "--client",
+    type=click.Path(dir_okay=False, path_type=Path),
+    is_eager=True,
+    expose_value=False,
+    callback=_write_client,
+    help="Write the one file that RoadGPT needs in the competition's environment, and do no more.",
+)
 @screen_options
 def command(
     map_size: int,
@@ -100,6 +135,7 @@ def command(
     \b
     roadgpt sbft --module-name my_generator --class-name MyGenerator --test-budget 100
     roadgpt sbft --module-name src.gen --class-name Gen --module-path ~/gen --time-budget 3600 --map-size 200
+    roadgpt sbft --module-name old --class-name Old --python ~/old/venv/bin/python --test-budget 100
     """
     from roadgpt.road import World
     from roadgpt.run import Setup
@@ -131,7 +167,7 @@ def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
                 screen.detail(f"  {run.description}")
     finally:
         screen.close()
-        if work.ending is None or work.ending.how != "unloadable":  # of that the error speaks
+        if work.ending is None or work.ending.is_of_a_generator:  # of that the error speaks
             if work.ending is not None:
                 screen.say(f"the generator: {work.ending.sentence}")
             if screen.rows and formats:

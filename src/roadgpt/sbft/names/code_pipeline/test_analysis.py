@@ -1,52 +1,87 @@
 """Features of tests; each by itself comes with its name, as the competition's functions give it."""
 
-from collections.abc import Sequence
-from typing import Any
+from __future__ import annotations
 
-import numpy as np
+import math
+from bisect import bisect_right
+from statistics import fmean, pstdev
+from typing import Any, Dict, Sequence, Tuple
 
-from roadgpt.run.features import direction_coverage as _coverage
-from roadgpt.run.features import features_of
-from roadgpt.run.features import max_curvature as _curvature
+from roadgpt_inside import elsewhere
+
+THE_NORTH = [0, 1]
+FEWEST_RECORDS = 3  # with fewer, a drive has no features
+
+Feature = Tuple[str, float]
 
 
-def compute_all_features(the_test: Any, execution_data: Sequence[Any] | None) -> dict[str, float]:
+def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[str, float]:
     """MAX_CURV and DIR_COV of the road; STD_SA, MEAN_LP and MAX_LP of the drive, where there is one."""
-    return features_of([node[:2] for node in the_test.interpolated_points], execution_data or ())
+    found = [max_curvature(the_test), direction_coverage(the_test)]
+    if len(execution_data or ()) >= FEWEST_RECORDS:
+        found += [
+            feature(execution_data) for feature in (sd_steering, mean_lateral_position, max_lateral_position)
+        ]
+    return dict(found)
 
 
-def max_curvature(the_test: Any, w: int = 5) -> tuple[str, float]:
-    """1/m, of interpolated points i, i+2, i+4: the competition's own window."""
-    return "MAX_CURV", _curvature(_plan(the_test))
+def max_curvature(the_test: Any, w: int = 5) -> Feature:
+    """1/m, of nodes i, i + 2, i + 4 with the window of 5: the competition's own."""
+    from code_pipeline.validation import smallest_circle
+
+    return "MAX_CURV", 1 / smallest_circle(_nodes(the_test), w)
 
 
-def direction_coverage(the_test: Any, n_bins: int = 25) -> tuple[str, float]:
+def direction_coverage(the_test: Any, n_bins: int = 25) -> Feature:
     """Share of the edges of bins of directions, as angles to north from 0 to 180 degrees."""
-    return "DIR_COV", _coverage(_plan(the_test), n_bins)
-
-
-def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> tuple[str, float]:
-    """The same of the whole circle, from -180 to 180 degrees to the x-axis."""
-    step = np.diff(_plan(the_test), axis=0)
-    edges = np.linspace(-np.pi, np.pi, n_bins)
-    covered = np.unique(np.digitize(np.arctan2(step[:, 1], step[:, 0]), edges))
+    edges = [360.0 / n_bins * i for i in range(n_bins + 1)]
+    nodes = _nodes(the_test)
+    covered = set()
+    for one, after in zip(nodes, nodes[1:]):
+        x, y = after[0] - one[0], after[1] - one[1]
+        way = math.sqrt(x * x + y * y)
+        # nodes in one place have no direction, which the competition's library counts beyond the last edge
+        cosine = max(-1.0, min(1.0, y / way)) if way else math.nan
+        covered.add(bisect_right(edges, math.degrees(math.acos(cosine))) if way else len(edges))
     return "DIR_COV", len(covered) / len(edges)
 
 
-def sd_steering(execution_data: Sequence[Any]) -> tuple[str, float]:
+def get_thetas(xs: Any, ys: Any, skip: int = 1) -> Any:
+    """Directions of the ways between points of two arrays, radians to the x-axis."""
+    del skip  # theirs takes it, and has no use for it
+    import numpy
+
+    return numpy.arctan2(ys[1:] - ys[:-1], xs[1:] - xs[:-1])
+
+
+def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
+    """The same of the whole circle, from -180 to 180 degrees to the x-axis."""
+    edges = [-math.pi + 2 * math.pi / (n_bins - 1) * i for i in range(n_bins - 1)] + [math.pi]
+    nodes = _nodes(the_test)
+    ways = [(after[0] - one[0], after[1] - one[1]) for one, after in zip(nodes, nodes[1:])]
+    covered = {bisect_right(edges, math.atan2(y, x)) for x, y in ways}
+    return "DIR_COV", len(covered) / len(edges)
+
+
+def sd_steering(execution_data: Sequence[Any]) -> Feature:
     """Degrees at the steering wheel."""
-    return "STD_SA", float(np.std([record.steering for record in execution_data]))
+    return "STD_SA", pstdev(float(record.steering) for record in execution_data)
 
 
-def mean_lateral_position(execution_data: Sequence[Any]) -> tuple[str, float]:
+def mean_lateral_position(execution_data: Sequence[Any]) -> Feature:
     """Metres."""
-    return "MEAN_LP", float(np.mean([record.oob_distance for record in execution_data]))
+    return "MEAN_LP", fmean(float(record.oob_distance) for record in execution_data)
 
 
-def max_lateral_position(execution_data: Sequence[Any]) -> tuple[str, float]:
+def max_lateral_position(execution_data: Sequence[Any]) -> Feature:
     """Metres."""
-    return "MAX_LP", float(np.max([record.oob_distance for record in execution_data]))
+    return "MAX_LP", max(record.oob_distance for record in execution_data)
 
 
-def _plan(the_test: Any) -> Any:
-    return np.asarray([node[:2] for node in getattr(the_test, "interpolated_points", the_test)], float)
+def _nodes(the_test: Any) -> Sequence[Sequence[float]]:
+    nodes: Sequence[Sequence[float]] = getattr(the_test, "interpolated_points", the_test)
+    return nodes
+
+
+def __getattr__(name: str) -> Any:
+    return elsewhere.other(__name__, name)

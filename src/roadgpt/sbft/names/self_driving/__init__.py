@@ -3,4 +3,7 @@ of the competition's own code, where Python finds one."""
 
 from pkgutil import extend_path
 
+from roadgpt_inside import elsewhere
+
 __path__ = extend_path(__path__, __name__)
+elsewhere.watch()

@@ -1,0 +1,55 @@
+"""Functions that are called when the generator's process ends."""
+
+from __future__ import annotations
+
+import atexit
+import signal
+import sys
+from typing import Any, Callable, List
+
+from roadgpt_inside import elsewhere
+
+_REGISTERED: List[Callable[[], None]] = []
+
+
+def register_exit_fun(
+    fun: Any = None,
+    signals: Any = (signal.SIGTERM,),
+    logfun: Any = lambda said: print(said, file=sys.stderr),
+) -> Any:
+    """Have a function called once: when the generator ends, or on one of the signals. Also a decorator."""
+    if fun is None:
+        return lambda wrapped: register_exit_fun(wrapped, signals, logfun)
+    if not callable(fun):
+        raise TypeError(f"{fun!r} cannot be called")
+    was_called: List[bool] = []
+
+    def once() -> None:
+        if not was_called:
+            was_called.append(True)
+            fun()
+
+    def on_signal(number: int, frame: Any) -> None:
+        del frame
+        if logfun is not None:
+            logfun(f"signal {number}")
+        once()
+        if number == signal.SIGINT:
+            raise KeyboardInterrupt
+        sys.exit(number)
+
+    for number in signals or ():
+        signal.signal(number, on_signal)
+    _REGISTERED.append(once)
+    atexit.register(once)
+    return fun
+
+
+def ended() -> None:
+    """The generator ended: call what was registered, the last one first."""
+    while _REGISTERED:
+        _REGISTERED.pop()()
+
+
+def __getattr__(name: str) -> Any:
+    return elsewhere.other(__name__, name)

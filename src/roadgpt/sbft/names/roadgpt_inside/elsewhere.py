@@ -1,0 +1,87 @@
+"""Names of the competition that have no stand-in: those of a checkout of its code, else a sentence.
+
+Most of them drive BeamNG or a network of DAVE-2, which a generator has no use for here.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from typing import Any, List, Optional
+
+PACKAGES = ("code_pipeline", "self_driving")
+ADVICE = "put a checkout of the competition's code on PYTHONPATH, or do without it"
+
+
+HERE = {"code_pipeline.utils": "code_pipeline/pairs.py", "self_driving.utils": "self_driving/places.py"}
+"""Modules that have a name of their own here, under theirs."""
+
+
+class Missing:
+    """The last to be asked for a module: says what is neither here nor in a checkout."""
+
+    @staticmethod
+    def find_spec(name: str, path: Optional[List[str]] = None, target: Any = None) -> Any:
+        """Where a module of ours is; None for modules that are none of the competition's.
+
+        Raises:
+            ModuleNotFoundError: it is one of theirs.
+        """
+        del path, target
+        if name in HERE:
+            return importlib.util.spec_from_file_location(name, Path(__file__).parent.parent / HERE[name])
+        package, _, rest = name.partition(".")
+        if package in PACKAGES and rest:
+            raise ModuleNotFoundError(f"RoadGPT has no stand-in for {name}; {ADVICE}", name=name)
+        return None
+
+
+def watch() -> None:
+    """Have modules of theirs that are missing told of by name."""
+    finders: List[Any] = sys.meta_path
+    if Missing not in finders:
+        finders.append(Missing)
+
+
+def other(module: str, name: str) -> Any:
+    """A name that a stand-in does not have, from the same module of a checkout.
+
+    Raises:
+        AttributeError: it has none either, or the name is Python's own.
+        ImportError: there is no checkout, and BeamNG is what it is for.
+    """
+    if name.startswith("__"):
+        raise AttributeError(f"module '{module}' has no attribute '{name}'")
+    theirs = _theirs(module)
+    if theirs is not None and hasattr(theirs, name):
+        return getattr(theirs, name)
+    if theirs is None and name in BEAMNG.get(module, ()):
+        raise ImportError(f"RoadGPT has no stand-in for {module}.{name}; {ADVICE}", name=module)
+    raise AttributeError(f"RoadGPT's stand-in for {module} has no '{name}'; {ADVICE}")
+
+
+BEAMNG = {"self_driving.vehicle_state_reader": ("VehicleStateReader",)}
+
+
+def _theirs(module: str) -> Any:
+    """The module of a checkout, loaded once beside ours; None where there is no checkout."""
+    package, _, stem = module.partition(".")
+    name = f"{package}._checkout_{stem}"
+    if name in sys.modules:
+        return sys.modules[name]
+    for folder in list(sys.modules[package].__path__)[1:]:
+        path = Path(folder, f"{stem}.py")
+        if not path.is_file():
+            continue
+        spec = importlib.util.spec_from_file_location(name, path)
+        if spec is None or spec.loader is None:
+            continue
+        made = sys.modules[name] = importlib.util.module_from_spec(spec)
+        try:
+            spec.loader.exec_module(made)
+        except BaseException:
+            del sys.modules[name]
+            raise
+        return made
+    return None

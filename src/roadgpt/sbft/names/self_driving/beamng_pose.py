@@ -1,0 +1,19 @@
+"""A place and a way to face."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from roadgpt_inside import elsewhere
+
+
+class BeamNGPose:
+    """Position in metres, and rotation as a quaternion."""
+
+    def __init__(self, pos: Any = None, rot: Any = None) -> None:
+        self.pos = pos or (0, 0, 0)
+        self.rot = rot or (0, 0, 0, 1)
+
+
+def __getattr__(name: str) -> Any:
+    return elsewhere.other(__name__, name)

@@ -1,0 +1,34 @@
+"""A goal in BeamNG's own words."""
+
+from __future__ import annotations
+
+import json
+import uuid
+from typing import Any, Optional, Sequence
+
+from roadgpt_inside import elsewhere
+
+
+class BeamNGWaypoint:
+    """A goal, as a line of a level's file."""
+
+    def __init__(self, name: str, position: Sequence[float], persistentId: Optional[str] = None) -> None:
+        """At a position in metres."""
+        self.name, self.position = name, position
+        self.persistentId = persistentId or str(uuid.uuid4())
+
+    def to_json(self) -> str:
+        """The line."""
+        told = {
+            "name": self.name,
+            "class": "BeamNGWaypoint",
+            "persistentId": self.persistentId,
+            "__parent": "generated",
+            "position": self.position,
+            "scale": [4, 4, 4],
+        }
+        return json.dumps(told)
+
+
+def __getattr__(name: str) -> Any:
+    return elsewhere.other(__name__, name)

@@ -1,0 +1,75 @@
+"""A road in BeamNG's own words."""
+
+from __future__ import annotations
+
+import json
+import uuid
+from typing import Any, Dict, List, Optional, Sequence
+
+from roadgpt_inside import elsewhere
+
+
+class DecalRoad:
+    """A road painted on the level, as a line of its file."""
+
+    DEFAULT_MATERIAL = "tig_road_rubber_sticky"
+
+    def __init__(
+        self,
+        name: str,
+        material: str = DEFAULT_MATERIAL,
+        persistentId: Optional[str] = None,
+        drivability: int = 1,
+    ) -> None:
+        """Without nodes yet."""
+        self.name, self.material, self.drivability = name, material, drivability
+        self.persistentId = persistentId or str(uuid.uuid4())
+        self.nodes: List[List[float]] = []
+
+    def add_4d_points(self, nodes: Sequence[Sequence[float]]) -> DecalRoad:
+        """Add nodes [x, y, height, width] in metres.
+
+        Raises:
+            AssertionError: there are none, or they are not of four floats each.
+        """
+        assert len(nodes) > 0, "a road needs nodes"
+        assert all(len(node) == 4 for node in nodes), "a node is [x, y, height, width]"
+        assert all(isinstance(value, float) for node in nodes for value in node), "nodes are of floats"
+        self.nodes += [list(node) for node in nodes]
+        return self
+
+    def to_dict(self) -> Dict[str, Any]:
+        """Name and nodes."""
+        return {"name": self.name, "nodes": self.nodes}
+
+    @classmethod
+    def from_dict(cls, d: Dict[str, Any]) -> DecalRoad:
+        """From name and nodes."""
+        return cls(name=d["name"]).add_4d_points(nodes=d["nodes"])
+
+    def to_json(self) -> str:
+        """The line.
+
+        Raises:
+            AssertionError: there are no nodes.
+        """
+        assert self.nodes, "a road needs nodes"
+        told = {
+            "name": self.name,
+            "class": "DecalRoad",
+            "breakAngle": 180,
+            "distanceFade": [1000, 1000],
+            "drivability": self.drivability,
+            "material": self.material,
+            "overObjects": True,
+            "persistentId": self.persistentId,
+            "__parent": "generated",
+            "position": self.nodes[0][:3],
+            "textureLength": 2.5,
+            "nodes": self.nodes,
+        }
+        return json.dumps(told)
+
+
+def __getattr__(name: str) -> Any:
+    return elsewhere.other(__name__, name)

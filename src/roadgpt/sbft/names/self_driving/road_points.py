@@ -1,0 +1,103 @@
+"""The edges of a road beside its nodes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, List, Sequence, Tuple
+
+from roadgpt_inside import elsewhere
+from self_driving.beamng_pose import BeamNGPose
+
+List4DTuple = List[Tuple[float, float, float, float]]
+List2DTuple = List[Tuple[float, float]]
+Place = Tuple[float, float]
+
+
+class RoadPoints:
+    """Nodes of the middle, and the points of both edges that lie across the way to the next node."""
+
+    def __init__(self) -> None:
+        """Without nodes yet."""
+        self.middle: List[Any] = []
+        self.right: List[Any] = []
+        self.left: List[Any] = []
+        self.n = 0
+
+    @classmethod
+    def from_nodes(cls, middle_nodes: Sequence[Sequence[float]]) -> RoadPoints:
+        """Of nodes [x, y, height, width], two or more."""
+        return cls().add_middle_nodes(middle_nodes)
+
+    def add_middle_nodes(self, middle_nodes: Sequence[Sequence[float]]) -> RoadPoints:
+        """Add nodes.
+
+        Raises:
+            AssertionError: fewer than two, or of fewer than four numbers.
+        """
+        assert len(self.middle) + len(middle_nodes) >= 2, "a road needs two nodes or more"
+        assert all(len(node) >= 4 for node in middle_nodes), "a node is (x, y, height, width)"
+        self.middle += list(middle_nodes)
+        self.n = len(self.middle)
+        edges = [self.calc_point_edges(one, after) for one, after in zip(self.middle, self.middle[1:])]
+        self.left = [left for left, _ in edges]
+        self.right = [right for _, right in edges]
+        right, left = self.calc_point_edges(self.middle[-1], self.middle[-2])
+        self.left.append(left)
+        self.right.append(right)
+        return self
+
+    @classmethod
+    def calc_point_edges(cls, p1: Sequence[float], p2: Sequence[float]) -> Tuple[Place, Place]:
+        """Left and right edge points of a node, of which the next one is known."""
+        x, y = p2[0] - p1[0], p2[1] - p1[1]
+        way, half = math.sqrt(x * x + y * y), p1[3] / 2
+        # two nodes in one place have no direction: not a number, as with the competition's library
+        x, y = (x / way * half, y / way * half) if way else (math.nan, math.nan)
+        return (p1[0] - y, p1[1] + x), (p1[0] + y, p1[1] - x)
+
+    @staticmethod
+    def angle_to_quat(angle: Sequence[float]) -> Tuple[float, float, float, float]:
+        """The quaternion (x, y, z, w) of roll, pitch and yaw in degrees."""
+        roll, pitch, yaw = (math.radians(a) / 2 for a in angle)
+        sr, cr, sp, cp = math.sin(roll), math.cos(roll), math.sin(pitch), math.cos(pitch)
+        sy, cy = math.sin(yaw), math.cos(yaw)
+        return (
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+            cr * cp * cy + sr * sp * sy,
+        )
+
+    def vehicle_start_pose(
+        self, meters_from_road_start: float = 2.5, road_point_index: int = 0
+    ) -> BeamNGPose:
+        """Where the competition puts the car: in the middle of the right lane.
+
+        Raises:
+            AssertionError: there is no such node.
+        """
+        assert self.n > road_point_index, f"there are {self.n} nodes, and no number {road_point_index}"
+        here, after = self.middle[road_point_index], self.middle[road_point_index + 1]
+        edge = self.right[road_point_index]
+        x, y = after[0] - here[0], after[1] - here[1]
+        share = meters_from_road_start / math.sqrt(x * x + y * y)
+        x, y = x * share, y * share
+        place = ((here[0] + edge[0]) / 2 + x, (here[1] + edge[1]) / 2 + y, here[2])
+        return BeamNGPose(pos=place, rot=self.angle_to_quat((0, 0, math.degrees(math.atan2(-x, -y)))))
+
+    def new_imagery(self) -> Any:
+        """A picture of the road, to be drawn."""
+        from self_driving.beamng_road_imagery import BeamNGRoadImagery
+
+        return BeamNGRoadImagery(self)
+
+    def plot_on_ax(self, ax: Any) -> None:
+        """Draw the road on axes of matplotlib."""
+        ax.set_facecolor("#7D9051")
+        for points, colour in ((self.middle, "#FEA952"), (self.left, "white"), (self.right, "white")):
+            ax.plot([p[0] for p in points], [p[1] for p in points], color=colour, linewidth=1)
+        ax.axis("equal")
+
+
+def __getattr__(name: str) -> Any:
+    return elsewhere.other(__name__, name)

@@ -1,0 +1,16 @@
+"""What is read of a car; reading it takes BeamNG, and so a checkout of the competition's code."""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from typing import Any
+
+from roadgpt_inside import elsewhere
+from self_driving.simulation_data import SimulationDataRecordProperties
+
+VehicleStateProperties = SimulationDataRecordProperties[:12]
+VehicleState = namedtuple("VehicleState", VehicleStateProperties)  # type: ignore[misc]
+
+
+def __getattr__(name: str) -> Any:
+    return elsewhere.other(__name__, name)
