@@ -178,7 +178,7 @@ def test_the_client_says_in_a_sentence_what_is_missing(tmp_path: Path) -> None:
     assert "cannot be started" in told(ROADGPT_PYTHON="/nowhere/python")
     both = {"ROADGPT_PYTHON": sys.executable}
     assert "'four'" in told(ROADGPT_SEED="four", **both)
-    assert "larger map" in told(ROADGPT_DESCRIPTION="a straight road of 5 km", **both)
+    assert "on a map of 200 m" in told(ROADGPT_DESCRIPTION="a straight road of 5 km", **both)
 
 
 def test_whoever_asks_wrongly_is_told_and_may_ask_again() -> None:
