@@ -9,6 +9,7 @@ import pytest
 from roadgpt import check
 from roadgpt.brief import read
 from roadgpt.brief.room import longest_straight
+from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Road, World, build
@@ -116,3 +117,36 @@ def test_maps_of_any_size_work_with_the_default_reader(words: str, size: float) 
     world = World(map_size=size)
     brief = read(words, map_size=size)
     assert check.inspect(build(draft(brief, world, seed=3)), brief, world) == ()
+
+
+@pytest.mark.parametrize(
+    ("words", "size", "least_turns"),
+    [
+        ("a winding road of 2 km", 1000, 8),
+        ("a winding road of 5 km", 1000, 20),
+        ("a winding road of 10 km", 4000, 40),
+        ("a winding road of 900 m", 250, 5),
+        ("a mountain road with hairpins, 4 km", 4000, 6),
+        ("a zig-zag road of 3 km, uphill", 2000, 8),
+    ],
+)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_long_road_has_turns_all_along(words: str, size: float, least_turns: int, seed: int) -> None:
+    world = World(map_size=size)
+    road = drafted(words, world, seed)
+    turns = measure(road.centreline()).turns
+    assert len(turns) >= least_turns
+    gaps = np.diff([0.0, *(turn.start for turn in turns), road.length])
+    assert gaps.max() < 0.3 * road.length
+
+
+def test_the_same_seed_grows_the_same_road() -> None:
+    brief, world = read("a winding road of 2 km", "grammar", map_size=1000), World(map_size=1000)
+    one, same, other = (draft(brief, world, seed=seed) for seed in (5, 5, 6))
+    assert one == same != other
+
+
+def test_a_long_road_keeps_its_number_of_turns() -> None:
+    road = drafted("a road with 8 turns of 800 m", World(), 3)
+    assert len(measure(road.centreline()).turns) == 8
+    assert 720 <= road.length <= 880

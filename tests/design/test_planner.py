@@ -256,7 +256,7 @@ def test_other_worlds_have_roads_too(world: World) -> None:
 
 
 def test_the_map_that_is_advised_is_large_enough() -> None:
-    brief = Brief(length=exactly(900))
+    brief = Brief(length=exactly(1900))
     with pytest.raises(DesignError, match="--map-size") as caught:
         planner.draft(brief, WORLD, (), (), 1)
     world = World(map_size=float(str(caught.value).split("--map-size ")[1]))

@@ -52,12 +52,12 @@ def composed(
     turns: list[Span | None] = list(drawn_turns(rooms, outline, world, rng, haste))
     spans: list[Span] = []
     for before, gap, after in zip([None, *turns], order.gaps, [*turns, None], strict=True):
-        spans += _gap(before, gap, after, outline, windows, rng, haste)
+        spans += gap_between(before, gap, after, outline, windows, rng, haste)
         if after:
             spans.append(after)
     if outline.hills:
         spans = _with_hills(spans, outline.hills, rng)
-    length = _long_enough(outline, windows)
+    length = asked_length(outline, windows)
     whole = _with_length(spans, length, rng, haste) if length else spans
     return _from_corner_to_corner(whole, world) if whole and outline.turns.hi == 0 else whole
 
@@ -69,7 +69,7 @@ def _from_corner_to_corner(spans: list[Span], world: World) -> list[Span]:
     return [span._replace(length=keep * span.length) for span in spans] if keep < 1 else spans
 
 
-def _long_enough(outline: Outline, windows: Windows) -> Range | None:
+def asked_length(outline: Outline, windows: Windows) -> Range | None:
     """The length that was asked for; else enough to climb as much as was asked, at no extreme grade."""
     if outline.length or not outline.climb:
         return outline.length
@@ -79,7 +79,7 @@ def _long_enough(outline: Outline, windows: Windows) -> Range | None:
     return Range(100 * height / (EASE * max(steepest, 1.0)), inf)
 
 
-def _gap(
+def gap_between(
     before: Span | None,
     wishes: Sequence[Feature],
     after: Span | None,

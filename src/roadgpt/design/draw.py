@@ -118,14 +118,14 @@ def drawn_turns(
         rooms = [
             room._replace(degrees=Range(a - KEPT, a + KEPT)) for room, a in zip(rooms, angles, strict=True)
         ]
-    longest = _longest(len(rooms), outline, world) * (1 - 0.6 * haste)
+    longest = longest_turn(len(rooms), outline, world) * (1 - 0.6 * haste)
     return [
-        _drawn_turn(room, angle, longest, outline.hard, rng, haste)
+        drawn_turn(room, angle, longest, outline.hard, rng, haste)
         for room, angle in zip(rooms, angles, strict=True)
     ]
 
 
-def _longest(turns: int, outline: Outline, world: World) -> float:
+def longest_turn(turns: int, outline: Outline, world: World) -> float:
     """Metres along the curve that one turn may take, so that all find room."""
     wide = outline.each_turn.radius
     longest = max(LONGEST_TURN, wide.lo * radians(WIDE_ANGLE)) if wide and wide.lo > WIDEST else LONGEST_TURN
@@ -174,9 +174,19 @@ def _swing(signed: Sequence[float]) -> float:
     return high - low
 
 
-def _drawn_turn(
+def drawn_turn(
     room: TurnRoom, angle: float, longest: float, hard: bool, rng: np.random.Generator, haste: float
 ) -> Span:
+    """One turn whose radius and ramps are drawn.
+
+    Args:
+        room: what it is drawn from.
+        angle: degrees.
+        longest: metres along the curve.
+        hard: is it to be tight?
+        rng: source of chance.
+        haste: as for ``drawn_turns``.
+    """
     least, most = room.radius.lo, room.radius.hi
     if hard:
         most = max(min(most, least * TIGHTER), least)

@@ -11,9 +11,9 @@ from roadgpt.brief.need import least_length
 from roadgpt.brief.room import LARGEST_MAP, ROUND_MAP
 from roadgpt.road import World
 
-SIDES = 8.0  # of the map: roads so long were never drafted, so the search for the longest begins there
+SIDES = 7.0  # of the map: roads so long were never drafted, so the search for the longest begins there
 SHORTER = 0.8  # ratio of one length that is tried to the one before
-HALVINGS = 3  # between the last length that failed and the first that did not
+HALVINGS = 2  # between the last length that failed and the first that did not
 SURE = 0.97  # of the longest length that was drafted is offered
 LIKELY = 0.4  # side of a map over the length of a winding road that it may hold
 LARGER = 1.3  # ratio of one map that is tried to the one before

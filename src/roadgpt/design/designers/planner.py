@@ -21,6 +21,7 @@ from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import complaints, promises_of
 from roadgpt.design.advice import advice
 from roadgpt.design.compose import composed
+from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.layout import Line, Place, keeps_clear, place, smallest_box, walk
 from roadgpt.design.order import drawn_order
@@ -42,6 +43,8 @@ LAST_RESORTS = 20  # drafts like earlier roads that are tried where there are no
 HEIGHTS = 5  # that are tried on one plan
 TRIALS = (1, 2, 3)  # seeds with which it is tried whether there is room
 TRIED = 110  # drafts that are drawn for each of these
+GROWN = 20  # drafts of a road whose length was asked for, that grow on the map where no other was found
+GROWN_ON_TRIAL = 5  # of these, where it is tried whether there is room
 NO_HASTE = 16  # drafts that are drawn freely
 VERGES = 0.6  # of the drafts: so long, legs keep off each other's verges as well
 CENTIMETRE = 100.0  # per metre: the start is written to the centimetre
@@ -116,18 +119,24 @@ class _Search:
         """The same; None where none passes."""
         alike: list[tuple[float, int, _Draft]] = []
         finished = 0
-        most = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
-        choosy = CHOOSY * most / (3 if len(self.others.reach) > CROWDED else 1)
-        for number in range(drafts):
+        most_alike = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
+        choosy = CHOOSY * most_alike / (3 if len(self.others.reach) > CROWDED else 1)
+        grows = is_long(self.outline)
+        growths = GROWN if drafts == DRAFTS else GROWN_ON_TRIAL
+        most = growths if grows else drafts + (growths if self.outline.length else 0)
+        for number in range(most):
             haste = max(0.0, (number - NO_HASTE) / (drafts - NO_HASTE))
-            drafted = self._plan(haste, with_verges=number < VERGES * drafts)
+            if grows or number >= drafts:
+                drafted = self._growth()
+            else:
+                drafted = self._plan(haste, with_verges=number < VERGES * drafts)
             if drafted is None:
                 continue
             away = nearest(drafted.shape, self.others, by_metres=len(alike) < choosy)
-            if away < ENOUGH * min(1.0, 1.5 * (1 - len(alike) / most)):
+            if away < ENOUGH * min(1.0, 1.5 * (1 - len(alike) / most_alike)):
                 self.failed["like an earlier road"] += 1
                 alike.append((-away, number, drafted))
-                if len(alike) == most:
+                if len(alike) == most_alike:
                     break
                 continue
             finished += 1
@@ -141,6 +150,20 @@ class _Search:
             if found:
                 return found
         return None
+
+    def _growth(self) -> _Draft | None:
+        """A plan that has grown on the map; only where a length was asked for."""
+        if self.outline.length is None:
+            return None
+        order = drawn_order(self.outline, self.rng, plain=True)
+        found = grown(order, self.outline, self.windows, self.world, self.rng)
+        if found is None:
+            self.failed["too large"] += 1
+            return None
+        if not keeps_clear(found.line, self.world, with_verges=False):
+            self.failed["over itself"] += 1
+            return None
+        return _Draft(found.spans, found.line, found.place, shape_of(found.line.s, found.line.z))
 
     def _plan(self, haste: float, with_verges: bool) -> _Draft | None:
         order = drawn_order(self.outline, self.rng, plain=haste > 0.5)

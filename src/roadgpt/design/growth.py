@@ -1,0 +1,278 @@
+"""Long roads, grown piece by piece where there is room: each turn looks for a way that stays on the map.
+
+A plan that is drawn as a whole and then laid on the map hardly ever fits where it is much longer than the map
+is wide. So such a road begins somewhere on the map, and of every turn several are tried: sides, angles and
+straights before it. One is taken whose way ahead is free of the border and of the road itself. Where the
+number of turns is open, a longer road has more of them.
+"""
+
+from collections.abc import Sequence
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.room import EDGE
+from roadgpt.brief.words import Range
+from roadgpt.design.compose import asked_length, gap_between
+from roadgpt.design.draw import TurnRoom, drawn_turn, longest_turn, turn_rooms
+from roadgpt.design.heights import Windows
+from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, Complex, Line, Place, walk
+from roadgpt.design.order import Order
+from roadgpt.design.spans import Span
+from roadgpt.geometry.curve import Array
+from roadgpt.road import World
+from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
+
+TRIED = 14  # turns, of which the first that leads on is taken
+AHEAD = 45.0  # m behind a turn that must be free
+COARSE = 3.0  # m between points that are held against the border and the road
+MOST_TURNS = 400
+EXTRA = {"winding": (10.0, 70.0)}  # m of straight between turns, more than there must be, on average
+EXTRA_OF_OTHERS = (30.0, 160.0)
+UNEVEN = (0.2, 1.8)  # of that average
+OFF_TIGHTEST = 1.2  # ratio of the least radius of a turn to the tightest that is allowed
+OFF_BY_SPACING = 1.3  # metres of radius more, for each metre more between points of the road's spline
+BULGE = 0.5  # m that the walked line may be off the road that is built
+DEAD_ENDS = 30  # of one attempt, before it is given up
+LEAST_LEFT = 25.0  # m of road behind the last turn
+LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
+
+
+class Grown(NamedTuple):
+    """A plan and where it lies."""
+
+    spans: list[Span]
+    line: Line
+    place: Place
+
+
+class _Way(NamedTuple):
+    """The road so far: its spans, points every few metres with their stations, and where it has come to."""
+
+    spans: tuple[Span, ...]
+    s: Array
+    z: Complex
+    length: float
+    end: complex
+    heading: complex
+
+    def with_(self, spans: Sequence[Span], line: Line) -> "_Way":
+        every = max(1, round(COARSE / float(line.s[1])))
+        z = self.end + self.heading * line.z
+        turned = np.exp(1j * np.radians(sum(span.turn for span in spans)))  # exact: the walk adds up errors
+        return _Way(
+            (*self.spans, *spans),
+            np.concatenate([self.s, self.length + line.s[1::every]]),
+            np.concatenate([self.z, z[1::every]]),
+            self.length + float(line.s[-1]),
+            complex(z[-1]),
+            self.heading * complex(turned),
+        )
+
+
+def grown(
+    order: Order, outline: Outline, windows: Windows, world: World, rng: np.random.Generator
+) -> Grown | None:
+    """A road of the length that was asked for; None where it ran out of room, or where none was asked for.
+
+    Args:
+        order: turns with their sides, and the straights that were asked for between them.
+        outline: what was asked for.
+        windows: grades.
+        world: the map.
+        rng: source of chance.
+    """
+    asked = asked_length(outline, windows)
+    if asked is None or asked.lo <= 0 or not order.turns or outline.turning:
+        return None
+    low, high = asked.lo + 1, min(asked.hi - 1, 1.3 * asked.lo)
+    target = low + (high - low) * (0.3 + 0.4 * rng.random())
+    return _Growth(order, outline, windows, world, rng, target, asked).run()
+
+
+class _Growth:
+    """One attempt."""
+
+    def __init__(
+        self,
+        order: Order,
+        outline: Outline,
+        windows: Windows,
+        world: World,
+        rng: np.random.Generator,
+        target: float,
+        asked: Range,
+    ) -> None:
+        self.order, self.outline, self.windows, self.world, self.rng = order, outline, windows, world, rng
+        self.target, self.asked = target, asked
+        self.more = _repeated(outline)
+        self.has_open_sides = _has_open_sides(outline)
+        rooms = turn_rooms(order.turns, outline, world)
+        self.rooms = [
+            _roomy(room._replace(grade=windows.of(turn)), target)
+            for room, turn in zip(rooms, order.turns, strict=True)
+        ]
+        self.longest = longest_turn(len(rooms), outline, world)
+        low, high = EXTRA.get(order.turns[-1].name, EXTRA_OF_OTHERS)
+        self.extra = low + (high - low) * rng.random()
+        self.apart = world.road_width + SPARE + COARSENESS + BULGE
+
+    def run(self) -> Grown | None:
+        start, heading = self._start()
+        way = self._grown(_Way((), np.zeros(1), np.array([start]), 0.0, start, heading))
+        if way is None or way.length not in self.asked:
+            return None
+        theta = round(float(np.degrees(np.angle(heading))) % 360, 1) % 360
+        place = Place(round(start.real, 2), round(start.imag, 2), theta)
+        return Grown(list(way.spans), walk(way.spans), place)
+
+    def _grown(self, start: _Way) -> _Way | None:
+        """The whole road; where it does not go on, some turns are taken back and others tried."""
+        steps: list[tuple[_Way, Span | None]] = [(start, None)]
+        for back in range(1, DEAD_ENDS + 1):
+            while (following := self._turn(len(steps) - 1, steps[-1][0].length)) is not None:
+                way, before = steps[-1]
+                step = self._step(way, before, *following, len(steps) - 1)
+                if step is None:
+                    break
+                steps.append(step)
+            else:
+                whole = self._out(*steps[-1])
+                if whole is not None:
+                    return whole
+            del steps[max(1, len(steps) - 1 - int(self.rng.integers(1, 3 + back))) :]
+        return None
+
+    def _start(self) -> tuple[complex, complex]:
+        border = self.world.road_width / 2 + EDGE + 1.0
+        x, y = border + self.rng.random(2) * (self.world.map_size - 2 * border)
+        heading = np.exp(1j * np.radians(self.rng.integers(3600) / 10))
+        return complex(round(x, 2), round(y, 2)), complex(heading)
+
+    def _turn(self, at: int, so_far: float) -> tuple[TurnRoom, Sequence[Feature]] | None:
+        """What the next turn is drawn from, and the straights before it; None behind the last."""
+        named = len(self.order.turns)
+        if at < named:
+            return self.rooms[at], self.order.gaps[at]
+        left = self.target - so_far - LEAST_LEFT - self.extra / 2
+        if not self.more or at >= min(MOST_TURNS, self.outline.turns.hi) or left < self.longest:
+            return None
+        return self.rooms[-1], ()
+
+    def _step(
+        self,
+        way: _Way,
+        before: Span | None,
+        room: TurnRoom,
+        wishes: Sequence[Feature],
+        at: int,
+    ) -> tuple[_Way, Span] | None:
+        """The road with one turn more, and that turn.
+
+        Args:
+            way, before: the road so far, and its last turn.
+            room, wishes: from what the next turn is drawn, and the straights asked for before it.
+            at: its number, from 0.
+        """
+        hand = room.hand
+        if at >= len(self.order.turns) and before:
+            switches = self.has_open_sides is False
+            hand = -1 if (before.turn > 0) == switches else 1
+        extra = self._extra(way.length, at)
+        for number in range(TRIED):
+            if self.has_open_sides and number % 2 == 0:
+                hand = 1 if self.rng.random() < 0.5 else -1
+            elif self.has_open_sides:
+                hand = -hand
+            haste = number / TRIED
+            angle = room.degrees.lo + self.rng.random() * (room.degrees.hi - room.degrees.lo)
+            turn = drawn_turn(
+                room._replace(hand=hand), angle, self.longest, self.outline.hard, self.rng, haste
+            )
+            spans = gap_between(before, wishes, turn, self.outline, self.windows, self.rng, 0.5 + haste / 2)
+            spans = _stretched(spans, extra * (1 - haste) * self.rng.uniform(*UNEVEN))
+            line = walk([*spans, turn])
+            if self._is_free(way, line, AHEAD):
+                return way.with_([*spans, turn], line), turn
+        return None
+
+    def _extra(self, so_far: float, at: int) -> float:
+        """Metres by which the straight before the next turn may be longer than it must be."""
+        if self.more and self.outline.turns.lo <= len(self.order.turns):
+            return self.extra
+        turns = max(len(self.order.turns) - at, 0)
+        return max(self.target - so_far - turns * (self.longest / 2 + LEAST_LEFT), 0.0) / (turns + 1)
+
+    def _out(self, way: _Way, before: Span | None) -> _Way | None:
+        """The road with its last straight."""
+        wishes = self.order.gaps[-1]
+        spans = gap_between(before, wishes, None, self.outline, self.windows, self.rng, 1.0)
+        missing = self.target - way.length - sum(span.length for span in spans)
+        for share in (1.0, 0.7, 0.4, 0.0):
+            longer = _stretched(spans, share * missing) if missing > 0 else spans
+            line = walk(longer)
+            if self._is_free(way, line, 0.0):
+                return way.with_(longer, line)
+        return None
+
+    def _is_free(self, way: _Way, line: Line, ahead: float) -> bool:
+        """Does a piece, with some metres straight on, stay on the map and off the road so far?"""
+        every = max(1, round(COARSE / float(line.s[1])))
+        s, z = line.s[::every], line.z[::every]
+        last = line.z[-1] - line.z[-2]
+        on = np.arange(COARSE, ahead, COARSE)
+        s = np.concatenate([s, line.s[-1:], line.s[-1] + on]) + way.length
+        z = np.concatenate([z, line.z[-1:], line.z[-1] + on * (last / abs(last))])
+        z = way.end + way.heading * z
+        border = self.world.road_width / 2 + EDGE + BULGE
+        low, high = border, self.world.map_size - border
+        if min(z.real.min(), z.imag.min()) < low or max(z.real.max(), z.imag.max()) > high:
+            return False
+        x, y, apart = way.z.real, way.z.imag, self.apart
+        inside = (x > z.real.min() - apart) & (x < z.real.max() + apart)
+        here = inside & (y > z.imag.min() - apart) & (y < z.imag.max() + apart)
+        near = np.abs(z[:, None] - way.z[here]) < apart
+        return not (near & (s[:, None] - way.s[here] > NEIGHBOURS)).any()
+
+
+def _stretched(spans: Sequence[Span], metres: float) -> list[Span]:
+    """With the first straight that may be longer made so; with one in front where there is none."""
+    out = list(spans)
+    for i, span in enumerate(out):
+        if span.is_elastic:
+            out[i] = span._replace(length=span.length + metres)
+            return out
+    return out if out else [Span(metres)] if metres > 1 else []
+
+
+def is_long(outline: Outline) -> bool:
+    """Is it a road to be grown from the first, with as many turns as it is long?"""
+    return outline.length is not None and outline.length.lo >= LONG and _repeated(outline)
+
+
+def _roomy(room: TurnRoom, metres: float) -> TurnRoom:
+    """Turns off the tightest that is allowed, and the more so the further apart a spline's points are.
+
+    The competition's files hold so few points that on a road of 10 km its spline has one every 20 m.
+    """
+    spacing = max(CONTROL_SPACING, metres / MOST_CONTROL_POINTS)
+    least = room.radius.lo * OFF_TIGHTEST + OFF_BY_SPACING * (spacing - CONTROL_SPACING)
+    return room._replace(radius=Range(least, room.radius.hi)) if room.radius.hi == inf else room
+
+
+def _repeated(outline: Outline) -> bool:
+    """May there be more turns, like the last?"""
+    turning = [group for group in outline.groups if group.feature.kind == "turn"]
+    is_last = bool(outline.groups) and outline.groups[-1].feature.kind == "turn" and outline.ends is None
+    if not turning:
+        return outline.turns.hi == inf and outline.ends is None
+    return len(turning) == 1 and is_last and turning[0].hi is None
+
+
+def _has_open_sides(outline: Outline) -> bool:
+    """May every turn go either way?"""
+    features = [*(g.feature for g in outline.groups), *(e for e in (outline.starts, outline.ends) if e)]
+    is_open = outline.left == outline.right == Range() and not outline.alternating
+    return is_open and not any(f.side for f in features) and not any(g.alternating for g in outline.groups)
