@@ -136,7 +136,7 @@ def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
     assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3
     assert told["cells"][0]["name"] == "c01"
     assert "3 of 3 tests" in roadgpt("top", driven, "--once").output
-    assert f"roadgpt redrive {driven} NUMBER" in roadgpt("show", driven).output
+    assert f"roadgpt show {driven}/c01/1" in roadgpt("show", driven).output
     again = roadgpt("resume", driven, "--json")
     assert json.loads(again.output)["done"] == 3
 

@@ -285,7 +285,8 @@ def test_pictures_of_a_campaign_of_one_road_are_of_that_road_and_of_more_are_ref
         result = CliRunner().invoke(app, [command, "two"])
         assert result.exit_code == 2
         assert (
-            result.stderr == f"roadgpt: two holds 2 roads; give one of the folders in {Path('two', 'runs')}\n"
+            result.stderr
+            == "roadgpt: two holds 2 roads; name one, as two/1, or say --worst, --faults or --failures\n"
         )
 
 

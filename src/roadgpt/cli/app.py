@@ -37,7 +37,7 @@ COMMANDS = {
     "resume": "Go on with a campaign that was interrupted.",
     "status": "Say how far a campaign is.",
     "top": "Watch a campaign as it works.",
-    "redrive": "Drive tests of a campaign again, into folders that show and view open.",
+    "redrive": "Drive tests of a campaign again, into folders of runs.",
     "show": "Tell what is in a run, a folder of runs or a campaign.",
     "learn": "Descriptions by hand and by the thousand; train, judge and export a reader of your own.",
     "sbft": "Let a generator of the SBFT tool competition loose on the simulator.",
@@ -61,8 +61,8 @@ MISSING = {
     "RUN": "Name the folder of a run, or the file of a design.",
     "CHANGE": 'Say what is to be different: roadgpt edit RUN "make the second turn sharper"',
     "DESCRIPTION|FILE.toml": 'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200',
+    "CAMPAIGN [TEST...]": "Name a campaign and one or more of its tests, by their numbers in results.csv.",
     "CAMPAIGN": "Name the folder of a campaign, as 'roadgpt campaign' told it.",
-    "TEST...": "Name one or more tests by their numbers in results.csv.",
     "OUT": "Name the folder to write into.",
 }
 

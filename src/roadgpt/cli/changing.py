@@ -51,7 +51,7 @@ def change(wish: Wish, screen: Screen) -> Path:
 
     if wish.out is not None:
         reject_used(wish.out)
-    before = original(wish.road, wish.world, Setup())
+    before = _of_test(wish.road) or original(wish.road, wish.world, Setup())
     for remark in before.remarks:
         screen.say(f"{wish.road}: {remark}")
     expect(wish.driver, {before.setup.driver}, wish.road)
@@ -81,6 +81,15 @@ def change(wish: Wish, screen: Screen) -> Path:
         kind = wish.pictures[0]
         screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
     return place
+
+
+def _of_test(road: str) -> "Original | None":
+    """The design of a campaign's test, or of a run by its number; None: something else is named."""
+    from roadgpt.campaign.naming import place_of
+    from roadgpt.run.editing import original_of
+
+    place = place_of(road)
+    return None if place is None or place.number is None else original_of(place.run(), place.said)
 
 
 def _edited(before: "Original", wish: Wish, screen: Screen) -> "Edited":

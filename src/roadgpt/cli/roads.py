@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from roadgpt.cli.named import Named, roads_named
 from roadgpt.cli.rows import Row, unreadable
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import PartError, UsageError
 
 if TYPE_CHECKING:
+    from roadgpt.campaign.naming import Choice
     from roadgpt.road import Design, Geometry, Road, World
     from roadgpt.run import Run
 
@@ -35,25 +37,58 @@ def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
     return read_blueprint(file)
 
 
-def shown_run(file: str, world: "World", geometry: "Geometry") -> "Run":
-    """The Run in a folder or of a campaign's test file, or one made of a road that nobody drove, to be shown;
-    tells remarks.
+def shown_runs(
+    files: Sequence[str],
+    choice: "Choice | None",
+    world: "World",
+    geometry: "Geometry",
+    most: int,
+    what: str,
+) -> "list[Run]":
+    """The Runs that are named, to be shown together: of roads that nobody drove they are made; tells remarks.
+
+    Args:
+        files, choice: as for ``roads_named``.
+        world, geometry: of roads that nobody drove.
+        most: so many can be shown.
+        what: shows them: 'a page'.
 
     Raises:
-        UsageError: as for ``blueprint_of``, or the folder's run cannot be read.
+        UsageError: as for ``roads_named`` and ``blueprint_of``, there are more, or a run cannot be read.
     """
-    from roadgpt.run import Setup, prove, read_run
-    from roadgpt.run.folder import is_run, only_run, run_of_test
+    if len(files) > most:
+        raise UsageError(f"{what} shows one road or two side by side; {len(files)} are given")
+    named = [*roads_named(files, choice)]
+    if len(named) > most:
+        raise UsageError(
+            f"{what} shows one road or two side by side; these are {len(named):,}: name one or two, as "
+            f"{named[0].said}, or say --worst"
+        )
+    if len(named) < len(files):  # a road beside itself
+        named = [each for file in files for each in roads_named([file], choice)]
+    return [run_of(each, world, geometry) for each in named]
 
-    if Path(file).is_dir():
-        file = str(only_run(Path(file)))
-    if is_run(Path(file)) or run_of_test(Path(file)) is not None:
-        return read_run(file)
-    blueprint, remarks = blueprint_of(file)
+
+def shown_run(file: str, world: "World", geometry: "Geometry") -> "Run":
+    """The one Run that is named, as ``shown_runs``."""
+    return shown_runs([file], None, world, geometry, 1, "it")[0]
+
+
+def run_of(named: Named, world: "World", geometry: "Geometry") -> "Run":
+    """Its Run, or one made of a road that nobody drove; tells remarks.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    from roadgpt.run import Setup, prove
+
+    if named.run is not None:
+        return named.run()
+    blueprint, remarks = blueprint_of(named.said)
     for remark in remarks:
-        click.echo(f"roadgpt: {file}: {remark}", err=True)
+        click.echo(f"roadgpt: {named.said}: {remark}", err=True)
     run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
-    return replace(run, source=Path(file).name)
+    return replace(run, source=Path(named.said).name)
 
 
 def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) -> None:

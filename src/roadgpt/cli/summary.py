@@ -1,48 +1,97 @@
 """What is in a folder, in plain lines: one Run, or all of a campaign."""
 
+import shlex
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from roadgpt.campaign import status_of
-from roadgpt.campaign.record import STORE
+from roadgpt.campaign.naming import Choice, Place, chosen, place_of
+from roadgpt.campaign.status import Status, status_of
+from roadgpt.campaign.table import RESULTS
 from roadgpt.chat import Spent
-from roadgpt.cli.campaigns import faults_of, told
+from roadgpt.cli.campaigns import HEAD, LINE, cell_columns, faults_of, told
+from roadgpt.cli.named import Named, roads_named
 from roadgpt.cli.replay import replay_lines
 from roadgpt.cli.rows import WIDEST, metres, row_of, spending
 from roadgpt.errors import UsageError
 from roadgpt.run.campaign import finished
-from roadgpt.run.card import CARD, read_card
-from roadgpt.run.folder import is_run, read_run, run_folder
+from roadgpt.run.card import read_card
+from roadgpt.run.folder import read_run, run_folder
 from roadgpt.run.model import Run
 from roadgpt.verdict import Verdict
 from roadgpt.verdict.severity import percent
 
+MOST_TESTS = 40  # of a cell, one by one
 
-def show(path: Path | str) -> str:
-    """A Run's summary and the lines that make it again, or a campaign's table.
+
+def show(path: Path | str, choice: Choice | None = None) -> str:
+    """A Run's summary and the lines that make it again, or the table of a folder, a campaign or a cell.
 
     Args:
-        path: the folder of a run, a campaign's ``test.NNNN.json``, or a campaign's folder.
+        path: the folder of a run, its ``test.NNNN.json``, a folder of runs, a campaign, a cell or a test.
+        choice: which of a folder's; several are listed, one is told of in full.
 
     Raises:
-        UsageError: neither a Run nor a campaign lies there.
+        UsageError: nothing of the kind is there.
     """
-    path = Path(path)
-    if not is_run(path) and (path / CARD).is_file():
-        return "\n".join(_campaign_lines(path))
-    if (path / STORE).is_file():
-        again = f"one test as the folder of a run: roadgpt redrive {path} NUMBER"
-        status = status_of(path)
-        return "\n".join([*told(status, faults_of(status)), again])
-    run = read_run(path)
-    folder = path if path.is_dir() else run_folder(path.parent, run.index)
-    return "\n".join(_run_lines(run, folder))
+    return "\n".join(_lines(path, choice))
 
 
-def _run_lines(run: Run, folder: Path) -> Iterator[str]:
+def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
+    place = place_of(str(path))
+    if choice is not None:
+        named = [*roads_named([str(path)], choice)]
+        yield from _run_of(named[0]) if len(named) == 1 else map(_one_line, named)
+    elif place is None:
+        run = read_run(path)
+        folder = Path(path) if Path(path).is_dir() else run_folder(Path(path).parent, run.index)
+        yield from _run_lines(run, replay_lines(run, folder))
+    elif place.number is not None:
+        (one,) = roads_named([str(path)], None)
+        yield from _run_of(one)
+    elif place.is_campaign:
+        status = status_of(place.folder)
+        if place.cell:
+            yield from _cell_lines(place, status)
+            return
+        yield from told(status, faults_of(status))
+        yield f"one test: roadgpt show {place.folder}/{status.cells[0].name}/1; all failures: --failures"
+    else:
+        yield from _campaign_lines(place.folder)
+
+
+def _cell_lines(place: Place, status: Status) -> Iterator[str]:
+    """One cell of a campaign, and the first of its tests."""
+    (cell,) = [cell for cell in status.cells if cell.name == place.cell]
+    yield LINE.format(*HEAD)
+    yield LINE.format(*cell_columns(cell))
+    tests = chosen(place, None)
+    for each in tests[:MOST_TESTS]:
+        yield _one_line(Named(each.said, each.stem, each, each.run))
+    if not tests:
+        yield "no test has ended yet"
+    elif len(tests) > MOST_TESTS:
+        yield f"and {len(tests) - MOST_TESTS:,} more tests; all: {place.folder / RESULTS}"
+
+
+def _one_line(named: Named) -> str:
+    assert named.run is not None
+    row = row_of(named.run(), named.said)
+    margin = metres(row.margin_m) if row.margin_m is not None else ""
+    return f"{named.said}  {row.outcome:<{WIDEST}} {row.length_m or 0:>5.0f} m {margin:>9}  {row.description}"
+
+
+def _run_of(named: Named) -> Iterator[str]:
+    assert named.run is not None
+    run = named.run()
+    if isinstance(named.key, Path):
+        return _run_lines(run, replay_lines(run, named.key))
+    return _run_lines(run, [shlex.join(["roadgpt", verb, named.said]) for verb in ("redrive", "view")])
+
+
+def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
     yield f"{run.outcome}: {run.description}"
     if run.words:
         yield f"  words     {run.words}"
@@ -71,8 +120,9 @@ def _run_lines(run: Run, folder: Path) -> Iterator[str]:
     yield from _asked_lines(run)
     yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")
     yield f"  versions  {', '.join(f'{name} {number}' for name, number in run.versions.items())}"
-    yield f"  took      {run.seconds.design * 1000:.1f} ms to design, {run.seconds.drive:.2f} s to drive"
-    for number, line in enumerate(replay_lines(run, folder)):
+    if run.seconds.total:
+        yield f"  took      {run.seconds.design * 1000:.1f} ms to design, {run.seconds.drive:.2f} s to drive"
+    for number, line in enumerate(again):
         yield f"  {'again' if number == 0 else 'or':<8}  {line}"
 
 

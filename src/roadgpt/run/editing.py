@@ -46,14 +46,22 @@ def original(path: Path | str, world: World, setup: Setup) -> Original:
     """
     path = only_run(Path(path))
     if path.is_dir() or is_run(path.parent) or path.name.startswith("test."):
-        run = read_run(path)
-        if run.design is None:
-            raise UsageError(f"{path} was made from points and has no design; only a design can be changed")
-        return Original(run.design, run.world, run.request.setup, run.seed, str(path))
+        return original_of(read_run(path), str(path))
     blueprint, remarks = read_blueprint(path)
     if not isinstance(blueprint, Design):
         raise UsageError(f"{path} holds points and no design; only a design with segments can be changed")
     return Original(blueprint, world, setup, 0, str(path), remarks)
+
+
+def original_of(run: Run, path: str) -> Original:
+    """The Design of a Run that lies in a path.
+
+    Raises:
+        UsageError: it has none.
+    """
+    if run.design is None:
+        raise UsageError(f"{path} was made from points and has no design; only a design can be changed")
+    return Original(run.design, run.world, run.request.setup, run.seed, path)
 
 
 def reject_used(out: Path) -> None:
@@ -122,4 +130,4 @@ def write_edit(
     return write_run(replace(run, index=1), folder, beside)
 
 
-__all__ = ["Original", "folder_for", "original", "reject_used", "write_edit"]
+__all__ = ["Original", "folder_for", "original", "original_of", "reject_used", "write_edit"]

@@ -43,12 +43,13 @@ class Failures:
     """How many there are, with those that are not in the sample or whose road is not known."""
 
 
-def failures_of(folder: Path, most: int | None = None) -> Failures:
+def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failures:
     """All failures of a run, of a folder of runs, or of a campaign, cell by cell.
 
     Args:
         folder: of any of these.
         most: where there are more, so many of them, evenly spread; None: all.
+        cell: of a campaign, whose failures are meant; empty: all cells.
 
     Raises:
         UsageError: nothing of the kind is there, or a file cannot be read.
@@ -56,7 +57,9 @@ def failures_of(folder: Path, most: int | None = None) -> Failures:
     if (folder / STORE).is_file():
         with Record.opened(folder) as record:
             names = record.query(
-                "SELECT cell, number FROM tests WHERE outcome = 'FAIL' ORDER BY cell, number"
+                "SELECT cell, number FROM tests WHERE outcome = 'FAIL' AND (? = '' OR cell = ?) "
+                "ORDER BY cell, number",
+                (cell, cell),
             )
             some = [Name(*names[at]) for at in _spread(len(names), most)]
             return Failures(tuple(_of_campaign(record, some)), len(names))

@@ -94,17 +94,18 @@ def _told(way: Way, side: str | None, members: Sequence[Departure]) -> str:
     return f"{WAYS[way]} {side} bends of R {low} m" + (f" to {high} m" if low != high else "")
 
 
-def faults_in(folder: Path, most: int | None = None) -> Faults:
+def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
     """The distinct faults of a run, of a folder of runs, or of a campaign.
 
     Args:
         folder: of any of these.
         most: failures at most that are compared, evenly spread; None: all.
+        cell: of a campaign, whose failures are meant; empty: all cells.
 
     Raises:
         UsageError: nothing of the kind is there, or a file cannot be read.
     """
-    failures = failures_of(folder, most)
+    failures = failures_of(folder, most, cell)
     return Faults(tuple(_grouped(failures.known)), failures.every, len(failures.known))
 
 

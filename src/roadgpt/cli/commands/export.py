@@ -1,6 +1,5 @@
 """``roadgpt export``: roads in the formats of other people's tools."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,9 +8,10 @@ import click
 from click.core import ParameterSource
 
 from roadgpt.cli.flags import WORLD
+from roadgpt.cli.named import Named, choice_of, choice_options, roads_named
 from roadgpt.cli.options import folder, formats_option, setup_options, world_of, world_options
 from roadgpt.cli.roads import blueprint_of
-from roadgpt.errors import ExportError, PartError, UsageError
+from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError
 
 if TYPE_CHECKING:
     from roadgpt.road import Geometry, World
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 FAILED = 1  # exit status: a format cannot hold a road
 UNREADABLE = 2
 OPENDRIVE = ".xodr"
-ENDINGS = (".json", OPENDRIVE, ".csv", ".tsv", ".sbft")
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="RUN|ROAD...")
 @formats_option("--to", required=True)
+@choice_options
 @click.option("--out", type=folder, default=Path("exports"), show_default=True, help="Folder for the files.")
 @world_options("lane_width", "verge", "speed_limit", "friction")
 @setup_options("geometry")
@@ -35,13 +35,15 @@ def command(
 ) -> int:
     """Write roads in the formats of other people's tools.
 
-    RUN is the folder of a run, or a folder of runs; each brings its own lanes, limits and drive. ROAD is a
-    RoadGPT design, an SBFT test, a list of points, or an OpenDRIVE file, which brings its own lanes and
-    limits where no option says otherwise. Files are named after what they are made of, those of a
-    folder of runs after it and the run, and replace those of the same name. Prints their names.
+    RUN is the folder of a run, a folder of runs, a campaign, or a test of one, as CAMPAIGN/c01/17; each
+    brings its own lanes, limits and drive. ROAD is a RoadGPT design, an SBFT test, a list of points, or an
+    OpenDRIVE file, which brings its own lanes and limits where no option says otherwise. Files are named
+    after what they are made of, those of a folder of runs or a campaign after it and the test, and replace
+    those of the same name. Prints their names.
 
     \b
     roadgpt export roadgpt-runs/hairpins-7 --to opendrive
+    roadgpt export CAMPAIGN --failures --to opendrive,openscenario
     roadgpt export my_road.json --to opendrive,csv --out for-carla
     """
     from roadgpt.export import exporter_of
@@ -49,17 +51,21 @@ def command(
 
     for format_ in formats:
         exporter_of(format_)
-    source, status = _source(rest, geometry, quiet), 0
-    names = _Names()
-    for file in names.new(files):
+    choice, status = choice_of(rest), 0
+    source, names = _source(rest, geometry, quiet), _Names()
+
+    def complain(error: RoadGPTError) -> None:
+        nonlocal status
+        click.echo(f"roadgpt: {error}", err=True)
+        status = max(status, FAILED if isinstance(error, ExportError) else UNREADABLE)
+
+    for each in roads_named(files, choice, takes_all=True, complain=complain):
         try:
-            run = source.run_of(file)
-            written = export(run, out, formats, names.name(file))
+            written = export(source.run_of(each), out, formats, names.of(each))
         except PartError:
             raise
         except (ExportError, UsageError) as error:
-            click.echo(f"roadgpt: {error}", err=True)
-            status = max(status, FAILED if isinstance(error, ExportError) else UNREADABLE)
+            complain(error)
             continue
         if not quiet:
             click.echo("\n".join(map(str, written)))
@@ -77,23 +83,22 @@ class _Source:
     is_quiet: bool
     has_warned: bool = False
 
-    def run_of(self, file: str) -> "Run":
-        """The Run in a folder or of a campaign's test file, or one of a road that nobody drove.
+    def run_of(self, named: Named) -> "Run":
+        """Its Run, or one of a road that nobody drove.
 
         Raises:
             UsageError: there is none, or it cannot be read.
         """
         from roadgpt.road import Design, build, read_opendrive
-        from roadgpt.run import Request, Run, read_run
-        from roadgpt.run.folder import is_run, run_of_test
+        from roadgpt.run import Request, Run
 
-        path = Path(file)
-        if is_run(path) or run_of_test(path) is not None:
+        file = named.said
+        if named.run is not None:
             self._warn()
-            run = read_run(file)
+            run = named.run()
             return replace(run, description=f"{file}: {run.description}")
-        if path.suffix.lower() == OPENDRIVE:
-            found = read_opendrive(path)
+        if Path(file).suffix.lower() == OPENDRIVE:
+            found = read_opendrive(Path(file))
             self._tell(file, found.remarks)
             world = found.world(self.world).model_copy(update=self.said)
             return Run(Request(world=world), 1, 0, road=found.road)
@@ -122,38 +127,16 @@ def _source(rest: dict[str, Any], geometry: "Geometry", is_quiet: bool) -> _Sour
 
 
 class _Names:
-    """Each source once, and a name for its files that no earlier source has."""
+    """A name for the files of a road that no earlier one has."""
 
     def __init__(self) -> None:
-        self._seen: set[Path] = set()
         self._taken: set[str] = set()
 
-    def new(self, files: tuple[str, ...]) -> Iterator[str]:
-        """Every file that was not there before; of a campaign, all its runs."""
-        from roadgpt.run.card import CARD
-        from roadgpt.run.folder import RUNS, is_run
-
-        for file in files:
-            runs = [str(path) for path in sorted(Path(file, RUNS).glob("*")) if is_run(path)]
-            for each in runs if runs and Path(file, CARD).is_file() else [file]:
-                if Path(each).resolve() not in self._seen:
-                    self._seen.add(Path(each).resolve())
-                    yield each
-
-    def name(self, file: str) -> str:
+    def of(self, named: Named) -> str:
         """That of the source, numbered where an earlier source has the same."""
-        from roadgpt.run.card import CARD
-        from roadgpt.run.folder import RUNS, is_run
-
-        path = Path(file).resolve()
-        stem, campaign = path.name, path.parent.parent
-        if is_run(path) and path.parent.name == RUNS and (campaign / CARD).is_file():
-            stem = f"{campaign.name}-{stem}"
-        for ending in ENDINGS:
-            stem = stem.removesuffix(ending)
-        name, number = stem, 1
+        name, number = named.stem, 1
         while name in self._taken:
             number += 1
-            name = f"{stem}-{number}"
+            name = f"{named.stem}-{number}"
         self._taken.add(name)
         return name

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.cli.named import choice_of, choice_options, roads_named
 from roadgpt.cli.options import setup_options, world_of, world_options
-from roadgpt.cli.roads import shown_run
+from roadgpt.cli.roads import run_of, shown_runs
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 MOST = 2  # roads in one picture
 LONGEST = 1_000_000  # s, of a part of a drive that is asked for
-FILM = Path("roadgpt-film.mp4")
+FILM, FILMS = Path("roadgpt-film.mp4"), Path("films")
 ENDINGS = (".mp4", ".m4v")
 VIEWS = ("chase", "bonnet", "both")
 
@@ -56,7 +57,7 @@ def _seconds(value: str) -> tuple[float, float | None]:
     type=click.Path(path_type=Path),
     default=None,
     metavar="FILM.mp4",
-    help=f"The film; one of that name is replaced. [default: {FILM}]",
+    help=f"The film, or the folder of several; one of that name is replaced. [default: {FILM}, {FILMS}]",
 )
 @click.option("--fps", type=click.IntRange(1, 120), default=25, show_default=True, help="Pictures a second.")
 @click.option(
@@ -69,7 +70,13 @@ def _seconds(value: str) -> tuple[float, float | None]:
     metavar="N|FROM:TO",
     help="Which seconds of the drive. [default: all, and the outcome]",
 )
-@click.option("--all", "is_all", is_flag=True, help="A film of each in a folder of runs, put into the run.")
+@click.option(
+    "--all",
+    "is_all",
+    is_flag=True,
+    help="A film of each road of a folder; those of runs are put into the runs.",
+)
+@choice_options
 @world_options("map_size")
 @setup_options("geometry")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
@@ -87,33 +94,57 @@ def command(
 ) -> None:  # fmt: skip
     """Film a drive as an MP4: from behind the car, from its bonnet, or both; two drives in a split screen.
 
-    RUN is the folder of a run, DIR/runs/0001 or DIR/test.0001.json; along the road of a file that nobody
-    drove the camera rides alone. Over the picture stand the description, the speed, the place on the road and
-    the margin; at the end the outcome. Needs PyAV: python -m pip install 'roadgpt[film]'.
+    RUN is the folder of a run, DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, as
+    CAMPAIGN/c01/17; along the road of a file that nobody drove the camera rides alone. Over the picture
+    stand the description, the speed, the place on the road and the margin; at the end the outcome. Needs
+    PyAV: python -m pip install 'roadgpt[film]'.
 
     \b
     roadgpt film roadgpt-runs/hairpins-7/runs/0001 --view both
     roadgpt film DIR/runs/0001 DIR/runs/0002 --view bonnet --out compared.mp4
     roadgpt film roadgpt-runs/hairpins-7 --all
+    roadgpt film CAMPAIGN --faults --out films
     """
     from roadgpt.report.film import Settings
 
     begin, length = seconds or (0.0, None)
     settings = Settings(*size, fps, begin, length)
-    if is_all:
+    choice = choice_of(rest)
+    if is_all and choice is None and _is_of_runs(files):
         _film_all(files, view, out, settings, quiet)
         return
-    if len(files) > MOST:
-        raise UsageError(
-            f"a film shows one road or two side by side; {len(files)} are given. All of a folder: --all"
-        )
+    world = world_of(rest)
+    if is_all or choice in ("failures", "faults"):
+        place = out or FILMS
+        if place.suffix.lower() in ENDINGS or place.is_file():
+            raise UsageError(f"these are several films; name a folder for them, such as --out {FILMS}")
+        for each in roads_named(files, choice, takes_all=True):
+            _make(
+                [run_of(each, world, geometry)], _in(place, f"{each.stem}-{view}.mp4"), view, settings, quiet
+            )
+        return
     out = out or FILM
     if out.is_dir():
         raise UsageError(f"{out} is a folder; give the name of a film, such as {out / FILM}")
     if out.suffix.lower() not in ENDINGS:
         raise UsageError(f"{out} would be a film; give it a name that ends in .mp4")
-    world = world_of(rest)
-    _make([shown_run(file, world, geometry) for file in files], out, view, settings, quiet)
+    _make(shown_runs(files, choice, world, geometry, MOST, "a film"), out, view, settings, quiet)
+
+
+def _is_of_runs(files: tuple[str, ...]) -> bool:
+    """Is it a folder whose runs have folders of their own?"""
+    from roadgpt.campaign.naming import place_of
+
+    place = place_of(files[0])
+    return place is None or not place.is_campaign
+
+
+def _in(place: Path, name: str) -> Path:
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"cannot make {place}: {error.strerror}; name another folder with --out") from error
+    return place / name
 
 
 def _film_all(files: tuple[str, ...], view: str, out: Path | None, settings: "Settings", quiet: bool) -> None:

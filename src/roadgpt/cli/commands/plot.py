@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from roadgpt.cli.named import choice_of, choice_options, roads_named
 from roadgpt.cli.options import (
     files_argument,
     folder,
@@ -13,7 +14,7 @@ from roadgpt.cli.options import (
     world_of,
     world_options,
 )
-from roadgpt.cli.roads import shown_run
+from roadgpt.cli.roads import run_of
 from roadgpt.errors import UsageError
 
 UNREADABLE = 2  # exit status
@@ -21,6 +22,7 @@ UNREADABLE = 2  # exit status
 
 @click.command()
 @files_argument
+@choice_options
 @click.option(
     "--out", type=folder, default=Path("plots"), show_default=True, help="Folder; each road gets one in it."
 )
@@ -39,34 +41,40 @@ def command(
 ) -> int | None:
     """Draw roads that exist: from above, height over distance, curvature and grade.
 
-    ROAD.json is a RoadGPT design, an SBFT test, a list of points [x, y] or [x, y, z], or the folder or test
-    file of a run, whose drive is drawn as well. The pictures of straight.json go into a new folder
-    OUT/straight, or OUT/straight-2 and so on where that exists. Prints the names of the pictures.
+    ROAD.json is a RoadGPT design, an SBFT test, a list of points [x, y] or [x, y, z], the folder or test file
+    of a run, or a test of a campaign, as CAMPAIGN/c01/17; then the drive is drawn as well. The pictures of
+    straight.json go into a new folder OUT/straight, or OUT/straight-2 and so on where that exists. Prints the
+    names of the pictures.
 
     \b
     roadgpt plot DIR/runs/0001 --format pdf
+    roadgpt plot CAMPAIGN --faults
     """
     from roadgpt.report import draw
 
-    world = world_of(rest)
+    choice, world = choice_of(rest), world_of(rest)
     status = None
-    for file in files:
+
+    def complain(error: UsageError) -> None:
+        nonlocal status
+        click.echo(f"roadgpt: {error}", err=True)
+        status = UNREADABLE
+
+    for each in roads_named(files, choice, complain=complain):
         try:
-            run = shown_run(file, world, geometry)
-            place = _place(out, Path(file))
+            run = run_of(each, world, geometry)
+            place = _place(out, each.stem)
             pictures = draw(run, place, axes, picture_formats)
         except UsageError as error:
-            click.echo(f"roadgpt: {error}", err=True)
-            status = UNREADABLE
+            complain(error)
             continue
         if not quiet:
             click.echo("\n".join(str(picture) for picture in pictures))
     return status
 
 
-def _place(out: Path, file: Path) -> Path:
-    """A new folder for one road's pictures, named after its file."""
-    name = file.resolve().name.removesuffix(".json")
+def _place(out: Path, name: str) -> Path:
+    """A new folder for one road's pictures."""
     number = 1
     while True:
         place = out / (name if number == 1 else f"{name}-{number}")

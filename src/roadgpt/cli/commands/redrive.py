@@ -1,41 +1,45 @@
 """``roadgpt redrive``: tests of a campaign again, as folders of runs that other commands open."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from roadgpt.cli.campaigns import one_line
+from roadgpt.cli.named import choice_of, choice_options
 from roadgpt.cli.options import driver_again_option, folder, pictures_options
 from roadgpt.errors import UsageError
 
-DIGITS = 18  # of a number that a store can look for
+if TYPE_CHECKING:
+    from roadgpt.campaign.naming import Choice, Place
 
 
 @click.command()
-@click.argument("campaign", metavar="CAMPAIGN", type=click.Path(path_type=Path))
-@click.argument("tests", nargs=-1, required=True, metavar="TEST...")
+@click.argument("names", nargs=-1, required=True, metavar="CAMPAIGN [TEST...]")
+@choice_options
 @click.option("--out", type=folder, default=None, help="Folder for the runs. [default: CAMPAIGN/again]")
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @driver_again_option
 @pictures_options
 def command(
-    campaign: Path,
-    tests: tuple[str, ...],
+    names: tuple[str, ...],
     out: Path | None,
     no_plot: bool,
     driver: str | None,
     axes: Any,
     picture_formats: Any,
+    **rest: Any,
 ) -> None:
-    """Drive tests of a campaign again, into folders that show, view, plot and export open.
+    """Drive tests of a campaign again, into folders of runs, and say where one ends otherwise than it did.
 
     TEST is the number of a test, as in results.csv, with its cell in front where there are several: c02/17.
-    The stored design and seed give the same drive, byte for byte.
+    The stored design and seed give the same drive, byte for byte. To look at tests, no driving is needed:
+    view, plot, film, show and export take CAMPAIGN/c02/17, and show the drive that the campaign kept.
 
     \b
     roadgpt redrive roadgpt-runs/an-uphill-road-with-3-turns-7 17
-    roadgpt view roadgpt-runs/an-uphill-road-with-3-turns-7/again/c01/runs/0017
+    roadgpt redrive roadgpt-runs/an-uphill-road-with-3-turns-7/c01/17
+    roadgpt redrive roadgpt-runs/an-uphill-road-with-3-turns-7 --faults
     """
     from roadgpt.campaign.again import is_same, run_again
     from roadgpt.campaign.faults.failed import drivers_of
@@ -43,12 +47,15 @@ def command(
     from roadgpt.report import drawing
     from roadgpt.run import write_run
 
-    expect(driver, drivers_of(campaign), campaign)
-    out = out or campaign / "again"
+    tests = _named(names, choice_of(rest))
+    for folder_ in {place.folder for place in tests}:
+        expect(driver, drivers_of(folder_), folder_)
     draw = None if no_plot else drawing(axes, picture_formats)
-    for cell, number in [_named(campaign, test) for test in tests]:
-        run, result = run_again(campaign, cell, number)
-        written = write_run(run, _made(out / cell), draw)
+    for place in tests:
+        cell, number = place.cell, place.number or 0
+        run, result = run_again(place.folder, cell, number)
+        home = (out or place.folder / "again") / cell
+        written = write_run(run, _made(home), draw)
         click.echo(f"{run.outcome:<8} {cell}/{number}  {written}  {one_line(run.description)}")
         if not is_same(run, result):
             said = f"{result.outcome} in the campaign ({one_line(result.description)})"
@@ -67,17 +74,26 @@ def _made(path: Path) -> Path:
     return path
 
 
-def _named(campaign: Path, test: str) -> tuple[str, int]:
-    """Cell and number of a test."""
-    from roadgpt.campaign.record import Record
+def _named(names: tuple[str, ...], choice: "Choice | None") -> "list[Place]":
+    """The tests that are meant: of the campaign that comes first, or each with its own."""
+    from roadgpt.campaign.naming import chosen, place_of
+    from roadgpt.campaign.record import no_campaign
 
-    cell, _, number = test.rpartition("/")
-    if not number.isdecimal() or len(number) > DIGITS:
-        raise UsageError(f"'{one_line(test, 40)}' is no test; give its number, as 17 or c02/17")
-    with Record.opened(campaign) as record:
-        names = [name for (name,) in record.query("SELECT name FROM cells ORDER BY name LIMIT 3")]
-        if not cell and len(names) > 1:
-            raise UsageError(
-                f"{campaign} has several cells; say of which one test {number} is, as {names[0]}/{number}"
-            )
-        return cell or names[0], int(number)
+    first = place_of(names[0])
+    if first is None or not first.is_campaign:
+        raise no_campaign(Path(names[0]))
+    if first.number is None and choice is None and len(names) == 1:
+        raise UsageError(
+            f"say which tests of {first.said}: their numbers, as 17 or c02/17, or --worst, --faults or "
+            "--failures"
+        )
+    out = [] if first.number is None and choice is None else chosen(first, choice)
+    for name in names[1:]:
+        is_number = name.rpartition("/")[2].isdecimal()
+        place = (place_of(f"{first.folder}/{name}") or place_of(name)) if is_number or choice else None
+        if place is None or not place.is_campaign or (place.number is None and choice is None):
+            raise UsageError(f"'{one_line(name, 40)}' is no test; give its number, as 17 or c02/17")
+        out += chosen(place, choice)
+    if not out:
+        raise UsageError(f"no test of {first.said} is one of --{choice}")
+    return out

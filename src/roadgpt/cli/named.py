@@ -1,0 +1,160 @@
+"""The roads that a user names: files, runs, folders of runs, campaigns and tests; one resolver for all."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from roadgpt.cli.options import Decorator, together
+from roadgpt.errors import UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.naming import Choice, Place
+    from roadgpt.run import Run
+
+ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
+NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
+
+choice_options: Decorator = together(
+    click.option("--failures", is_flag=True, help="Of a folder: the roads on which the car failed."),
+    click.option("--faults", is_flag=True, help="Of a folder: a typical failure of each distinct fault."),
+    click.option(
+        "--worst",
+        is_flag=True,
+        help="Of a folder: the failure with the least margin, else the nearest to one.",
+    ),
+)
+
+
+def choice_of(values: dict[str, bool]) -> "Choice | None":
+    """What the ``choice_options`` say; takes them out of ``values``.
+
+    Raises:
+        UsageError: they say two things.
+    """
+    choices: tuple[Choice, ...] = ("failures", "faults", "worst")
+    said = [name for name in choices if values.pop(name)]
+    if len(said) > 1:
+        raise UsageError(f"--{said[0]} and --{said[1]} say different things; say one of them")
+    return said[0] if said else None
+
+
+@dataclass(frozen=True)
+class Named:
+    """One road."""
+
+    said: str
+    """As it can be typed again."""
+    stem: str
+    """For the names of files that are made of it."""
+    key: object
+    """Equal for two that are the same."""
+    run: "Callable[[], Run] | None"
+    """Reads its Run; None for the file of a road, which every command reads in its own way."""
+
+
+def roads_named(
+    files: Sequence[str],
+    choice: "Choice | None",
+    takes_all: bool = False,
+    complain: "Callable[[UsageError], None] | None" = None,
+) -> Iterator[Named]:
+    """The roads that are meant, each once.
+
+    Args:
+        files: as the user typed them.
+        choice: which of a folder's.
+        takes_all: without a choice, a folder stands for all its roads; else it must hold one only.
+        complain: is told of a wrong name, which is then passed over; without it, it is raised.
+
+    Raises:
+        UsageError: a name is wrong, or there is no road of that choice.
+    """
+    seen = set()
+    for file in files:
+        try:
+            found = [*_named(file, choice, takes_all)]
+        except UsageError as error:
+            if complain is None:
+                raise
+            complain(error)
+            continue
+        for each in found:
+            if each.key not in seen:
+                seen.add(each.key)
+                yield each
+
+
+def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[Named]:
+    from roadgpt.campaign.naming import chosen, place_of
+
+    place = place_of(file)
+    if place is None or place.number is not None:
+        if choice is not None and (place is not None or Path(file).exists()):
+            raise UsageError(
+                f"--{choice} picks among the roads of a campaign or a folder of runs; {file} is neither"
+            )
+        yield _single(file) if place is None else _test(place)
+        return
+    found = chosen(place, choice)
+    if choice is not None and not found:
+        raise UsageError(NONE[choice].format(file))
+    if choice is None and not takes_all and len(found) != 1:
+        raise UsageError(_too_many(place, found))
+    yield from map(_test, found)
+
+
+def _too_many(place: "Place", found: "Sequence[Place]") -> str:
+    if not found:
+        return f"{place.said} holds no road yet"
+    return (
+        f"{place.said} holds {len(found):,} roads; name one, as {found[0].said}, or say --worst, --faults or "
+        "--failures"
+    )
+
+
+def _test(place: "Place") -> Named:
+    if place.is_campaign:
+        return Named(place.said, place.stem, (place.folder.resolve(), place.cell, place.number), place.run)
+    from roadgpt.run.folder import run_folder
+
+    assert place.number is not None
+    return _run(run_folder(place.folder, place.number), place.said)
+
+
+def _run(folder: Path, said: str) -> Named:
+    from roadgpt.run import read_run
+    from roadgpt.run.card import CARD
+    from roadgpt.run.folder import RUNS
+
+    whole = folder.resolve()
+    campaign = whole.parent.parent
+    is_one_of_many = whole.parent.name == RUNS and (campaign / CARD).is_file()
+    stem = f"{campaign.name}-{whole.name}" if is_one_of_many else whole.name
+    return Named(said, stem, whole, lambda: read_run(folder))
+
+
+def _single(file: str) -> Named:
+    """A run, or the file of a road.
+
+    Raises:
+        UsageError: there is nothing of that name.
+    """
+    from roadgpt.campaign.naming import near
+    from roadgpt.run.folder import is_run, run_of_test
+
+    path = Path(file)
+    if is_run(path):
+        return _run(path, file)
+    stem = path.resolve().name
+    for ending in ENDINGS:
+        stem = stem.removesuffix(ending)
+    if (folder := run_of_test(path)) is not None:
+        return replace(_run(folder, file), stem=stem)
+    if not path.exists() and not path.is_symlink() and (others := near(file)):
+        raise UsageError(
+            f"cannot read {file}: there is nothing of that name; did you mean {' or '.join(others)}?"
+        )
+    return Named(file, stem, path.resolve(), None)
