@@ -121,3 +121,15 @@ def test_a_command_is_stopped_by_one_at_any_moment(words: list[str], tmp_path: P
         assert time.monotonic() - begins < 20
         assert "Traceback" not in said
         assert "ignored" not in said
+
+
+def test_the_status_is_that_of_the_signal_whatever_a_library_has_seen() -> None:
+    # what compiles code in C remembers the exception, and Python then ends the process by SIGINT
+    seen = "import ctypes, os; ctypes.pythonapi.PyRun_SimpleString(b'raise KeyboardInterrupt')\n"
+    waits = "try: time.sleep(60)\nexcept KeyboardInterrupt: sys.exit(stopping.status())\n"
+    body = "".join(f"    {line}\n" for line in (seen + waits).splitlines())
+    process = begun(f"{HEAD}\ntry:\n{body}finally:\n    stopping.leave()")
+    time.sleep(0.5)
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=20)
+    assert process.returncode == 143

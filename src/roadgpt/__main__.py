@@ -1,7 +1,5 @@
 """The program ``roadgpt``, also as ``python -m roadgpt``: heeds Ctrl-C before it imports anything else."""
 
-import sys
-
 from roadgpt import stopping
 
 
@@ -12,8 +10,8 @@ def main() -> None:
         from roadgpt.cli import main as command
 
         command()
-    except KeyboardInterrupt:
-        sys.exit(stopping.status())
+    finally:
+        stopping.leave()
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ Python says that it dropped the exception, it is raised once more.
 """
 
 import _thread
+import atexit
 import os
 import signal
 import sys
@@ -84,6 +85,23 @@ def forget() -> None:
 def finish() -> None:
     """All work is done: a signal that comes now ends the program at once, and without a word."""
     _State.is_over = True
+
+
+def leave() -> None:
+    """Where a signal came: end the process with its status, and do not wait for threads.
+
+    Python itself would end it by SIGINT, whatever the status is to be, where a library in C has seen the
+    KeyboardInterrupt pass.
+    """
+    if not status():
+        return
+    finish()
+    with suppress(Exception):
+        atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(Exception):
+            stream.flush()
+    os._exit(status())
 
 
 def _heard(number: int, frame: FrameType | None) -> None:

@@ -13,7 +13,10 @@ def main() -> None:
     """What the console script ``roadgpt`` runs; ends the process with the exit status."""
     stopping.install()
     make_ready()
-    app(prog_name="roadgpt")
+    try:
+        app(prog_name="roadgpt")
+    finally:
+        stopping.leave()
 
 
 __all__ = ["app", "main"]
