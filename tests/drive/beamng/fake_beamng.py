@@ -20,7 +20,7 @@ from drive.beamng.fake_car import World, objects_of
 from drive.beamng.fake_server import LEVELS, FakeServer, Fault, RefusedError, Settings
 
 VEHICLES = ("etk800", "pickup")
-VERSIONS = {"v1.24": "0.37", "v1.26": "0.38", "v1.27": "0.39"}
+VERSIONS = {"v1.24": "0.37", "v1.26": "0.38", "v1.27": "0.39"}  # folders of the user
 
 
 class FakeBeamNG(FakeServer):
@@ -29,7 +29,7 @@ class FakeBeamNG(FakeServer):
     def __init__(self, port=0, user="", **settings):
         self.scenarios, self.cameras, self._vehicles = {}, {}, {}
         self.world = self.loaded = self.fps = None
-        self.is_running = self.is_paused = False
+        self.is_running = self.is_paused = self.is_even = False
         self.user = user
         super().__init__(Settings(**settings), port)
 
@@ -87,6 +87,8 @@ class FakeBeamNG(FakeServer):
             objects, LEVELS.get(level, -28.0), self.settings.steer_sign, self.settings.is_blind
         )
         self.loaded, self.is_running = message["path"], False
+        self.fps, self.is_even = None, False  # a level may bring settings of its own
+        time.sleep(self.settings.slow_load if self.made == 1 else 0.0)
         return {"type": "MapLoaded"}
 
     def ge_GetCurrentVehicles(self, message):
@@ -137,10 +139,11 @@ class FakeBeamNG(FakeServer):
 
     def ge_Step(self, message):
         if self.world is not None and self.is_running:
-            self.world.step(message["count"] / (self.fps or 60.0))
+            self.world.step(message["count"] / (self.fps if self.fps and self.is_even else 60.0))
         return {"type": "Stepped"} if message["ack"] else None
 
     def ge_SetPhysicsDeterministic(self, message):
+        self.is_even = True
         return {"type": "SetPhysicsDeterministic"}
 
     def ge_SetPhysicsNonDeterministic(self, message):
@@ -166,7 +169,10 @@ class FakeBeamNG(FakeServer):
             -(1 - 2 * (x * x + z * z)),
             -2 * (y * z - x * w),
         )
-        self._car(message["vehicle"]).put(message["pos"], ahead)
+        car = self._car(message["vehicle"])
+        car.put(message["pos"], ahead)
+        if message.get("reset"):
+            car.shift_mode = car.usual_mode
         return {"type": "Teleported", "success": True}
 
     def ge_GetRoadNetwork(self, message):
@@ -225,6 +231,7 @@ class FakeBeamNG(FakeServer):
         return {"type": "Controlled"}
 
     def veh_SetShiftMode(self, car, message):
+        car.shift_mode = int(message["mode"])
         return {"type": "ShiftModeSet"}
 
     def veh_GetCenterOfGravity(self, car, message):

@@ -20,6 +20,7 @@ REF_AHEAD, REF_UP = 0.35, -0.15  # m, of the reference node from the centre of g
 CG_HEIGHT = 0.56
 LENGTH, WIDTH, HEIGHT, MIDDLE = 4.70, 1.86, 1.44, -0.10
 PHYSICS = 0.01  # s
+ARCADE = 2  # the mode of the gearbox in which the throttle alone drives
 
 
 def objects_of(prefab):
@@ -125,6 +126,7 @@ class Car:
     def __init__(self, world, spec, steer_sign=-1.0):
         self.world, self.spec, self.steer_sign = world, spec, steer_sign
         self.ai = Ai()
+        self.shift_mode = self.usual_mode = 0  # realistic_manual, as its player likes it: no gear is in
         self.inputs = {"steering": 0.0, "throttle": 0.0, "brake": 0.0, "parkingbrake": 0.0}
         m = spec["rotationMatrix"]
         self.put(spec["position"], (-m[3], -m[4], -m[5]))
@@ -147,6 +149,7 @@ class Car:
 
     def _tick(self, dt):
         throttle, brake = self.inputs["throttle"], self.inputs["brake"]
+        throttle *= self.shift_mode == ARCADE
         wish = self.inputs["steering"] * self.steer_sign * LOCK
         if self.ai.mode == "manual":
             wish, throttle, brake = self._drive()

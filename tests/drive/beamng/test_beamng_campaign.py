@@ -40,7 +40,15 @@ FAULTS = [
 
 
 def settings(monkeypatch: pytest.MonkeyPatch, home: Path, port: int, **more: object) -> None:
-    given = {"home": home, "port": port, "rate": 20, "poll_timeout": 1.5, "load_timeout": 1.5, **more}
+    given = {
+        "home": home,
+        "port": port,
+        "rate": 20,
+        "poll_timeout": 1.5,
+        "load_timeout": 1.5,
+        "first_load_timeout": 5,
+        **more,
+    }
     for name, value in given.items():
         monkeypatch.setenv(f"ROADGPT_BEAMNG_{name.upper()}", str(value))
 

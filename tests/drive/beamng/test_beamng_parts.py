@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -17,11 +18,13 @@ from click.testing import CliRunner
 
 from drive.beamng.fake_beamng import VERSIONS, FakeBeamNG, Fault, fake_home
 from roadgpt.cli.app import app
+from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
 from roadgpt.drive.simulators.beamng import session as sessions
 from roadgpt.drive.simulators.beamng.launch import command_line
 from roadgpt.drive.simulators.beamng.pairs import PAIRS, cure
+from roadgpt.drive.simulators.beamng.session import leave_all
 from roadgpt.drive.simulators.beamng.slots import take
 from roadgpt.drive.simulators.beamng.watchdog import OverdueError, Watchdog
 from roadgpt.errors import PartError, SimulationError, UsageError
@@ -50,7 +53,8 @@ def test_every_pair_has_its_cure() -> None:
     assert "pip install beamngpy==1.34.1'" in said
     assert "install BeamNG.tech 0.39" in said
     assert "pip install beamngpy==1.36'" in cure("v1.27", "v1.26", "1.35.1")
-    assert "versions before 0.37 are not driven" in cure("v1.19", "v1.27", "1.36")
+    assert "pip install beamngpy==1.24', or install BeamNG.tech 0.39" in cure("v1.19", "v1.27", "1.36")
+    assert "BeamNG.tech 0.36 or 0.35 speaks protocol v1.23" in cure("v1.23", "v1.27", "1.36")
     assert "0.39 with 1.36" in cure("v9", "v1.27", "1.36")
     assert {pair.protocol: pair.tech for pair in PAIRS[:3]} == VERSIONS
 
@@ -164,6 +168,29 @@ def test_the_command_line_is_the_clients(tmp_path: Path) -> None:
         assert ("-headless" in ours) == bool({"headless", "nogpu"} & {*given})
 
 
+def test_without_a_gpu_and_with_vulkan_keeps_both(tmp_path: Path) -> None:
+    words = command_line(Path("b"), Settings(home=tmp_path, nogpu=True, gfx="vk"), 4, None)
+    assert " ".join(words).endswith("-headless -gfx vk -gfx null")
+
+
+def test_a_client_that_nobody_tried_is_warned_of_and_driven(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr("roadgpt.drive.simulators.beamng.session.version", lambda name: "1.99")
+    with FakeBeamNG(protocol=OURS) as fake, caplog.at_level("WARNING", logger="roadgpt"):
+        drive = BeamngSimulator(Settings(port=fake.port, rate=20)).simulate(SHORT, World(), BeamngLike(), 7)
+        leave_all()
+    assert drive.ended == "goal"
+    assert any("beamngpy 1.99 has not been tried with RoadGPT" in one.message for one in caplog.records)
+
+
+def test_the_documents_name_the_same_pairs() -> None:
+    text = (Path(__file__).parents[3] / "docs" / "how-to" / "use-beamng.md").read_text()
+    rows = re.findall(r"^\| (\d\S*) \| (\S+) \| (\S+) \| (.*?) \|", text, flags=re.M)
+    assert [(tech, client, protocol) for tech, client, protocol, _ in rows] == [pair[:3] for pair in PAIRS]
+    assert [said.startswith("yes") for *_, said in rows] == [pair.is_tried for pair in PAIRS]
+
+
 def test_the_watchdog_ends_a_call_that_hangs_and_lets_others_be() -> None:
     ours, theirs = socket.socketpair()
     killed: list[bool] = []
@@ -226,5 +253,5 @@ def test_the_self_test_finds_what_is_wrong(
     words = ["beamng", "selftest", "--out", str(tmp_path), "--beamng-port", str(port)]
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 1
-    assert "PROBLEM  connection: SimulationError: nobody listens" in done.output
+    assert "PROBLEM  connection: SimulatorError: nobody listens" in done.output
     assert "1 of 1 checks found a problem" in done.output

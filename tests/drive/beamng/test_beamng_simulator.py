@@ -12,14 +12,18 @@ from beamngpy.connection import Connection
 
 from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
 from exported import HILLY
-from roadgpt.drive import Camera, Command, View
+from roadgpt.campaign import Budget, Plan, begin
+from roadgpt.drive import Camera, Command, View, simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.marking import Marking
 from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
 from roadgpt.drive.simulators.beamng.session import leave_all, session_of
 from roadgpt.errors import DriverError, PartError, SimulationError, UsageError
+from roadgpt.export.exporters.beamng.files import items
+from roadgpt.export.exporters.beamng.scene import scene_of
 from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.run import Setup, campaign, prove
 from roadgpt.verdict import judge
 
 OURS = Connection.PROTOCOL_VERSION
@@ -260,7 +264,8 @@ def test_a_fault_while_loading_costs_one_more_try(
     tmp_path: Path, port: int, kind: str, on: str, nth: int
 ) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
-    made = BeamngSimulator(Settings(home=home, port=port, rate=20, poll_timeout=0.6, load_timeout=0.6))
+    short = {"poll_timeout": 0.6, "load_timeout": 0.6, "first_load_timeout": 0.6}
+    made = BeamngSimulator(Settings(home=home, port=port, rate=20, **short))
     assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
 
 
@@ -305,3 +310,68 @@ def test_the_driver_of_the_guide_sees_and_drives(fake: FakeBeamNG) -> None:
     exec(code, made)
     drive = simulator(fake, rate=20).simulate(SHORT, WORLD, made["Looks"](), 7)
     assert {*drive["throttle"][1:].tolist()} == {0.0, 0.2}  # the image of the fake grows lighter with time
+
+
+def test_the_car_of_a_driver_of_ours_shifts_by_itself(fake: FakeBeamNG) -> None:
+    """The fake's player has chosen to shift by hand, and a car that is reset goes back to that."""
+    for road in (SHORT, HILLS):  # the first of them measures the steering, and resets the car after it
+        assert simulator(fake).simulate(road, WORLD, Reference(), 7).ended == "goal"
+
+
+def test_steps_are_even_after_each_level_that_is_loaded(fake: FakeBeamNG) -> None:
+    for road in (SHORT, SHORT):
+        drive = simulator(fake, rate=40).simulate(road, WORLD, Reference(), 7)
+        assert np.diff(drive["time"])[:-1] == pytest.approx(0.025)
+
+
+def test_lines_lie_on_the_asphalt_in_the_game_as_in_our_level(fake: FakeBeamNG) -> None:
+    laid: list[dict[str, Any]] = []
+
+    class Looks(Reference):
+        def start(self, road: Road, world: World, seed: int) -> None:
+            super().start(road, world, seed)
+            ((_, objects, _),) = fake.scenarios.values()
+            laid.extend(each for each in objects if each["class"] == "DecalRoad")
+
+    simulator(fake).simulate(SHORT, WORLD, Looks(), 7)
+    level = items("level", scene_of(SHORT, WORLD, 7), WORLD)["MissionGroup/roads"]
+    decals = [each for each in level if each["class"] == "DecalRoad"]
+    ours = {each["name"].partition("_")[0]: each["renderPriority"] for each in decals}  # of dashes, one
+    theirs = {each["name"].rpartition("_")[2]: each["renderPriority"] for each in laid}
+    assert theirs == ours
+    assert len(set(ours.values())) == len(ours)
+    assert min(ours, key=lambda name: ours[name]) == "lanes"
+
+
+def test_the_first_road_may_take_longer_to_load_and_the_screen_says_so(
+    tmp_path: Path, port: int, caplog: pytest.LogCaptureFixture
+) -> None:
+    home = fake_home(tmp_path / "home", protocol=OURS, slow_load=2.0)
+    given = Settings(home=home, port=port, load_timeout=1.0, rate=20)
+    with caplog.at_level("WARNING", logger="roadgpt"):
+        for _ in range(2):
+            assert BeamngSimulator(given).simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
+    told = [record.message for record in caplog.records if "shaders" in record.message]
+    assert len(told) == 1
+    assert "ROADGPT_BEAMNG_FIRST_LOAD_TIMEOUT" in told[0]
+    assert len((home / "started.jsonl").read_text().splitlines()) == 1  # it was not taken for dead
+
+
+def test_a_friction_that_the_game_does_not_heed_is_refused_before_anything_is_driven(
+    tmp_path: Path, fake: FakeBeamNG
+) -> None:
+    slippery, setup = World(friction=0.5), Setup(reader="grammar", simulator="beamng")
+    said = r"friction 0\.5 has no effect in this simulator.*leave out --friction, or drive in"
+    with pytest.raises(UsageError, match=said):
+        simulate(SHORT, slippery, "reference", 0, simulator(fake))
+    with pytest.raises(UsageError, match=said):
+        campaign("a road", 3, 0, slippery, setup, tmp_path / "runs")
+    with pytest.raises(UsageError, match=said):
+        prove(SHORT, 0, slippery, setup)
+    plan = Plan(prompts=("a road",), world=slippery, simulators=("beamng",), budget=Budget(tests=3))
+    with pytest.raises(UsageError, match=said):
+        begin(plan, tmp_path / "campaign")
+    assert not [*tmp_path.iterdir()]
+    assert fake.transcript == []
+    drive = simulate(SHORT, slippery, "reference", 0)  # ours heeds it
+    assert drive.ended == "goal"

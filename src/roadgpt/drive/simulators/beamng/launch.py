@@ -44,10 +44,10 @@ def command_line(binary: Path, settings: Settings, port: int, user: Path | None)
     words += ["-tcom-listen-ip", settings.host]
     if settings.headless or settings.nogpu:
         words.append("-headless")
+    if settings.gfx:
+        words += ["-gfx", settings.gfx]
     if settings.nogpu:
         words += ["-gfx", "null"]
-    elif settings.gfx:
-        words += ["-gfx", settings.gfx]
     if user is not None:
         words += ["-userpath", str(user)]
     return words

@@ -188,6 +188,7 @@ class Selftest:
             session.bng.scenario.load(scenario)
             session.bng.scenario.start()
             session.bng.control.pause()
+            session.step_evenly()
             car.ai.set_waypoint(GOAL)
             car.ai.set_aggression(self.settings.aggression)
             car.ai.set_speed(WORLD.speed_limit, "limit")

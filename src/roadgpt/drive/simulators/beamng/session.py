@@ -4,7 +4,7 @@ import atexit
 import logging
 import socket
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from importlib import import_module
 from importlib.metadata import version
 from typing import Any
@@ -12,7 +12,7 @@ from typing import Any
 from roadgpt.drive.simulators.beamng import slots
 from roadgpt.drive.simulators.beamng.body import Body
 from roadgpt.drive.simulators.beamng.launch import Game, binary_of, command_line
-from roadgpt.drive.simulators.beamng.pairs import cure
+from roadgpt.drive.simulators.beamng.pairs import cure, warn_of
 from roadgpt.drive.simulators.beamng.settings import Settings
 from roadgpt.drive.simulators.beamng.watchdog import Watchdog
 from roadgpt.drive.simulators.beamng.wire import protocol_at
@@ -50,6 +50,8 @@ class Session:
         self.level = ""
         self.roads = 0
         """Driven since BeamNG was started."""
+        self.has_loaded = False
+        """Has BeamNG loaded a road for this process, and so compiled its shaders?"""
         self.laid = 0
         """Scenes laid by this process, for names that are used once."""
         self.body: Body | None = None
@@ -110,6 +112,7 @@ class Session:
             ) from error
         if theirs != ours:
             raise PartError(cure(theirs, ours, version("beamngpy")))
+        warn_of(version("beamngpy"))
 
     def _prepare(self) -> None:
         """Choose the level, and have physics in steps."""
@@ -123,11 +126,27 @@ class Session:
                 f"BeamNG has no level {' or '.join(wanted)}; name another with --beamng-level, there are: "
                 f"{', '.join(sorted(there)[:20])}"
             )
+        self.step_evenly()
+        self.bng.control.pause()
+        self.roads = 0
+
+    def step_evenly(self) -> None:
+        """Have physics in steps of one length; a level that is loaded may come with settings of its own."""
         self.bng.settings.set_deterministic(self.settings.rate)
         # Without a number of steps per second, a step is a frame of unknown length.
         self.bng.settings.set_steps_per_second(self.settings.rate)
-        self.bng.control.pause()
-        self.roads = 0
+
+    def loading(self) -> AbstractContextManager[None]:
+        """Around the loading of a road; the first one may take minutes."""
+        if self.has_loaded:
+            return self.within(self.settings.load_timeout, "it was loading a road")
+        patience = max(self.settings.first_load_timeout, self.settings.load_timeout)
+        logging.getLogger("roadgpt").warning(
+            "roadgpt: BeamNG loads its first road, and may compile its shaders for some minutes "
+            "(it has %g s, ROADGPT_BEAMNG_FIRST_LOAD_TIMEOUT)",
+            patience,
+        )
+        return self.within(patience, "it was loading its first road")
 
     @contextmanager
     def within(self, seconds: float, doing: str) -> Iterator[None]:

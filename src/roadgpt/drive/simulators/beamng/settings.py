@@ -45,6 +45,8 @@ class Settings(BaseModel):
     """s, until BeamNG answers."""
     load_timeout: Annotated[float, Field(gt=0)] = 120.0
     """s, for a level to load."""
+    first_load_timeout: Annotated[float, Field(gt=0)] = 600.0
+    """s, for the first level, with which BeamNG may compile shaders."""
     poll_timeout: Annotated[float, Field(gt=0)] = 20.0
     """s, for any other answer."""
     imitation: bool = False

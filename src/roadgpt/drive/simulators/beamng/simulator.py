@@ -78,7 +78,7 @@ class BeamngSimulator:
         with Stage(session, road, world, seed) as stage:
             if seat is None:
                 return record(stage, road, world, None, seed, keep_driving)
-            stage.measure_steering()
+            stage.take_the_wheel()
             if camera is not None:
                 stage.open_camera(camera)
             with seat.watched():

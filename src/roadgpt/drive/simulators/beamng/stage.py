@@ -26,6 +26,9 @@ CALM = 0.05  # m/s under which the car stands
 SETTLING = 3.0  # s, at most, until it does
 DROP = 0.02  # m above the ground at which a car of known height is put down
 DECIMALS = 4
+GEARBOX = "arcade"
+"""Goes forwards by throttle alone, with any gearbox. BeamNGpy: "realistic_automatic" wants D to be put in by
+hand, and "realistic_manual" every gear."""
 TRIAL, TRIAL_TIME = 0.4, 4.0  # steering input, and s at most, of the trial of the steering
 TRIAL_SPEED = 1.0, 4.0  # m/s between which it counts
 STRAIGHT = 0.003  # 1/m; a trial that bends less was no turn
@@ -74,14 +77,16 @@ class Stage:
         place, turn = self._start()
         # Never put down by BeamNG itself: it takes the level's ground for the place to stand on.
         scenario.add_vehicle(self.vehicle, place, turn, False)
-        with self.session.within(self.settings.load_timeout, "it was loading a road"):
+        with self.session.loading():
             scenario.make(self.bng)
             self.scenario = scenario
             self.bng.control.pause()  # loading keeps physics as it is
             self.bng.scenario.load(scenario)
             self.bng.scenario.start()
             self.bng.control.pause()
+            self.session.step_evenly()
             self.bng.control.queue_lua_command(REFRESH)
+            self.session.has_loaded = True
 
     def _start(self) -> tuple[tuple[float, float, float], tuple[float, float, float, float]]:
         """Where the reference node goes, and how the car is turned."""
@@ -172,13 +177,25 @@ class Stage:
         ai.drive_in_lane(True)
         ai.set_waypoint(self.goal)
 
-    def measure_steering(self) -> None:
+    def take_the_wheel(self) -> None:
+        """Make the car ready for a driver of ours: a gearbox that shifts by itself, and a known steering.
+
+        In BeamNG's other modes somebody has to put in a gear first: a car whose player has chosen one of them
+        would stand.
+        """
+        with self.session.within(self.settings.poll_timeout, "the gearbox was set"):
+            self.vehicle.set_shift_mode(GEARBOX)
+            if self.session.gain is not None:
+                return
+        self._measure_steering()
+        with self.session.within(self.settings.poll_timeout, "the gearbox was set"):
+            self.vehicle.set_shift_mode(GEARBOX)  # it may have been reset with the car
+
+    def _measure_steering(self) -> None:
         """Find out to which side, and how far, a steering input turns the wheels; then go back to the start.
 
         No document says it, and it is another for every car.
         """
-        if self.session.gain is not None:
-            return
         found: list[float] = []
         echoed = 0.0
         with self.session.within(self.settings.poll_timeout, "the steering was measured"):
@@ -260,7 +277,11 @@ def _mesh_road(package: Any, strip: Strip) -> Any:
 
 
 def _decal_road(package: Any, strip: Strip) -> Any:
-    road = package.Road(strip.material, rid=strip.name, drivability=strip.drivability)
+    # BeamNGpy numbers a scenario's decal roads anew, from 0 in the order in which they are added, and so does
+    # scene_of: whichever holds, it is the same.
+    road = package.Road(
+        strip.material, rid=strip.name, drivability=strip.drivability, render_priority=strip.priority
+    )
     road.add_nodes(*(tuple(node) for node in strip.nodes.round(DECIMALS).tolist()))
     return road
 

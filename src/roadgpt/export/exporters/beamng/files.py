@@ -39,8 +39,8 @@ def items(name: str, scene: Scene, world: World) -> Mapping[str, Sequence[Item]]
         "MissionGroup": [_object(name, group, "SimGroup", "MissionGroup") for group in groups],
         "MissionGroup/sky_and_ground": _surroundings(name, world, scene.ground),
         "MissionGroup/roads": [
-            _strip(name, part, priority)
-            for priority, strip in enumerate(scene.strips)
+            _strip(name, part)
+            for strip in scene.strips
             for part in (_dashes(strip) if strip.is_dashed else (strip,))
         ],
         "MissionGroup/player": list(_player(name, scene)),
@@ -84,7 +84,7 @@ def _dashes(strip: Strip) -> list[Strip]:
     return out
 
 
-def _strip(level: str, strip: Strip, priority: int) -> Item:
+def _strip(level: str, strip: Strip) -> Item:
     nodes = _rows(strip.nodes)
     place = nodes[0][:3]
     if strip.is_mesh:
@@ -115,7 +115,7 @@ def _strip(level: str, strip: Strip, priority: int) -> Item:
         breakAngle=3,
         detail=0.1,
         distanceFade=[1000, 1000],
-        renderPriority=priority,
+        renderPriority=strip.priority,
         textureLength=5,
         zBias=0,
         nodes=nodes,

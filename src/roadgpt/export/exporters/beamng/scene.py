@@ -59,6 +59,8 @@ class Strip:
     nodes: Array
     """Shape (n, 5) of a mesh: x, y, z, width, depth; (n, 4) of a decal: x, y, z, width."""
     drivability: int = NOT_DRIVABLE
+    priority: int = 0
+    """Of a decal, among those of its scene: the painted lines lie on the asphalt."""
     is_dashed: bool = False
     """A decal whose paint is broken, by DASH and GAP of our OpenDRIVE files."""
 
@@ -159,10 +161,10 @@ def _decals(road: Road, world: World, s: Array, up: Array, materials: Materials,
         ("middle", materials.middle, 0.0, LINE, NOT_DRIVABLE),
     )
     strips = []
-    for name, material, t, width, drivability in wanted:
+    for priority, (name, material, t, width, drivability) in enumerate(wanted):
         points = line(road, s, t) + up
         nodes = np.column_stack([points, np.full(len(points), width)])
-        strips.append(Strip(prefix + name, material, nodes, drivability, is_dashed=name == "middle"))
+        strips.append(Strip(prefix + name, material, nodes, drivability, priority, name == "middle"))
     return strips
 
 
