@@ -106,7 +106,7 @@ def test_the_gallery_of_a_page_tells_them_apart() -> None:
         True,
         False,
     ]
-    assert "80 % out" in drawn
+    assert ">80 %<" in drawn
     assert "PASS (mostly outside)" in drawn
 
 

@@ -261,3 +261,23 @@ def test_folders_that_hold_nothing(tmp_path: Path) -> None:
     assert "no runs, no campaign and no study" in result.stderr
     with pytest.raises(UsageError):
         write_campaign(tmp_path)
+
+
+def test_the_report_opens_with_what_a_manager_asks_and_statistics_come_after(tmp_path: Path) -> None:
+    plan = small("a road", "two turns", "an uphill road", "a straight road", setup=Setup(drives=True))
+    open_folder(plan, tmp_path)
+    assert work(plan, tmp_path) == []
+    page = write_study(tmp_path).read_text()
+    first = page[: page.index("<h2>Alignment with the words</h2>")]
+    assert "<h2>At a glance</h2>" in first
+    assert first.count("<article>") == 3
+    for sign in ("χ²", "interval", "Wilson", "p ="):
+        assert sign not in first.partition("</style>")[2].replace("hold intervals", ""), sign
+    rows = list(csv.DictReader((tmp_path / "tables" / "glance.csv").open()))
+    assert [row["description"] for row in rows] == [prompt.prompt for prompt in plan.prompts]
+    for part, row in zip(plan.parts(), rows, strict=True):
+        runs = [json.loads(path.read_text()) for path in sorted((tmp_path / part.name).glob("test.*.json"))]
+        left = [run for run in runs if run["test_outcome"] == "FAIL"]
+        assert (int(row["roads"]), int(row["driven"])) == (len(runs), len(runs))
+        assert int(row["left the lane"]) == len(left)
+        assert int(row["valid"]) == sum(run["is_valid"] for run in runs)

@@ -10,8 +10,8 @@ from roadgpt.road import World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt.run.card import read_card
-from roadgpt.study.baseline import NAME, THESIS
-from roadgpt.study.chapters.alignment import alignment, kept, pooled
+from roadgpt.study.baseline import NAME
+from roadgpt.study.chapters.alignment import alignment, kept
 from roadgpt.study.chapters.card import card_of
 from roadgpt.study.chapters.counting import (
     SBFT,
@@ -25,14 +25,14 @@ from roadgpt.study.chapters.counting import (
     validity,
 )
 from roadgpt.study.chapters.diversity import diversity, spread_of
+from roadgpt.study.chapters.glance import glance
 from roadgpt.study.chapters.maps import coverage, roads
 from roadgpt.study.chapters.outside import outside_sentences, passed_roads
-from roadgpt.study.chapters.saying import between, near_and_far, p_value, percent, plural, share_of
+from roadgpt.study.chapters.saying import near_and_far, percent, plural, share_of
 from roadgpt.study.looking import Looked, LookedPart, look_at_campaign, look_at_parts
 from roadgpt.study.plan import Part, Plan, read_plan
 from roadgpt.study.prompts import Prompt
 from roadgpt.study.similarity import Spread
-from roadgpt.study.statistics import chi_squared, exact, wilson
 from roadgpt.study.working import Problem
 
 PROBLEMS = "problems.json"
@@ -77,7 +77,9 @@ def page_of(plan: Plan, parts: Sequence[LookedPart], found: Found) -> Page:
     ]
     if not is_thesis:
         sections = [sections[2], sections[0], *([sections[1]] if plan.setup.drives else [])]
-    sections += [diversity(parts, found), *_pictures(parts, plan.world.map_size)]
+    first = glance(parts, found, plan.world.map_size)
+    sections = [*([first] if first else []), *sections, diversity(parts, found)]
+    sections += _pictures(parts, plan.world.map_size)
     summary = [*_summary(plan, parts, found)]
     title = "The evaluation of RoadGPT's thesis, done again" if is_thesis else "Do roads keep the words?"
     lead = f"{plural(len(plan.prompts), 'description')}, {plural(plan.roads, 'road')} each"
@@ -102,13 +104,12 @@ def _summary(plan: Plan, parts: Sequence[LookedPart], found: Found) -> list[str]
             lines.append(f"{designer} was not run: {problem}.")
             continue
         told = of_thesis(own) if is_thesis else own
-        lines += _valid_lines(designer, told, is_thesis)
-        lines += _left_lines(designer, told, is_thesis)
+        said = [*_valid_lines(designer, told, is_thesis), *_left_lines(designer, told, is_thesis)]
         passed = passed_roads([road for part in own for road in part.roads])
-        lines += [f"{designer}: {sentence}" for sentence in outside_sentences(passed, plan.world)]
-        lines.append(_kept_line(designer, own))
+        said += [*outside_sentences(passed, plan.world), _kept_line(own)]
         pairs = [(p, f) for p, f in zip(parts, found, strict=True) if p.part.designer == designer]
-        lines.append(_different_line(designer, [f for _, f in pairs]))
+        said.append(_different_line([f for _, f in pairs]))
+        lines += said if len(plan.designers) == 1 else [f"{designer}: {sentence}" for sentence in said]
     return lines
 
 
@@ -117,31 +118,13 @@ def _valid_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) ->
     if not strict.total:
         return []
     text = (
-        f"{designer}: {share_of(strict.hits, strict.total)} roads are valid by strict rules, words included "
-        f"(95 % interval {between(wilson(strict.hits, strict.total))}), and "
-        f"{share_of(sbft.hits, sbft.total)} by the SBFT competition's"
+        f"{share_of(strict.hits, strict.total)} roads are valid by strict rules, words included, "
+        f"and {share_of(sbft.hits, sbft.total)} by the SBFT competition's"
     )
     if not is_thesis:
         return [f"{text}."]
     theirs = thesis_valid()
-    lines = [f"{text}; {NAME} had {share_of(theirs.hits, theirs.total)} by its own checks."]
-    ours, them = (chi_squared(source.table()) for source in (strict, theirs))
-    if len(strict.counts) == len(THESIS):
-        says = (
-            "the prompt makes no difference: all are alike"
-            if not ours.freedom
-            else f"over its prompts χ² = {ours.statistic:.2f} ({p_value(_p(strict.table()))})"
-        )
-        lines.append(
-            f"{designer}: {says}; in the thesis validity fell as prompts grew (88, 57, 37 of 100; χ² = "
-            f"{them.statistic:.2f}, {p_value(them.p)})."
-        )
-    return lines
-
-
-def _p(table: list[list[int]]) -> float:
-    found = chi_squared(table)
-    return found.p if found.is_sound else exact(table).p
+    return [f"{text}; {NAME} had {share_of(theirs.hits, theirs.total)} by its own checks."]
 
 
 def _left_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) -> list[str]:
@@ -150,31 +133,26 @@ def _left_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) -> 
         return []
     theirs = thesis_left()
     beside = f"; in the thesis on {share_of(theirs.hits, theirs.total)}" if is_thesis else ""
-    return [f"{designer}: the car left its lane on {share_of(ours.hits, ours.total)} driven roads{beside}."]
+    return [f"The car left its lane on {share_of(ours.hits, ours.total)} driven roads{beside}."]
 
 
-def _kept_line(designer: str, parts: Sequence[LookedPart]) -> str:
+def _kept_line(parts: Sequence[LookedPart]) -> str:
     good = [value for part in parts for value in kept(part, "general")]
     counts = [value for part in parts for value in kept(part, "turns")]
-    sure = pooled(parts, designer, "general")
-    text = f"{designer}: {share_of(sum(good), len(good))} roads keep every word"
-    if 0 < sure.value < 1 and len(parts) > 1:
-        text += f" (95 % interval by prompt {between(sure.interval)})"
-    else:
-        text += f" (95 % interval {between(wilson(sum(good), len(good)))})"
+    text = f"{share_of(sum(good), len(good))} roads keep every word"
     return text + (
         f"; the number of turns is right on {percent(sum(counts) / len(counts))}." if counts else "."
     )
 
 
-def _different_line(designer: str, found: Found) -> str:
+def _different_line(found: Found) -> str:
     nearest = [float(own.nearest.min()) for roads, own in found if len(roads) > 1]
     twins = sum(len(own.duplicates) for _, own in found)
     if not nearest:
-        return f"{designer}: one road of each description, so there is nothing to compare."
-    said = "no near duplicates" if not twins else plural(twins, "pair") + " of near duplicates"
+        return "One road of each description, so there is nothing to compare."
+    said = "No near duplicates" if not twins else plural(twins, "pair") + " of near duplicates"
     return (
-        f"{designer}: {said} among roads of one description; the nearest two plans are {min(nearest):.1f} m "
+        f"{said} among roads of one description; the nearest two plans are {min(nearest):.1f} m "
         "apart (root mean square, however shifted, turned or mirrored)."
     )
 
@@ -193,7 +171,8 @@ def write_campaign(folder: Path, command: str = "") -> Path:
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
     found = [spread_of(part)]
-    sections = [validity([part], [setup.designer], has_baseline=False)]
+    first = glance([part], found, request.world.map_size)
+    sections = [*([first] if first else []), validity([part], [setup.designer], has_baseline=False)]
     if setup.drives:
         sections.append(departures([part], [setup.designer], has_baseline=False))
     if request.words:
@@ -216,8 +195,8 @@ def _campaign_summary(part: LookedPart, setup: Setup, world: World, found: Found
     lines += outside_sentences(passed_roads(part.roads), world)
     lines += near_and_far(near, far if setup.keep_driving else None)
     if any(road.kept for road in part.roads):
-        lines.append(_kept_line(own, [part]))
-    return [*lines, _different_line(own, found)]
+        lines.append(_kept_line([part]))
+    return [*lines, _different_line(found)]
 
 
 def _least(roads: Sequence[Looked], outcome: str) -> tuple[float, str] | None:

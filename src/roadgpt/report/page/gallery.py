@@ -48,7 +48,7 @@ def _cell(road: Small, x: float, y: float, size: float) -> str:
     told = graded(road.outcome, road.share)
     hue, mark = f"var(--{road.outcome.lower()})", road.outcome.lower()
     if told != road.outcome and road.share is not None:
-        hue, mark = f"var(--{severity(road.share).split()[0]})", f"{percent(road.share)} out"
+        hue, mark = f"var(--{severity(road.share).split()[0]})", percent(road.share)
     out = [
         tag("title", f"road {road.number}: {told}"),
         words(x + 1, top - 3.5, f"{road.number}", 10, is_soft=True),

@@ -57,28 +57,24 @@ def _map(
     return Figure(f"coverage-{across.lower()}", caption, picture)
 
 
+def small(part: LookedPart, road: Looked) -> Small:
+    """A road as a small map that leads to its run."""
+    failed_at = road.failed_at if road.has_left else None
+    return Small(road.index, road.outcome, road.points, failed_at, part.href(road), road.max_oob)
+
+
 def roads(parts: Sequence[LookedPart], size: float) -> Section:
     """Every road as a small map that leads to its run."""
     blocks: list[Block] = [
-        "A dot is where a road starts, a cross where the car left it; “62 % out” is a PASS with so much of "
+        "A dot is where a road starts, a cross where the car left it; “62 %” is a PASS with so much of "
         "the car outside its lane. Each leads to its bird's-eye view; "
         "roadgpt view shows it in 3-D with its drive."
     ]
     for part in parts[:MOST_PARTS]:
         if not part.roads:
             continue
-        small = [
-            Small(
-                road.index,
-                road.outcome,
-                road.points,
-                road.failed_at if road.has_left else None,
-                part.href(road),
-                road.max_oob,
-            )
-            for road in part.roads[:MOST]
-        ]
+        shown = [small(part, road) for road in part.roads[:MOST]]
         more = f" The first {MOST} of {len(part.roads)}." if len(part.roads) > MOST else ""
         caption = f"{part.part.designer}, “{part.part.prompt.prompt}”.{more}"
-        blocks.append(Figure(f"roads-{part.part.number}", caption, gallery(small, size, caption)))
+        blocks.append(Figure(f"roads-{part.part.number}", caption, gallery(shown, size, caption)))
     return Section("Roads", blocks)
