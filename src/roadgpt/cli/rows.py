@@ -59,6 +59,11 @@ class Row:
     """What a line calls it, where the path of the file is too long for a line."""
     spent: "Spent | None" = None
     """What language models were asked for it."""
+    words: str = ""
+    seed: int | None = None
+    """The road's own."""
+    trace: str = ""
+    """Of a driver or a simulator that failed: where."""
 
     @property
     def outcome(self) -> str:
@@ -188,6 +193,9 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
         seconds=run.seconds.total,
         name=name,
         spent=run.spent,
+        words=run.words,
+        seed=run.seed,
+        trace=run.trace,
     )
 
 

@@ -14,6 +14,8 @@ from roadgpt.cli.streams import is_coloured
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
+    from roadgpt.cli.junit import Junit
+
 
 class Screen:
     """Told of every road as it ends; at its own end it shows the table of outcomes.
@@ -22,8 +24,16 @@ class Screen:
     error, and only where that is a terminal. A total of 0: nobody knows how many there will be.
     """
 
-    def __init__(self, total: int, as_json: bool = False, quiet: bool = False, verbose: bool = False) -> None:
+    def __init__(
+        self,
+        total: int,
+        as_json: bool = False,
+        quiet: bool = False,
+        verbose: bool = False,
+        junit: "Junit | None" = None,
+    ) -> None:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
+        self.junit = junit
         self.rows: list[Row] = []
         if quiet:
             logging.getLogger("roadgpt").setLevel(logging.ERROR)
@@ -77,7 +87,9 @@ class Screen:
             self._bar.update(self._task, completed=len(self.rows), rate=rate)
 
     def close(self) -> None:
-        """The table of outcomes."""
+        """The table of outcomes, and what was wished for as JUnit XML."""
+        if self.junit is not None:
+            self.junit.write(self.rows)
         if self.quiet or self.as_json or not self.rows:
             return
         _show("")

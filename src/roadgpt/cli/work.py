@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.crash import crashes_go_to
+from roadgpt.cli.junit import Junit
 from roadgpt.cli.rows import row_of, spending
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
@@ -42,6 +43,8 @@ class Wish:
     """Formats of the pictures of each run; empty: none are drawn."""
     formats: tuple[str, ...] = ()
     """Of the road files beside each run."""
+    junit: Path | None = None
+    """Where the tests are to stand as JUnit XML."""
 
 
 def work_off(wish: Wish, screen: Screen) -> None:
@@ -60,6 +63,7 @@ def work_off(wish: Wish, screen: Screen) -> None:
     seed = _seed(wish)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, beside, meter)
+    screen.junit = Junit.of(wish.junit, work.request)
     screen.say(understood(brief, wish.world.map_size))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)

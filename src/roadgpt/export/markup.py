@@ -30,7 +30,14 @@ def number(value: float) -> str:
 
 def escaped(text: str) -> str:
     """Text that may stand between tags or in an attribute; what XML cannot hold at all is left out."""
-    return "".join(c for c in text if c >= " " or c in "\n\t\r").translate(_ESCAPES)
+    return "".join(filter(_is_allowed, text)).translate(_ESCAPES)
+
+
+def _is_allowed(letter: str) -> bool:
+    """Production 2 of XML 1.0."""
+    if letter < " ":
+        return letter in "\n\t\r"
+    return not "\ud800" <= letter <= "\udfff" and letter not in "\ufffe\uffff"
 
 
 @dataclass(slots=True)

@@ -13,6 +13,7 @@ from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.dashes import DescribedCommand
 from roadgpt.cli.failing import asked, fault_options, look_into_failures
 from roadgpt.cli.flags import CHAT, driver, driver_again, measure
+from roadgpt.cli.junit import junit_option, write_folder
 from roadgpt.cli.options import (
     SEED,
     chat_of,
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 MOST_TESTS = 10_000_000
 TESTS = whole(1, MOST_TESTS, "the number of tests")
 SECONDS = measure(0, 1e8, "s", above=True)
-BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "as_json", "quiet"}
+BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "junit", "as_json", "quiet"}
 
 
 @click.command(cls=DescribedCommand)
@@ -68,6 +69,7 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "a
 @chat_options
 @beamng_options
 @fault_options
+@junit_option
 @screen_options
 @click.pass_context
 def command(
@@ -81,6 +83,7 @@ def command(
     faults: bool,
     minimise: bool,
     repeat: int | None,
+    junit: Path | None,
     as_json: bool,
     quiet: bool,
     **rest: Any,
@@ -113,6 +116,8 @@ def command(
     if not quiet and not as_json:
         _tell(out, plan, was_there)
     watch(out, work(out, workers, executor, address, plan), as_json, quiet)
+    if junit is not None:
+        write_folder(junit, out)
     if look := asked(faults, minimise, repeat, workers, quiet, as_json):
         look_into_failures(out, look)
 

@@ -2,11 +2,13 @@
 
 import sys
 from contextlib import redirect_stdout
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from roadgpt.cli.beamng import beamng_options
+from roadgpt.cli.junit import Junit, junit_option
 from roadgpt.cli.options import (
     SEED,
     files_argument,
@@ -33,10 +35,12 @@ UNREADABLE = 2  # exit status
 @world_options()
 @setup_options("driver", "simulator", "keep_driving", "geometry", "rules")
 @beamng_options
+@junit_option
 @screen_options
 def command(
     files: tuple[str, ...],
     seed: int,
+    junit: Path | None,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -50,14 +54,15 @@ def command(
     two points at one place, no room for a car. With --rules sbft every objection is INVALID, as in the
     competition. The exit status is 0 when all roads could be read.
     """
-    from roadgpt.run import Setup, roll_call
+    from roadgpt.run import Request, Setup, roll_call
     from roadgpt.run.losses import Losses
 
     world = world_of(rest)
     setup = Setup(**rest)
     with redirect_stdout(sys.stderr):
         roll_call(setup, world)  # a driver that does not exist is told of before any road is looked at
-    screen = Screen(len(files), as_json, quiet, verbose)
+    asked = Request(seed=seed, world=world, setup=setup)
+    screen = Screen(len(files), as_json, quiet, verbose, Junit.of(junit, asked))
     losses: Losses[str] = Losses()
     each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup, losses))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from roadgpt.cli.junit import junit_option, write_folder
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
-def command(folder: Path, opens: bool) -> None:
+@junit_option
+def command(folder: Path, opens: bool, junit: Path | None) -> None:
     """Write DIR/report.html on runs, a campaign or a study, with report.md and its tables as CSV and LaTeX.
 
     DIR is what roadgpt run, roadgpt campaign or roadgpt study wrote into. The page needs no network and no
@@ -26,6 +28,8 @@ def command(folder: Path, opens: bool) -> None:
     roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open
     """
     page = _written(folder)
+    if junit is not None:
+        write_folder(junit, folder)
     click.echo(str(page))
     if opens and not webbrowser.open(page.resolve().as_uri()):
         click.echo(f"roadgpt: no browser could be started; open {page} in one", err=True)

@@ -7,6 +7,7 @@ import click
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.failing import asked, fault_options, look_into_failures
 from roadgpt.cli.flags import CHAT
+from roadgpt.cli.junit import junit_option, write_folder
 from roadgpt.cli.options import driver_again_option, together
 from roadgpt.errors import UsageError
 
@@ -21,6 +22,7 @@ SERVER = next(flag for flag in CHAT if flag.field == "base_url")
 @driver_again_option
 @click.option(SERVER.flag, SERVER.field, default=None, help="The server that it asks, named again.")
 @fault_options
+@junit_option
 @screen_options
 def command(
     campaign: Path,
@@ -32,6 +34,7 @@ def command(
     faults: bool,
     minimise: bool,
     repeat: int | None,
+    junit: Path | None,
     as_json: bool,
     quiet: bool,
     **limits: float | None,
@@ -59,5 +62,7 @@ def command(
     if given and plan.chat is not None:
         plan = plan.model_copy(update={"chat": plan.chat.model_copy(update=given)})
     watch(campaign, work(campaign, workers, executor, address, plan), as_json, quiet)
+    if junit is not None:
+        write_folder(junit, campaign)
     if look := asked(faults, minimise, repeat, workers, quiet, as_json):
         look_into_failures(campaign, look)

@@ -7,6 +7,7 @@ import click
 
 from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.dashes import DescribedCommand
+from roadgpt.cli.junit import junit_option
 from roadgpt.cli.options import (
     ROADS,
     SEED,
@@ -38,6 +39,7 @@ from roadgpt.cli.work import Wish, work_off
 @formats_option("--export")
 @chat_options
 @beamng_options
+@junit_option
 @screen_options
 def command(
     words: tuple[str, ...],
@@ -49,6 +51,7 @@ def command(
     axes: Any,
     picture_formats: Any,
     formats: tuple[str, ...],
+    junit: Path | None,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -71,5 +74,5 @@ def command(
     chat = chat_of(rest, rest["reader"], rest["designer"])
     setup = Setup(drives=not no_drive, chat=chat, **rest)
     pictures = () if no_plot else picture_formats
-    wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, pictures, formats)
+    wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, pictures, formats, junit)
     work_off(wish, Screen(roads, as_json, quiet, verbose))

@@ -1,0 +1,195 @@
+"""``--junit``: what commands that run tests, or sum them up, write for continuous integration."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from roadgpt.cli.rows import Row, row_of
+
+if TYPE_CHECKING:
+    from roadgpt.report.junit import Case, Properties, Suite
+    from roadgpt.run.model import Request
+
+LONGEST = 120  # letters of a suite's name
+UNKNOWN = "roads that were given"
+
+
+def file(value: str) -> Path:
+    """The type of an option that takes a file which can be written."""
+    path = Path(value)
+    if not str(value).strip() or path.is_dir():
+        raise click.BadParameter(f"'{value}' is a folder; give the name of a file, such as roads.xml")
+    if not path.absolute().parent.is_dir():
+        raise click.BadParameter(f"there is no folder {path.absolute().parent}; make it first")
+    return path
+
+
+junit_option = click.option(
+    "--junit",
+    type=file,
+    default=None,
+    metavar="FILE.xml",
+    help="Write the tests as JUnit XML, too, for continuous integration.",
+)
+
+
+@dataclass(frozen=True)
+class Junit:
+    """A file, and what is common to the tests in it."""
+
+    path: Path
+    name: str
+    properties: "Properties"
+
+    @classmethod
+    def of(cls, path: Path | None, request: "Request") -> "Junit | None":
+        """For the tests of one request; None where no file is wished for."""
+        return None if path is None else cls(path, _named(request.words), common(request))
+
+    def write(self, rows: Sequence[Row]) -> None:
+        """Write what there is.
+
+        Raises:
+            RoadGPTError: the file cannot be written.
+        """
+        from roadgpt.report.junit import Suite, write_junit
+
+        write_junit(self.path, [Suite(self.name, self.properties, lambda: map(_case, rows))])
+
+
+def write_folder(path: Path, folder: Path) -> None:
+    """Write the tests of a folder of runs, of a campaign or of a study.
+
+    Raises:
+        UsageError: there is none of these, or a file of it cannot be read.
+        RoadGPTError: the file cannot be written.
+    """
+    from roadgpt.report.junit import write_junit
+
+    write_junit(path, _suites(folder))
+
+
+def _suites(folder: Path) -> Iterator["Suite"]:
+    from roadgpt.campaign.record import STORE
+    from roadgpt.study import plan
+
+    if (folder / plan.CARD).is_file():
+        for part in plan.read_plan(folder).parts():
+            if (folder / part.name).is_dir():
+                yield _of_runs(folder / part.name)
+    elif (folder / STORE).is_file():
+        yield from _of_campaign(folder)
+    else:
+        yield _of_runs(folder)
+
+
+def _of_runs(folder: Path) -> "Suite":
+    from roadgpt.report.junit import Suite
+    from roadgpt.run import read_run
+    from roadgpt.run.campaign import finished
+    from roadgpt.run.card import read_card
+    from roadgpt.run.folder import run_folder
+    from roadgpt.run.sbft_json import test_name
+
+    request = read_card(folder).request
+
+    def cases() -> Iterator["Case"]:
+        for index in finished(folder):
+            name = test_name(index)
+            yield _case(row_of(read_run(run_folder(folder, index)), str(folder / name), name))
+
+    return Suite(_named(request.words), common(request), cases)
+
+
+def _of_campaign(folder: Path) -> Iterator["Suite"]:
+    """A suite for each cell; the rows of the store pass by one at a time."""
+    from roadgpt.campaign.record import Record
+    from roadgpt.report.junit import Suite
+
+    with Record.opened(folder) as record:
+        cells = record.cells()
+        for cell in cells:
+            name = _named(cell.request.words)
+            shown = name if len(cells) == 1 else f"{cell.name}: {name}"
+            told = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal}
+
+            def cases(cell: str = cell.name, words: str = cell.request.words) -> Iterator["Case"]:
+                return _of_cell(folder, cell, words)
+
+            yield Suite(shown, {**common(cell.request), **told}, cases)
+
+
+def _of_cell(folder: Path, cell: str, words: str) -> Iterator["Case"]:
+    from roadgpt.campaign.record import Record
+    from roadgpt.campaign.worker import seed_of_driver
+    from roadgpt.report.junit import Case
+
+    with Record.opened(folder) as record:
+        took: dict[int, float] = dict(
+            record.query("SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "
+                         "WHERE cell = ? AND outcome IS NOT NULL", (cell,))
+        )  # fmt: skip
+        for result in record.results(cell):
+            yield Case(
+                name=f"{cell}/{result.number}",
+                outcome=result.outcome,
+                says=result.description,
+                kind=result.cause or "",
+                seconds=took.get(result.number, 0.0),
+                properties={
+                    "words": words or None,
+                    "seed": seed_of_driver(result.number, result.proposal),
+                    "origin": result.proposal.origin,
+                    "max_oob": result.max_oob,
+                    "beyond_m": result.beyond,
+                    "margin_m": result.margin,
+                    "length_m": result.length,
+                    "at_s_m": result.at_s,
+                    "side": result.side,
+                },
+            )
+
+
+def _named(words: str) -> str:
+    return words[:LONGEST] or UNKNOWN
+
+
+def common(request: "Request") -> "Properties":
+    """What all tests of a request share."""
+    setup, world = request.setup, request.world
+    return {
+        "words": request.words or None,
+        "seed": request.seed,
+        "designer": setup.designer,
+        "driver": setup.driver,
+        "simulator": setup.simulator,
+        "oob_tolerance": world.oob_tolerance,
+        "lane_departure": str(world.lane_departure).lower(),
+        "speed_limit_kmh": round(world.speed_limit * 3.6, 6),
+        "friction": world.friction,
+    }
+
+
+def _case(row: Row) -> "Case":
+    from roadgpt.report.junit import Case
+
+    return Case(
+        name=row.name or row.file,
+        outcome=row.test_outcome,
+        says=row.description,
+        kind=row.cause or "",
+        seconds=row.seconds,
+        file=row.file,
+        trace=row.trace,
+        properties={
+            "words": row.words or None,
+            "seed": row.seed,
+            "max_oob": row.max_oob,
+            "beyond_m": row.beyond_m,
+            "margin_m": row.margin_m,
+            "length_m": row.length_m,
+        },
+    )

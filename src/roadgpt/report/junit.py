@@ -1,0 +1,143 @@
+"""Tests as JUnit XML, the form in which continuous integration reads them.
+
+    PASS, VALID    a test that passed
+    FAIL           <failure>: the car failed on a road that the rules allow
+    INVALID        <skipped>: the rules object to the road; nobody drove, and nothing is said of the driver
+    ERROR          <error>: a driver or a simulator broke down, or no road came of the words
+
+There is no standard; this is what Jenkins, GitLab, GitHub's actions, Azure and CircleCI read: suites with
+counts, cases with ``name``, ``classname``, ``time`` and ``file``, and properties of suites and cases. Source:
+the documentation of the common format, https://github.com/testmoapp/junitxml.
+"""
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from roadgpt.errors import RoadGPTError
+from roadgpt.export.markup import DECLARATION, escaped
+from roadgpt.run.atomic import PART
+
+Properties = Mapping[str, str | float | int | None]
+
+MARKS = {"FAIL": "failure", "INVALID": "skipped", "ERROR": "error"}
+
+
+@dataclass(frozen=True)
+class Case:
+    """One test: a road, and what came of it."""
+
+    name: str
+    outcome: str
+    says: str
+    """The outcome in a sentence."""
+    kind: str = ""
+    """Of a failure or an error: 'out of lane', 'fell' and so on."""
+    seconds: float = 0.0
+    """On the clock."""
+    file: str = ""
+    trace: str = ""
+    properties: Properties = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Suite:
+    """Tests that share a description and all settings."""
+
+    name: str
+    properties: Properties
+    cases: Callable[[], Iterable[Case]]
+    """Gives all of them, as often as it is called: they are counted before they are written."""
+
+
+class _Counts(NamedTuple):
+    tests: int = 0
+    failures: int = 0
+    errors: int = 0
+    skipped: int = 0
+    seconds: float = 0.0
+
+    def plus(self, other: "_Counts") -> "_Counts":
+        return _Counts(
+            self.tests + other.tests,
+            self.failures + other.failures,
+            self.errors + other.errors,
+            self.skipped + other.skipped,
+            self.seconds + other.seconds,
+        )
+
+    def attributes(self) -> str:
+        counts = self._asdict()
+        seconds = counts.pop("seconds")
+        return "".join(f' {name}="{value}"' for name, value in counts.items()) + f' time="{seconds:.3f}"'
+
+
+def write_junit(path: Path, suites: Iterable[Suite], name: str = "roadgpt") -> Path:
+    """Write the suites into one file, whole or not at all.
+
+    Raises:
+        RoadGPTError: it cannot be written.
+    """
+    listed = [(suite, _counted(suite)) for suite in suites]
+    every = _Counts()
+    for _, counts in listed:
+        every = every.plus(counts)
+    draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
+    try:
+        with draft.open("w", encoding="utf-8", newline="\n") as file:
+            file.write(f'{DECLARATION}\n<testsuites name="{escaped(name)}"{every.attributes()}>\n')
+            for suite, counts in listed:
+                file.writelines(_suite(suite, counts))
+            file.write("</testsuites>\n")
+        draft.replace(path)
+    except OSError as error:
+        said = f"cannot write {path}: {error.strerror}; name another file with --junit"
+        raise RoadGPTError(said) from error
+    finally:
+        draft.unlink(missing_ok=True)
+    return path
+
+
+def _counted(suite: Suite) -> _Counts:
+    counts = _Counts()
+    for case in suite.cases():
+        mark = MARKS.get(case.outcome)
+        one = (1, mark == "failure", mark == "error", mark == "skipped", case.seconds)
+        counts = counts.plus(_Counts(*one))
+    return counts
+
+
+def _suite(suite: Suite, counts: _Counts) -> Iterator[str]:
+    yield f'  <testsuite name="{escaped(suite.name)}"{counts.attributes()}>\n'
+    yield from _properties(suite.properties, "    ")
+    for case in suite.cases():
+        yield from _case(case, suite.name)
+    yield "  </testsuite>\n"
+
+
+def _case(case: Case, suite: str) -> Iterator[str]:
+    file = f' file="{escaped(case.file)}"' if case.file else ""
+    head = f'name="{escaped(case.name)}" classname="{escaped(suite)}" time="{case.seconds:.3f}"{file}'
+    yield f"    <testcase {head}>\n"
+    yield from _properties(case.properties, "      ")
+    mark = MARKS.get(case.outcome)
+    if mark == "skipped":
+        yield f'      <skipped message="{escaped(case.says)}"/>\n'
+    elif mark is not None:
+        text = "\n".join(filter(None, (case.says, case.file, case.trace)))
+        kind = escaped(case.kind or case.outcome)
+        yield f'      <{mark} message="{escaped(case.says)}" type="{kind}">{escaped(text)}</{mark}>\n'
+    yield "    </testcase>\n"
+
+
+def _properties(properties: Properties, indent: str) -> Iterator[str]:
+    told = {name: value for name, value in properties.items() if value is not None}
+    if not told:
+        return
+    yield f"{indent}<properties>\n"
+    for name, value in told.items():
+        text = f"{value:.6g}" if isinstance(value, float) else str(value)
+        yield f'{indent}  <property name="{escaped(name)}" value="{escaped(text)}"/>\n'
+    yield f"{indent}</properties>\n"
