@@ -18,7 +18,7 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.heights import carried_over, elevation, jumps, plain
-from roadgpt.road.opendrive.joins import KINK, TOLD, Line, misses, turns_back
+from roadgpt.road.opendrive.joins import KINK, Line, misses, turns_back
 from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, speed_limit, speed_limits
 from roadgpt.road.opendrive.left_out import is_one_way, left_out
 from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
@@ -163,10 +163,10 @@ def _grown(node: Node, line: list[Stretch], lanes: Lanes) -> tuple[Road, list[st
 
 
 def _away(found: Line, road: Road) -> float:
-    """The largest distance between poses of the file and the road, metres."""
-    beside = np.flatnonzero((np.abs(found.kinks) > KINK) | (found.gaps > TOLD))
-    some = np.r_[beside[:: max(1, len(beside) // PLACES)], 0 : len(found.s) : max(1, len(found.s) // PLACES)]
-    return float(np.abs(road.locate(*found.poses[some, :2].T)[1]).max())
+    """The largest distance between places of the file's line and the road, metres."""
+    beside = found.poses[np.abs(found.kinks) > KINK, :2]
+    some = [each[:: max(1, len(each) // PLACES)] for each in (beside, found.ends, found.poses[:, :2])]
+    return float(np.abs(road.locate(*np.concatenate(some).T)[1]).max())
 
 
 def _rounded(found: Line, heights: Array) -> Road:

@@ -37,10 +37,12 @@ class Line:
     """How far the ends miss each other that meet at each pose, metres ``(n,)``."""
     kinks: Array
     """By how much the direction jumps at each pose, radians ``(n,)``."""
+    ends: Array
+    """Where the elements of the file end and begin, ``(m, 2)``: a pose between two is in their middle."""
 
     def only(self, kept: Array) -> "Line":
         """Some of the poses."""
-        return Line(self.s[kept], self.poses[kept], self.gaps[kept], self.kinks[kept])
+        return Line(self.s[kept], self.poses[kept], self.gaps[kept], self.kinks[kept], self.ends)
 
 
 def bridged(line: Line) -> Line | None:

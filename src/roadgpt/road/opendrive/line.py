@@ -68,6 +68,7 @@ def walk(line: list[Stretch], lanes: Lanes | None) -> Line:
     parts = [part for each in line for part in _parts(each, joints, lanes)]
     gaps, kinks = [np.zeros(len(parts[0][0]) - 1)], [np.zeros(len(parts[0][0]) - 1)]
     rows = [parts[0][1][:-1]]
+    ends = [parts[0][1][:1, :2]]
     for (s, before), (_, after) in pairwise(parts):
         gap, kink = float(np.hypot(*(after[0, :2] - before[-1, :2]))), wrap_angle(after[0, 2] - before[-1, 2])
         if gap > GAP:
@@ -78,10 +79,11 @@ def walk(line: list[Stretch], lanes: Lanes | None) -> Line:
         kinks.append(np.r_[kink, nothing])
         middle = [*(before[-1, :2] + after[0, :2]) / 2, after[0, 2] - kink / 2]
         rows += [np.array([middle]), after[1:-1]]
+        ends += [before[-1:, :2], after[:1, :2]]
     s = np.concatenate([part[0][:-1] for part in parts] + [parts[-1][0][-1:]])
     end = np.zeros(1)
     poses = np.concatenate([*rows, parts[-1][1][-1:]])
-    return Line(s, poses, np.concatenate([*gaps, end]), np.concatenate([*kinks, end]))
+    return Line(s, poses, np.concatenate([*gaps, end]), np.concatenate([*kinks, end]), np.concatenate(ends))
 
 
 def _parts(stretch: Stretch, joints: Array, lanes: Lanes | None) -> Iterator[tuple[Array, Array]]:
