@@ -218,14 +218,16 @@ def test_between_two_roads_lies_every_number(genes: Genes, seed: int, share: flo
 def test_no_slope_lies_at_the_edge_of_flat(genes: Genes) -> None:
     """1 % is up and 0.9 % is flat: what is written as 1.0 % is measured as either."""
     for gene in genes:
-        segment = segments_of((gene,))[0]
+        segment = segments_of((gene,), World())[0]
         assert abs(abs(segment.incline) - 1) > 0.19
         assert round(segment.incline, 1) == segment.incline
         assert abs(segment.incline - gene.incline) < 0.26
 
 
 def test_segments_of_a_wide_turn_are_cut_as_the_format_asks() -> None:
-    segments = segments_of((Gene(turn=-170.0, radius=20.0, ramp=5.0, incline=2.0), Gene(length=30.0)))
+    segments = segments_of(
+        (Gene(turn=-170.0, radius=20.0, ramp=5.0, incline=2.0), Gene(length=30.0)), World()
+    )
     assert [segment.direction for segment in segments] == ["right"] * 3 + ["straight"]
     assert all(abs(segment.turn_degrees) <= 70 for segment in segments)
     assert sum(segment.turn_degrees for segment in segments) == pytest.approx(-170, abs=0.2)

@@ -2,14 +2,20 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from roadgpt import plugins
+from roadgpt.brief.model import Brief, Clause
 from roadgpt.check import Finding
-from roadgpt.geometry import GradeProfile, Piece, PieceCurve, interpolate
+from roadgpt.drive.driving_line import line_along
+from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve, interpolate
 from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road.speed_profile import Limits, plan_speed
 
 WORLD = World()
 LEVEL = GradeProfile(0.0, (0.0, 1.0), (0.0, 0.0))
@@ -135,6 +141,88 @@ class TestInsideMap:
         assert not findings("inside_map", just)
         assert findings("sbft", over)
         assert not findings("sbft", just)
+
+
+def felt(road: Road, world: World = WORLD) -> float:
+    """Vertical acceleration, m/s^2: of heights by differences, at speeds planned on the lane itself."""
+    s = np.arange(0.0, road.length, 0.25)
+    bend = np.gradient(np.gradient(road.at(s)[:, 2], 0.25), 0.25)[4:-4]
+    lane = line_along(road, -world.lane_width / 2)
+    level = replace(lane, crest=[0.0] * len(lane.crest))
+    speed = np.array(plan_speed(level, Limits(0.64, 0.9, 0.7, world.speed_limit)))
+    v = np.interp(s[4:-4], lane.step * np.arange(len(speed)), speed)
+    return float((v**2 * np.abs(bend)).max())
+
+
+def humped(radius: float, at: float = 100.0, length: float = 200.0, grade: float = 0.08) -> Road:
+    """A straight that climbs, and from a place on falls, rounded off."""
+    half = radius * abs(grade)
+    return sloping((0, grade), (at - half, grade), (at + half, -grade), (length, -grade))
+
+
+class TestTooAbrupt:
+    def test_passes(self) -> None:
+        assert not findings("too_abrupt", humped(127))
+        assert felt(humped(127)) == pytest.approx((70 / 3.6) ** 2 / 127, rel=0.01)
+        assert not findings("too_abrupt", straight())
+
+    @pytest.mark.parametrize("way", [1, -1])
+    def test_a_crest_and_a_dip(self, way: int) -> None:
+        finding = the_finding("too_abrupt", humped(100, grade=way * 0.08))
+        what = "crest" if way > 0 else "dip"
+        assert finding.sentence == (
+            f"at s = 100 m: the vertical radius of the {what} is 100.0 m, which is 3.8 m/s2 at the 70 km/h "
+            "expected there; 126 m would be enough for 3 m/s2"
+        )
+        assert finding.s == pytest.approx(100)
+        assert felt(humped(100)) > 3
+
+    def test_the_car_has_to_be_that_fast_there(self) -> None:
+        assert not findings("too_abrupt", humped(60, at=7, length=150))  # it has just set off
+        assert not findings("too_abrupt", humped(30), World(speed_limit=9.0))
+        hairpin = Road(
+            PieceCurve(60.0, 60.0, 0.0, (Piece(80), Piece(50, 1 / 16, 1 / 16), Piece(80))),
+            humped(40, at=105, length=210).profile,
+        )
+        assert not findings("too_abrupt", hairpin)
+        assert felt(hairpin) < 3
+        assert findings("too_abrupt", humped(40, at=105, length=210))
+
+    def test_a_faster_road_needs_more(self) -> None:
+        long = Road(straight(400).plan, humped(200, at=300, length=400).profile)
+        assert not findings("too_abrupt", long)
+        assert findings("too_abrupt", long, World(speed_limit=100 / 3.6))
+
+    def test_a_crest_that_was_asked_for_may_lift_the_car_till_its_wheels_are_light(self) -> None:
+        asked = Brief(clauses=(Clause(kind="crest"),))
+        dip_first = Brief(clauses=(Clause(kind="dip"), Clause(kind="turn"), Clause(kind="straight")))
+        rule = plugins.find("rules", "too_abrupt")
+        assert not rule(humped(45), asked, WORLD)
+        (found,) = rule(humped(35), asked, WORLD)
+        assert "39 m would be enough for 9.81 m/s2" in found.sentence
+        assert rule(humped(45), Brief(clauses=(Clause(kind="straight"),)), WORLD)
+        # a crest behind a turn, where the words asked for a dip in front of it
+        turn = (Piece(70), Piece(40, 1 / 40, 1 / 40), Piece(150))
+        behind = Road(PieceCurve(20.0, 60.0, 0.0, turn), humped(45, at=220, length=260).profile)
+        before = Road(PieceCurve(20.0, 60.0, 0.0, turn), humped(45, at=45, length=260).profile)
+        assert rule(behind, dip_first, WORLD)
+        assert not rule(before, dip_first, WORLD)
+
+    def test_a_kink_of_a_road_from_a_file(self) -> None:
+        kinked = CubicProfile((0.0, 60.0), ((0.0, 0.05, 0.0, 0.0), (3.0, -0.05, 0.0, 0.0)))
+        assert "crest" in the_finding("too_abrupt", Road(straight(120).plan, kinked)).sentence
+
+    @given(st.floats(40, 400), st.floats(0.03, 0.15), st.floats(20, 180), st.floats(30, 130))
+    def test_finds_what_an_independent_measure_finds(
+        self, radius: float, grade: float, at: float, kmh: float
+    ) -> None:
+        road, world = (
+            humped(min(radius, at / grade, (200 - at) / grade) * 0.99, at, 200, grade),
+            World(speed_limit=kmh / 3.6),
+        )
+        measured = felt(road, world)
+        if abs(measured - 3) > 0.1:
+            assert bool(findings("too_abrupt", road, world)) == (measured > 3)
 
 
 class TestBelowFloor:

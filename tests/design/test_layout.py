@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.design.layout import keeps_clear, place, smallest_box, walk
-from roadgpt.design.spans import Span, cut, turn_span
+from roadgpt.design.spans import Slope, Span, cut, turn_span
 from roadgpt.road import Design, World, build
 
 
@@ -26,7 +26,7 @@ def spans_strategy() -> st.SearchStrategy[list[Span]]:
 
 
 def built(spans: list[Span], x: float = 0.0, y: float = 0.0, theta: float = 0.0) -> Design:
-    segments = tuple(part for span in spans for part in cut(span, [(span.length, 0.0)]))
+    segments = tuple(part for span in spans for part in cut(span, [Slope(span.length, 0.0)]))
     return Design(starting_point=(x, y, 0.0), theta=theta, segments=segments)
 
 
@@ -43,7 +43,7 @@ def test_the_walked_line_is_the_road_that_is_built(spans: list[Span]) -> None:
 @given(spans_strategy())
 def test_segments_keep_angle_and_radius_of_their_span(spans: list[Span]) -> None:
     for span in spans:
-        parts = cut(span, [(span.length, 2.5)])
+        parts = cut(span, [Slope(span.length, 2.5)])
         assert sum(part.distance for part in parts) == pytest.approx(span.length, abs=0.01)
         assert sum(part.turn_degrees for part in parts) == pytest.approx(span.turn, abs=1e-9)
         assert {part.incline for part in parts} == {2.5}

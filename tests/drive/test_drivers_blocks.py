@@ -13,9 +13,9 @@ from roadgpt.drive import View
 from roadgpt.drive.driving_line import Line, line_along, stations
 from roadgpt.drive.pedals import pedals
 from roadgpt.drive.pursuit import pursued
-from roadgpt.drive.speed_profile import SLOWEST, Limits, plan_speed
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, World
+from roadgpt.road.speed_profile import SLOWEST, Limits, plan_speed
 
 LIMITS = Limits(lateral=0.6, braking=0.6, traction=0.5, speed=30.0, power=1e9)
 

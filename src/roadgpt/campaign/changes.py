@@ -167,9 +167,12 @@ def _removed(genes: Genes, rng: Rng, world: World) -> Genes:
 def _backwards(genes: Genes, rng: Rng, world: World) -> Genes:
     """Driven from its end: what turned left turns right, what climbed falls."""
     del rng, world
+    radii = [0.0, *(gene.vertical_radius for gene in reversed(genes[1:]))]
     return tuple(
-        gene._replace(turn=-gene.turn if gene.turn else 0.0, incline=-gene.incline + 0.0)
-        for gene in reversed(genes)
+        gene._replace(
+            turn=-gene.turn if gene.turn else 0.0, incline=-gene.incline + 0.0, vertical_radius=radius
+        )
+        for gene, radius in zip(reversed(genes), radii, strict=True)
     )
 
 

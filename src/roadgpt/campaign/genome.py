@@ -14,9 +14,12 @@ import numpy as np
 from roadgpt.check.extremes import lowest
 from roadgpt.design.heights import rounded
 from roadgpt.design.layout import Place
-from roadgpt.design.spans import Span, cut, turn_span
+from roadgpt.design.repair.proposal import SEEN
+from roadgpt.design.spans import Slope, Span, cut, turn_span
+from roadgpt.design.vertical import Pace, joined, made_to_fit, runs_of, too_abrupt, widened
 from roadgpt.road import Design, Segment, World
 from roadgpt.road.alignment import LONGEST_TRANSITION, TRANSITION_SHARE
+from roadgpt.road.design import MAX_INCLINE
 from roadgpt.road.grades import profile_of
 
 SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn between two straights
@@ -38,6 +41,8 @@ class Gene(NamedTuple):
     """Metres, of the clothoid at either end of a turn."""
     incline: float = 0.0
     """Percent."""
+    vertical_radius: float = 0.0
+    """Metres, of the parabola from the slope of the gene before; 0 leaves it open."""
 
     @property
     def span(self) -> Span:
@@ -83,10 +88,11 @@ def _goes_on(before: Segment, segment: Segment, radius: float | None) -> bool:
 
 def _of_group(group: Sequence[Segment]) -> Iterator[Gene]:
     first = group[0]
+    vertical = first.vertical_radius or 0.0
     length = sum(segment.distance for segment in group)
     turn = sum(segment.turn_degrees for segment in group)
     if not turn:
-        yield Gene(length=length, incline=first.incline)
+        yield Gene(length=length, incline=first.incline, vertical_radius=vertical)
         return
     ramp = first.transition or min(TRANSITION_SHARE * first.distance, LONGEST_TRANSITION)
     radius = (length - ramp) / radians(abs(turn))
@@ -96,7 +102,8 @@ def _of_group(group: Sequence[Segment]) -> Iterator[Gene]:
         radius = first.radius
     straight = Gene(length=spare / 2, incline=first.incline)
     bend = Gene(turn=round(turn, 6), radius=radius, ramp=ramp, incline=first.incline)
-    yield from (straight, bend, straight) if spare > SPARE else (bend,)
+    row = (straight, bend, straight) if spare > SPARE else (bend,)
+    yield from (row[0]._replace(vertical_radius=vertical), *row[1:])
 
 
 def spans_of(genes: Genes) -> list[Span]:
@@ -104,18 +111,36 @@ def spans_of(genes: Genes) -> list[Span]:
     return [gene.span for gene in genes]
 
 
-def segments_of(genes: Genes) -> tuple[Segment, ...]:
-    """RoadGPT's segments; no slope lies so near to where flat ends that rounding would decide what it is."""
+def segments_of(genes: Genes, world: World) -> tuple[Segment, ...]:
+    """RoadGPT's segments; no slope lies so near to where flat ends that rounding would decide what it is.
+
+    Slopes that change too fast for the speed are moved towards each other.
+    """
+    pace = Pace.along(spans_of(genes), world)
+    segments = joined(_cut(genes, [gene.incline for gene in genes]), pace)
+    if not too_abrupt(segments, pace):
+        return segments
+    most = min(100 * world.max_grade, MAX_INCLINE)
+    inclines = [gene.incline for gene in genes]
+    lengths = [gene.span.length for gene in genes]
+    short = {i for i, gene in enumerate(genes) if not gene.turn and lengths[i] < SEEN}
+    runs = runs_of(inclines, short)
+    grades = made_to_fit(inclines, lengths, runs, [(-most, most)] * len(genes), pace)
+    return widened(joined(_cut(genes, grades), pace), pace)
+
+
+def _cut(genes: Genes, grades: Sequence[float]) -> list[Segment]:
+    """The segments of genes with these inclines, percent."""
     out: list[Segment] = []
-    for gene in genes:
-        span = gene.span
-        out += cut(span, [(span.length, float(rounded(np.array(gene.incline))) + 0.0)])
-    return tuple(out)
+    for gene, grade in zip(genes, grades, strict=True):
+        span, incline = gene.span, float(rounded(np.array(grade))) + 0.0
+        out += cut(span, [Slope(span.length, incline, gene.vertical_radius or None)])
+    return out
 
 
 def design_of(genes: Genes, place: Place, world: World) -> Design:
     """The design that lies at a place of the map, its lowest point a little above the ground."""
-    segments = segments_of(genes)
+    segments = segments_of(genes, world)
     profile = profile_of(segments, 0.0)
     _, sag = lowest(profile, profile.stations[-1])
     ground = max(0.0, world.z_floor) + ABOVE_GROUND

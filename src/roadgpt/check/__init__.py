@@ -27,6 +27,7 @@ RULE_SETS = {
         "inside_map",
         "below_floor",
         "too_steep",
+        "too_abrupt",
         "too_tight",
         "no_overlap",
         "promises",

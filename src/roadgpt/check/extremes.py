@@ -10,6 +10,8 @@ from roadgpt.geometry import GradeProfile, PieceCurve, Profile
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
+KINK = 2.0  # m: less than a car's wheelbase, so that no wheel feels a shorter one as less
+
 
 def tightest(road: Road) -> tuple[float, float]:
     """Station and curvature (1/m, left positive) of the tightest place; the first one of several."""
@@ -29,6 +31,20 @@ def steepest(road: Road) -> tuple[float, float]:
         s = _stations(road.profile, road.length)
         return _greatest(s, road.profile.grade(s))
     return _greatest(road.sample().s, road.sample().grade)
+
+
+def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
+    """Where the grade changes: stations (m) of begin and end, and the change per metre, negative on a crest.
+
+    Parabolas as they are; of other profiles every stretch of about ``KINK`` metres, in which a kink counts
+    as spread over it.
+    """
+    if isinstance(road.profile, GradeProfile):
+        s = _stations(road.profile, road.length)
+    else:
+        s = np.linspace(0.0, road.length, max(1, round(road.length / KINK)) + 1)
+    grade = road.profile.grade(s)
+    return s[:-1], s[1:], np.diff(grade) / np.diff(s)
 
 
 def lowest(profile: Profile, length: float) -> tuple[float, float]:

@@ -6,10 +6,12 @@ from math import inf
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
+from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.offers import Fits, offer
 from roadgpt.road import World
 
 OF_THE_PLAN = ("too large", "over itself", "longer than was asked for", "like an earlier road")
+TOO_ABRUPT = "slopes that change too fast for the speed"
 MANY = 60  # drafts that fitted on the map and broke a promise: then the map was not what stood in the way
 
 
@@ -38,7 +40,24 @@ def advice(
         return f"{wishes} not fit into a road of {outline.length} m; ask for a longer road or for fewer turns"
     if reason == "like an earlier road":
         return "every further road is like an earlier one; ask for fewer roads or leave more open"
+    if reason == TOO_ABRUPT:
+        return too_fast(world, None)
     return f"no road could keep every wish ({reason}); leave one of them open or use a larger --map-size"
+
+
+def too_fast(world: World, slower: float | None) -> str:
+    """One sentence: the slopes that were asked for would have crests and dips too abrupt for the speed.
+
+    Args:
+        world: its speed limit.
+        slower: km/h, at which they can be had, where that is known.
+    """
+    limit = f"a speed limit of {3.6 * world.speed_limit:.3g} km/h"
+    less = f"use --speed-limit {slower:g}" if slower else "use a lower --speed-limit"
+    return (
+        f"the slopes that were asked for change too fast for {limit}: the crests and dips between them would "
+        f"lift or press the car by more than {MOST:g} m/s2; ask for gentler or longer slopes, or {less}"
+    )
 
 
 def wishes_of(outline: Outline) -> str:

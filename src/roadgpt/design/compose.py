@@ -4,6 +4,7 @@ lead-in | turn | joining straight | turn | asked-for straight | turn | lead-out
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 from math import inf
 
 import numpy as np
@@ -13,12 +14,15 @@ from roadgpt.brief.room import longest_straight
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, inside, turn_rooms
 from roadgpt.design.heights import Windows
-from roadgpt.design.order import Order
+from roadgpt.design.order import Order, is_hairpin
 from roadgpt.design.spans import Span
 from roadgpt.road import World
 
 LEAD_MEAN = 26.0  # m more than the least, of lead-in and lead-out
 JOIN_MEAN = 16.0  # m more than the least, between turns
+LEG = 33.0  # m between hairpins, of which 30 are measured as straight
+LEG_MEAN = 25.0  # m more than that
+CRAMPED = 0.5  # haste from which hairpins may follow each other as other turns do
 LONELY_MEAN = 60.0  # m more than the least, around the only turn of a road
 APPROACH = 35.0  # m more in front of a turn of a hard road: room to gain speed
 DIRECT = 0.35  # chance that turns of opposite hands follow each other with hardly a straight
@@ -51,8 +55,13 @@ def composed(
     ]
     turns: list[Span | None] = list(drawn_turns(rooms, outline, world, rng, haste))
     spans: list[Span] = []
-    for before, gap, after in zip([None, *turns], order.gaps, [*turns, None], strict=True):
-        spans += gap_between(before, gap, after, outline, windows, rng, haste)
+    between = [is_hairpin(a) and is_hairpin(b) for a, b in pairwise(order.turns)]
+    legs = [False, *between, False][: len(order.gaps)]
+    for before, gap, after, leg in zip([None, *turns], order.gaps, [*turns, None], legs, strict=True):
+        if leg and not gap and haste < CRAMPED:
+            spans.append(Span(free_straight(rng, haste, LEG, LEG_MEAN)))
+        else:
+            spans += gap_between(before, gap, after, outline, windows, rng, haste)
         if after:
             spans.append(after)
     if outline.hills:
@@ -134,11 +143,12 @@ def _asked_gap(
             neighbours.append(before.grade)
         if number == len(wishes) - 1 and after:
             neighbours.append(after.grade)
-        changes = sum(windows.part(grade, other) for other in neighbours)
-        least = max(LEAD, changes * _change(grade) * (1 - 0.3 * haste) + 8.0 if changes else 0.0)
+        changes = [
+            _change(grade, other, windows, haste) for other in neighbours if windows.part(grade, other)
+        ]
+        least = max(LEAD, sum(changes) + 8.0 if changes else 0.0)
         if number and windows.alike(grades[number - 1], grade):
-            ledge = Range(STEP_ASIDE, STEP_ASIDE)
-            out.append(Span(STEP_ASIDE, grade=windows.other(grade), promised=ledge))
+            out.append(_ledge(grades[number - 1], grade, windows))
         length = drawn_straight(wish, rng, haste, least, mean)
         out.append(Span(length, grade=grade, promised=wish.length or OPEN))
     if after and windows.part(grades[-1], after.grade):
@@ -146,12 +156,25 @@ def _asked_gap(
     return out
 
 
-def _change(grade: Range | None) -> float:
-    """Metres of straight for one change of grade at its end: more where a steep one was promised narrowly."""
-    if grade is None:
-        return CHANGE
-    steep, width = max(abs(grade.lo), abs(grade.hi)), max(grade.hi - grade.lo, 0.5)
-    return max(CHANGE, min(RAMP_OF_GRADE * steep * steep / width, LONGEST_CHANGE))
+def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Span:
+    """A short straight of another slope, by which those before and behind it are seen to be two."""
+    grade = windows.other(after)
+    changes = windows.between(before, grade) + windows.between(grade, after)
+    length = max(STEP_ASIDE, windows.least * changes / 100)
+    return Span(length, grade=grade, promised=Range(length, length))
+
+
+def _change(grade: Range | None, other: Range | None, windows: Windows, haste: float) -> float:
+    """Metres of straight for a change of grade at its end: more where a steep one was promised narrowly.
+
+    As long as nothing presses, half a comfortable parabola between the two promises and as much again.
+    """
+    most = CHANGE
+    if grade is not None:
+        steep, width = max(abs(grade.lo), abs(grade.hi)), max(grade.hi - grade.lo, 0.5)
+        most = max(CHANGE, min(RAMP_OF_GRADE * steep * steep / width, LONGEST_CHANGE))
+    comfortable = windows.comfort * windows.between(grade, other) / 100
+    return max(most * (1 - 0.3 * haste), min(comfortable, LONGEST_CHANGE) * (1 - haste))
 
 
 def _with_hills(spans: list[Span], hills: Range, rng: np.random.Generator) -> list[Span]:

@@ -28,6 +28,7 @@ WIDE_ANGLE = 80.0  # degrees of a turn whose radius is wider than others
 LEAD = 16.5  # m: a straight before the first or after the last turn is measured as 10 m or more
 SEPARATE = 17.5  # m: turns of one hand with so much between them are measured as two
 KEPT = 0.5  # degrees by which a turn may still leave the angle that makes a sum right
+OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow for a steep slope, and at most
 TIGHTER = 1.35  # hard roads: radii are at most so many times the least one
 
 
@@ -230,7 +231,8 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
         return free_straight(rng, haste, low, mean)
     low = max(low, 0.0)
     share = 0.3 + 0.4 * rng.random()
-    return max(low + share * (high - low), min(least, low + 0.6 * (high - low)))
+    most = low + min(OFF_TOP + 3 * haste, UP_TO) * (high - low)
+    return max(low + share * (high - low), min(least, most))
 
 
 def inside(least: float) -> float:

@@ -8,8 +8,12 @@ import numpy as np
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import STEEPEST, Range, overlap
 from roadgpt.check.measures import LEVEL
-from roadgpt.design.ramps import Inclines, eased
-from roadgpt.design.spans import TENTH, Span
+from roadgpt.check.rules.too_abrupt import MOST
+from roadgpt.design.order import is_hairpin
+from roadgpt.design.ramps import eased
+from roadgpt.design.softening import held, one_way, softened_values, steep_kept
+from roadgpt.design.spans import TENTH, Inclines, Slope, Span
+from roadgpt.design.vertical import COMFORT, Pace
 from roadgpt.errors import DesignError
 from roadgpt.road import World
 
@@ -25,10 +29,11 @@ NARROW = 3.0  # percentage points, of a promise that a ramp could break
 BRIEF = 45.0  # m: a straight so short that ramps are a good part of it
 STEADY = 0.5  # chance that a feature keeps the grade of the one before, if it may
 UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
+ROLL = 60.0  # m for which a road that rolls keeps its grade at least
 HILL = 34.0  # m: the shortest climb or fall of a hilly road
 HILL_GRADES = (4.0, 8.5)  # percent
 CREST = (2.5, 4.5)  # percent up to a bend of a hard road, and down in it
-RAMPED = 6.0  # percent: a place so steep shows best where its neighbours slope the other way
+STEADY_SHARE = (0.75, 1.25)  # of one grade, that of the places of a road with hairpins
 BISECTIONS = 40
 
 
@@ -41,6 +46,10 @@ class Windows:
             outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi) if outline.steepest else inf
         )
         self.limit = Range(-min(limit, steepest), min(limit, steepest))
+        self.comfort = world.speed_limit**2 / COMFORT
+        """Metres: the vertical radius that is comfortable at the speed limit."""
+        self.least = world.speed_limit**2 / MOST
+        """Metres: the least that the rule allows there."""
         self.base: Range | None = None
         self.way = {"up": "uphill", "down": "downhill"}.get(outline.grade or "", "flat")
         self.allowed = {"up": Range(-1, inf), "down": Range(-inf, 1), "flat": Range(-1, 1)}.get(
@@ -95,14 +104,17 @@ class Windows:
         """A grade that is seen to differ."""
         if self.base and not (self.base.lo <= 0 <= self.base.hi):
             return Range(0, 0)
-        if grade and not self.base and max(grade.lo, -grade.hi) >= RAMPED:
-            return Range(-5, -3) if grade.lo > 0 else Range(3, 5)
         return Range(0, 0) if grade is None or grade.lo > 1 or grade.hi < -1 else Range(3.5, 6)
 
     @staticmethod
     def part(one: Range | None, other: Range | None) -> bool:
         """Must the grade change between features with these promises?"""
         return bool(one and other and (one.lo > other.hi or other.lo > one.hi))
+
+    @staticmethod
+    def between(one: Range | None, other: Range | None) -> float:
+        """Percentage points by which the grade must change at least between features with these promises."""
+        return max(one.lo - other.hi, other.lo - one.hi, 0.0) if one and other else 0.0
 
     def alike(self, one: Range | None, other: Range | None) -> bool:
         """Would straights with these promises be measured as one: both climbing, both falling, or alike?"""
@@ -118,10 +130,28 @@ def drawn_in(grade: Range) -> Range:
 
 
 def drawn_heights(
-    spans: Sequence[Span], outline: Outline, windows: Windows, rng: np.random.Generator
+    spans: Sequence[Span],
+    outline: Outline,
+    windows: Windows,
+    rng: np.random.Generator,
+    pace: Pace,
+    ease: float = 1.0,
+    bumps: bool = False,
 ) -> list[Inclines]:
-    """Inclines of every span, drawn; rounded to a tenth of a percent."""
-    if outline.hills and outline.hills.lo > 0:
+    """Inclines of every span, drawn; rounded to a tenth of a percent.
+
+    Args:
+        spans: of a draft, in driving order.
+        outline: what was asked for.
+        windows: the grades that it allows.
+        rng: source of chance.
+        pace: the vertical radii that the speeds on this plan ask for.
+        ease: share of comfort that changes of grade leave room for; 0 is what the rule allows.
+        bumps: crests or dips were asked for.
+    """
+    is_hilly = bool(outline.hills and outline.hills.lo > 0)
+    if is_hilly:
+        assert outline.hills is not None
         parts = _hilly(spans, outline.hills, rng)
         grades = [g for _, g, _ in parts]
         owners = [(i, length) for i, _, length in parts]
@@ -133,9 +163,18 @@ def drawn_heights(
     values = np.clip(grades, [r.lo for r in limits], [r.hi for r in limits])
     if outline.steepest and outline.steepest.lo > 0:
         values = _with_steepest(values, lengths, limits, outline.steepest, rng)
+        limits = steep_kept(values, lengths, limits, outline.steepest.lo)
+    if ease > 0:
+        limits = [
+            held(spans[i], value, room) for (i, _), value, room in zip(owners, values, limits, strict=True)
+        ]
+    if is_hilly or is_mountainous(outline):
+        limits = [one_way(value, room) for value, room in zip(values, limits, strict=True)]
+    values = softened_values(values, lengths, limits, pace, ease, bumps)
     if outline.climb:
         values = _with_climb(values, lengths, limits, outline.climb, rng)
-    return eased(spans, _shared_out(spans, owners, rounded(values)), windows.limit)
+        values = softened_values(values, lengths, limits, pace, ease, bumps)
+    return eased(spans, _shared_out(spans, owners, rounded(values)), windows.limit, pace, ease, bumps)
 
 
 def rounded(values: np.ndarray) -> np.ndarray:
@@ -153,7 +192,8 @@ def _grades(
     if outline.hard and all(span.grade in (None, windows.base) for span in spans):
         return _crests(spans, windows, rng)
     if not windows.base and not any(span.grade for span in spans):
-        return _free_grades(spans, windows, rng)
+        free = _steady_grades if is_mountainous(outline) else _free_grades
+        return free(spans, windows, rng)
     out: list[float] = []
     last: tuple[Range | None, float] = (None, 0.0)
     for span in spans:
@@ -199,12 +239,33 @@ def _free_grades(spans: Sequence[Span], windows: Windows, rng: np.random.Generat
     low = min(GENTLE, top)
     if style < LEVEL_SHARE + SLOPE_SHARE:
         return [float(rng.choice((-1, 1)) * (low + rng.random() * (top - low)))] * len(spans)
-    grade, out = 0.0, []
+    out, grade, so_far = [], 0.0, inf
     for span in spans:
         if span.turn or rng.random() < 0.5:
-            grade = float(rng.choice((-1, 0, 1), p=(0.4, 0.2, 0.4)) * (low + rng.random() * (top - low)))
+            drawn = float(rng.choice((-1, 0, 1), p=(0.4, 0.2, 0.4)) * (low + rng.random() * (top - low)))
+            if so_far >= ROLL:
+                grade, so_far = drawn, 0.0
+        so_far += span.length
         out.append(grade)
     return out
+
+
+def is_mountainous(outline: Outline) -> bool:
+    """Does the road have hairpins one after the other, which take it up or down a slope?
+
+    Where the words speak of heights at a place or of hills, they decide.
+    """
+    if outline.grade or outline.hills or any(group.feature.grade for group in outline.groups):
+        return False
+    return sum(group.lo for group in outline.groups if is_hairpin(group.feature)) > 1
+
+
+def _steady_grades(spans: Sequence[Span], windows: Windows, rng: np.random.Generator) -> list[float]:
+    """All up or all down, here steeper and there less."""
+    top = min(STEEP, windows.limit.hi)
+    low = min(2 * GENTLE, top)
+    way = float(rng.choice((-1, 1))) * (low + rng.random() * (top - low))
+    return [way * _between(Range(*STEADY_SHARE), rng) for _ in spans]
 
 
 def _hilly(spans: Sequence[Span], hills: Range, rng: np.random.Generator) -> list[tuple[int, float, float]]:
@@ -279,14 +340,16 @@ def _shared_out(
     """Inclines per span; a joining straight takes its neighbours' grades, half each where they differ."""
     out: list[Inclines] = [[] for _ in spans]
     for (index, length), value in zip(owners, values, strict=True):
-        out[index].append((length, float(value)))
+        out[index].append(Slope(length, float(value)))
     for index, inclines in enumerate(out):
-        if not np.isnan(inclines[0][1]):
+        if not np.isnan(inclines[0].incline):
             continue
-        before = next((out[i][-1][1] for i in range(index - 1, -1, -1) if not np.isnan(out[i][-1][1])), None)
-        after = next((o[0][1] for o in out[index + 1 :] if not np.isnan(o[0][1])), None)
+        before = next(
+            (out[i][-1].incline for i in range(index - 1, -1, -1) if not np.isnan(out[i][-1].incline)), None
+        )
+        after = next((o[0].incline for o in out[index + 1 :] if not np.isnan(o[0].incline)), None)
         first, last = (before if before is not None else after), (after if after is not None else before)
-        half, incline = inclines[0][0] / 2, first or 0.0
+        half, incline = inclines[0].length / 2, first or 0.0
         same = first == last
-        out[index] = [(2 * half, incline)] if same else [(half, incline), (half, last or 0.0)]
+        out[index] = [Slope(2 * half, incline)] if same else [Slope(half, incline), Slope(half, last or 0.0)]
     return out

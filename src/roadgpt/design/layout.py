@@ -48,6 +48,14 @@ class Place(NamedTuple):
 
 def walk(spans: Sequence[Span]) -> Line:
     """The centre line of spans, in steps of about a metre."""
+    knots, bends, length = bends_of(spans)
+    s = np.linspace(0.0, length, max(2, round(length / STEP)) + 1)
+    steps = np.exp(1j * _headings(s[:-1] + s[1] / 2, knots, bends)) * s[1]
+    return Line(s, np.concatenate([[0j], np.cumsum(steps)]))
+
+
+def bends_of(spans: Sequence[Span]) -> tuple[Array, Array, float]:
+    """Stations (m), curvatures there (1/m), linear in between and 0 after the last; and the length."""
     knots, bends, at = [0.0], [0.0], 0.0
     for span in spans:
         if span.turn:
@@ -55,9 +63,7 @@ def walk(spans: Sequence[Span]) -> Line:
             knots += [at, at + span.ramp, at + span.length - span.ramp, at + span.length]
             bends += [0.0, k, k, 0.0]
         at += span.length
-    s = np.linspace(0.0, at, max(2, round(at / STEP)) + 1)
-    steps = np.exp(1j * _headings(s[:-1] + s[1] / 2, np.array(knots), np.array(bends))) * s[1]
-    return Line(s, np.concatenate([[0j], np.cumsum(steps)]))
+    return np.array(knots), np.array(bends), at
 
 
 def _headings(s: Array, knots: Array, bends: Array) -> Array:

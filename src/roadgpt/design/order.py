@@ -12,6 +12,8 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range, overlap
 from roadgpt.errors import DesignError
 
+HAIRPINS = ("hairpin", "switchback")  # names of turns that take a road up or down a slope
+SEVERAL = 3  # hairpins, where the words say that there are some and not how many
 USUAL = (0.10, 0.20, 0.26, 0.20, 0.14, 0.10)  # chances of 1, 2, ... turns on a road whose words leave it open
 MORE = (0.45, 0.30, 0.17, 0.08)  # chances of 0, 1, ... turns more than "at least" asks for
 SWITCH = 0.6  # chance that a turn goes the other way than the one before, where that is open
@@ -36,6 +38,11 @@ class Order(NamedTuple):
 
     turns: tuple[Feature, ...]
     gaps: tuple[tuple[Feature, ...], ...]
+
+
+def is_hairpin(feature: Feature) -> bool:
+    """Was the turn called a hairpin or a switchback?"""
+    return feature.name in HAIRPINS
 
 
 def drawn_order(outline: Outline, rng: np.random.Generator, plain: bool) -> Order:
@@ -79,6 +86,11 @@ def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> li
     """Features per group; those of turns add up to a number of turns that was asked for."""
     groups = outline.groups
     counts = [group.lo for group in groups]
+    if not plain:
+        counts = [
+            SEVERAL if group.lo == 2 and group.hi is None and is_hairpin(group.feature) else group.lo
+            for group in groups
+        ]
     open_ = [i for i, g in enumerate(groups) if g.feature.kind == "turn" and g.hi != g.lo]
     total = sum(count for count, g in zip(counts, groups, strict=True) if g.feature.kind == "turn")
     missing = int(max(outline.turns.lo - total, _turned(outline).lo - total, 0))

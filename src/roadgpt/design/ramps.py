@@ -1,53 +1,93 @@
 """Ramps: where straights of different grades meet, joints and grades move until they are measured as asked.
 
 The parabola that joins two grades belongs to both straights. A level one is measured only where the road is
-level, so it loses length to a steep neighbour, and the mean grade of the steep one falls.
+level, so it loses length to a steep neighbour, and the mean grade of the steep one falls. A short and steep
+straight has no room for comfortable parabolas: there they bend more, as little as it takes.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
-from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.brief.words import Range
-from roadgpt.check.measures import LEVEL
-from roadgpt.design.spans import Span
+from roadgpt.check.measures import HALF_WINDOW, LEVEL
+from roadgpt.design.spans import Inclines, Slope, Span
+from roadgpt.design.vertical import ROUNDING, Pace
 from roadgpt.geometry.curve import Array
-from roadgpt.road.grades import CREST_RADIUS, MOST_OF_SEGMENT
+from roadgpt.road.grades import parabolas
 
 ROUNDS = 8
+PUSHED = 1.0  # percentage points that a grade may be written off what was drawn, so that its mean is right
 SHORTEST = 4.0  # m that a move leaves of a straight
+PLACES = 61  # around a joint, at which the grade over a window is looked at
 STATION = 0.5  # m between the stations that a mean grade is taken from
-STEPS = (inf, 16.0, 12.0, 9.0, 6.0)  # m of mean grade at a joint, the longest first; inf: none
-HALF_OF_STEP = (1 + MOST_OF_SEGMENT) / 2  # half of what the change takes, step and parabolas, by its length
-Inclines = list[tuple[float, float]]
-"""Lengths in metres and inclines in percent, in order."""
+EASES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.0)  # shares of comfort that are tried; 0: what the rule allows
+SLACK = 0.4  # percentage points of what was promised, which drafts keep off, that a last resort may take
+EASES_OF_BUMPS = (0.12, 0.08)  # besides, before the last of these, where a crest or a dip was asked for
+GENTLER = (
+    0.3,
+    0.45,
+    0.6,
+    0.75,
+    0.9,
+)  # shares of the way to the gentle end of a promise, tried where nothing else fits
 
 
-def eased(spans: Sequence[Span], inclines: Sequence[Inclines], limit: Range) -> list[Inclines]:
+def eased(
+    spans: Sequence[Span], inclines: Sequence[Inclines], limit: Range, pace: Pace, ease: float, bumps: bool
+) -> list[Inclines]:
     """The inclines with joints moved inside rows of straights, and narrow grades kept on the whole.
-
-    A short and steep straight has no room for the usual parabolas. There a joint gets a short step of the
-    mean grade, which bends the profile more, as little as it takes.
 
     Args:
         spans: of a draft, in driving order.
-        inclines: lengths in metres and inclines in percent of each.
+        inclines: slopes of each.
         limit: percent that no incline may leave.
+        pace: radii that the speeds ask for.
+        ease: share of comfort that is tried first.
+        bumps: crests and dips were asked for, so that the last resort is what wheels can follow.
     """
     out = [*inclines]
+    starts = np.cumsum([0.0, *(span.length for span in spans)])
     for first, last in _rows(spans, inclines):
         row = spans[first:last]
-        drawn = [inclines[i][0][1] for i in range(first, last)]
-        ways = (_settled(row, drawn, limit, step) for step in STEPS)
-        best = next((way for way in ways if way.keeps(row)), None) or _settled(row, drawn, limit, inf)
+        drawn = [inclines[i][0].incline for i in range(first, last)]
+        best: _Row | None = None
+        for share, gentler in _tries(ease, bumps):
+            at = [float(s) for s in starts[first + 1 : last]]
+            softer = [_softer(grade, span, gentler) for grade, span in zip(drawn, row, strict=True)]
+            way = _settled(row, softer, limit, [pace.eased(s, share, bumps) for s in at])
+            fits = way.fits([pace.least(s, bumps and share == 0) for s in at])
+            if best is None or fits:
+                best = way
+            if fits and way.keeps(row, softer, 0.0 if share else SLACK):
+                break
+        assert best is not None
         out[first:last] = best.inclines()
     return out
 
 
-class _Row(NamedTuple):
+def _tries(ease: float, bumps: bool) -> list[tuple[float, float]]:
+    """Shares of comfort, and how far grades are drawn towards the gentle end of their promise."""
+    shares = (*EASES[:-1], *(EASES_OF_BUMPS if bumps else ()), EASES[-1])
+    return [(share, 0.0) for share in shares if share <= ease] + [(0.0, gentler) for gentler in GENTLER]
+
+
+def _near(grade: float, wanted: Range, slack: float) -> bool:
+    return wanted.lo - slack <= grade <= wanted.hi + slack
+
+
+def _softer(grade: float, span: Span, share: float) -> float:
+    if span.grade is None or not _is_fixed(span):
+        return grade
+    gentle = min(max(0.0, span.grade.lo), span.grade.hi)
+    return grade + share * (gentle - grade)
+
+
+@dataclass(frozen=True)
+class _Row:
     """Straights that follow each other, settled."""
 
     joints: Array
@@ -56,39 +96,36 @@ class _Row(NamedTuple):
     """Percent."""
     edges: Array
     """Metres, where each straight is measured to end."""
-    step: float
-    """Metres that the change of grade takes at a joint where the usual parabola is longer."""
+    radii: Sequence[float]
+    """Metres, of the parabolas at the inner joints."""
 
-    def keeps(self, row: Sequence[Span]) -> bool:
-        """Is every straight with a promised length measured as steep as promised, as a whole or inside?"""
-        means = _means(self.joints, self.grades, self.edges, self.step)
-        off = np.diff(self.edges, prepend=0.0) / 4
-        inner = _between(
-            self.joints,
-            self.grades,
-            self.step,
-            np.concatenate([[0.0], self.edges[:-1]]) + off,
-            self.edges - off,
-        )
+    def keeps(self, row: Sequence[Span], drawn: Sequence[float], slack: float) -> bool:
+        """Is every straight with a promised length as steep as promised, and written hardly steeper?"""
+        means = _means(self.joints, self.grades, self.edges, self.radii)
+        inner = _inner(self.joints, self.grades, self.edges, self.radii)
+        if np.abs(self.grades - drawn).max() > PUSHED:
+            return False
         return all(
-            span.grade is None or 0 in span.grade or mean in span.grade or middle in span.grade
+            span.grade is None
+            or 0 in span.grade
+            or _near(mean, span.grade, slack)
+            or _near(middle, span.grade, slack)
             for span, mean, middle in zip(row, means, inner, strict=True)
             if _is_fixed(span)
         )
 
+    def fits(self, least: Sequence[float]) -> bool:
+        """Is no parabola smaller than the rule allows?"""
+        halves = _halves(self.joints, self.grades, self.radii)
+        return bool(np.all(halves >= np.abs(np.diff(self.grades)) * np.array(least) / 200 * (1 - ROUNDING)))
+
     def inclines(self) -> list[Inclines]:
-        """Lengths and inclines of every straight, the steps at its end included."""
-        lengths, out = np.diff(self.joints, prepend=0.0), list[Inclines]()
-        usual = _halves(self.joints, self.grades, inf)
-        before = 0.0
-        for i, (length, grade) in enumerate(zip(lengths.tolist(), self.grades.tolist(), strict=True)):
-            after = self.step if i < len(usual) and usual[i] > self.step * HALF_OF_STEP else 0.0
-            own = [(length - before - after / 2, grade)]
-            if after:
-                own.append((after, round(float(self.grades[i : i + 2].mean()), 1)))
-            out.append(own)
-            before = after / 2
-        return out
+        """The slope of every straight, and the radius from the one before."""
+        lengths = np.diff(self.joints, prepend=0.0).tolist()
+        return [
+            [Slope(length, grade, radius)]
+            for length, grade, radius in zip(lengths, self.grades.tolist(), [None, *self.radii], strict=True)
+        ]
 
 
 def _rows(spans: Sequence[Span], inclines: Sequence[Inclines]) -> Iterator[tuple[int, int]]:
@@ -106,17 +143,18 @@ def _is_fixed(span: Span) -> bool:
     return span.promised is not None and span.promised.hi < inf
 
 
-def _settled(row: Sequence[Span], drawn: Sequence[float], limit: Range, step: float) -> _Row:
+def _settled(row: Sequence[Span], drawn: Sequence[float], limit: Range, radii: Sequence[float]) -> _Row:
     """Lengths and inclines by which every straight is measured as it was drawn."""
     wanted = np.cumsum([span.length for span in row])
     joints, grades = wanted.copy(), np.array(drawn, dtype=float)
     movable = np.array([_is_fixed(one) or _is_fixed(other) for one, other in pairwise(row)])
     for _ in range(ROUNDS):
         edges = joints.copy()
-        edges[:-1] += _shifts(joints, grades, step)
-        means = _means(joints, grades, edges, step)
+        edges[:-1] += _shifts(joints, grades, radii)
+        means = _means(joints, grades, edges, radii)
+        inner = _inner(joints, grades, edges, radii)
         for i, span in enumerate(row):
-            if span.grade and _is_fixed(span) and 0 not in span.grade:
+            if span.grade and _is_fixed(span) and 0 not in span.grade and inner[i] not in span.grade:
                 grades[i] += min(max(means[i], span.grade.lo), span.grade.hi) - means[i]
                 grades[i] = min(max(grades[i], span.grade.lo), span.grade.hi)
         grades = np.clip(grades, limit.lo, limit.hi)
@@ -124,8 +162,8 @@ def _settled(row: Sequence[Span], drawn: Sequence[float], limit: Range, step: fl
         joints = _spread(joints)
     grades = np.round(grades, 1)
     edges = joints.copy()
-    edges[:-1] += _shifts(joints, grades, step)
-    return _Row(joints, grades, edges, step)
+    edges[:-1] += _shifts(joints, grades, radii)
+    return _Row(joints, grades, edges, radii)
 
 
 def _spread(joints: Array) -> Array:
@@ -136,32 +174,50 @@ def _spread(joints: Array) -> Array:
     return np.asarray(np.where(most > steps - SHORTEST, np.minimum(up, most), joints))
 
 
-def _halves(joints: Array, grades: Array, step: float) -> Array:
-    """Half of what the change of grade takes at every inner joint, as ``road.grades`` makes it, or a step."""
-    lengths = np.diff(joints, prepend=0.0)
-    room = MOST_OF_SEGMENT * np.minimum(lengths[:-1], lengths[1:]) / 2
-    usual = np.minimum(CREST_RADIUS * np.abs(np.diff(grades)) / 200, room)
-    return np.asarray(np.minimum(usual, step * HALF_OF_STEP))
+def _halves(joints: Array, grades: Array, radii: Sequence[float]) -> Array:
+    """Half of what the change of grade takes at every inner joint, as the road will be built."""
+    out = np.zeros(len(joints) - 1)
+    for parabola in parabolas(np.diff(joints, prepend=0.0).tolist(), (grades / 100).tolist(), [None, *radii]):
+        out[parabola.number - 1] = parabola.half
+    return out
 
 
-def _shifts(joints: Array, grades: Array, step: float) -> Array:
-    """How far behind its joint the grade changes between climbing, level and falling; 0 where it does not."""
+def _shifts(joints: Array, grades: Array, radii: Sequence[float]) -> Array:
+    """How far behind its joint the grade is measured to become a climb, level or a fall; else 0."""
+    out = np.zeros(len(joints) - 1)
+    halves = _halves(joints, grades, radii)
     classes = np.where(np.abs(grades) >= LEVEL, np.sign(grades), 0.0)
-    before, after = grades[:-1], grades[1:]
-    changes = classes[:-1] != classes[1:]
-    edge = LEVEL * (classes[:-1] + classes[1:])  # 0 between climbing and falling
-    share = (edge - before) / np.where(changes, after - before, 1.0)
-    return np.asarray(np.where(changes, (2 * share - 1) * _halves(joints, grades, step), 0.0))
+    for i, half in enumerate(halves.tolist()):
+        before, after = float(grades[i]), float(grades[i + 1])
+        if classes[i] == classes[i + 1]:
+            continue
+        edge = LEVEL * (classes[i] + classes[i + 1])  # 0 between climbing and falling
+        u = np.linspace(-half - HALF_WINDOW, half + HALF_WINDOW, PLACES)
+        share = (_turned(u + HALF_WINDOW, half) - _turned(u - HALF_WINDOW, half)) / (2 * HALF_WINDOW)
+        out[i] = np.interp((edge - before) / (after - before), share, u)
+    return out
 
 
-def _means(joints: Array, grades: Array, edges: Array, step: float) -> Array:
+def _turned(u: Array, half: float) -> Array:
+    """Integral over the way of the share of a change of grade that is behind, at places off its joint."""
+    inside = np.clip(u + half, 0.0, 2 * half) ** 2 / (4 * max(half, 1e-9))
+    return np.asarray(inside + np.maximum(u - half, 0.0))
+
+
+def _means(joints: Array, grades: Array, edges: Array, radii: Sequence[float]) -> Array:
     """Percent, the mean grade of each straight between the places where it is measured to begin and end."""
-    return _between(joints, grades, step, np.concatenate([[0.0], edges[:-1]]), edges)
+    return _between(joints, grades, radii, np.concatenate([[0.0], edges[:-1]]), edges)
 
 
-def _between(joints: Array, grades: Array, step: float, first: Array, last: Array) -> Array:
+def _inner(joints: Array, grades: Array, edges: Array, radii: Sequence[float]) -> Array:
+    """Percent, the mean grade of the middle half of each straight as it is measured."""
+    off = np.diff(edges, prepend=0.0) / 4
+    return _between(joints, grades, radii, np.concatenate([[0.0], edges[:-1]]) + off, edges - off)
+
+
+def _between(joints: Array, grades: Array, radii: Sequence[float], first: Array, last: Array) -> Array:
     """Percent, mean grades from some places to others, metres."""
-    halves = _halves(joints, grades, step)
+    halves = _halves(joints, grades, radii)
     stations = np.sort(np.concatenate([[0.0], joints[:-1] - halves, joints[:-1] + halves, joints[-1:]]))
     values = np.repeat(grades, 2)
     s = np.arange(0.0, joints[-1] + STATION, STATION)

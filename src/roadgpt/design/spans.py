@@ -43,6 +43,21 @@ class Span(NamedTuple):
         return (1 if self.turn > 0 else -1) / self.radius
 
 
+class Slope(NamedTuple):
+    """A stretch of one incline."""
+
+    length: float
+    """Metres."""
+    incline: float
+    """Percent."""
+    radius: float | None = None
+    """Metres, of the parabola from the slope before; None leaves it open."""
+
+
+Inclines = list[Slope]
+"""The slopes of a span, in order."""
+
+
 def turn_span(angle: float, hand: int, radius: float, ramp: float, grade: Range | None) -> Span:
     """A turn with its numbers rounded as they will be written; the ramp is kept as short as segments need.
 
@@ -67,19 +82,24 @@ def segments_of_turn(angle: float) -> int:
     return max(1, ceil(angle / MAX_TURN - 1e-9))
 
 
-def cut(span: Span, inclines: list[tuple[float, float]]) -> list[Segment]:
+def cut(span: Span, inclines: Inclines) -> list[Segment]:
     """RoadGPT's segments of a span.
 
     Args:
         span: the turn or straight.
-        inclines: lengths in metres and inclines in percent, in order; of a turn just one.
+        inclines: its slopes; of a turn just one.
     """
     if not span.turn:
         return [
-            Segment(distance=round(length * MILLIMETRE) / MILLIMETRE, direction="straight", incline=incline)
-            for length, incline in inclines
+            Segment(
+                distance=round(length * MILLIMETRE) / MILLIMETRE,
+                direction="straight",
+                incline=incline,
+                vertical_radius=radius,
+            )
+            for length, incline, radius in inclines
         ]
-    incline = inclines[0][1]
+    _, incline, vertical = inclines[0]
     parts = segments_of_turn(abs(span.turn))
     share = span.turn / parts
     arc = span.radius * radians(abs(share))
@@ -98,6 +118,7 @@ def cut(span: Span, inclines: list[tuple[float, float]]) -> list[Segment]:
                 turn_degrees=round(share * TENTH) / TENTH,
                 radius=span.radius if ends else None,
                 transition=span.ramp if ends else None,
+                vertical_radius=None if part else vertical,
             )
         )
     return out

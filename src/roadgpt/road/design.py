@@ -4,7 +4,8 @@
      "road_segment1": {"distance", "direction", "incline", "turn_degrees"}, "road_segment2": ...}
 
 ``theta`` 0 looks along +x and grows counter-clockwise, as RoadGPT's code has it (its prompt says +y).
-``distance`` is the length along the plan curve; ``radius`` and ``transition`` are ours, and optional.
+``distance`` is the length along the plan curve; ``radius``, ``transition`` and ``vertical_radius`` are ours,
+and optional.
 """
 
 import math
@@ -44,6 +45,8 @@ class Segment(_Frozen):
     """Metres, of the arc; what the turn does not need of the distance stays straight."""
     transition: Length | None = None
     """Metres, of the clothoid at either end of a turn."""
+    vertical_radius: Length | None = None
+    """Metres, of the parabola from the slope of the segment before to its own."""
 
 
 class Design(_Frozen):

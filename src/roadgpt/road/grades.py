@@ -1,25 +1,105 @@
 """The heights of a Design: each segment's incline, joined by parabolas centred on the joints."""
 
 from collections.abc import Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
 
 from roadgpt.geometry import GradeProfile
-from roadgpt.road.design import Segment
 
-CREST_RADIUS = 250.0  # m: at 70 km/h a crest takes 1.5 m/s^2 off gravity, so wheels stay loaded
-MOST_OF_SEGMENT = 0.9  # the two parabolas of a segment may take this share of it
+if TYPE_CHECKING:
+    from roadgpt.road.design import Segment
+
+CREST_RADIUS = 250.0  # m, of a parabola whose radius the design leaves open
+MOST_OF_SEGMENT = 0.9  # the two parabolas of a segment may take this share of it, where radii are open
+MOST_OF_SLOPE = 0.98  # what parabolas with a radius of their own may take of a slope, over all its segments
 
 
-def profile_of(segments: Sequence[Segment], z0: float) -> GradeProfile:
+class Parabola(NamedTuple):
+    """The change of grade at the start of a segment."""
+
+    number: int
+    """Of the segment, from 0."""
+    s: float
+    """Station of its middle, metres."""
+    half: float
+    """Half of its length, metres."""
+    change: float
+    """Of the grade, as a ratio, positive in a dip."""
+
+    @property
+    def radius(self) -> float:
+        """Metres."""
+        return 2 * self.half / abs(self.change)
+
+
+def parabolas(
+    distances: Sequence[float], grades: Sequence[float], radii: Sequence[float | None]
+) -> list[Parabola]:
+    """The parabolas where grades change, in order.
+
+    One with a radius of its own is as long as that takes. Where it does not fit between its neighbours, it is
+    made shorter, and so is theirs, in proportion.
+
+    Args:
+        distances: of the segments, metres.
+        grades: of the segments, ratios.
+        radii: metres, of the parabola at the start of each segment; None leaves it open.
+    """
+    joints: list[tuple[int, float, float]] = []
+    wants: list[float] = []
+    at = 0.0
+    for i in range(1, len(grades)):
+        at += distances[i - 1]
+        change, radius = grades[i] - grades[i - 1], radii[i]
+        shorter = min(distances[i - 1], distances[i])
+        usual = min(CREST_RADIUS * abs(change) / 2, MOST_OF_SEGMENT * shorter / 2)
+        half = usual if radius is None else radius * abs(change) / 2
+        if half > 1e-6:
+            joints.append((i, at, change))
+            wants.append(half)
+    stations = [0.0, *(s for _, s, _ in joints), at + distances[-1]]
+    rooms = [MOST_OF_SLOPE * (b - a) for a, b in pairwise(stations)]
+    own = [radii[i] is not None for i, _, _ in joints]
+    out = []
+    for n, (i, s, change) in enumerate(joints):
+        half = wants[n]
+        if own[n]:
+            before, after = n - 1, n + 1
+            half = min(half, _share(wants, own, rooms[n], n, before if n else None))
+            half = min(half, _share(wants, own, rooms[n + 1], n, after if after < len(joints) else None))
+        if half > 1e-6:
+            out.append(Parabola(i, s, half, change))
+    return out
+
+
+def _share(wants: Sequence[float], own: Sequence[bool], room: float, n: int, other: int | None) -> float:
+    """Metres of a slope for the parabola ``n`` at one of its ends."""
+    if other is None:
+        return room
+    if not own[other]:  # it keeps to its own segment
+        return room - wants[other]
+    return room * wants[n] / max(wants[n] + wants[other], 1e-9)
+
+
+def parabolas_of(segments: "Sequence[Segment]") -> list[Parabola]:
+    """The parabolas between segments."""
+    return parabolas(
+        [segment.distance for segment in segments],
+        [segment.incline / 100 for segment in segments],
+        [segment.vertical_radius for segment in segments],
+    )
+
+
+def profile_of(segments: "Sequence[Segment]", z0: float) -> GradeProfile:
     """The profile over the plan stations of the segments; parabolas change no height at the far joints."""
     grades = [segment.incline / 100 for segment in segments]
-    stations, values, at = [0.0], [grades[0]], 0.0
-    for i in range(1, len(segments)):
-        at += segments[i - 1].distance
-        shorter = min(segments[i - 1].distance, segments[i].distance)
-        half = min(CREST_RADIUS * abs(grades[i] - grades[i - 1]) / 2, MOST_OF_SEGMENT * shorter / 2)
-        if half > 1e-6:
-            stations += [at - half, at + half]
-            values += [grades[i - 1], grades[i]]
+    stations, values = [0.0], [grades[0]]
+    for i, at, half, _ in parabolas_of(segments):
+        stations += [at - half, at + half]
+        values += [grades[i - 1], grades[i]]
+    at = 0.0
+    for segment in segments[:-1]:
+        at += segment.distance
     stations.append(at + segments[-1].distance)
     values.append(grades[-1])
     return GradeProfile(z0, tuple(stations), tuple(values))

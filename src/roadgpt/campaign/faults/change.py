@@ -15,8 +15,16 @@ from roadgpt.road import Design, Segment
 from roadgpt.run import Run
 
 FINEST = 1 / 64  # of the change
-UNITS = {"distance": " m", "turn_degrees": " degrees", "radius": " m", "transition": " m", "incline": " %"}
-NAMES = {"distance": "length", "turn_degrees": "turn", "transition": "clothoid", "incline": "grade"}
+UNITS = {"turn_degrees": " degrees", "incline": " %"} | dict.fromkeys(
+    ("distance", "radius", "transition", "vertical_radius"), " m"
+)
+NAMES = {
+    "distance": "length",
+    "turn_degrees": "turn",
+    "transition": "clothoid",
+    "incline": "grade",
+    "vertical_radius": "vertical radius",
+}
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,12 @@ def _straightening(design: Design) -> list[Step]:
 
 
 def _straight(segment: Segment) -> Segment:
-    return Segment(distance=segment.distance, direction="straight", incline=segment.incline)
+    return Segment(
+        distance=segment.distance,
+        direction="straight",
+        incline=segment.incline,
+        vertical_radius=segment.vertical_radius,
+    )
 
 
 def _rounding(field: str, unit: float) -> Way:

@@ -16,10 +16,12 @@ import numpy as np
 from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
+from roadgpt.check.bumps import asks_for_bumps
 from roadgpt.check.extremes import lowest
+from roadgpt.check.matching import Complaint
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import complaints, promises_of
-from roadgpt.design.advice import advice
+from roadgpt.design.advice import TOO_ABRUPT, advice, too_fast
 from roadgpt.design.compose import composed
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
@@ -27,6 +29,7 @@ from roadgpt.design.layout import Line, Place, keeps_clear, place, smallest_box,
 from roadgpt.design.order import drawn_order
 from roadgpt.design.spans import Span, cut
 from roadgpt.design.variety import ENOUGH, Shape, Shapes, nearest, shape_of
+from roadgpt.design.vertical import EASES, Pace, joined, too_abrupt
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.road.grades import profile_of
@@ -40,7 +43,6 @@ CROWDED = (
 )
 FINISHED = 100  # drafts that fit, of which none keeps every promise, before the search is given up
 LAST_RESORTS = 20  # drafts like earlier roads that are tried where there are no others
-HEIGHTS = 5  # that are tried on one plan
 TRIALS = (1, 2, 3)  # seeds with which it is tried whether there is room
 TRIED = 110  # drafts that are drawn for each of these
 GROWN = 20  # drafts of a road whose length was asked for, that grow on the map where no other was found
@@ -48,6 +50,8 @@ GROWN_ON_TRIAL = 5  # of these, where it is tried whether there is room
 NO_HASTE = 16  # drafts that are drawn freely
 VERGES = 0.6  # of the drafts: so long, legs keep off each other's verges as well
 CENTIMETRE = 100.0  # per metre: the start is written to the centimetre
+FAILED_ON_HEIGHTS = 40  # slopes that broke a promise or the rule: then the speed may be what stood in the way
+SLOWER = (50.0, 30.0)  # km/h, that are tried in order to say so
 STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
 
 
@@ -101,7 +105,9 @@ class _Search:
                 f"asked for {low:g} turns, and for {high:g} at most; change one of these numbers"
             )
         self.windows = Windows(self.outline, world)
+        self.bumps = asks_for_bumps(brief)
         self.failed: Counter[str] = Counter()
+        self.failed_on_heights = 0
         self.boxes: list[float] = []
 
     def run(self) -> tuple[Design, Road]:
@@ -112,6 +118,9 @@ class _Search:
         """
         found = self.found()
         if found is None:
+            slower = self._speed_that_would_do()
+            if slower:
+                raise DesignError(too_fast(self.world, slower))
             raise DesignError(advice(self.brief, self.outline, self.world, self.failed, self.boxes, fits))
         return found
 
@@ -165,6 +174,14 @@ class _Search:
             return None
         return _Draft(found.spans, found.line, found.place, shape_of(found.line.s, found.line.z))
 
+    def _speed_that_would_do(self) -> float | None:
+        """A lower limit, km/h, at which the slopes asked for can be had, if they stood in the way."""
+        if self.failed_on_heights < FAILED_ON_HEIGHTS:
+            return None
+        limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.speed_limit]
+        worlds = [self.world.model_copy(update={"speed_limit": kmh / 3.6}) for kmh in limits]
+        return next((k for k, w in zip(limits, worlds, strict=True) if fits(self.brief, w)), None)
+
     def _plan(self, haste: float, with_verges: bool) -> _Draft | None:
         order = drawn_order(self.outline, self.rng, plain=haste > 0.5)
         spans = composed(order, self.outline, self.windows, self.world, self.rng, haste)
@@ -197,19 +214,31 @@ class _Search:
         return design, road
 
     def _with_heights(self, drafted: _Draft) -> tuple[Segment, ...] | None:
-        s, z = drafted.line
-        for _ in range(HEIGHTS):
-            heights = drawn_heights(drafted.spans, self.outline, self.windows, self.rng)
+        pace = Pace.along(drafted.spans, self.world)
+        for ease in (*EASES, EASES[-1]):
+            heights = drawn_heights(
+                drafted.spans, self.outline, self.windows, self.rng, pace, ease, self.bumps
+            )
             pairs = zip(drafted.spans, heights, strict=True)
-            segments = tuple(segment for span, inclines in pairs for segment in cut(span, inclines))
-            points = np.stack([z.real, z.imag, profile_of(segments, 0.0).height(s)], axis=1)
-            broken = complaints(measure(points, self.outline.widest), self.outline)
-            if not broken:
-                return segments
-            self.failed[broken[0].sentence] += 1
-            if not any(complaint.on_heights for complaint in broken):
-                return None
+            drawn = [segment for span, inclines in pairs for segment in cut(span, inclines)]
+            for share in dict.fromkeys((1.0, ease)):  # all may have comfort after all
+                segments = joined(drawn, pace, share)
+                broken = self._broken(drafted.line, segments, pace)
+                if not broken:
+                    return segments
+                self.failed[broken[0].sentence] += 1
+                if not any(complaint.on_heights for complaint in broken):
+                    return None
+                self.failed_on_heights += 1
         return None
+
+    def _broken(self, line: Line, segments: Sequence[Segment], pace: Pace) -> list[Complaint]:
+        """The promises that a plan with these slopes would break, and the rule for their changes."""
+        if too_abrupt(segments, pace, self.bumps):
+            return [Complaint(TOO_ABRUPT, on_heights=True)]
+        heights = profile_of(segments, 0.0).height(line.s)
+        points = np.stack([line.z.real, line.z.imag, heights], axis=1)
+        return complaints(measure(points, self.outline.widest), self.outline)
 
     def _start(self, segments: Sequence[Segment]) -> float:
         """Height of the start, such that the lowest place lies a little above 0, or above the floor."""

@@ -12,6 +12,7 @@ from typing import Literal, Protocol
 
 from roadgpt.brief.model import Side
 from roadgpt.design.edit.anatomy import Block, Blocks
+from roadgpt.design.spans import Slope as OneSlope
 from roadgpt.design.spans import cut, turn_span
 from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN
@@ -135,7 +136,7 @@ def turn_segments(
 ) -> tuple[Segment, ...]:
     """A turn as the planner writes it."""
     span = turn_span(degrees, hand, radius, ramp, None)
-    return tuple(cut(span, [(span.length, round(incline * TENTH) / TENTH)]))
+    return tuple(cut(span, [OneSlope(span.length, round(incline * TENTH) / TENTH)]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,8 @@ from roadgpt.design.edit.room import with_room
 from roadgpt.design.edit.steps import FlipAll, Goal, Quantity, Step
 from roadgpt.design.edit.ways import Way
 from roadgpt.design.repair import repair
+from roadgpt.design.vertical import EASES, Pace, changed_joints, widened
+from roadgpt.design.vertical import joined as joined_slopes
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Geometry, Segment, World, build
 from roadgpt.road.design import MAX_SEGMENTS
@@ -64,13 +66,16 @@ def tried(
     first: Tried | None = None
     drafts: list[Made] = []
     for steps in islice(_combined(changes), MOST_TRIALS):
-        one = _one(design, blocks, steps, world, geometry)
-        if one.made:
-            return one
-        if first is None or one.closeness > first.closeness:
-            first = one
-        if one.draft and len(drafts) < REPAIRED:
-            drafts.append(one.draft)
+        draft: Made | None = None
+        for ease, beside in _eases(steps):
+            one = _one(design, blocks, steps, world, geometry, ease, beside)
+            if one.made:
+                return one
+            if first is None or one.closeness > first.closeness:
+                first = one
+            draft = one.draft or draft
+        if draft and len(drafts) < REPAIRED:
+            drafts.append(draft)
     for draft in drafts if geometry == "arcs" else ():
         steps = next(iter(_combined(changes)))
         mended = _mended(draft, steps, world)
@@ -88,7 +93,25 @@ def _combined(changes: Sequence[Sequence[Way]]) -> Iterator[tuple[Step, ...]]:
         yield tuple(step for ways, index in zip(some, row, strict=True) for step in ways[index])
 
 
-def _one(design: Design, blocks: Blocks, steps: Sequence[Step], world: World, geometry: Geometry) -> Tried:
+def _eases(steps: Sequence[Step]) -> tuple[tuple[float, bool], ...]:
+    """Shares of comfort for new changes of slope, and whether they are written into segments that stay.
+
+    The parabola in front of a segment that nobody spoke of is left as it was, as long as that will do.
+    """
+    if any(goal.quantity == "grade" for step in steps for goal in step.goals):
+        return tuple((ease, beside) for beside in (False, True) for ease in EASES)
+    return ((1.0, False), (1.0, True))
+
+
+def _one(
+    design: Design,
+    blocks: Blocks,
+    steps: Sequence[Step],
+    world: World,
+    geometry: Geometry,
+    ease: float,
+    beside: bool,
+) -> Tried:
     goals = [goal for step in steps for goal in step.goals]
     aims: Aims = {(goal.block, goal.quantity): goal.aim for goal in goals}
     objection, draft = "", None
@@ -102,6 +125,7 @@ def _one(design: Design, blocks: Blocks, steps: Sequence[Step], world: World, ge
             return Tried(None, f"the road would have {len(segments)} segments")
         try:
             new = _started(design, after, blocks, world, any(isinstance(s, FlipAll) for s in steps))
+            new = _rounded_off(new, design, world, ease, beside)
             found = measure(build(new, geometry).centreline())
         except UsageError as error:
             return Tried(None, str(error))
@@ -127,6 +151,16 @@ def _one(design: Design, blocks: Blocks, steps: Sequence[Step], world: World, ge
     if findings:
         return Tried(None, findings[0].sentence, 1, draft)
     return Tried(draft, "")
+
+
+def _rounded_off(new: Design, before: Design, world: World, ease: float, beside: bool) -> Design:
+    """The design with parabolas where slopes meet that did not meet before; all others stay."""
+    opened = changed_joints(before.segments, new.segments)
+    if not beside:
+        opened = frozenset(i for i in opened if new.segments[i] not in before.segments)
+    pace = Pace.of(new, world)
+    segments = joined_slopes(new.segments, pace, ease, opened) if opened else new.segments
+    return new.model_copy(update={"segments": widened(segments, pace) if beside else segments})
 
 
 def _placed(design: Design, world: World) -> Design:

@@ -197,7 +197,7 @@ def _restored(mended: Design, design: Design, brief: Brief | None, world: World)
     """With all that need not have changed put back as it was proposed, the smallest changes first."""
     trials: list[tuple[float, int, str]] = []
     for index, (one, other) in enumerate(zip(design.segments, mended.segments, strict=True)):
-        for name in ("distance", "turn_degrees", "incline", "transition"):
+        for name in ("distance", "turn_degrees", "incline", "transition", "vertical_radius"):
             before, after = getattr(one, name), getattr(other, name)
             if before != after:
                 away = abs((before or 12.0) - (after or 12.0)) / max(abs(before or 12.0), 1.0)

@@ -36,10 +36,10 @@ def _segment(number: int, before: Segment, after: Segment) -> str:
         said.append(f"turn {before.turn_degrees:g} -> {after.turn_degrees:g} degrees")
     if after.incline != before.incline:
         said.append(f"grade {before.incline:g} -> {after.incline:g} %")
-    for name in ("radius", "transition"):
+    for name in ("radius", "transition", "vertical_radius"):
         one, other = getattr(before, name), getattr(after, name)
         if one != other:
-            said.append(f"{name} {_metres(one)} -> {_metres(other)}")
+            said.append(f"{name.replace('_', ' ')} {_metres(one)} -> {_metres(other)}")
     return f"segment {number}: {', '.join(said)}" if said else ""
 
 

@@ -14,7 +14,8 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range, overlap
 from roadgpt.check.measures import LEVEL, measure, way
 from roadgpt.design.heights import Windows
-from roadgpt.design.repair.proposal import Part, mean_incline
+from roadgpt.design.repair.proposal import SEEN, Part, mean_incline
+from roadgpt.design.vertical import Pace, made_to_fit, runs_of, too_abrupt, widened
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World, build
@@ -22,6 +23,7 @@ from roadgpt.road.design import Design
 from roadgpt.road.grades import profile_of
 
 ROUNDS = 24
+ROOMIER = (1.0, 1.5, 2.5)  # times the room that parabolas need, so that a slope is seen between them
 TENTH = 10.0  # per percent
 CLEAR = 0.1  # percentage points off the edge of up, down and level
 SURPLUS = 0.05  # percentage points more than is missing
@@ -55,14 +57,32 @@ def sloped(
         grades = _climbing(grades, segments, loose, outline.climb)
     points = build(design).centreline()
     stations = build(design).sample().s
-    for _ in range(ROUNDS):
-        tried = with_inclines(segments, grades)
-        points[:, 2] = profile_of(tried, 0.0).height(stations)
-        missing = _missing(points, tried, parts, windows)
-        if not missing.any():
+    pace = Pace.of(design, world)
+    lengths, inclines = [s.distance for s in segments], [s.incline for s in proposed]
+    most = 100 * world.max_grade
+    unseen = {i for part in parts if not _is_seen(part, proposed) for i in part.members}
+    runs = runs_of(inclines, unseen)
+    bounds = [(-most, most) if i in unseen else (room.lo, room.hi) for i, room in enumerate(loose)]
+    for roomier in ROOMIER:
+        now = grades
+        for _ in range(ROUNDS):
+            tried = widened(with_inclines(segments, now), pace)
+            if too_abrupt(tried, pace):
+                now = np.array(made_to_fit(now.tolist(), lengths, runs, bounds, pace, roomier))
+                tried = widened(with_inclines(segments, now), pace)
+            points[:, 2] = profile_of(tried, 0.0).height(stations)
+            missing = _missing(points, tried, parts, windows)
+            if not missing.any():
+                break
+            now = _moved(now, missing, loose)
+        if not missing.any() and not too_abrupt(tried, pace):
             break
-        grades = _moved(grades, missing, loose)
-    return design.model_copy(update={"segments": tuple(with_inclines(segments, grades))})
+    return design.model_copy(update={"segments": tried})
+
+
+def _is_seen(part: Part, proposed: Sequence[Segment]) -> bool:
+    """Is it long enough for its slope to be looked for?"""
+    return part.is_turn or sum(proposed[i].distance for i in part.members) >= SEEN
 
 
 def with_inclines(segments: Sequence[Segment], grades: Array) -> list[Segment]:

@@ -8,8 +8,8 @@ import numpy as np
 
 from roadgpt.drive.driving_line import FloatArray, line_along, stations
 from roadgpt.drive.pursuit import pursued
-from roadgpt.drive.speed_profile import Limits, plan_speed
 from roadgpt.drive.view import Command, View
+from roadgpt.road.speed_profile import Limits, plan_speed
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World

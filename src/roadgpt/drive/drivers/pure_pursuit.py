@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 from roadgpt.drive.driving_line import line_along
 from roadgpt.drive.pedals import pedals
 from roadgpt.drive.pursuit import pursued
-from roadgpt.drive.speed_profile import Limits, plan_speed
 from roadgpt.drive.view import Command, View
+from roadgpt.road.speed_profile import Limits, plan_speed
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World

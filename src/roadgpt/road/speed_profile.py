@@ -9,13 +9,45 @@ https://doi.org/10.1115/1.4033311.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
-from roadgpt.drive.driving_line import Line
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roadgpt.geometry.curve import Array
+from roadgpt.road.world import World
 
 GRAVITY = 9.81  # m/s^2
 SLOWEST = 1.0  # m/s: no bend is planned slower, so that nobody stands still before one
 LIGHTEST = 0.4  # share of gravity that must stay on the wheels on a crest
+LATERAL, BRAKING, TRACTION = 0.64, 0.9, 0.7  # g, of the car that a road is expected to be driven by
+LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves to a lane on the inside of a bend
+
+
+class Way(Protocol):
+    """What has to be known of a line; the lists have one number for every station, ``step`` metres apart."""
+
+    @property
+    def step(self) -> float:
+        """Metres of road between stations."""
+
+    @property
+    def stretch(self) -> Sequence[float]:
+        """Metres of line per metre of road."""
+
+    @property
+    def curvature(self) -> Sequence[float]:
+        """1/m, of the line itself."""
+
+    @property
+    def grade(self) -> Sequence[float]:
+        """As a ratio."""
+
+    @property
+    def crest(self) -> Sequence[float]:
+        """Vertical curvature in 1/m, negative on a crest."""
 
 
 @dataclass(frozen=True)
@@ -34,18 +66,49 @@ class Limits:
     """W per kg: above some speed the engine allows less than the tyres."""
 
 
-def plan_speed(line: Line, limits: Limits) -> list[float]:
+class _Lane(NamedTuple):
+    """The middle of a lane, as a Way."""
+
+    step: float
+    stretch: Sequence[float]
+    curvature: Sequence[float]
+    grade: Sequence[float]
+    crest: Sequence[float]
+
+
+def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: World) -> Array:
+    """Speeds that a car is expected to have on a road, m/s, from a standing start.
+
+    It drives in the middle of the right lane, on dry asphalt, under the speed limit, at the default driver's
+    share of gravity. It slows down for bends and not for crests, as that driver does not: so a crest cannot
+    make itself look gentle.
+
+    Args:
+        curvature: of the centre line, 1/m, ``(n,)``.
+        grade: as ratios, ``(n,)``, or one for all.
+        step: metres between stations.
+        world: speed limit and width of the lane.
+    """
+    bend = np.asarray(curvature, float)
+    along = np.maximum(1 + bend * world.lane_width / 2, LEAST_STRETCH)
+    grades = np.broadcast_to(np.asarray(grade, float), bend.shape)
+    level = [0.0] * len(bend)
+    lane = _Lane(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level)
+    return np.array(plan_speed(lane, Limits(LATERAL, BRAKING, TRACTION, world.speed_limit)))
+
+
+def plan_speed(line: Way, limits: Limits) -> list[float]:
     """Speeds in m/s at every station of the line.
 
     The load on the wheels is that of the slope and of the crest or dip: ``g cos + v^2 * vertical curvature``.
     """
-    top = [_corner_speed(line, i, limits) for i in range(len(line.x))]
+    top = [_corner_speed(line, i, limits) for i in range(len(line.grade))]
     _sweep(line, top, limits.lateral, limits.braking, math.inf, forward=False)
     _sweep(line, top, limits.lateral, limits.traction, limits.power, forward=True)
     return top
 
 
-def _corner_speed(line: Line, i: int, limits: Limits) -> float:
+def _corner_speed(line: Way, i: int, limits: Limits) -> float:
     """The speed at which a steady bend takes all of the lateral limit, or a crest too much of the load."""
     steep = 1 / math.hypot(1.0, line.grade[i])
     crest = line.crest[i] * steep**3
@@ -58,9 +121,7 @@ def _corner_speed(line: Line, i: int, limits: Limits) -> float:
     return math.sqrt(max(square, SLOWEST**2))
 
 
-def _sweep(
-    line: Line, top: list[float], lateral: float, along: float, power: float, *, forward: bool
-) -> None:
+def _sweep(line: Way, top: list[float], lateral: float, along: float, power: float, *, forward: bool) -> None:
     """Lowers speeds that cannot be reached from the station before (forward) or left in time (backward)."""
     way = 1 if forward else -1
     order = range(len(top)) if forward else range(len(top) - 1, -1, -1)

@@ -1,0 +1,53 @@
+"""Where the words ask for a crest, a dip or a hump: there a road may be as abrupt as wheels can follow."""
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import outline
+from roadgpt.check.measures import Measures, measure
+from roadgpt.road import Road
+
+BUMPS = ("crest", "dip")
+CURVE = 30.0  # m: so far a parabola may reach out of its straight into the turns at its ends
+
+
+def asks_for_bumps(brief: Brief | None) -> bool:
+    """Do the words ask for a crest, a dip or a hump anywhere?"""
+    if brief is None:
+        return False
+    return any(clause.kind in BUMPS for clause in (*brief.clauses, brief.starts, brief.ends) if clause)
+
+
+def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
+    """Stations of begin and end, metres, of the gaps between turns that are to hold a crest or a dip.
+
+    Where the words leave open how many turns come before it, it may be in any gap.
+    """
+    if brief is None or not asks_for_bumps(brief):
+        return []
+    found = measure(road.centreline())
+    gaps = _gaps(found, road.length)
+    wanted: set[int] = set()
+    if brief.starts and brief.starts.kind in BUMPS:
+        wanted.add(0)
+    if brief.ends and brief.ends.kind in BUMPS:
+        wanted.add(len(gaps) - 1)
+    for index, clause in enumerate(brief.clauses):
+        if clause.kind in BUMPS:
+            number = _turns_before(brief, index)
+            wanted |= set(range(len(gaps))) if number is None else {min(number, len(gaps) - 1)}
+    return [gaps[number] for number in sorted(wanted)]
+
+
+def _turns_before(brief: Brief, index: int) -> int | None:
+    """How many turns the clauses name before one of them; None where that is open."""
+    if not outline(brief).names_all_turns:
+        return None
+    before = outline(brief.model_copy(update={"clauses": brief.clauses[:index]})).groups
+    counts = [(group.lo, group.hi) for group in before if group.feature.kind == "turn"]
+    return sum(lo for lo, _ in counts) if all(lo == hi for lo, hi in counts) else None
+
+
+def _gaps(found: Measures, length: float) -> list[tuple[float, float]]:
+    turns = found.turns
+    begins = [0.0, *(turn.end - CURVE for turn in turns)]
+    ends = [*(turn.start + CURVE for turn in turns), length]
+    return list(zip(begins, ends, strict=True))

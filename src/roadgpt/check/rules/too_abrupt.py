@@ -1,0 +1,74 @@
+"""No crest or dip is so abrupt that the car would be lifted or pressed by more than 3 m/s^2.
+
+The vertical radius R is that of the parabola between two grades: 1 / (change of grade per metre). At speed v
+the road lifts or presses the car by v^2 / R. Where the words ask for a crest or a dip, it may do so by up to
+gravity, at which the wheels would leave the road.
+
+v is the speed expected there, from a standing start and under the speed limit, slowed down by bends alone
+(``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0027-vertical-radii.md``.
+"""
+
+import numpy as np
+
+from roadgpt.brief.model import Brief
+from roadgpt.check.bumps import bumps_asked
+from roadgpt.check.extremes import vertical_bends
+from roadgpt.check.finding import Finding
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Road, World
+from roadgpt.road.speed_profile import GRAVITY, expected_speed
+
+MOST = 3.0  # m/s^2
+STEP = 1.0  # m between the stations at which a speed is expected
+ROUNDING = 1e-3  # of the limit
+
+
+def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
+    """Says where a crest or a dip is most abrupt, where that is too much."""
+    begin, end, bend = vertical_bends(road)
+    suspects = np.flatnonzero(np.abs(bend) * world.speed_limit**2 > MOST * (1 + ROUNDING))
+    if not suspects.size:
+        return ()
+    s = np.linspace(0.0, road.length, max(1, round(road.length / STEP)) + 1)
+    speed = expected_speed(road.curvature(s), road.grade(s), float(s[1]), world)
+    fastest = np.array([_fastest(s, speed, begin[i], end[i]) for i in suspects])
+    felt = fastest**2 * np.abs(bend[suspects])
+    if felt.max() <= MOST * (1 + ROUNDING):
+        return ()
+    middle = (begin[suspects] + end[suspects]) / 2
+    most = np.where(_inside(middle, bumps_asked(road, brief)), GRAVITY, MOST)
+    worst = int((felt / most).argmax())
+    if felt[worst] <= most[worst] * (1 + ROUNDING):
+        return ()
+    return (
+        _finding(
+            road,
+            float(middle[worst]),
+            float(bend[suspects[worst]]),
+            float(fastest[worst]),
+            float(most[worst]),
+        ),
+    )
+
+
+def _fastest(s: Array, speed: Array, begin: float, end: float) -> float:
+    inner = speed[(s > begin) & (s < end)]
+    return float(max(np.interp([begin, end], s, speed).max(), inner.max(initial=0.0)))
+
+
+def _inside(s: Array, spans: list[tuple[float, float]]) -> Array:
+    out = np.zeros(s.shape, bool)
+    for first, last in spans:
+        out |= (s >= first) & (s <= last)
+    return out
+
+
+def _finding(road: Road, s: float, bend: float, speed: float, most: float) -> Finding:
+    x, y, _ = (float(v) for v in road.at(s))
+    what = "crest" if bend < 0 else "dip"
+    felt = f"{speed**2 * abs(bend):.1f} m/s2 at the {3.6 * speed:.0f} km/h expected there"
+    sentence = (
+        f"at s = {s:.0f} m: the vertical radius of the {what} is {1 / abs(bend):.1f} m, which is {felt}; "
+        f"{speed**2 / most:.0f} m would be enough for {most:.3g} m/s2"
+    )
+    return Finding("too_abrupt", sentence, s, x, y)

@@ -1,0 +1,59 @@
+"""What grades may be moved to, so that the parabolas between them suit the speed, and the moving."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import inf
+
+import numpy as np
+
+from roadgpt.brief.words import Range, overlap
+from roadgpt.design.spans import Span
+from roadgpt.design.vertical import Pace, softened
+
+SEEN = 1.8  # percent: the least slope of a climb or fall that is to be seen as one
+HELD = 0.5  # percentage points that a grade that was asked for over some metres may be softened by
+
+
+def steep_kept(values: np.ndarray, lengths: np.ndarray, limits: Sequence[Range], least: float) -> list[Range]:
+    """The limits, where the longest stretch as steep as was asked must stay so."""
+    out = [*limits]
+    steep = [i for i in sorted(range(len(out)), key=lambda i: -lengths[i]) if abs(values[i]) >= least]
+    if steep:
+        i = steep[0]
+        room = Range(least) if values[i] > 0 else Range(-inf, -least)
+        out[i] = overlap(out[i], room) or out[i]
+    return out
+
+
+def held(span: Span, value: float, room: Range) -> Range:
+    """The limit of a straight whose length and grade were asked for: what was drawn, or hardly less."""
+    if span.grade is None or span.promised is None or span.promised.hi == inf or 0 in span.grade:
+        return room
+    return overlap(room, Range(value - HELD, value + HELD)) or room
+
+
+def one_way(value: float, room: Range) -> Range:
+    """The limit of a stretch that must go on climbing, or falling."""
+    if np.isnan(value) or abs(value) < SEEN:
+        return room
+    return overlap(room, Range(SEEN) if value > 0 else Range(-inf, -SEEN)) or room
+
+
+def softened_values(
+    values: np.ndarray, lengths: np.ndarray, limits: Sequence[Range], pace: Pace, ease: float, bumps: bool
+) -> np.ndarray:
+    """Grades whose changes leave room for parabolas; a joining straight is half its neighbours' each."""
+    known = np.flatnonzero(~np.isnan(values))
+    if len(known) < 2 or np.ptp(values[known]) == 0:
+        return values
+    ends = np.cumsum(lengths)
+    begins = ends - lengths
+    joints = [float(ends[a] + begins[b]) / 2 for a, b in pairwise(known)]
+    own = np.diff([0.0, *joints, float(ends[-1])])
+    radii = [pace.eased(s, ease, bumps) for s in joints]
+    out = values.copy()
+    rooms = [limits[int(i)] for i in known]
+    out[known] = softened(
+        values[known].tolist(), own.tolist(), radii, [r.lo for r in rooms], [r.hi for r in rooms]
+    )
+    return out

@@ -1,0 +1,259 @@
+"""Vertical radii: how far a grade may change where, so that crests and dips suit the speed that is driven.
+
+A parabola of radius R takes R * (change of grade) metres, half of it on either side of its joint:
+
+    room of a slope of length L   >=   (R1 * |change at its start| + R2 * |change at its end|) / 2
+
+Comfort asks for R = v^2 / 0.5 m/s^2, the rule ``too_abrupt`` for v^2 / 3 m/s^2; v is the speed that is
+expected there. Where the room is too small for comfort, the grades are moved towards each other first, as
+far as what was promised allows; then radii become smaller, and never smaller than the rule allows.
+"""
+
+from collections.abc import Collection, Iterator, Sequence
+from functools import cached_property
+from itertools import accumulate, groupby, pairwise
+from math import floor
+
+import numpy as np
+
+from roadgpt.check.rules.too_abrupt import MOST
+from roadgpt.design.layout import bends_of
+from roadgpt.design.spans import Span
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Design, Segment, World, build
+from roadgpt.road.grades import MOST_OF_SLOPE, Parabola, parabolas_of
+from roadgpt.road.speed_profile import GRAVITY, expected_speed
+
+COMFORT = 0.5  # m/s^2
+EASES = (1.0, 0.5, 0.25, 0.0)  # shares of comfort, in the order in which they are tried
+STEP = 2.0  # m between the stations at which a speed is expected
+NEAR = 20.0  # m to either side of a joint, of which the fastest place counts
+SPARE, LEAST_SPARE = 1.1, 1.02  # of a comfortable radius, and of the least, for what rounding of grades takes
+ROUNDS = 80  # of moving grades
+ROUNDING = 1e-3  # of a radius
+TENTH = 10.0  # per metre: radii are written to the tenth
+
+
+class Pace:
+    """The radii that the speeds along a plan ask for."""
+
+    def __init__(self, knots: Array, bends: Array, length: float, world: World) -> None:
+        """Curvatures ``bends`` (1/m) at stations ``knots`` (m), linear in between, 0 after the last."""
+        self._plan = knots, bends, length
+        self._world = world
+
+    @classmethod
+    def along(cls, spans: Sequence[Span], world: World) -> "Pace":
+        """Of spans."""
+        return cls(*bends_of(spans), world)
+
+    @classmethod
+    def of(cls, design: Design, world: World) -> "Pace":
+        """Of a design."""
+        road = build(design)
+        s = road.sample().s
+        return cls(s, road.sample().curvature, road.length, world)
+
+    @cached_property
+    def _squares(self) -> tuple[float, Array]:
+        """Metres between stations, and the square of the speed at each."""
+        knots, bends, length = self._plan
+        s = np.linspace(0.0, length, max(1, round(length / STEP)) + 1)
+        bend = np.interp(s, knots, bends, right=0.0)
+        return float(s[1]), expected_speed(bend, 0.0, float(s[1]), self._world) ** 2
+
+    def _square(self, s: float) -> float:
+        step, squares = self._squares
+        first, last = int(max(s - NEAR, 0.0) / step), int((s + NEAR) / step) + 1
+        return float(squares[min(first, len(squares) - 1) : last + 1].max())
+
+    def comfort(self, s: float) -> float:
+        """Metres at a station: the radius that is felt no more than comfort allows."""
+        return self._square(s) / COMFORT
+
+    def least(self, s: float, is_bump: bool = False) -> float:
+        """Metres at a station: the least radius that the rule allows, for a crest or a dip asked for too."""
+        return self._square(s) / (GRAVITY if is_bump else MOST)
+
+    def eased(self, s: float, ease: float, is_bump: bool = False) -> float:
+        """Metres at a station: so much of comfort, and never less than the least."""
+        least = LEAST_SPARE * self.least(s, is_bump)
+        return max(ease * SPARE * self.comfort(s), least)
+
+
+def softened(
+    grades: Sequence[float],
+    lengths: Sequence[float],
+    radii: Sequence[float],
+    lows: Sequence[float],
+    highs: Sequence[float],
+) -> list[float]:
+    """Grades moved as little as it takes until the parabolas between them fit, each within its bounds.
+
+    Each slope that has too little room is put right in turn, by moving it and its neighbours: projections
+    onto convex sets, which come to grades that fit wherever there are such.
+
+    Args:
+        grades: percent.
+        lengths: of the slopes, metres.
+        radii: metres, at the joints between them; one fewer.
+        lows: percent, the least of each.
+        highs: percent, the greatest of each.
+    """
+    out = [min(max(g, lo), hi) for g, lo, hi in zip(grades, lows, highs, strict=True)]
+    halves = [0.0, *(radius / 200 for radius in radii), 0.0]
+    for _ in range(ROUNDS):
+        fits = True
+        for i, length in enumerate(lengths):
+            fits = _made_room(out, i, length, halves, lengths, lows, highs) and fits
+        if fits:
+            break
+    return out
+
+
+def made_to_fit(
+    grades: Sequence[float],
+    lengths: Sequence[float],
+    runs: Sequence[int],
+    bounds: Sequence[tuple[float, float]],
+    pace: Pace,
+    roomier: float = 1.0,
+) -> list[float]:
+    """Grades of segments, moved until the parabolas fit that the rule asks for.
+
+    Args:
+        grades: percent, of each segment.
+        lengths: metres.
+        runs: a number for each segment; neighbours of one number are one slope.
+        bounds: percent, least and greatest grade of each segment.
+        pace: the radii that the speeds ask for.
+        roomier: so many times the parabolas are to fit.
+    """
+    rows = [[*row] for _, row in groupby(range(len(grades)), key=lambda i: runs[i])]
+    own = [sum(lengths[i] for i in row) for row in rows]
+    means = [sum(grades[i] * lengths[i] for i in row) / size for row, size in zip(rows, own, strict=True)]
+    if max(means) == min(means):
+        return [*grades]
+    lows = [max(bounds[i][0] for i in row) for row in rows]
+    highs = [max(min(bounds[i][1] for i in row), low) for row, low in zip(rows, lows, strict=True)]
+    radii = [roomier * pace.eased(s, 0.0) for s in accumulate(own[:-1])]
+    found = softened(means, own, radii, lows, highs)
+    return [grade for row, grade in zip(rows, found, strict=True) for _ in row]
+
+
+def runs_of(inclines: Sequence[float], joining: Collection[int]) -> list[int]:
+    """Numbers for ``made_to_fit``: equal for neighbours of one incline.
+
+    Those that only join others go with the neighbour whose incline is nearer: between two slopes, a short
+    third one leaves no room for their parabolas.
+    """
+    out, number = [], 0
+    for i, incline in enumerate(inclines):
+        number += i > 0 and incline != inclines[i - 1]
+        out.append(number)
+    for i in sorted(joining):
+        beside = [j for j in (i - 1, i + 1) if 0 <= j < len(out) and j not in joining]
+        if beside:
+            out[i] = out[min(beside, key=lambda j: abs(inclines[j] - inclines[i]))]
+    return out
+
+
+def _made_room(
+    grades: list[float],
+    i: int,
+    length: float,
+    halves: Sequence[float],
+    lengths: Sequence[float],
+    lows: Sequence[float],
+    highs: Sequence[float],
+) -> bool:
+    """Was there room on a slope for its parabolas? Else it and its neighbours are moved."""
+    before = grades[i] - grades[i - 1] if i else 0.0
+    after = grades[i + 1] - grades[i] if i + 1 < len(grades) else 0.0
+    over = halves[i] * abs(before) + halves[i + 1] * abs(after) - MOST_OF_SLOPE * length
+    if over <= 1e-6:
+        return True
+    first, last = np.sign(before) * halves[i], np.sign(after) * halves[i + 1]
+    rates = [(j, rate) for j, rate in ((i - 1, -first), (i, first - last), (i + 1, last)) if rate]
+    free = [
+        (j, rate)
+        for j, rate in rates
+        if (grades[j] > lows[j] + 1e-9 if rate > 0 else grades[j] < highs[j] - 1e-9)
+    ]
+    total = sum(rate * rate / lengths[j] for j, rate in free)
+    for j, rate in free:
+        moved = grades[j] - over * rate / lengths[j] / total
+        grades[j] = float(min(max(moved, lows[j]), highs[j]))
+    return False
+
+
+def joined(
+    segments: Sequence[Segment], pace: Pace, ease: float = 1.0, opened: Collection[int] | None = None
+) -> tuple[Segment, ...]:
+    """The segments with radii for parabolas that have none; where there is little room, what can be built.
+
+    Args:
+        segments: in driving order.
+        pace: the radii that the speeds ask for.
+        ease: share of comfort; 0 is what the rule allows.
+        opened: indices of the segments whose parabola is decided anew; None: of those without a radius.
+    """
+    out, at, own = [], 0.0, set[int]()
+    for i, segment in enumerate(segments):
+        changes = i > 0 and segment.incline != segments[i - 1].incline
+        is_open = segment.vertical_radius is None if opened is None else i in opened
+        radius = segment.vertical_radius
+        if changes and is_open:
+            own.add(i)
+            radius = pace.eased(at, ease)
+        elif not changes and (is_open or opened is None):
+            radius = None
+        out.append(segment if radius == segment.vertical_radius else _with_radius(segment, radius))
+        at += segment.distance
+    for parabola in parabolas_of(out):
+        if parabola.number in own or opened is None:
+            built = max(floor(parabola.radius * TENTH + 1e-6) / TENTH, 1 / TENTH)
+            out[parabola.number] = _with_radius(out[parabola.number], built)
+    return tuple(out)
+
+
+def changed_joints(before: Sequence[Segment], after: Sequence[Segment]) -> frozenset[int]:
+    """Indices of segments whose slope meets another than it did anywhere before."""
+    known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
+    return frozenset(
+        i
+        for i, (a, b) in enumerate(pairwise(after), 1)
+        if a.incline != b.incline and (a.incline, b.incline, b.vertical_radius) not in known
+    )
+
+
+def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
+    """The segments with parabolas that are smaller than the rule allows made as large as it asks for.
+
+    Where their neighbours leave them no room, those give way.
+    """
+    out, opened = tuple(segments), set[int]()
+    while small := {parabola.number for parabola in _too_small(out, pace)}:
+        numbers = [parabola.number for parabola in parabolas_of(segments)]
+        beside = {n for pair in pairwise(numbers) if small & {*pair} for n in pair}
+        more = small - opened or beside - opened
+        if not more:
+            break
+        opened |= more
+        out = joined(segments, pace, 0.0, opened)
+    return out
+
+
+def _with_radius(segment: Segment, radius: float | None) -> Segment:
+    return segment.model_copy(update={"vertical_radius": radius})
+
+
+def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> bool:
+    """Is a parabola smaller than the rule allows?"""
+    return any(True for _ in _too_small(segments, pace, bumps))
+
+
+def _too_small(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> Iterator[Parabola]:
+    for parabola in parabolas_of(segments):
+        if parabola.radius < pace.least(parabola.s, bumps) * (1 - ROUNDING):
+            yield parabola

@@ -1,0 +1,180 @@
+"""Vertical radii of drafts, repairs, changes and variations, measured by differences of heights."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from llm_like import random_lists
+from roadgpt import check, read
+from roadgpt.brief.model import Brief, Clause, at_least, exactly
+from roadgpt.brief.plan import read_plan
+from roadgpt.campaign.genome import design_of, genes_of
+from roadgpt.campaign.vary import Setting, Task, varied
+from roadgpt.check.measures import measure
+from roadgpt.design import draft
+from roadgpt.design.edit import edit
+from roadgpt.design.layout import Place
+from roadgpt.design.repair import repair
+from roadgpt.design.vertical import softened
+from roadgpt.drive.driving_line import line_along
+from roadgpt.errors import DesignError
+from roadgpt.road import Design, World, build, read_design
+from roadgpt.road.grades import parabolas
+from roadgpt.road.speed_profile import Limits, plan_speed
+
+WORLD = World()
+WORDS = [
+    "a road",
+    "an uphill road with 3 turns",
+    "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn",
+    "a hilly road",
+    "a hard road for a lane keeper",
+    "a mountain road with hairpins",
+    "a straight road over a crest",
+]
+
+
+def felt(design: Design, world: World = WORLD) -> float:
+    """The greatest vertical acceleration, m/s^2, at the speeds that are planned for the right lane."""
+    road = build(design)
+    s = np.arange(0.0, road.length, 0.25)
+    bend = np.gradient(np.gradient(road.at(s)[:, 2], 0.25), 0.25)[4:-4]
+    lane = line_along(road, -world.lane_width / 2)
+    level = replace(lane, crest=[0.0] * len(lane.crest))
+    speed = np.array(plan_speed(level, Limits(0.64, 0.9, 0.7, world.speed_limit)))
+    v = np.interp(s[4:-4], lane.step * np.arange(len(speed)), speed)
+    return float((v**2 * np.abs(bend)).max())
+
+
+@pytest.mark.parametrize("words", WORDS)
+@pytest.mark.parametrize("kmh", [50, 70, 110])
+def test_no_draft_is_too_abrupt_for_its_speed(words: str, kmh: float) -> None:
+    brief, world = read(words), World(speed_limit=kmh / 3.6)
+    for seed in range(6):
+        assert felt(draft(brief, world, seed=seed), world) <= 3.05
+
+
+@pytest.mark.parametrize("kmh", [50, 70, 110])
+def test_roads_whose_slopes_nobody_asked_for_are_comfortable(kmh: float) -> None:
+    world = World(speed_limit=kmh / 3.6)
+    most = [felt(draft(read("a road"), world, seed=seed), world) for seed in range(20)]
+    assert max(most) <= 0.52
+    assert sum(value > 0.1 for value in most) > 3  # and they do have slopes
+
+
+def test_level_roads_are_written_as_before() -> None:
+    roads = [draft(Brief(), WORLD, seed=seed) for seed in range(20)]
+    level = [road for road in roads if not any(segment.incline for segment in road.segments)]
+    assert level
+    assert all(segment.vertical_radius is None for road in level for segment in road.segments)
+
+
+def test_slopes_that_cannot_be_had_at_the_speed_are_refused_in_a_sentence() -> None:
+    brief = read_plan("straight flat len=30; straight up len=25 pct=12; straight flat; turn left")
+    with pytest.raises(DesignError, match=r"too fast for a speed limit of 70 km/h.*--speed-limit [35]0"):
+        draft(brief, WORLD, seed=1)
+    slow = World(speed_limit=30 / 3.6)
+    assert felt(draft(brief, slow, seed=1), slow) <= 3.05
+
+
+def test_a_short_hump_that_was_asked_for_may_be_as_abrupt_as_wheels_can_follow() -> None:
+    brief = read_plan("straight len=60; crest len=20 pct=10; straight len=40 | turns=0")
+    design = draft(brief, WORLD, seed=2)
+    assert 3 < felt(design) <= 9.85
+    assert check.inspect(build(design), brief, WORLD) == ()
+    assert [finding.rule for finding in check.inspect(build(design), None, WORLD)] == ["too_abrupt"]
+
+
+@given(st.data())
+def test_parabolas_keep_their_radius_or_the_room_between_them(data: st.DataObject) -> None:
+    n = data.draw(st.integers(2, 8))
+    lengths = data.draw(st.lists(st.floats(0.5, 200), min_size=n, max_size=n))
+    grades = data.draw(st.lists(st.sampled_from([-0.1, -0.03, 0.0, 0.02, 0.12]), min_size=n, max_size=n))
+    radii = data.draw(st.lists(st.none() | st.floats(1, 3000), min_size=n, max_size=n))
+    found = parabolas(lengths, grades, radii)
+    ends = np.cumsum(lengths)
+    for parabola in found:
+        assert parabola.s == pytest.approx(ends[parabola.number - 1])
+        asked = radii[parabola.number]
+        assert parabola.radius <= (asked or 250.0) * (1 + 1e-9)
+    assert all(a.s + a.half < b.s - b.half for a, b in pairwise(found))
+    assert all(p.s - p.half > 0 and p.s + p.half < ends[-1] for p in found)
+
+
+@given(st.data())
+def test_softened_grades_leave_room_wherever_there_are_such(data: st.DataObject) -> None:
+    n = data.draw(st.integers(2, 9))
+    lengths = data.draw(st.lists(st.floats(8, 120), min_size=n, max_size=n))
+    grades = data.draw(st.lists(st.floats(-12, 12), min_size=n, max_size=n))
+    radii = data.draw(st.lists(st.floats(50, 900), min_size=n - 1, max_size=n - 1))
+    out = softened(grades, lengths, radii, [-12.0] * n, [12.0] * n)  # one slope for all would do
+    halves = [0.0, *(r * abs(b - a) / 200 for r, (a, b) in zip(radii, pairwise(out), strict=True)), 0.0]
+    for length, before, after in zip(lengths, halves, halves[1:], strict=False):
+        assert before + after <= 1.02 * length
+    assert min(grades) - 1e-9 <= min(out) <= max(out) <= max(grades) + 1e-9
+
+
+def test_repair_makes_lists_of_language_models_gentle_enough() -> None:
+    changed = 0
+    for raw in random_lists(60, 5):
+        design = read_design(raw)[0]
+        mended = repair(design, None, WORLD, "full")
+        assert felt(mended.design) <= 3.05
+        changed += felt(design) > 3.05
+    assert changed > 5
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["make the second turn downhill at 6 %", "make the first straight uphill at 8 %", "make the end steep"],
+)
+def test_changes_of_slope_are_gentle_enough(words: str) -> None:
+    for seed in range(4):
+        before = draft(read("a road with 3 turns, level"), WORLD, seed=seed)
+        after = edit(before, words, WORLD).design
+        assert felt(before) <= 0.52
+        assert felt(after) <= 3.05
+
+
+def test_genes_keep_vertical_radii_and_variations_the_rule() -> None:
+    brief = read("an uphill road with 3 turns")
+    design = draft(brief, WORLD, seed=4)
+    assert any(segment.vertical_radius for segment in design.segments)
+    place = Place(*design.starting_point[:2], design.theta)
+    assert design_of(genes_of(design), place, WORLD).segments == design.segments
+    setting = Setting(brief, WORLD)
+    found = [varied(Task("vary", (design,), "", (n,), setting)) for n in range(20)]
+    assert sum(one is not None for one in found) >= 16
+    assert all(felt(one.design) <= 3.05 for one in found if one)
+
+
+@pytest.mark.parametrize("kind", ["hairpin", "switchback"])
+def test_roads_with_hairpins_climb_or_fall_steadily_over_legs(kind: str) -> None:
+    ways = set()
+    for seed in range(8):
+        brief = Brief(clauses=(Clause(kind=kind, count=at_least(2)),), steepest=at_least(4))
+        road = build(draft(brief, WORLD, seed=seed))
+        grade = road.grade(np.arange(0.0, road.length, 0.5))
+        assert (grade > 0.005).all() or (grade < -0.005).all()
+        ways.add(bool(grade[0] > 0))
+        turns = measure(road.centreline()).turns
+        assert len(turns) >= 3
+        assert min(b.start - a.end for a, b in pairwise(turns)) >= 30
+    assert ways == {True, False}
+
+
+def test_hairpins_are_fewer_or_nearer_only_where_the_map_is_small() -> None:
+    brief = Brief(clauses=(Clause(kind="hairpin", count=at_least(2)),))
+    small = World(map_size=90)
+    turns = measure(build(draft(brief, small, seed=1)).centreline()).turns
+    assert len(turns) >= 2
+
+
+def test_hairpins_on_a_level_road_stay_level() -> None:
+    brief = Brief(clauses=(Clause(kind="hairpin", count=exactly(3)),), slope="flat")
+    grade = build(draft(brief, WORLD, seed=1)).sample().grade
+    assert np.abs(grade).max() < 0.01
