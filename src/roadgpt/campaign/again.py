@@ -1,6 +1,5 @@
 """One test again: as the campaign kept it, or the whole Run anew, from its stored design and its seed."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,11 +8,13 @@ import numpy as np
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.sound import sound
 from roadgpt.campaign.traces import TRACES, read_traces
 from roadgpt.campaign.worker import run_of, seed_of_driver
 from roadgpt.check import inspect
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
+from roadgpt.reading import json_of
 from roadgpt.road import Design, Road, build
 from roadgpt.run import Run
 from roadgpt.verdict import Verdict, judge
@@ -52,6 +53,8 @@ def kept_in(record: Record, cell: Cell, result: Result) -> Run:
     road = build(_design_of(record.folder, cell.name, result), request.setup.geometry)
     drive = _kept_drive(record, cell.name, result.number)
     is_invalid = result.outcome == "INVALID"
+    with sound(record.path):
+        versions = {str(name): str(number) for name, number in json_of(record.meta("versions")).items()}
     return Run(
         request,
         result.number,
@@ -64,7 +67,7 @@ def kept_in(record: Record, cell: Cell, result: Result) -> Run:
         findings=inspect(road, brief, request.world, request.setup.rules) if is_invalid else (),
         drive=drive,
         verdict=None if drive is None else _verdict_of(road, drive, cell, result),
-        versions=json.loads(record.meta("versions")),
+        versions=versions,
     )
 
 

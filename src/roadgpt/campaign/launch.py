@@ -15,6 +15,7 @@ from roadgpt.campaign.executors import Executor, Staff
 from roadgpt.campaign.office import Office, Progress
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Record, no_campaign
+from roadgpt.campaign.sound import sound
 from roadgpt.campaign.store import Store, refused
 from roadgpt.campaign.table import CELLS, RESULTS, write_tables
 from roadgpt.campaign.traces import SUFFIX, TRACES
@@ -26,7 +27,7 @@ from roadgpt.drive.apart import driver_of
 from roadgpt.drive.trust import admit
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup, brief_of
-from roadgpt.run.atomic import held, sweep
+from roadgpt.run.atomic import held, refuse_links, sweep
 from roadgpt.run.versions import versions_of
 
 LOCK = "campaign.lock"
@@ -135,7 +136,8 @@ def _same(plan: Plan, folder: Path) -> None:
 
 def plan_of(record: Record) -> Plan:
     """The plan that a store holds."""
-    return Plan.model_validate_json(record.meta("plan")).came_with(record.path)
+    with sound(record.path):
+        return Plan.model_validate_json(record.meta("plan")).came_with(record.path)
 
 
 @contextmanager
@@ -216,6 +218,7 @@ def _conclude(folder: Path, store: Store) -> None:
 
 def _sweep(folder: Path, store: Store) -> None:
     """Remove what a killed process left: files that are not whole, and drives whose results were not kept."""
+    refuse_links(folder / TRACES, folder / LOG, folder / RESULTS, folder / CELLS)
     sweep(folder)
     if (folder / TRACES).is_dir():
         sweep(folder / TRACES)

@@ -13,6 +13,7 @@ from roadgpt.campaign.plan import PATIENCE, WITH_GOAL, WITHOUT_GOAL, Plan, Seed
 from roadgpt.chat import ChatSettings
 from roadgpt.drive.custom import located
 from roadgpt.errors import UsageError
+from roadgpt.reading import read_text
 from roadgpt.road import Geometry, World
 from roadgpt.road.world import NotNegative, Positive
 
@@ -107,9 +108,7 @@ def read_plan(path: Path) -> Written:
         UsageError: it is no TOML, or a key or a value of it cannot be used.
     """
     try:
-        if path.stat().st_size > LARGEST:
-            raise UsageError(f"{path} is larger than {LARGEST:,} bytes; that is no plan of a campaign")
-        told = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        told = tomllib.loads(read_text(path, LARGEST, "a plan of a campaign", "utf-8-sig"))
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror}; check the path") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:

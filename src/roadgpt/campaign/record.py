@@ -8,13 +8,14 @@ from typing import Any, Self
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
+from roadgpt.campaign.sound import LATER, look_at, sound
 from roadgpt.errors import UsageError
 from roadgpt.run.card import CARD, read_card
 
 STORE = "campaign.sqlite"
 FORMAT = 1
 PATIENCE = 30.0  # s for another process
-LATER = ("beyond",)
+
 """Columns of ``tests`` that stores of older versions do not have; what they would hold is not known there."""
 
 
@@ -102,8 +103,13 @@ class Record:
         if version != FORMAT:
             db.close()
             raise UsageError(f"{path} was written by another version of roadgpt; start the campaign anew")
-        record = cls(path, db)
-        record.missing = _missing(db)
+        try:
+            look_at(path, db)
+            record = cls(path, db)
+            record.missing = _missing(db)
+        except BaseException:
+            db.close()
+            raise
         if record.missing and mode == "ro":
             empty = ", ".join(f"NULL AS {name}" for name in record.missing)
             db.execute(f"CREATE TEMP VIEW tests AS SELECT *, {empty} FROM main.tests")  # noqa: S608 - ours
@@ -126,11 +132,19 @@ class Record:
 
     def query(self, sql: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
         """All rows that a SELECT gives; for counts and groups, not for a million rows."""
-        return self._db.execute(sql, values).fetchall()
+        with sound(self.path):
+            return self._db.execute(sql, values).fetchall()
 
     def stream(self, sql: str, values: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
         """The rows that a SELECT gives, one by one."""
-        yield from self._db.execute(sql, values)
+        with sound(self.path):
+            cursor = self._db.execute(sql, values)
+        while True:
+            with sound(self.path):
+                row = cursor.fetchone()
+            if row is None:
+                return
+            yield row
 
     def meta(self, name: str) -> str:
         """One of ``plan``, ``versions``, ``finished``."""
@@ -138,9 +152,15 @@ class Record:
 
     def cells(self) -> list[Cell]:
         """In the order of the plan."""
-        return [
-            cell_of_text(text, self.path) for (text,) in self.query("SELECT cell FROM cells ORDER BY name")
-        ]
+        rows = self.query("SELECT name, cell FROM cells ORDER BY name")
+        return [self._cell(name, text) for name, text in rows]
+
+    def _cell(self, name: str, text: str) -> Cell:
+        with sound(self.path):
+            found = cell_of_text(text, self.path)
+            if found.name != name:
+                raise ValueError(f"cell {name} calls itself {found.name[:20]}")
+            return found
 
     def cell(self, name: str) -> Cell:
         """One cell.
@@ -152,7 +172,7 @@ class Record:
         if not found:
             names = [name for (name,) in self.query("SELECT name FROM cells ORDER BY name LIMIT 10")]
             raise UsageError(f"there is no cell '{name}' in {self.path.parent}; cells are {', '.join(names)}")
-        return cell_of_text(found[0][0], self.path)
+        return self._cell(name, found[0][0])
 
     def results(
         self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
@@ -175,7 +195,10 @@ class Record:
             f"SELECT {RESULT} FROM tests JOIN details USING (cell, number) "  # noqa: S608 - our own words
             f"WHERE {chosen} outcome IS NOT NULL AND ({where}) ORDER BY tests.cell, tests.number"
         )
-        return map(result_of_row, self.stream(sql, (*names, *values)))
+        for row in self.stream(sql, (*names, *values)):
+            with sound(self.path):
+                told = result_of_row(row)
+            yield told
 
     def result(self, cell: str, number: int) -> Result:
         """One result.
@@ -199,10 +222,11 @@ class Record:
             "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",
             (cell,),
         )
-        return [
-            (number, batch, Proposal(design_of(text), seed, origin))
-            for number, batch, seed, origin, text in rows
-        ]
+        with sound(self.path):
+            return [
+                (number, batch, Proposal(design_of(text), seed, origin))
+                for number, batch, seed, origin, text in rows
+            ]
 
     def spent(self) -> tuple[int, float]:
         """Tokens and USD that language models were paid for so far."""

@@ -8,6 +8,7 @@ from typing import Any
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.model import Budget, Cell, Proposal, Result
 from roadgpt.campaign.worker import Ended
+from roadgpt.reading import json_of
 from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
 from roadgpt.run.model import Request
@@ -69,6 +70,9 @@ def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
     """Cell and result, of a row with the columns ``RESULT``."""
     cell, number, batch, seed, given, outcome, cause, side, length, margin, max_oob, beyond, at_s = row[:13]
     origin, text, description, features = row[13:]
+    values = _features_of(features)
+    if not (isinstance(description, str) and isinstance(origin, str)):
+        raise TypeError("a description is a text")
     design = design_of(text)
     proposal = Proposal(design if given else None, seed, origin)
     return cell, Result(
@@ -85,8 +89,18 @@ def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
         at_s=at_s,
         side=side,
         cause=cause,
-        features=json.loads(features),
+        features=values,
     )
+
+
+def _features_of(text: str) -> dict[str, float]:
+    """Features as ``detail_values`` wrote them; TypeError where they are something else."""
+    values = json_of(text)
+    if not isinstance(values, dict) or not all(
+        isinstance(value, (int, float)) and math.isfinite(value) for value in values.values()
+    ):
+        raise TypeError("features are finite numbers by name")
+    return values
 
 
 def cell_text(cell: Cell) -> str:
@@ -106,7 +120,7 @@ def cell_text(cell: Cell) -> str:
 
 def cell_of_text(text: str, file: object) -> Cell:
     """The cell again, out of a store."""
-    data: Mapping[str, Any] = json.loads(text)
+    data: Mapping[str, Any] = json_of(text)
     return Cell(
         name=data["name"],
         request=Request.model_validate(data["request"]).came_with(file),

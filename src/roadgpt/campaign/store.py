@@ -33,6 +33,7 @@ from roadgpt.campaign.rows import cell_text, detail_values, proposal_rows, resul
 from roadgpt.campaign.worker import Ended
 from roadgpt.chat import Spent
 from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.run.atomic import refuse_links
 
 SCHEMA = """
 CREATE TABLE meta(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -108,6 +109,7 @@ class Store(Record):
         Raises:
             UsageError: there is none, or it is damaged or of another version.
         """
+        refuse_links(folder / STORE)
         store = cls._opened(folder, "rw")
         try:
             for name in store.missing:  # of a store that an older version made

@@ -18,6 +18,8 @@ from typing import Any
 from roadgpt.campaign.behaviour import BOUNDS, cell_of
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.sound import sound
+from roadgpt.reading import json_of
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import PART
 from roadgpt.verdict.severity import MOSTLY
@@ -58,7 +60,8 @@ OUTCOMES = {
 def write_tables(record: Record, folder: Path) -> None:
     """Write both, row by row; raises OSError."""
     features = record.feature_names()
-    _write(folder / RESULTS, _lines(record.stream(EVERY), features))
+    with sound(record.path):
+        _write(folder / RESULTS, _lines(record.stream(EVERY), features))
     cells = [_cell_row(record, cell) for cell in record.cells()]
     _write(folder / CELLS, map(_line, [tuple(cells[0]), *(tuple(row.values()) for row in cells)]))
 
@@ -84,7 +87,7 @@ def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator
         if told is not None:
             yield ",".join((_line(row)[:-1], *told.groups(""))) + "\n"
         else:
-            values = json.loads(found)
+            values = {name: float(value) for name, value in json_of(found).items()}
             yield _line((*row, *(values.get(name) for name in features)))
 
 
@@ -143,13 +146,15 @@ def _failing_cells(record: Record, cell: Cell) -> int:
         "WHERE tests.cell = ? AND outcome = 'FAIL'",
         (cell.name,),
     )
-    places = {cell_of(json.loads(features), axes, cells) for (features,) in failures}
+    with sound(record.path):
+        places = {cell_of(json_of(features), axes, cells) for (features,) in failures}
     return len(places - {None})
 
 
 def _write(path: Path, lines: Iterator[str]) -> None:
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
+        draft.unlink(missing_ok=True)
         with draft.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
             file.writelines(lines)
         draft.replace(path)

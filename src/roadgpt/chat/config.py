@@ -25,6 +25,7 @@ from roadgpt.chat.place import origin_of
 from roadgpt.chat.secret import Key, usable
 from roadgpt.errors import ChatError, UsageError
 from roadgpt.provenance import SERVERS
+from roadgpt.reading import read_text
 
 FIELDS = tuple(ChatSettings.model_fields)
 KEY = "api_key"
@@ -217,8 +218,7 @@ def _read(path: Path) -> str:
     try:
         if not path.is_file():
             return ""
-        with path.open("rb") as file:
-            return file.read(MOST_BYTES).decode("utf-8-sig")
+        return read_text(path, MOST_BYTES, "a file of settings", "utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or "it is not UTF-8"
         raise UsageError(f"the settings in {path} cannot be read: {why}; mend or remove the file") from None

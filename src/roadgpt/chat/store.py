@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.errors import ChatError, UsageError
+from roadgpt.reading import read_json
 
 FORMAT = 1
 Turns = Counter[tuple[str, str, str]]
@@ -83,10 +84,10 @@ class Store:
 
     def _read(self, path: Path) -> dict[str, Any]:
         try:
-            found = json.loads(path.read_text(encoding="utf-8"))
+            found = read_json(path, 10_000_000, "a recording")
             if found["format"] == FORMAT and isinstance(found["answers"], dict):
                 return dict(found)
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        except (OSError, ValueError, KeyError, TypeError):
             pass
         raise UsageError(f"{path} is no recording that can be read; record it again with --record")
 

@@ -1,5 +1,6 @@
 """The group of commands: finds a command when it is called, and turns errors into sentences."""
 
+import errno
 import sys
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -69,6 +70,11 @@ MISSING = {
 INTERRUPTED = 130  # exit status where input was broken off; after a signal, ``stopping.status`` has it
 NO_READER = 141  # whoever read the output went away; as shells have it: 128 + SIGPIPE
 REFUSED = 1  # the machine does not take what was to be written
+OF_FILES = {
+    errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EPERM, errno.ENOTDIR, errno.EISDIR, errno.ENOSPC,
+    errno.EROFS, errno.EDQUOT if hasattr(errno, "EDQUOT") else errno.ENOSPC,
+}  # fmt: skip
+"""What is wrong with a file, and no mistake of the program."""
 INTERNAL = 70  # EX_SOFTWARE of sysexits.h
 
 
@@ -148,6 +154,8 @@ class Commands(click.Group):
         except RoadGPTError as error:
             click.echo(f"roadgpt: {error}", err=True)
             status = stopping.status() or error.exit_status
+        except OSError as error:
+            status = stopping.status() or _refused(error)
         except (KeyboardInterrupt, click.Abort):
             status = stopping.status() or INTERRUPTED
         except Exception as error:  # the last door: nothing may leave as a traceback
@@ -157,6 +165,17 @@ class Commands(click.Group):
                 status = INTERNAL
         stopping.finish()
         sys.exit(status if isinstance(status, int) else 0)
+
+
+def _refused(error: OSError) -> int:
+    """Tell of a file that the system does not give or take; whatever else it says is an error of our own."""
+    if error.errno not in OF_FILES or not error.filename:
+        click.echo(f"roadgpt: {report_crash(error)}", err=True)
+        return INTERNAL
+    name = str(error.filename)
+    shown = name if len(name) <= 200 else f"{name[:80]}...{name[-40:]}"
+    click.echo(f"roadgpt: cannot use {shown}: {error.strerror}; name another file or folder", err=True)
+    return REFUSED
 
 
 def _confirm(question: str) -> bool:

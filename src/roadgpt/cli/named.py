@@ -1,5 +1,6 @@
 """The roads that a user names: files, runs, folders of runs, campaigns and tests; one resolver for all."""
 
+import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -129,7 +130,7 @@ def _run(folder: Path, said: str) -> Named:
     from roadgpt.run.card import CARD
     from roadgpt.run.folder import RUNS
 
-    whole = folder.resolve()
+    whole = Path(os.path.realpath(folder))
     campaign = whole.parent.parent
     is_one_of_many = whole.parent.name == RUNS and (campaign / CARD).is_file()
     stem = f"{campaign.name}-{whole.name}" if is_one_of_many else whole.name
@@ -148,7 +149,7 @@ def _single(file: str) -> Named:
     path = Path(file)
     if is_run(path):
         return _run(path, file)
-    stem = path.resolve().name
+    stem = Path(os.path.realpath(path)).name
     for ending in ENDINGS:
         stem = stem.removesuffix(ending)
     if (folder := run_of_test(path)) is not None:
@@ -157,4 +158,4 @@ def _single(file: str) -> Named:
         raise UsageError(
             f"cannot read {file}: there is nothing of that name; did you mean {' or '.join(others)}?"
         )
-    return Named(file, stem, path.resolve(), None)
+    return Named(file, stem, Path(os.path.realpath(path)), None)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.errors import UsageError
+from roadgpt.reading import check_unpacked, opened
 
 FloatArray = NDArray[np.float64]
 Ended = Literal["goal", "out_of_lane", "fell", "stuck", "timeout"]
@@ -39,6 +40,8 @@ COLUMNS = {
     "outside": "0..1, share of the car's box outside the right lane",
 }
 """Names of the columns, in their order, with what they hold."""
+
+LARGEST, UNPACKED = 50_000_000, 200_000_000  # bytes of the file, and of what is in it: seven hours of driving
 
 # The format of the file; raised when a reader of the old one would misread the new one.
 FORMAT = 2
@@ -176,10 +179,13 @@ class Drive:
             UsageError: there is no such file, or it holds no Drive.
         """
         try:
-            with np.load(path, allow_pickle=False) as archive:
+            with opened(Path(path), LARGEST, "a drive") as file, np.load(file, allow_pickle=False) as archive:
+                check_unpacked(archive.zip.infolist(), UNPACKED)
                 header = json.loads(str(archive["header"]))
                 arrays = {name: archive[name] for name in archive.files if name != "header"}
             return _checked(header, arrays)
+        except UsageError:
+            raise
         except FileNotFoundError as error:
             raise UsageError(f"there is no drive at {path}: check the path") from error
         except Exception as error:  # of a broken file, zipfile, its decoders, numpy and json raise anything

@@ -11,6 +11,7 @@ from roadgpt.errors import BriefError, LearnError
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.standard import standard
+from roadgpt.reading import read_text
 
 REFUSALS = ("!nonsense", "!contradiction", "!impossible")
 LONGEST = 2000  # letters
@@ -23,7 +24,7 @@ def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
     problems: list[str] = []
     seen: dict[str, str] = {}
     for path in sorted(paths):
-        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        for number, line in enumerate(read_text(path, 1_000_000_000, "a file of pairs").splitlines(), 1):
             place = f"{path.name}:{number}"
             if not line.strip():
                 continue

@@ -1,6 +1,5 @@
 """All roads of a campaign on one page: small multiples of the map, told apart by outcome."""
 
-import json
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from roadgpt.errors import UsageError
+from roadgpt.reading import read_json
 from roadgpt.report.canvas import (
     DARKER,
     INK,
@@ -127,7 +127,7 @@ def _share(path: Path, records: list[Any], outcome: str) -> float | None:
 
 def _loaded(path: Path) -> Any:
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        return read_json(path)
     except (OSError, ValueError) as error:
         raise UsageError(f"{path} cannot be read ({error}); remove it or make it again") from error
 

@@ -20,6 +20,7 @@ from roadgpt.errors import UsageError
 MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
 MAX_SEGMENTS = 500
+REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # of a segment in a file
 KEY = re.compile(r"road_segment(\d{1,6})")
 
 Direction = Literal["left", "right", "straight"]
@@ -103,6 +104,7 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
         segment, said = _segment(number, raw)
         segments.append(segment)
         remarks += said
+    _no_truths("the design", {name: data.get(name) for name in ("starting_point", "theta")})
     try:
         design = Design(
             starting_point=data.get("starting_point", ()), theta=data.get("theta"), segments=tuple(segments)
@@ -132,6 +134,11 @@ def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
 
 
 def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
+    if isinstance(raw, Mapping):
+        missing = [name for name in REQUIRED if name not in raw]
+        if missing:
+            raise UsageError(f"segment {number} cannot be read: {missing[0]}: {_advice('missing', {})}")
+        _no_truths(f"segment {number}", raw)
     try:
         segment = Segment.model_validate(raw)
     except ValidationError as error:
@@ -157,6 +164,14 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
             f"{segment.distance:g} m; the distance wins, and the turn is tighter"
         )
     return segment.model_copy(update={"turn_degrees": turn}), remarks
+
+
+def _no_truths(what: str, data: Mapping[str, Any]) -> None:
+    """UsageError where true or false stands for a number."""
+    for name, value in data.items():
+        values = value if isinstance(value, (list, tuple)) else (value,)
+        if any(isinstance(each, bool) for each in values):
+            raise UsageError(f"{what} cannot be read: {str(name)[:40]}: {_advice('float_type', {})}")
 
 
 def _first(error: ValidationError) -> str:

@@ -34,6 +34,7 @@ Y = ("y", "y_m", "pos_y", "north", "northing")
 Z = ("z", "z_m", "pos_z", "height", "elevation", "altitude")
 DEGREES = {"lat", "lon", "lng", "latitude", "longitude"}
 WITH_WIDTH = 4  # numbers of a point
+MOST_ROWS = 200_000  # of a table
 
 
 def points_in(data: Any) -> list[Any] | None:
@@ -83,6 +84,8 @@ def points_of_table(text: str) -> list[list[float]]:
         UsageError: it has no columns for x and y, or a cell is no number.
     """
     lines = [line for line in text.lstrip("\ufeff").splitlines() if line.strip() and line.lstrip()[0] != "#"]
+    if len(lines) > MOST_ROWS:
+        raise UsageError(f"the table has {len(lines):,} rows; give {MOST_ROWS:,} at most, a metre apart")
     if not lines:
         raise UsageError("the table is empty; give one row with x and y for each point")
     delimiter = next((one for one in DELIMITERS if one in lines[0]), None)

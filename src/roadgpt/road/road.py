@@ -1,6 +1,6 @@
 """The Road: 3-D geometry, asked with ``road.at(s, t)``."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -26,6 +26,9 @@ MOST_CONTROL_POINTS = 500  # SBFT rule
 LONGEST = 50_000.0  # m, of a road
 FARTHEST = 1_000_000.0  # m, of a point from the origin
 SHORTEST = 1e-3  # m
+STEEPEST = 10.0  # metres up for each metre forward
+LOOKED_AT = 5000  # places at which a road's grade is looked at
+MOST_POINTS = 200_000  # that a road may go through
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +76,9 @@ class Road:
         plan = SplineCurve.through(nodes)
         check_length(plan.length)
         level = GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0))
-        return cls(plan, SplineProfile(plan) if nodes.shape[1] == 3 else level, nodes, control)
+        profile = SplineProfile(plan) if nodes.shape[1] == 3 else level
+        check_grade(profile, plan.length)
+        return cls(plan, profile, nodes, control)
 
     def __repr__(self) -> str:
         low, high = self.profile.height(self.sample().s[[0, -1]])
@@ -186,9 +191,10 @@ class Road:
             profile, more = _profile(data)
             if not np.isfinite([*numbers, *more]).all():
                 raise ValueError("a number is not finite")
-            check_length(sum(p.length for p in pieces))
+            check_length(length := sum(p.length for p in pieces))
+            check_grade(profile, length)
             return cls(PieceCurve(x, y, heading, pieces), profile)
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise UsageError(
                 f"the road cannot be read: {error}; it needs start, pieces, height, stations, grades"
             ) from error
@@ -217,10 +223,29 @@ def check_length(length: float) -> None:
         )
 
 
+def check_grade(profile: Profile, length: float) -> None:
+    """Refuses roads that stand like a wall.
+
+    Raises:
+        UsageError: they climb or fall by more than ten metres for each metre forward.
+    """
+    with np.errstate(all="ignore"):
+        steepest = float(np.abs(profile.grade(np.linspace(0.0, length, LOOKED_AT))).max())
+    if not steepest <= STEEPEST:
+        raise UsageError(
+            f"the road has a grade of {steepest:.4g}, that many metres up or down for each metre forward; "
+            f"give one of up to {STEEPEST:g}"
+        )
+
+
 def _checked(points: ArrayLike) -> Array:
+    if isinstance(points, (list, tuple)) and len(points) > MOST_POINTS:
+        raise UsageError(f"the road has {len(points):,} points; give {MOST_POINTS:,} at most, a metre apart")
     try:
+        if isinstance(points, (list, tuple)) and _has_truths(points):
+            raise TypeError("true and false are no numbers")
         nodes = np.array(points, float)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise UsageError(
             "road points are lists of two or three numbers each, like [[10, 20], [60, 25]]"
         ) from error
@@ -231,3 +256,8 @@ def _checked(points: ArrayLike) -> Array:
             "a road point has a number that is not finite or beyond 1,000 km; correct or remove it"
         )
     return nodes
+
+
+def _has_truths(points: Sequence[Any]) -> bool:
+    """Does true or false stand for a number?"""
+    return any(isinstance(value, bool) for row in points if isinstance(row, (list, tuple)) for value in row)

@@ -1,6 +1,5 @@
 """Roads from files: ours, RoadGPT designs, tests and points of other tools, tables, or OpenDRIVE."""
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
+from roadgpt.reading import json_of, read_text
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, read_design
 from roadgpt.road.opendrive import Imported, read_opendrive
@@ -53,14 +53,12 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
         found = read_opendrive(path)
         return found.road, (*found.remarks, *_lanes_told(found))
     try:
-        if path.stat().st_size > LARGEST:
-            raise UsageError(f"{path} is larger than {LARGEST // 1_000_000} MB; that is no road file")
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path, LARGEST, "a road file")
         is_table = path.suffix.lower() in SUFFIXES
-        data = None if is_table else json.loads(text)
+        data = None if is_table else json_of(text)
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}; give the path of a road file") from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise UsageError(f"{path} is not valid JSON ({error}); give {SHAPES}") from error
     try:
         if is_table:

@@ -9,6 +9,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from roadgpt.errors import UsageError
+
 try:
     import fcntl
 except ImportError:  # Windows has no such locks, and does without
@@ -22,11 +24,26 @@ def write_whole(path: Path, content: str | bytes) -> None:
     data = to_bytes(content) if isinstance(content, str) else content
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
+        draft.unlink(missing_ok=True)  # were it a link, it would be written through
         draft.write_bytes(data)
         draft.replace(path)
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+
+
+def refuse_links(*paths: Path) -> None:
+    """Within a folder that may be somebody else's nothing is written through a link to elsewhere.
+
+    Raises:
+        UsageError: one of these is a link, or neither a file nor a folder.
+    """
+    for path in paths:
+        if path.is_symlink() or (path.exists() and not (path.is_file() or path.is_dir())):
+            what = "a link to somewhere else" if path.is_symlink() else "a pipe or a device"
+            raise UsageError(
+                f"{path} is {what}, and nothing is written there; remove it, or use another folder"
+            )
 
 
 @contextmanager
@@ -38,8 +55,10 @@ def held(path: Path) -> Iterator[None]:
 
     Raises:
         BlockingIOError: another process holds it.
+        UsageError: it is no file.
     """
-    with path.open("w") as file:
+    refuse_links(path)
+    with path.open("a") as file:
         if fcntl is not None:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield

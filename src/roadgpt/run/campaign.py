@@ -10,7 +10,7 @@ from typing import NoReturn
 from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design
-from roadgpt.run.atomic import PART, held, json_text, missing, sweep, take_away, write_whole
+from roadgpt.run.atomic import PART, held, json_text, missing, refuse_links, sweep, take_away, write_whole
 from roadgpt.run.card import CARD, Card, read_card
 from roadgpt.run.folder import RUNS, Draw, read_run, remove_run, run_folder, write_run
 from roadgpt.run.losses import Losses
@@ -238,6 +238,7 @@ class Campaign:
         """
         if (self.folder / CARD).is_file() and self._take_up().is_finished and self.is_complete:
             return True
+        refuse_links(self.folder / RUNS)
         sweep(self.folder)
         self._write_card(is_finished=False)
         (self.folder / RUNS).mkdir(exist_ok=True)

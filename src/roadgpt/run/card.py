@@ -1,6 +1,5 @@
 """The card of a campaign: what its folder says that it was asked for, so that it can be gone on with."""
 
-import json
 from pathlib import Path
 from typing import Literal
 
@@ -8,6 +7,7 @@ from pydantic import ValidationError
 
 from roadgpt.brief.model import Frozen
 from roadgpt.errors import UsageError
+from roadgpt.reading import read_json
 from roadgpt.run.model import Request
 
 CARD = "campaign.json"
@@ -38,12 +38,12 @@ def read_card(folder: Path) -> Card:
         UsageError: no campaign lies there.
     """
     try:
-        card = json.loads((folder / CARD).read_text(encoding="utf-8"))
+        card = read_json(folder / CARD, 4_000_000, "the card of a campaign")
     except FileNotFoundError as error:
         raise UsageError(
             f"{folder} is not empty and was not made by roadgpt run; name another folder"
         ) from error
-    except (OSError, ValueError, RecursionError) as error:
+    except (OSError, ValueError) as error:
         raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
     try:
         found = Card.model_validate(card)

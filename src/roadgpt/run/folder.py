@@ -12,11 +12,13 @@ campaign/
 
 import json
 import shutil
-from dataclasses import asdict, replace
+from collections.abc import Hashable
+from dataclasses import asdict, dataclass, replace
+from functools import cache
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Annotated, Any, ClassVar, Protocol, TypeVar, cast
 
-from pydantic import ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.motorway import remarks
@@ -25,14 +27,17 @@ from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
+from roadgpt.reading import LARGEST, read_json, read_text
 from roadgpt.road import Road, read_design
-from roadgpt.run.atomic import json_text, to_bytes, whole_folder, write_whole
-from roadgpt.run.model import Request, Run, Seconds
+from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
+from roadgpt.run.model import Outcome, Request, Run, Seconds
 from roadgpt.run.sbft_json import test_name, test_text
 from roadgpt.verdict import Verdict, most_beyond
 
 FORMAT = 1
 RUNS = "runs"
+
+T = TypeVar("T")
 
 
 class Draw(Protocol):
@@ -60,6 +65,7 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
         test: what is to stand in the test file, where that is not the usual.
     """
     folder = run_folder(campaign, run.index)
+    refuse_links(campaign / RUNS, folder)
     with whole_folder(folder) as draft:
         for name, content in _files(run):
             (draft / name).write_bytes(content)
@@ -174,26 +180,27 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
     def value(name: str) -> Any:
         return _loaded(folder / name) if (folder / name).is_file() else None
 
+    told = _strictly(_Card, card)
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
     trace = folder / "error.txt"
     found = Run(
         request=Request.model_validate(card["request"]).came_with(folder / "run.json"),
-        index=card["index"],
-        seed=card["seed"],
-        outcome=card["outcome"],
-        description=card["description"],
+        index=told.index,
+        seed=told.seed,
+        outcome=told.outcome,
+        description=told.description,
         brief=None if brief is None else Brief.model_validate(brief),
         design=None if design is None else read_design(design)[0],
         road=None if road is None else Road.from_json(road),
-        findings=tuple(Finding(**finding) for finding in card["findings"]),
+        findings=told.findings,
         drive=Drive.load(folder / "drive.npz") if (folder / "drive.npz").is_file() else None,
         verdict=None if verdict is None else Verdict.from_json(verdict),
-        rounds=card["rounds"],
+        rounds=told.rounds,
         designing=DesignReport.model_validate(card["designing"]) if "designing" in card else None,
         spent=Spent.model_validate(card["spent"]) if "spent" in card else None,
-        versions=card["versions"],
-        trace=trace.read_text(encoding="utf-8") if trace.is_file() else "",
-        seconds=Seconds(**(value("seconds.json") or {})),
+        versions=told.versions,
+        trace=read_text(trace, LARGEST, "a file of a run") if trace.is_file() else "",
+        seconds=_strictly(Seconds, value("seconds.json") or {}),
     )
     return _completed(found)
 
@@ -206,8 +213,34 @@ def _completed(run: Run) -> Run:
     return replace(run, verdict=replace(verdict, beyond=most_beyond(road, drive, run.world)))
 
 
+@dataclass(frozen=True)
+class _Card:
+    """What a run says of itself in ``run.json``, but for what has a form of its own."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="ignore", allow_inf_nan=False)
+
+    index: Annotated[int, Field(ge=0, lt=2**63)]
+    seed: Annotated[int, Field(ge=0, lt=2**63)]
+    outcome: Outcome
+    description: str
+    findings: tuple[Finding, ...]
+    rounds: int
+    versions: dict[str, str]
+
+
+def _strictly(kind: type[T], data: Any) -> T:
+    """Data of a file as a value of this kind; ValidationError where a field has another type."""
+    value: T = _reader(cast(Hashable, kind)).validate_json(json.dumps(data), strict=True)
+    return value
+
+
+@cache
+def _reader(kind: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(kind)
+
+
 def _loaded(path: Path) -> Any:
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
+        return read_json(path, LARGEST, "a file of a run")
+    except (OSError, ValueError) as error:
         raise UsageError(f"{path} cannot be read ({error}); make the road again") from error

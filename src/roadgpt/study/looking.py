@@ -1,6 +1,5 @@
 """What a study looks at of each road: validity by every set of rules, the drive, the measured geometry."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from roadgpt.check import inspect
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import promises_of
 from roadgpt.errors import RoadGPTError
+from roadgpt.reading import read_json
 from roadgpt.road import Road, World
 from roadgpt.run import Run, read_run
 from roadgpt.run.campaign import finished
@@ -187,7 +187,7 @@ def _likeness(road: Road | None) -> Likeness | None:
 
 def _features(test: Path) -> dict[str, float]:
     try:
-        found = json.loads(test.read_text(encoding="utf-8")).get("features")
-    except (OSError, ValueError):
+        found = read_json(test).get("features")
+        return {str(key): float(value) for key, value in (found or {}).items()}
+    except (OSError, ValueError, TypeError, AttributeError, OverflowError):
         return {}
-    return {str(key): float(value) for key, value in (found or {}).items()}

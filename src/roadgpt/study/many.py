@@ -1,12 +1,13 @@
 """The report of a campaign of many tests, counted by its store: a million tests need no million rows."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 
 from roadgpt.campaign.faults import faults_in
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.sound import sound
 from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.reading import json_of
 from roadgpt.report.page import Block, Cell, Figure, Page, Section, Table, cell, linked, write
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
@@ -191,8 +192,8 @@ def _forest(cells: Sequence[CellStatus]) -> Figure:
 
 
 def _card(command: str, record: Record, status: Status) -> dict[str, str]:
-
-    versions = json.loads(record.meta("versions"))
+    with sound(record.path):
+        versions = {str(name): str(number) for name, number in json_of(record.meta("versions")).items()}
     seeds = sorted({each.seed for each in status.cells})
     return {
         **({"command": command} if command else {}),

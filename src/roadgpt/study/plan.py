@@ -1,6 +1,5 @@
 """What a study is asked for, and where its campaigns lie: ``study.json`` in its folder says it."""
 
-import json
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -10,6 +9,7 @@ from roadgpt import plugins
 from roadgpt.brief.model import Frozen
 from roadgpt.chat import asks_a_model
 from roadgpt.errors import UsageError
+from roadgpt.reading import read_json
 from roadgpt.road import World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
@@ -118,10 +118,10 @@ def read_plan(folder: Path) -> Plan:
         UsageError: no study lies there, or its card cannot be read.
     """
     try:
-        card = json.loads((folder / CARD).read_text(encoding="utf-8"))
+        card = read_json(folder / CARD, what="the card of a study")
     except FileNotFoundError as error:
         raise UsageError(f"there is no study in {folder}; give the folder of one") from error
-    except (OSError, ValueError, RecursionError) as error:
+    except (OSError, ValueError) as error:
         raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
     try:
         plan = Plan.model_validate(card)

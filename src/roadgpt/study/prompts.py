@@ -1,6 +1,5 @@
 """Files of descriptions with the truth about each: JSON lines of ``id``, ``prompt`` and ``truth``."""
 
-import json
 from importlib.resources import files
 from pathlib import Path
 
@@ -8,6 +7,7 @@ from pydantic import Field, ValidationError
 
 from roadgpt.brief.model import Frozen
 from roadgpt.errors import UsageError
+from roadgpt.reading import json_of, read_text
 from roadgpt.study.truth import Truth
 
 MOST = 10_000  # prompts of a file
@@ -29,7 +29,7 @@ def read_prompts(path: Path) -> tuple[Prompt, ...]:
         UsageError: it cannot be read; the sentence names the line and what is wrong with it.
     """
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        lines = read_text(path, 4_000_000, "a file of prompts", "utf-8-sig").splitlines()
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}; give a file of JSON lines") from error
     except UnicodeDecodeError as error:
@@ -59,7 +59,7 @@ def _prompts(lines: list[tuple[int, str]], name: str) -> tuple[Prompt, ...]:
 
 def _prompt(number: int, text: str, where: str) -> Prompt:
     try:
-        data = json.loads(text)
+        data = json_of(text)
     except ValueError as error:
         raise UsageError(f"{where} is no JSON ({error})") from error
     if not isinstance(data, dict):

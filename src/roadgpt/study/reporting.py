@@ -1,10 +1,10 @@
 """Writes the report of a study, or of one campaign of ``roadgpt run``, from what lies in its folder."""
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from roadgpt.errors import UsageError
+from roadgpt.reading import read_json
 from roadgpt.report.page import Page, Section, write
 from roadgpt.road import World
 from roadgpt.run import Setup
@@ -61,7 +61,7 @@ def write_study(folder: Path) -> Path:
 
 def _problems(folder: Path) -> Mapping[str, str]:
     try:
-        found = json.loads((folder / PROBLEMS).read_text(encoding="utf-8"))
+        found = read_json(folder / PROBLEMS)
     except (OSError, ValueError):
         return {}
     return {str(key): str(value) for key, value in found.items()} if isinstance(found, dict) else {}

@@ -1,8 +1,12 @@
 """The Verdict: whether the car kept its lane, by how many metres, and where it first did not."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Hashable, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, Literal, Self
+from functools import cache
+from typing import Any, ClassVar, Literal, Self, cast
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from roadgpt.errors import UsageError
 from roadgpt.verdict.severity import Severity, severity
@@ -12,9 +16,16 @@ Cause = Literal["out of lane", "fell", "stuck", "timeout"]
 Side = Literal["left", "right"]
 
 
+@cache
+def _reader(kind: Hashable) -> TypeAdapter[Any]:
+    return TypeAdapter(kind)  # type: ignore[arg-type]
+
+
 @dataclass(frozen=True)
 class Verdict:
     """What became of one drive. Places are those of the car's centre of gravity where it first failed."""
+
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     outcome: Outcome
     cause: Cause | None
@@ -65,12 +76,15 @@ class Verdict:
         """The verdict that ``to_json`` wrote.
 
         Raises:
-            UsageError: a field is missing or unknown.
+            UsageError: a field is missing or unknown, or holds what a verdict cannot.
         """
-        fields = {key: value for key, value in data.items() if key != "kept"}
-        if fields.get("at_xy") is not None:
-            fields["at_xy"] = tuple(fields["at_xy"])
         try:
-            return cls(**fields)
-        except TypeError as error:
+            fields = {key: value for key, value in data.items() if key != "kept"}
+            verdict: Self = _reader(cast(Hashable, cls)).validate_json(json.dumps(fields), strict=True)
+            return verdict
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            said = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"
+            raise UsageError(f"the verdict cannot be read ({said}): judge the drive again") from error
+        except (AttributeError, TypeError, ValueError) as error:
             raise UsageError(f"the verdict cannot be read ({error}): judge the drive again") from error

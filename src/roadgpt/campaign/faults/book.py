@@ -12,7 +12,6 @@ Of a folder of runs without c01/.
 
 import csv
 import io
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -27,8 +26,9 @@ from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.faults.why import Why, why
 from roadgpt.campaign.names import Name
 from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.reading import read_json
 from roadgpt.run import Run, write_run
-from roadgpt.run.atomic import json_text, write_whole
+from roadgpt.run.atomic import json_text, refuse_links, write_whole
 from roadgpt.run.folder import is_run, run_folder
 
 FOLDER = "faults"
@@ -145,6 +145,7 @@ def _page(folder: Path, name: Name) -> Path:
 
 
 def _made(place: Path) -> Path:
+    refuse_links(place, *(each for each in place.parents if FOLDER in (each.name, each.parent.name)))
     try:
         place.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -219,7 +220,7 @@ def _drive(drive: Repeated) -> dict[str, Any]:
 def _read(path: Path, run: Run, name: Name, times: int | None = None) -> Looked | None:
     """What was found before, where it is of this Run and, if that matters, of as many drives."""
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = read_json(path)
         if data["seed"] != run.seed or data["description"] != run.description:
             return None
         if not data["drives"] or len(data["drives"]) != (times or len(data["drives"])):

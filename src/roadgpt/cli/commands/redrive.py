@@ -13,6 +13,8 @@ from roadgpt.errors import UsageError
 if TYPE_CHECKING:
     from roadgpt.campaign.naming import Choice, Place
 
+AGAIN = "again"  # folder of a campaign
+
 
 @click.command()
 @click.argument("names", nargs=-1, required=True, metavar="CAMPAIGN [TEST...]")
@@ -54,7 +56,7 @@ def command(
     for place in tests:
         cell, number = place.cell, place.number or 0
         run, result = run_again(place.folder, cell, number)
-        home = (out or place.folder / "again") / cell
+        home = (out or place.folder / AGAIN) / cell
         written = write_run(run, _made(home), draw)
         click.echo(f"{run.outcome:<8} {cell}/{number}  {written}  {one_line(run.description)}")
         if not is_same(run, result):
@@ -67,6 +69,9 @@ def command(
 
 
 def _made(path: Path) -> Path:
+    from roadgpt.run.atomic import refuse_links
+
+    refuse_links(*([path.parent] if path.parent.name == AGAIN else []), path)
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:

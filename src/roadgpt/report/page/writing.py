@@ -6,7 +6,7 @@ from roadgpt.errors import RoadGPTError
 from roadgpt.report.page.html import html_of
 from roadgpt.report.page.model import Page
 from roadgpt.report.page.text import csv_of, latex_of, markdown_of
-from roadgpt.run.atomic import write_whole
+from roadgpt.run.atomic import refuse_links, write_whole
 
 PAGE, TABLES = "report", "tables"
 
@@ -22,6 +22,7 @@ def write(page: Page, folder: Path | str) -> Path:
     """
     folder = Path(folder)
     try:
+        refuse_links(folder / TABLES)
         (folder / TABLES).mkdir(parents=True, exist_ok=True)
         for table in page.tables():
             write_whole(folder / TABLES / f"{table.name}.csv", csv_of(table))

@@ -12,6 +12,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from roadgpt.errors import UsageError
+from roadgpt.reading import opened
 
 LARGEST = 50_000_000  # bytes; the largest public maps have 20 MB
 TOO_LARGE = f"it is larger than {LARGEST // 1_000_000} MB; cut out the roads that you need"
@@ -85,13 +86,11 @@ def read_tree(path: Path, wanted: str | None) -> Choice:
     parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
     parser.StartDoctypeDeclHandler = _refuse_doctype
     try:
-        if path.stat().st_size > LARGEST:
-            raise UsageError(TOO_LARGE)
-        with path.open("rb") as file:
+        with opened(path, LARGEST, "a map; cut out the roads that you need", "it") as file:
             fed = 0
             while chunk := file.read(CHUNK):
                 fed += len(chunk)
-                if fed > LARGEST:  # of a pipe nobody knows the size
+                if fed > LARGEST:  # it grows
                     raise UsageError(TOO_LARGE)
                 parser.Parse(chunk, False)
                 if fed - max(parser.CurrentByteIndex, 0) > LONGEST_TAG:

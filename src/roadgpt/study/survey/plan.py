@@ -9,6 +9,7 @@ from pydantic import Field, ValidationError
 
 from roadgpt.brief.model import Frozen
 from roadgpt.errors import UsageError
+from roadgpt.reading import read_text
 from roadgpt.study.survey.questions import CRITERIA, PAIR_CRITERIA, Question
 
 Words = Annotated[str, Field(min_length=1, max_length=4000)]
@@ -92,7 +93,7 @@ def read_plan(path: Path | str) -> Plan:
     """
     path = Path(path)
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(read_text(path, 4_000_000, "the plan of a survey"))
     except OSError as error:
         raise UsageError(
             f"{path} cannot be read ({error.strerror or error}); name the file of a survey"

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.reading import read_text
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey.desk import Desk
 from roadgpt.study.survey.server import Server
@@ -84,7 +85,7 @@ def serve(
 def _invited(folder: Path, store: Store, wanted: int, base: str) -> list[str]:
     """Links of all raters, new ones among them, written and told."""
     path = folder / LINKS
-    tokens = re.findall(r"/r/([\w-]+)\s*$", path.read_text("utf-8"), re.M) if path.is_file() else []
+    tokens = re.findall(r"/r/([\w-]+)\s*$", read_text(path), re.M) if path.is_file() else []
     tokens = [token for token in tokens if store.rater_of(token) is not None]
     there = store.links()
     if wanted > MOST_RATERS:

@@ -8,6 +8,7 @@ answers  rater, question, value
 
 import hashlib
 import hmac
+import os
 import secrets
 import sqlite3
 import threading
@@ -54,18 +55,27 @@ class Rater:
 NOBODY = Rater("0" * 64, "invited")
 
 
+def _private(path: Path) -> None:
+    """Let nobody but its owner read or write the file and its logs, which take their rights from it."""
+    os.close(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NONBLOCK", 0), 0o600))
+    for each in (path, *(path.with_name(path.name + end) for end in ("-wal", "-shm"))):
+        if each.exists():
+            each.chmod(0o600)
+
+
 class Store:
     """The file of answers; may be used by many threads, and by several processes at once."""
 
     def __init__(self, path: Path | str) -> None:
         self._lock = threading.Lock()
         try:
+            _private(Path(path))
             self._file = sqlite3.connect(path, timeout=30, isolation_level=None, check_same_thread=False)
             # FULL waits for the disk at every commit; deleted answers are overwritten and not only let go
             for pragma in ("journal_mode=WAL", "synchronous=FULL", "secure_delete=ON", "foreign_keys=ON"):
                 self._file.execute(f"PRAGMA {pragma}")
             self._file.executescript(TABLES)
-        except sqlite3.Error as error:
+        except (sqlite3.Error, OSError) as error:
             raise RoadGPTError(
                 f"the answers in {path} cannot be opened ({error}); look at the file"
             ) from error

@@ -1,6 +1,5 @@
 """The Survey as it is served: its texts, its roads, its questions. Kept as ``survey.json`` in its folder."""
 
-import json
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
@@ -10,6 +9,7 @@ from pydantic import ValidationError
 
 from roadgpt.brief.model import Frozen
 from roadgpt.errors import UsageError
+from roadgpt.reading import read_json
 from roadgpt.study.survey.questions import (
     ABOUT,
     END,
@@ -113,12 +113,12 @@ def read_survey(folder: Path | str) -> Survey:
     """
     path = Path(folder) / CARD
     try:
-        return Survey.model_validate(json.loads(path.read_text(encoding="utf-8")))
+        return Survey.model_validate(read_json(path, what="a survey"))
     except FileNotFoundError as error:
         raise UsageError(
             f"{folder} holds no survey; make one: roadgpt study survey new SURVEY.toml --out {folder}"
         ) from error
-    except (OSError, ValueError, RecursionError, ValidationError) as error:
+    except (OSError, ValueError, ValidationError) as error:
         raise UsageError(
             f"{path} is damaged or of another version of roadgpt; make the survey again"
         ) from error

@@ -4,7 +4,6 @@ Numbers are taken out of the text by rules and put into the plan that the networ
 only plans that can be read. Weights and their card lie in ``weights/``.
 """
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -30,6 +29,7 @@ from roadgpt.brief.readers.model.usual import usual
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.refusal import TooMuchError
 from roadgpt.errors import BriefError, PartError
+from roadgpt.reading import read_json
 
 WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
@@ -170,7 +170,7 @@ class ModelReader:
 
     @cached_property
     def _settings(self) -> dict[str, Any]:
-        settings: dict[str, Any] = json.loads((self.folder / "settings.json").read_text(encoding="utf-8"))
+        settings: dict[str, Any] = read_json(self.folder / "settings.json")
         return settings
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from roadgpt.brief.readers.model.slots import Slotted
 from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+from roadgpt.reading import read_text
 
 SIDES = frozenset({"left", "right"})
 TRACES = frozenset({"left", "right", "lefts=", "rights=", "alternating"})
@@ -22,7 +23,7 @@ class Coverage:
     @classmethod
     def read(cls, path: Path) -> "Coverage":
         """The words of a file, one on each line."""
-        return cls(frozenset(path.read_text(encoding="utf-8").split("\n")))
+        return cls(frozenset(read_text(path).split("\n")))
 
     def unused(self, text: Slotted, tokens: Sequence[str]) -> tuple[str, ...]:
         """Words, as they were said, that the plan does not show, each once and in order."""

@@ -14,6 +14,7 @@ from roadgpt.brief.readers.model.slots import Slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.readers.model.writer import END, PlanWriter
+from roadgpt.reading import read_text
 
 Array = npt.NDArray[np.float32]
 START = NUMBER_OF["<start>"]
@@ -46,7 +47,7 @@ class Network:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.pieces = WordPieces((folder / "pieces.txt").read_text(encoding="utf-8").split("\n"))
+        self.pieces = WordPieces(read_text(folder / "pieces.txt").split("\n"))
 
     @cached_property
     def _encoder(self) -> onnxruntime.InferenceSession:

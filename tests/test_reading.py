@@ -1,0 +1,164 @@
+"""Files that may be somebody else's: whatever lies there, reading ends soon, and in a sentence."""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+import zipfile
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from roadgpt import reading
+from roadgpt.cli import app
+from roadgpt.drive import Drive
+from roadgpt.errors import UsageError
+from roadgpt.road import Road, read_design, read_road
+
+SEGMENT = {"distance": 30, "direction": "left", "incline": 2, "turn_degrees": 40}
+
+
+def test_a_file_is_read_whole(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    path.write_bytes(b'{"a": [1, 2.5, "\xc3\xa4"]}\r\n')
+    assert reading.read_json(path) == {"a": [1, 2.5, "ä"]}
+    assert reading.read_text(path).endswith("}\n")
+    link = tmp_path / "link.json"
+    link.symlink_to(path)
+    assert reading.read_bytes(link) == path.read_bytes()
+
+
+def test_what_is_no_file_is_refused_at_once(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for path in (pipe, Path("/dev/zero"), Path("/dev/random")):
+        begun = time.monotonic()
+        with pytest.raises(UsageError, match=f"{path} is a pipe or a device and no file"):
+            reading.read_bytes(path)
+        assert time.monotonic() - begun < 1
+    with pytest.raises(IsADirectoryError):
+        reading.read_bytes(tmp_path)
+    with pytest.raises(FileNotFoundError):
+        reading.read_bytes(tmp_path / "none")
+
+
+def test_the_limit_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_bytes(b"a" * 1001)
+    with pytest.raises(UsageError, match=r"a\.txt is larger than 1,000 bytes; that is not a plan"):
+        reading.read_bytes(path, 1000, "a plan")
+    assert len(reading.read_bytes(path, 1001)) == 1001
+    huge = tmp_path / "huge.txt"
+    with huge.open("wb") as file:
+        file.truncate(10**12)  # of nothing: it takes no room on the disk
+    with pytest.raises(UsageError, match="is larger than 50 MB"):
+        reading.read_bytes(huge)
+
+
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="no files that tell no size")
+def test_a_file_that_tells_no_size_is_bounded_as_well() -> None:
+    with pytest.raises(UsageError, match="is larger than 10 bytes"):
+        reading.read_bytes(Path("/proc/self/maps"), 10)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["[" * 100_000, '{"a":' * 50_000, "9" * 100_000, "[" + "[]," * 3_000_000 + "0]", "[" + "0," * 7_000_000],
+)
+def test_json_that_would_break_the_machine_is_a_value_error(text: str) -> None:
+    with pytest.raises(ValueError, match=r"nested|digits|parts"):
+        reading.json_of(text)
+
+
+def test_a_number_of_json_is_one_that_a_machine_can_hold() -> None:
+    assert reading.json_of("[1, -7, 123456789012345678901234567890]") == [
+        1,
+        -7,
+        123456789012345678901234567890,
+    ]
+    assert float(reading.json_of("9" * reading.DIGITS)) < float("inf")
+
+
+def test_an_archive_is_measured_before_it_is_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "drive.npz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        for name in ("header", "x", "y"):
+            file.writestr(f"{name}.npy", bytes(100_000_000))
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(UsageError, match="it unpacks to more than 200 MB"):
+        Drive.load(path)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000
+
+
+@pytest.mark.parametrize("name", ["fifo.json", "fifo.xodr", "fifo.csv", "fifo.toml"])
+def test_no_command_waits_for_a_pipe(tmp_path: Path, name: str) -> None:
+    os.mkfifo(tmp_path / name)
+    words = ["campaign"] if name.endswith("toml") else ["check"]
+    program = [sys.executable, "-c", "from roadgpt.cli import main; main()", *words, str(tmp_path / name)]
+    done = subprocess.run(program, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert name in done.stderr
+    assert "is a pipe or a device and no file" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words", ["check", "drive", "show", "plot", "view", "export --to csv", "compare", "edit"]
+)
+@pytest.mark.parametrize("name", ["n" * 300 + ".json", "d/" * 3000 + "x.json", "loop.json"])
+def test_names_that_cannot_be_are_told(
+    words: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("loop.json").symlink_to("loop.json")
+    more = {"compare": [name], "edit": ["make it longer"]}.get(words, [])
+    result = CliRunner().invoke(app, [*words.split(), name, *more], prog_name="roadgpt")
+    assert result.exit_code in (1, 2), result.output
+    assert "should not happen" not in result.stderr
+    assert name[:60] in result.stderr
+
+
+WALL = {
+    "start": [10, 10, 0],
+    "pieces": [[100, 0, 0]],
+    "height": 0,
+    "stations": [0, 100],
+    "grades": [1e9, -1e9],
+}
+
+
+def design(**changes: object) -> dict[str, object]:
+    """A design of one segment with these changes; None takes a field away."""
+    place = {name: changes.pop(name) for name in ("starting_point", "theta") if name in changes}
+    segment = {name: value for name, value in {**SEGMENT, **changes}.items() if value is not None}
+    return {"starting_point": [9, 9, 0], "theta": 0, **place, "road_segment1": segment}
+
+
+ROADS = {
+    "an integer beyond float": [[1, 1], [10**400, 2], [3, 3]],
+    "a grade of 1e9": WALL,
+    "a wall": [[0, 0, 0], [10, 0, 5000], [20, 0, 0]],
+    "false for a number": [[1, 1], [False, 20], [30, 30]],
+    "too many points": [[i * 1e-3, 0] for i in range(200_001)],
+    "no incline": design(incline=None),
+    "no turn": design(turn_degrees=None),
+    "false for an angle": design(turn_degrees=False),
+    "true for a place": design(starting_point=[9, True, 0]),
+    "true for a heading": design(theta=True),
+}
+
+
+@pytest.mark.parametrize("road", ROADS.values(), ids=ROADS)
+def test_a_road_that_is_none_is_refused_with_its_file(road: object, tmp_path: Path) -> None:
+    path = tmp_path / "road.json"
+    path.write_text(json.dumps(road))
+    with pytest.raises(UsageError, match=r"road\.json"):
+        read_road(path)
+
+
+def test_integers_beyond_float_are_refused_from_a_program_as_well() -> None:
+    with pytest.raises(UsageError, match="road points are"):
+        Road.through([[1, 1], [10**400, 2]])
+    assert read_design({"starting_point": [9, 9, 0], "theta": 0, "road_segment1": SEGMENT})[1] == ()
