@@ -16,8 +16,6 @@ STORE = "campaign.sqlite"
 FORMAT = 1
 PATIENCE = 30.0  # s for another process
 
-"""Columns of ``tests`` that stores of older versions do not have; what they would hold is not known there."""
-
 
 def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
     """A store's file and the number of its format; raises sqlite3.Error."""

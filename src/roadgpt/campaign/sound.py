@@ -22,7 +22,7 @@ OUTCOME = "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')"
 SIDE = "{0} IN ('left', 'right')"
 
 LATER = ("beyond",)
-"""Columns that older stores lack."""
+"""Columns of ``tests`` that stores of older versions do not have; what they would hold is not known there."""
 NUMBERS = (
     "length",
     "margin",
