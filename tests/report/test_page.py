@@ -14,6 +14,9 @@ from hypothesis import strategies as st
 
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.page import (
+    Card,
+    Cards,
+    Command,
     Details,
     Figure,
     Page,
@@ -29,7 +32,7 @@ from roadgpt.report.page import (
 )
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.report.page.gallery import Small, gallery
-from roadgpt.report.page.heat import SHADES, Axis, heat
+from roadgpt.report.page.heat import SHADES, Axis, heat, is_map
 from roadgpt.report.page.lines import bars, lines
 from roadgpt.report.page.svg import ticks
 
@@ -222,3 +225,59 @@ def test_every_road_of_a_gallery_leads_somewhere() -> None:
     assert [link.get("href") for link in all_of(svg, "a")] == [f"r{n}.png" for n in range(5)]
     assert len(all_of(svg, "polyline")) == 4
     assert len(all_of(svg, "path")) == 1
+
+
+def test_cards_stand_beside_each_other_with_what_can_be_typed() -> None:
+    """Pictures only in HTML; every word in both forms, nothing of it taken for markup."""
+    card = Card(["2 · ", linked("3 tests", "a b.png")], "<svg><rect/></svg>", [NASTY, [Command(NASTY)]])
+    whole = page(Cards([card, card]))
+    text = html_of(whole)
+    assert text.count("<article><svg><rect/></svg><h3>2 · <a") == 2
+    reader = Reader()
+    reader.feed(text)
+    assert reader.text.count(NASTY) >= 4
+    assert "<script" not in text
+    assert "**2 · [3 tests](a%20b.png)**" in markdown_of(whole)
+    assert "<code>" in text
+
+
+@pytest.mark.parametrize(
+    ("filled", "is_one"),
+    [
+        ([], False),
+        ([3.0], False),
+        ([1.0] * 9, False),
+        ([1.0] * 10, True),
+        ([1.0, 2.0], True),
+        ([np.nan, 2.0], False),
+    ],
+)
+def test_a_map_that_shows_nothing_is_none(filled: list[float], is_one: bool) -> None:
+    values = np.zeros(25)
+    values[: len(filled)] = filled
+    assert is_map(values.reshape(5, 5)) is is_one
+
+
+def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None:
+    """A car on a straight to the east: its way is drawn upwards, in the right lane, 240 px for 52 m."""
+    from roadgpt.drive import COLUMNS, Box, Columns, Drive
+    from roadgpt.report.page.spot import spot, spot_of
+    from roadgpt.road import Design, Segment, World, build
+
+    straight = Segment(distance=120.0, direction="straight")
+    road = build(Design(starting_point=(20, 100, 0), theta=0, segments=(straight,)))
+    s = np.linspace(2.0, 70.0, 500)
+    columns = {name: np.zeros(len(s)) for name in COLUMNS} | {"s": s, "x": 20 + s, "y": np.full(len(s), 98.0)}
+    drive = Drive("nobody", "nothing", 0, Columns(columns), "out_of_lane", Box(4.0, 2.0))
+    found = spot_of(road, World(), drive, 70.0)
+    picture = ET.fromstring(spot(found, "a place"))
+    (way,) = [e for e in picture.iter("{http://www.w3.org/2000/svg}polyline") if "s0" in e.get("stroke", "")]
+    points = np.array([pair.split(",") for pair in (way.get("points") or "").split()], float)
+    middle = 240 / 2
+    assert np.abs(points[:, 0] - middle).max() < 0.01, "the middle of the lane is the middle of the picture"
+    assert (np.diff(points[:, 1]) < 0).all(), "it goes up"
+    assert points[-1, 1] == pytest.approx(middle - 8 * 240 / 52, abs=1.0)
+    assert points[0, 1] - points[-1, 1] == pytest.approx(60 * 240 / 52, rel=0.02)
+    polygons = [e.get("points") or "" for e in picture.iter("{http://www.w3.org/2000/svg}polygon")]
+    car = np.array([pair.split(",") for pair in polygons[-1].split()], float)
+    assert np.ptp(car, axis=0) == pytest.approx(np.array([2.0, 4.0]) * 240 / 52, abs=0.02)

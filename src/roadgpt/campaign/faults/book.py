@@ -38,7 +38,7 @@ HEAD = (
     "fault", "failures", "test", "failed_again", "drives", "share", "way", "side", "radius_m",
     "entered_kmh", "needed_g", "grade", "station_m", "reason", "simplest",
 )  # fmt: skip
-HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob")
+HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob", "beyond_m")
 
 
 class Draws(Protocol):
@@ -169,7 +169,7 @@ def write_tables(faults: Sequence[Fault], looked: Mapping[int, Looked], folder: 
     of_failures = [
         [
             str(each.name), number, each.manner.way, each.manner.side or "", _decimal(each.manner.radius, 1),
-            f"{each.station:.1f}", _decimal(each.outside, 3),
+            f"{each.station:.1f}", _decimal(each.outside, 3), _decimal(each.beyond, 3),
         ]
         for each, number in sorted(members, key=lambda pair: pair[0].name)
     ]  # fmt: skip

@@ -18,7 +18,7 @@ from roadgpt.run import Run, Setup, read_run
 from roadgpt.run.campaign import finished
 from roadgpt.run.card import CARD, read_card
 from roadgpt.run.folder import is_run, run_folder
-from roadgpt.verdict.verdict import Cause, Side
+from roadgpt.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +32,8 @@ class Departure:
     """Metres along the road."""
     outside: float | None
     """Largest share of the car outside its lane, 0 to 1."""
+    beyond: float | None
+    """Metres that its body reached beyond the marking, at most."""
 
 
 @dataclass(frozen=True)
@@ -101,9 +103,7 @@ def _of_run(run: Run) -> Departure:
     assert run.road is not None
     assert run.verdict is not None
     its = run.verdict
-    return _departure(
-        Name("", run.index), run.road, run.request.world, "", its.at_s, its.cause, its.side, its.max_oob
-    )
+    return _departure(Name("", run.index), run.road, run.request.world, "", its)
 
 
 def _of_campaign(record: Record, some: Sequence[Name]) -> Iterator[Departure]:
@@ -127,7 +127,7 @@ def _of_result(cell: Cell, its: Result, whose: str) -> Departure | None:
     except RoadGPTError:  # of another version, which built it
         return None
     name = Name(cell.name, its.number)
-    return _departure(name, road, cell.request.world, whose, its.at_s, its.cause, its.side, its.max_oob)
+    return _departure(name, road, cell.request.world, whose, its)
 
 
 def system_of(world: World, setup: Setup) -> str:
@@ -135,19 +135,11 @@ def system_of(world: World, setup: Setup) -> str:
     return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
 
 
-def _departure(
-    name: Name,
-    road: Road,
-    world: World,
-    whose: str,
-    at_s: float | None,
-    cause: Cause | None,
-    side: Side | None,
-    outside: float | None,
-) -> Departure:
-    station = at_s or 0.0
-    around = surroundings(road, world, station, f"{cause} {side} {whose}")
-    return Departure(name, around, manner_of(road, world, station, cause, side), station, outside)
+def _departure(name: Name, road: Road, world: World, whose: str, its: Verdict | Result) -> Departure:
+    station = its.at_s or 0.0
+    around = surroundings(road, world, station, f"{its.cause} {its.side} {whose}")
+    manner = manner_of(road, world, station, its.cause, its.side)
+    return Departure(name, around, manner, station, its.max_oob, its.beyond)
 
 
 def failed_run(folder: Path, name: Name) -> Run:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from roadgpt.report.page.svg import chart, line, number, tag, tick_text, ticks, words
 
 SHADES = 16
+FEW = 10  # cells, below which a map shows nothing where all hold the same number
 SIDE, LEFT, BOTTOM, TOP, BAR = 380.0, 74.0, 46.0, 12.0, 96.0
 
 
@@ -18,6 +19,12 @@ class Axis(NamedTuple):
     lo: float
     hi: float
     apart: float = 0.0
+
+
+def is_map(values: NDArray[np.float64]) -> bool:
+    """Do the numbers tell anything? Not where there is one at most, or a few that are all the same."""
+    filled = values[np.isfinite(values) & (values > 0)]
+    return len(np.unique(filled)) > 1 or len(filled) >= FEW
 
 
 def heat(

@@ -44,7 +44,7 @@ def spot_of(road: Road, world: World, drive: Drive | None, station: float) -> Sp
     path, car = np.empty((0, 2)), None
     if drive is not None:
         last = _step(drive, station)
-        near = np.flatnonzero(drive["s"][: last + 1] >= station - REACH)[::5]
+        near = np.flatnonzero(drive["s"][:last] >= station - REACH)[::5]
         path = np.stack([drive["x"], drive["y"]], axis=1)[[*near, last]]
         car = drive.corners(last)
     heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
@@ -81,7 +81,13 @@ def spot(of: Spot, label: str) -> str:
         car = _points(placed(of.car))
         out.append(tag("polygon", points=car, fill="var(--fail)", fill_opacity=0.85, stroke="var(--paper)"))
     bar, below = SCALE * size, SIDE - 12.0
-    out += [line(12, below, 12 + bar, below, "axis"), words(12, below - 5, f"{SCALE:.0f} m", 10.5)]
+    out += [
+        tag(
+            "rect", x=7, y=below - 16, width=bar + 10, height=21, rx=2, fill="var(--wash)", fill_opacity=0.85
+        ),
+        line(12, below, 12 + bar, below, "axis"),
+        words(12, below - 5, f"{SCALE:.0f} m", 10.5),
+    ]
     return chart(SIDE, SIDE, "".join(out), label)
 
 

@@ -97,9 +97,7 @@ def _card(folder: Path, told: Told, found: Faults) -> Card:
     ]
     reason = f"{told.reason[:1].upper()}{told.reason[1:]}."
     lines: list[Line] = [reason, _stable(told)]
-    farthest = max((each.outside or 0.0 for each in told.fault.members), default=0.0)
-    if farthest:
-        lines.append(f"Largest share of the car outside its lane: {percent(farthest, 0)}.")
+    lines += _farthest(told.fault)
     if told.looked and told.looked.simplest:
         lines.append(f"Simplest road that fails alike: {told.looked.simplest}.")
     lines.append([Command(shlex.join(["roadgpt", "view", f"{folder}/{told.name}"]))])
@@ -107,6 +105,16 @@ def _card(folder: Path, told: Told, found: Faults) -> Card:
     station = told.why.station if told.why else told.fault.typical[0].station
     picture = spot(spot_of(told.run.road, told.run.world, told.run.drive, station), reason)
     return Card(title, picture, lines)
+
+
+def _farthest(fault: Fault) -> list[Line]:
+    """How far outside its lane the car was at most, over all failures of a fault."""
+    share = max((each.outside or 0.0 for each in fault.members), default=0.0)
+    metres = max((each.beyond or 0.0 for each in fault.members), default=0.0)
+    if not share:
+        return []
+    beyond = f", {metres:.2f} m beyond the marking" if metres else ""
+    return [f"Outside its lane at most: {percent(share, 0)} of the car{beyond}."]
 
 
 def _stable(told: Told) -> str:

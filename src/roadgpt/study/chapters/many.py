@@ -11,7 +11,7 @@ from roadgpt.campaign.behaviour import BOUNDS
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
 from roadgpt.report.page import Block, Cell, Figure, Table, cell
-from roadgpt.report.page.heat import Axis, heat
+from roadgpt.report.page.heat import Axis, heat, is_map
 from roadgpt.report.page.lines import bars, lines
 from roadgpt.study.chapters.maps import CALLED
 from roadgpt.study.chapters.saying import decimal, percent
@@ -21,7 +21,6 @@ STEPS = 200  # of a curve
 SAMPLE = 100_000  # tests whose features are read, evenly spread
 SIDE = 25  # cells of a map along each axis
 MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is in the outermost
-FEW = 10  # cells of a map, below which it shows nothing where all hold the same number
 MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))
 
 
@@ -166,12 +165,6 @@ def coverage(record: Record, done: int) -> list[Block]:
         axes = (Axis(CALLED[across], *BOUNDS[across]), Axis(CALLED[upwards], *BOUNDS[upwards]))
         blocks.append(Figure(f"map-{across.lower()}", caption, heat(sums, *axes, "tests", caption)))
     return blocks
-
-
-def is_map(values: NDArray[np.float64]) -> bool:
-    """Do cells with numbers tell anything? Not if there is one at most, or a few that all hold the same."""
-    filled = values[np.isfinite(values) & (values > 0)]
-    return len(np.unique(filled)) > 1 or len(filled) >= FEW
 
 
 def _map(record: Record, across: str, upwards: str, every: int) -> NDArray[np.float64]:

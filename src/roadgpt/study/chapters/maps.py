@@ -6,7 +6,7 @@ import numpy as np
 
 from roadgpt.report.page import Block, Figure, Section
 from roadgpt.report.page.gallery import Small, gallery
-from roadgpt.report.page.heat import Axis, heat
+from roadgpt.report.page.heat import Axis, heat, is_map
 from roadgpt.study.looking import Looked, LookedPart
 
 CELLS = 25  # along each side of a map
@@ -51,6 +51,8 @@ def _map(
         return None
     values = np.clip(np.array(found), [x0, y0], [x1, y1])
     counts, _, _ = np.histogram2d(values[:, 1], values[:, 0], CELLS, ((y0, y1), (x0, x1)))
+    if not is_map(counts):
+        return None
     filled = int(np.count_nonzero(counts))
     caption = f"{designer}: {len(found)} roads in {filled} of {CELLS * CELLS} cells ({across}, {upwards})."
     picture = heat(counts, Axis(across_name, x0, x1), Axis(upwards_name, y0, y1), "roads", caption)
