@@ -276,3 +276,16 @@ def test_a_page_that_was_looked_into_is_read_as_it_was(looked: Path) -> None:
         assert isinstance(found, Looked)
         _, again = book.look_into(book.Look(looked, fault.number, fault.names, 2))
         assert (found.name, found.why, found.stability) == (again.name, again.why, again.stability)
+
+
+def test_the_report_of_runs_tells_their_faults_as_well(tmp_path: Path) -> None:
+    words = ["zig-zag downhill with 3 turns", "-n", 3, "--friction", 0.4, "--seed", 3, "--reader", "grammar"]
+    roadgpt("run", *words, "--no-plot", "-q", "--out", tmp_path / "runs")
+    found = faults_in(tmp_path / "runs")
+    assert found.failures >= 2
+    roadgpt("report", tmp_path / "runs")
+    text = (tmp_path / "runs" / "report.md").read_text(encoding="utf-8")
+    assert text.index(f"- {found.sentence[:1].upper()}{found.sentence[1:]}") < text.index("valid")
+    assert "## Distinct faults" in text
+    for fault in found.them:
+        assert f"`roadgpt view {tmp_path / 'runs'}/{fault.names[0]}`" in text

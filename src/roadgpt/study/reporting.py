@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from roadgpt.campaign.faults import faults_in
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_json
 from roadgpt.report.page import Page, Section, write
@@ -25,6 +26,7 @@ from roadgpt.study.chapters.counting import (
     validity,
 )
 from roadgpt.study.chapters.diversity import diversity, spread_of
+from roadgpt.study.chapters.faults import faults, headline, told_of
 from roadgpt.study.chapters.glance import glance
 from roadgpt.study.chapters.maps import coverage, roads
 from roadgpt.study.chapters.outside import outside_sentences, passed_roads
@@ -172,7 +174,10 @@ def write_campaign(folder: Path, command: str = "") -> Path:
         raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
     found = [spread_of(part)]
     first = glance([part], found, request.world.map_size)
-    sections = [*([first] if first else []), validity([part], [setup.designer], has_baseline=False)]
+    failed = faults_in(folder)
+    told = told_of(folder, failed)
+    opening = [each for each in (first, faults(folder, failed, told)) if each is not None]
+    sections = [*opening, validity([part], [setup.designer], has_baseline=False)]
     if setup.drives:
         sections.append(departures([part], [setup.designer], has_baseline=False))
     if request.words:
@@ -180,7 +185,7 @@ def write_campaign(folder: Path, command: str = "") -> Path:
     sections += [diversity([part], found), *_pictures([part], request.world.map_size)]
     page = Page(
         words,
-        _campaign_summary(part, setup, request.world, found),
+        [*(headline(failed, told) if told else []), *_campaign_summary(part, setup, request.world, found)],
         sections,
         card_of(command, card.roads, request.seed, setup, request.world, [part]),
         f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",
