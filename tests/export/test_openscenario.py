@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exported import ROADS, WORLD, drive
-from roadgpt.export import save
+from roadgpt.export import Poses, save
 from roadgpt.road import Road, World
 
 REAR_AXLE, GRAVITY_HEIGHT = -1.47, 0.56  # m, of the simulator's car
@@ -110,7 +110,7 @@ def test_the_trajectory_is_that_of_the_rear_axle(tmp_path: Path, name: str) -> N
     poses = drive(ROADS[name])
     _, replay = saved(ROADS[name], tmp_path)
     vertices = list(replay.iter("Vertex"))
-    time = [float(vertex.attrib["time"]) for vertex in vertices]
+    time = np.array([float(vertex.attrib["time"]) for vertex in vertices])
     rows = np.array(
         [[float(vertex.find("Position/WorldPosition").attrib[k]) for k in "xyzhpr"] for vertex in vertices]
     )
@@ -123,6 +123,45 @@ def test_the_trajectory_is_that_of_the_rear_axle(tmp_path: Path, name: str) -> N
     assert (np.sign(left[:, 2]) == np.sign(poses.roll)).all()
     stop = replay.find("Storyboard/StopTrigger").iter("SimulationTimeCondition")
     assert [float(each.attrib["value"]) for each in stop] == [pytest.approx(time[-1])]
+
+
+def merged(time: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What a player leaves of a trajectory that merges close vertices, as esmini does where it is not told
+    otherwise: those within 0.1 m of the last one that it kept, unless the car stands there for a second."""
+    kept = [0]
+    for i in range(1, len(time) - 1):
+        if np.hypot(*(places[i] - places[kept[-1]])) > 0.1:
+            if time[i] - time[kept[-1]] > 1.0:
+                kept.append(i - 1)
+            kept.append(i)
+    return time[[*kept, len(time) - 1]], places[[*kept, len(time) - 1]]
+
+
+@pytest.mark.parametrize("wait", [0.0, 0.4, 3.0])
+def test_a_player_that_merges_close_poses_still_drives_off_in_time(tmp_path: Path, wait: float) -> None:
+    """A car waits, then drives off ever faster, 9 m in the first two seconds; nowhere is it 2 cm off.
+
+    The merged trajectory of a car that never waits would be 38 mm off."""
+    time = np.arange(0.0, 8.0, 0.02)
+    s = 2.5 + 1.1 * np.maximum(time - wait, 0.0) ** 3
+    s = s[s < 90]
+    time = time[: len(s)]
+    road = Road.through([[0, 0], [50, 0], [100, 0]])
+    x, y, z = road.at(s, -2.0).T
+    zero = np.zeros(len(s))
+    speed = np.gradient(s, time)
+    save(road, tmp_path, ["openscenario"], WORLD, "r", Poses(time, x, y, z + 0.56, zero, zero, zero, speed))
+    root = ET.parse(tmp_path / "r.drive.xosc").getroot()
+    vertices = list(root.iter("Vertex"))
+    when = np.array([float(vertex.attrib["time"]) for vertex in vertices])
+    where = np.array([[float(v.find("Position/WorldPosition").attrib[k]) for k in "xy"] for v in vertices])
+    event = next(root.iter("Event"))
+    begins = float(next(event.iter("SimulationTimeCondition")).attrib["value"])
+    assert begins == when[0]
+    known, places = merged(when, where)
+    played = np.interp(time, known, places[:, 0])
+    played[time < begins] = x[0] + REAR_AXLE
+    assert np.abs(played - (x + REAR_AXLE)).max() < 0.02
 
 
 def test_without_a_drive_there_is_no_second_scenario(tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ DATE = "2026-01-01T00:00:00"  # of every file: the same road gives the same byte
 LANE = "-1"  # the right one
 PULL = 2.0  # m/s^2, of driving off
 PATIENCE = 60.0  # s beyond the time that the drive should take, after which a player gives up
+STANDS = 0.01  # m; a car that has moved less stands
 DECIMALS = 6
 
 
@@ -83,13 +84,24 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> Element:
     root, actions, story = _frame(world, map_, "A car repeats its recorded drive.")
     actions.add("PrivateAction").add("TeleportAction").extended(_in_world(rows[0]))
     actions.add("PrivateAction").extended(_speed(round(float(poses.speed[0]), DECIMALS)))
-    follow = _act(story, "repeat").add("RoutingAction").add("FollowTrajectoryAction")
-    follow.extended(_trajectory(time, rows))
+    begin = _drives_off(ground)
+    follow = _act(story, "repeat", float(time[begin])).add("RoutingAction").add("FollowTrajectoryAction")
+    follow.extended(_trajectory(time[begin:], np.vstack([rows[:1], rows[begin + 1 :]])))
     timing: dict[str, Value] = {"domainAbsoluteRelative": "absolute", "scale": 1, "offset": 0}
     follow.add("TimeReference").add("Timing", timing)
     follow.add("TrajectoryFollowingMode", {"followingMode": "position"})
     _stop(root, {"the drive is over": _after(float(time[-1]))})
     return root
+
+
+def _drives_off(ground: Array) -> int:
+    """Index of the last pose in which the car still stands at its start; 0 where it never moves.
+
+    Until then it waits, and the trajectory begins: players may merge poses that lie close together, as esmini
+    does within 0.1 m, and a car that stands would move at once.
+    """
+    away = np.linalg.norm(ground - ground[0], axis=1) > STANDS
+    return max(int(np.argmax(away)) - 1, 0)
 
 
 def _trajectory(time: Array, rows: Array) -> Element:
@@ -137,8 +149,8 @@ def _vehicle() -> Element:
     return out
 
 
-def _act(story: Element, name: str) -> Element:
-    """A private action of the car that begins with the simulation; to be filled."""
+def _act(story: Element, name: str, begin: float = 0.0) -> Element:
+    """A private action of the car that begins so many seconds after the simulation; to be filled."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
     group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": EGO})
@@ -146,7 +158,7 @@ def _act(story: Element, name: str) -> Element:
         "Event", {"name": f"{name} event", "priority": "override", "maximumExecutionCount": 1}
     )
     action = event.add("Action", {"name": name}).add("PrivateAction")
-    event.extended(_trigger("StartTrigger", {f"{name} now": _after(0.0)}))
+    event.extended(_trigger("StartTrigger", {f"{name} now": _after(begin)}))
     act.extended(_trigger("StartTrigger", {f"{name} begin": _after(0.0)}))
     return action
 
