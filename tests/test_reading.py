@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -162,3 +163,39 @@ def test_integers_beyond_float_are_refused_from_a_program_as_well() -> None:
     with pytest.raises(UsageError, match="road points are"):
         Road.through([[1, 1], [10**400, 2]])
     assert read_design({"starting_point": [9, 9, 0], "theta": 0, "road_segment1": SEGMENT})[1] == ()
+
+
+@dataclass(frozen=True)
+class Thing:
+    """Something that a file tells of."""
+
+    number: float
+    name: str
+    places: tuple[int, ...] = ()
+
+
+def test_a_value_of_a_file_has_the_types_that_it_says() -> None:
+    assert reading.strictly(Thing, {"number": 1, "name": "a", "places": [1, 2]}) == Thing(1.0, "a", (1, 2))
+    for data in (
+        {"number": "1", "name": "a"},
+        {"number": True, "name": "a"},
+        {"number": float("nan"), "name": "a"},
+        {"number": 1, "name": None},
+        {"number": 1},
+        {"number": 1, "name": "a", "places": "12"},
+        [1, "a"],
+        None,
+    ):
+        with pytest.raises(ValueError):  # noqa: PT011 - pydantic's, or json's
+            reading.strictly(Thing, data)
+
+
+@pytest.mark.parametrize(
+    "spoilt", ["[]", "{}", '{"id": "x", "interpolated_points": 5}', '{"execution_data": {}}']
+)
+def test_an_overview_tells_which_test_cannot_be_drawn(tmp_path: Path, spoilt: str) -> None:
+    from roadgpt.report.overview import overview
+
+    (tmp_path / "test.0001.json").write_text(spoilt)
+    with pytest.raises(UsageError, match=r"test\.0001\.json cannot be (drawn|read)"):
+        overview(tmp_path)

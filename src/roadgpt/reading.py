@@ -8,12 +8,15 @@ import json
 import os
 import stat
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from errno import EISDIR
+from functools import cache
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TypeVar, cast
 
 from roadgpt.errors import UsageError
+
+T = TypeVar("T")
 
 LARGEST = 50_000_000  # bytes, of files of which nothing else is said
 MOST_OPENED, MOST_COMMAS = 2_000_000, 6_000_000  # of a JSON text: each of them costs many bytes of memory
@@ -94,6 +97,23 @@ def check_unpacked(entries: Iterable[zipfile.ZipInfo], most: int) -> None:
     """ValueError where a zip archive unpacks to more than so many bytes."""
     if sum(entry.file_size for entry in entries) > most:
         raise ValueError(f"it unpacks to more than {most / 1e6:g} MB")
+
+
+def strictly(kind: type[T], data: Any) -> T:
+    """Data out of a file as a value of a dataclass, every field of which has the type that it says.
+
+    Raises:
+        ValueError: a field is missing, is of another type, or is not finite where it is a number.
+    """
+    value: T = _reader(cast(Hashable, kind)).validate_json(json.dumps(data, allow_nan=False), strict=True)
+    return value
+
+
+@cache
+def _reader(kind: Any) -> Any:
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(kind)
 
 
 def _too_large(called: str, most: int, what: str) -> UsageError:

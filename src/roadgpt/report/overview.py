@@ -100,12 +100,22 @@ def _about(folder: Path) -> tuple[tuple[str, str], float]:
     card = folder / "campaign.json"
     if not card.is_file():
         return (folder.name, ""), World().map_size
-    request = _loaded(card)["request"]
-    return (request["words"], f"seed {request['seed']}"), request["world"]["map_size"]
+    try:
+        request = _loaded(card)["request"]
+        size = float(request["world"]["map_size"])
+        return (str(request["words"]), f"seed {request['seed']}"), size
+    except (TypeError, ValueError, LookupError) as error:
+        raise UsageError(f"{card} cannot be read ({error!r}); remove it or make the roads again") from error
 
 
 def _entry(path: Path) -> Entry:
-    test = _loaded(path)
+    try:
+        return _entry_of(path, _loaded(path))
+    except (TypeError, ValueError, LookupError, AttributeError, OverflowError) as error:
+        raise UsageError(f"{path} cannot be drawn ({error}); remove it or make the road again") from error
+
+
+def _entry_of(path: Path, test: Any) -> Entry:
     points = np.asarray(test.get("interpolated_points") or np.empty((0, 2)), float)[:, :2]
     outcome = test.get("test_outcome") or ("VALID" if test.get("is_valid") else "INVALID")
     records = test.get("execution_data") or []

@@ -10,15 +10,12 @@ campaign/
     *.png                  the pictures
 """
 
-import json
 import shutil
-from collections.abc import Hashable
 from dataclasses import asdict, dataclass, replace
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Protocol, TypeVar, cast
+from typing import Annotated, Any, ClassVar, Protocol
 
-from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, ValidationError
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.motorway import remarks
@@ -27,7 +24,7 @@ from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
-from roadgpt.reading import LARGEST, read_json, read_text
+from roadgpt.reading import LARGEST, read_json, read_text, strictly
 from roadgpt.road import Road, read_design
 from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
 from roadgpt.run.model import Outcome, Request, Run, Seconds
@@ -36,8 +33,6 @@ from roadgpt.verdict import Verdict, most_beyond
 
 FORMAT = 1
 RUNS = "runs"
-
-T = TypeVar("T")
 
 
 class Draw(Protocol):
@@ -180,7 +175,7 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
     def value(name: str) -> Any:
         return _loaded(folder / name) if (folder / name).is_file() else None
 
-    told = _strictly(_Card, card)
+    told = strictly(_Card, card)
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
     trace = folder / "error.txt"
     found = Run(
@@ -200,7 +195,7 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
         spent=Spent.model_validate(card["spent"]) if "spent" in card else None,
         versions=told.versions,
         trace=read_text(trace, LARGEST, "a file of a run") if trace.is_file() else "",
-        seconds=_strictly(Seconds, value("seconds.json") or {}),
+        seconds=strictly(Seconds, value("seconds.json") or {}),
     )
     return _completed(found)
 
@@ -226,17 +221,6 @@ class _Card:
     findings: tuple[Finding, ...]
     rounds: int
     versions: dict[str, str]
-
-
-def _strictly(kind: type[T], data: Any) -> T:
-    """Data of a file as a value of this kind; ValidationError where a field has another type."""
-    value: T = _reader(cast(Hashable, kind)).validate_json(json.dumps(data), strict=True)
-    return value
-
-
-@cache
-def _reader(kind: Any) -> TypeAdapter[Any]:
-    return TypeAdapter(kind)
 
 
 def _loaded(path: Path) -> Any:

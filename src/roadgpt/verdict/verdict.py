@@ -1,24 +1,18 @@
 """The Verdict: whether the car kept its lane, by how many metres, and where it first did not."""
 
-import json
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from functools import cache
-from typing import Any, ClassVar, Literal, Self, cast
+from typing import Any, ClassVar, Literal, Self
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import ConfigDict, ValidationError
 
 from roadgpt.errors import UsageError
+from roadgpt.reading import strictly
 from roadgpt.verdict.severity import Severity, severity
 
 Outcome = Literal["PASS", "FAIL"]
 Cause = Literal["out of lane", "fell", "stuck", "timeout"]
 Side = Literal["left", "right"]
-
-
-@cache
-def _reader(kind: Hashable) -> TypeAdapter[Any]:
-    return TypeAdapter(kind)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
@@ -80,8 +74,7 @@ class Verdict:
         """
         try:
             fields = {key: value for key, value in data.items() if key != "kept"}
-            verdict: Self = _reader(cast(Hashable, cls)).validate_json(json.dumps(fields), strict=True)
-            return verdict
+            return strictly(cls, fields)
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             said = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"

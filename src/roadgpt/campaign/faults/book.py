@@ -18,7 +18,6 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
-from roadgpt.campaign.faults.disturbed import Disturbance
 from roadgpt.campaign.faults.failed import failed_run
 from roadgpt.campaign.faults.fault import Fault
 from roadgpt.campaign.faults.minimise import simplest
@@ -26,7 +25,7 @@ from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.faults.why import Why, why
 from roadgpt.campaign.names import Name
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.reading import read_json
+from roadgpt.reading import read_json, strictly
 from roadgpt.run import Run, write_run
 from roadgpt.run.atomic import json_text, refuse_links, write_whole
 from roadgpt.run.folder import is_run, run_folder
@@ -226,7 +225,7 @@ def _read(path: Path, run: Run, name: Name, times: int | None = None) -> Looked 
         if not data["drives"] or len(data["drives"]) != (times or len(data["drives"])):
             return None
         stability = Stability(tuple(_drive_of(drive) for drive in data["drives"]))
-        return Looked(name, Why(**data["why"]), stability, str(data.get("simplest", "")))
+        return Looked(name, strictly(Why, data["why"]), stability, str(data.get("simplest", "")))
     except FileNotFoundError:
         return None
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
@@ -235,4 +234,4 @@ def _read(path: Path, run: Run, name: Name, times: int | None = None) -> Looked 
 
 def _drive_of(data: dict[str, Any]) -> Repeated:
     margin = math.nan if data["margin"] is None else float(data["margin"])
-    return Repeated(**{**data, "disturbance": Disturbance(**data["disturbance"]), "margin": margin})
+    return replace(strictly(Repeated, {**data, "margin": 0.0}), margin=margin)
