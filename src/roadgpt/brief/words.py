@@ -187,6 +187,9 @@ def _turns() -> list[str]:
         " A motorway (freeway, highway, Autobahn, autoroute, autopista, autostrada) has sweeping turns;"
         f" on a map with room for them, turns of {MOTORWAY_RADIUS:g} m or more."
         " Switchbacks alternate where there are several."
+        " 'Hairpins' or 'switchbacks' without a number are two or more; three or more are drawn, with"
+        " straights of 30 m or more between them, unless the map is too small. Where the words do not speak"
+        " of slopes, a road with several climbs or falls all the way."
         " 'Sharp' with a kind of its own angle (a tight hairpin) keeps the angle of the kind.",
     ]
 
@@ -203,7 +206,13 @@ def _slopes() -> list[str]:
     rows.append(("a mountain road (steepest place, up or down)", str(MOUNTAIN)))
     rows.append(("a motorway (steepest place, up or down)", f"{MOTORWAY_GRADE:g} or less"))
     rows.append(("a hilly road", f"{HILLS} or more changes between climbing and falling"))
-    return _rows("Slopes", ("words", "percent, uphill positive"), rows)
+    return [
+        *_rows("Slopes", ("words", "percent, uphill positive"), rows),
+        "",
+        "Slopes change only as fast as a car can follow at its speed ([vertical radii](limits.md)): 40 m at"
+        " 14 % between level straights can be had at 50 km/h, and not at 70. A crest, a dip or a hump that is"
+        " asked for may be so abrupt that the wheels carry almost nothing.",
+    ]
 
 
 def _numbers() -> list[str]:

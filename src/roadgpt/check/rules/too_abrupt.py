@@ -5,7 +5,7 @@ the road lifts or presses the car by v^2 / R. Where the words ask for a crest or
 gravity, at which the wheels would leave the road.
 
 v is the speed expected there, from a standing start and under the speed limit, slowed down by bends alone
-(``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0027-vertical-radii.md``.
+(``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0028-vertical-radii.md``.
 """
 
 import numpy as np
