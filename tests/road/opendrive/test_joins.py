@@ -24,7 +24,8 @@ class Pen:
 
     def __init__(self, x: float = 0.0, y: float = 0.0, heading: float = 0.0) -> None:
         self.s, self.x, self.y, self.heading = 0.0, x, y, heading
-        self.text, self.points = "", [(x, y)]
+        self.text = ""
+        self.points: list[tuple[float, float]] = []
 
     def line(self, length: float, turn: float = 0.0, aside: float = 0.0, shape: str = "<line/>") -> "Pen":
         """A straight element that begins with a kink, or so far to the left of where the last one ended."""
