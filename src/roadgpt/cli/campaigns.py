@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from roadgpt.cli.next_steps import lines, of_status
 from roadgpt.cli.options import Decorator, together, whole
 from roadgpt.cli.rows import COLOURS, metres
 from roadgpt.cli.screen import new_bar
@@ -123,6 +124,8 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
     if len(status.cells) > MOST_CELLS:
         yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"
     yield from outside_lines(status)
+    quiet = of_status(status)
+    yield from lines(quiet) if quiet is not None else ()
     yield from [cell.remark for cell in status.cells[:MOST_CELLS] if cell.remark]
 
 

@@ -13,6 +13,7 @@ import click
 
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.junit import Junit
+from roadgpt.cli.next_steps import lines, of_rows
 from roadgpt.cli.rows import row_of, spending
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
@@ -126,11 +127,19 @@ def _watch(work: "Campaign", wish: Wish, screen: Screen) -> None:
             screen.say(f"language model: {spending(work.meter.spent)}")
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
+            for line in _next(work, screen):
+                screen.say(line)
             if wish.pictures:
                 kind = wish.pictures[0]
                 screen.say(
                     f"pictures: {work.folder / f'overview.{kind}'} and {work.folder / 'runs'}/*/*.{kind}"
                 )
+
+
+def _next(work: "Campaign", screen: Screen) -> list[str]:
+    """What to try where all roads were driven and none failed."""
+    quiet = of_rows(work.request, work.roads, screen.rows) if len(screen.rows) == work.roads else None
+    return [*lines(quiet)] if quiet is not None else []
 
 
 def _beside(wish: Wish) -> "Draw | None":

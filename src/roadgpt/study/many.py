@@ -13,6 +13,7 @@ from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
 from roadgpt.study.chapters.faults import faults, headline, told_of
 from roadgpt.study.chapters.many import coverage, failures, margins
+from roadgpt.study.chapters.next_steps import Steps, what_to_try
 from roadgpt.study.chapters.outside import outside_sentences, outside_table, passed_tests
 from roadgpt.study.chapters.saying import (
     decimal,
@@ -31,12 +32,13 @@ MOST_CELLS = 12  # whose curves and shares are drawn
 TABLES = ("results.csv", "cells.csv")
 
 
-def write_many(folder: Path, command: str = "") -> Path:
+def write_many(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
     """Write the report of the campaign in a folder; gives back where the page lies.
 
     Args:
         folder: of the campaign.
         command: that makes it again, to stand on the card.
+        next_steps: what to try where nothing failed: what it is, and its command.
 
     Raises:
         UsageError: there is no campaign, or nothing has been done.
@@ -44,11 +46,11 @@ def write_many(folder: Path, command: str = "") -> Path:
     """
     status = status_of(folder)
     with Record.opened(folder) as record:
-        page = _page(folder, record, status, command)
+        page = _page(folder, record, status, command, next_steps)
     return write(page, folder)
 
 
-def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
+def _page(folder: Path, record: Record, status: Status, command: str, next_steps: Steps) -> Page:
     fields = [c for c in status.cells if c.done]
     words = list(dict.fromkeys(c.words for c in status.cells if c.words))
     title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
@@ -60,6 +62,7 @@ def _page(folder: Path, record: Record, status: Status, command: str) -> Page:
     gallery, covered = faults(folder, found, told), coverage(record, status.done)
     sections = [gallery] if gallery else []
     sections += [Section("Feature map", covered)] if covered else []
+    sections += what_to_try(next_steps)
     sections.append(Section("Outcomes", _outcomes(record, status, fields)))
     if any(c.outcomes.get("PASS") or c.outcomes.get("FAIL") for c in fields):
         goes_on = _drives_on(record)

@@ -29,6 +29,7 @@ from roadgpt.study.chapters.diversity import diversity, spread_of
 from roadgpt.study.chapters.faults import faults, headline, told_of
 from roadgpt.study.chapters.glance import glance
 from roadgpt.study.chapters.maps import coverage, roads
+from roadgpt.study.chapters.next_steps import Steps, what_to_try
 from roadgpt.study.chapters.outside import outside_sentences, passed_roads
 from roadgpt.study.chapters.saying import near_and_far, percent, plural, share_of
 from roadgpt.study.looking import Looked, LookedPart, look_at_campaign, look_at_parts
@@ -159,8 +160,13 @@ def _different_line(found: Found) -> str:
     )
 
 
-def write_campaign(folder: Path, command: str = "") -> Path:
+def write_campaign(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
     """Write the report of a campaign of ``roadgpt run`` into its folder; gives back where the page lies.
+
+    Args:
+        folder: of the campaign.
+        command: that makes it again, to stand on the card.
+        next_steps: what to try where nothing failed: what it is, and its command.
 
     Raises:
         UsageError: there is no campaign, or a run of it cannot be read.
@@ -177,7 +183,8 @@ def write_campaign(folder: Path, command: str = "") -> Path:
     failed = faults_in(folder)
     told = told_of(folder, failed)
     opening = [each for each in (first, faults(folder, failed, told)) if each is not None]
-    sections = [*opening, validity([part], [setup.designer], has_baseline=False)]
+    sections = [*opening, *what_to_try(next_steps)]
+    sections.append(validity([part], [setup.designer], has_baseline=False))
     if setup.drives:
         sections.append(departures([part], [setup.designer], has_baseline=False))
     if request.words:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.junit import junit_option, write_folder
+from roadgpt.cli.next_steps import next_steps, of_runs, of_status
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -43,11 +44,15 @@ def _written(folder: Path) -> Path:
     if (folder / plan.CARD).is_file():
         return reporting.write_study(folder)
     if (folder / STORE).is_file():
+        from roadgpt.campaign.status import status_of
         from roadgpt.study.many import write_many
 
-        return write_many(folder, command_of_many(folder))
+        quiet = of_status(status_of(folder))
+        return write_many(folder, command_of_many(folder), next_steps(quiet) if quiet else ())
     if (folder / CARD).is_file():
-        return reporting.write_campaign(folder, _command(read_card(folder), folder))
+        calm = of_runs(folder)
+        steps = next_steps(calm) if calm else ()
+        return reporting.write_campaign(folder, _command(read_card(folder), folder), steps)
     raise UsageError(
         f"there are no runs, no campaign and no study in {folder}; give a folder that holds them"
     )

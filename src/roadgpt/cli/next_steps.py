@@ -1,0 +1,136 @@
+"""What to try where a driver failed on no road: commands that make it harder, to be typed as they stand."""
+
+import shlex
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from roadgpt.cli.flags import WORLD
+from roadgpt.cli.replay import request_words
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.status import Status
+    from roadgpt.run.model import Request
+
+FEWEST = 5  # drives, below which nobody wonders that none failed
+FRICTIONS = ((0.6, "a wet road"), (0.35, "snow"))
+SPEEDS = (100.0, 130.0)  # km/h
+TOLERANCE = 0.5  # of the competition on test selection
+SEARCHED = 200  # tests of a search
+GOALS = ("failures", "hardest")
+HEAD = "No road failed. What may find one that does:"
+
+
+@dataclass(frozen=True)
+class Quiet:
+    """Tests of which none failed."""
+
+    request: "Request"
+    tests: int
+    passed: int
+    mostly: int = 0
+    """Of these: with more than half of the car outside its lane."""
+    outside: int = 0
+    """Of these: with any of it outside."""
+    goal: str | None = None
+    """What was searched for; None: nothing."""
+    is_search: bool = False
+    """Made by roadgpt campaign."""
+
+    @property
+    def is_worth_it(self) -> bool:
+        """Has enough been driven, and can options say all that was asked for?"""
+        named = {flag.field for flag in WORLD}
+        usual = type(self.request.world)().model_dump(exclude=named)
+        is_usual = self.request.world.model_dump(exclude=named) == usual
+        return self.passed >= FEWEST and bool(self.request.words) and is_usual
+
+
+def next_steps(quiet: Quiet) -> list[tuple[str, str]]:
+    """What each step is, and its command; none where there is nothing to wonder about."""
+    return [*_steps(quiet)] if quiet.is_worth_it else []
+
+
+def lines(quiet: Quiet) -> Iterator[str]:
+    """The same to be read on a screen."""
+    found = next_steps(quiet)
+    if found:
+        yield HEAD
+    for why, command in found:
+        yield f"  {why}:"
+        yield f"    {command}"
+
+
+def _steps(quiet: Quiet) -> Iterator[tuple[str, str]]:
+    world = quiet.request.world
+    if not world.lane_departure:
+        why = "fail where a front tyre passes the lane marking (UN R157)"
+        if quiet.outside:
+            why += f"; {quiet.outside:,} of {quiet.passed:,} passed with the car partly or mostly outside"
+        yield why, _command(quiet, lane_departure=True)
+    if world.oob_tolerance > TOLERANCE:
+        why = "fail where more than half of the car is outside its lane"
+        if quiet.mostly:
+            why += f", as it was on {quiet.mostly:,} of {quiet.passed:,} that passed"
+        yield why, _command(quiet, oob_tolerance=TOLERANCE)
+    for friction, name in FRICTIONS:
+        if friction < world.friction:
+            yield name, _command(quiet, friction=friction)
+            break
+    for speed in SPEEDS:
+        if speed / 3.6 > world.speed_limit * 1.001:
+            yield f"a speed limit of {speed:.0f} km/h", _command(quiet, speed_limit=speed / 3.6)
+            break
+    for goal in GOALS:
+        if goal != quiet.goal:
+            why = f"search for {'failures' if goal == 'failures' else 'the hardest road'} among such roads"
+            yield why, _command(replace(quiet, goal=goal, is_search=True, tests=max(quiet.tests, SEARCHED)))
+            break
+
+
+def _command(quiet: Quiet, **world: Any) -> str:
+    request = quiet.request.model_copy(update={"world": quiet.request.world.model_copy(update=world)})
+    if not quiet.is_search:
+        return shlex.join(["roadgpt", "run", *request_words(request, quiet.tests)])
+    goal = ["--goal", quiet.goal] if quiet.goal else []
+    return shlex.join(["roadgpt", "campaign", *goal, *request_words(request, quiet.tests)])
+
+
+def of_status(status: "Status") -> Quiet | None:
+    """Of a campaign that is not at work, and in which no road failed; by its first cell."""
+    if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
+        return None
+    from roadgpt.campaign.record import Record
+
+    with Record.opened(Path(status.folder)) as record:
+        first = record.cells()[0]
+    partly = sum(cell.partly_outside for cell in status.cells)
+    mostly = sum(cell.mostly_outside for cell in status.cells)
+    tests = first.budget.tests or SEARCHED
+    passed = status.outcomes["PASS"]
+    return Quiet(first.request, tests, passed, mostly, partly + mostly, first.goal, is_search=True)
+
+
+def of_runs(folder: Path) -> Quiet | None:
+    """Of a folder of runs in which no road failed."""
+    from roadgpt.cli.rows import row_of
+    from roadgpt.run import read_run
+    from roadgpt.run.campaign import finished
+    from roadgpt.run.card import read_card
+    from roadgpt.run.folder import run_folder
+
+    card = read_card(folder)
+    rows = [row_of(read_run(run_folder(folder, index)), "") for index in finished(folder)]
+    return of_rows(card.request, card.roads, rows)
+
+
+def of_rows(request: "Request", roads: int, rows: Any) -> Quiet | None:
+    """Of rows, none of which failed."""
+    from roadgpt.verdict.severity import MOSTLY
+
+    if any(row.test_outcome == "FAIL" for row in rows):
+        return None
+    shares = [row.max_oob or 0.0 for row in rows if row.test_outcome == "PASS"]
+    outside, mostly = sum(share > 0 for share in shares), sum(share > MOSTLY for share in shares)
+    return Quiet(request, roads, len(shares), mostly, outside)

@@ -1,0 +1,17 @@
+"""What to try where no road failed."""
+
+from collections.abc import Sequence
+
+from roadgpt.report.page import Section, Table, cell
+
+Steps = Sequence[tuple[str, str]]
+"""What each step is, and its command."""
+
+
+def what_to_try(steps: Steps) -> list[Section]:
+    """A section with the commands; none where there are none."""
+    if not steps:
+        return []
+    rows = [[cell(why), cell(command)] for why, command in steps]
+    caption = "No road failed; what may find one that does"
+    return [Section("What to try next", [Table("next", caption, ["what", "command"], rows)])]

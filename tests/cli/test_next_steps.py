@@ -1,0 +1,103 @@
+"""Where no road failed, commands say what to try; they are typed here as they stand."""
+
+import csv
+import json
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from roadgpt.cli import app
+from roadgpt.cli.next_steps import HEAD, Quiet, next_steps
+from roadgpt.road import World
+from roadgpt.run import Request
+
+WORDS = ("a road with 2 turns", "--reader", "grammar", "--seed", "5")
+REQUEST = Request(words="a road", seed=3)
+
+
+def roadgpt(*words: object) -> Result:
+    result = CliRunner().invoke(app, [str(word) for word in words], prog_name="roadgpt")
+    assert result.exit_code == 0, result.output
+    return result
+
+
+def commands(said: str) -> list[list[str]]:
+    """What stands below the head, as a shell takes it."""
+    lines = said.partition(HEAD)[2].splitlines()
+    found = [shlex.split(line) for line in lines if line.startswith("    roadgpt ")]
+    assert all(words[0] == "roadgpt" for words in found)
+    return [words[1:] for words in found]
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_a_run_without_failures_says_what_to_try_and_it_can_be_typed(tmp_path: Path) -> None:
+    out = tmp_path / "quiet"
+    said = roadgpt("run", *WORDS, "-n", 5, "--no-plot", "--out", out).stdout
+    found = commands(said)
+    assert [words[0] for words in found] == ["run", "run", "run", "run", "campaign"]
+    flags = [re.findall(r"--(?!seed|reader)[a-z-]+", " ".join(words)) for words in found]
+    asked = "--lane-departure --oob-tolerance --friction --speed-limit --goal"
+    assert flags == [[flag] for flag in asked.split()]
+    outcomes = []
+    for number, words in enumerate(found):
+        if words[0] == "campaign":
+            assert words[words.index("-n") + 1] == "200"
+            words[words.index("-n") + 1] = "4"  # 200 take a minute
+            roadgpt(*words, "--out", f"c{number}", "--quiet")
+            continue
+        told = roadgpt(*words, "--no-plot", "--out", f"r{number}", "--json")
+        outcomes.append({json.loads(line)["test_outcome"] for line in told.stdout.splitlines()})
+    assert all(each <= {"PASS", "FAIL"} for each in outcomes)
+    assert "FAIL" in outcomes[0]  # the strict criterion finds what the tolerance lets pass
+    # the same stands in the report of the folder
+    roadgpt("report", out)
+    with (out / "tables" / "next.csv").open(newline="") as file:
+        rows = [row["command"] for row in csv.DictReader(file)]
+    assert [shlex.split(row)[1:] for row in rows][:4] == found[:4]
+    assert "What to try next" in (out / "report.html").read_text()
+
+
+def test_a_campaign_without_failures_says_what_to_try(tmp_path: Path) -> None:
+    out = tmp_path / "c"
+    said = roadgpt(
+        "campaign", *WORDS, "-n", 5, "--goal", "failures", "--driver", "reference", "--out", out
+    ).stdout
+    found = commands(said)
+    assert found
+    assert all(words[0] == "campaign" and "--driver" in words for words in found)
+    assert found[-1][found[-1].index("--goal") + 1] == "hardest"
+    assert all(words[words.index("--goal") + 1] == "failures" for words in found[:-1])
+    assert commands(roadgpt("status", out).stdout) == found
+    assert commands(roadgpt("show", out).stdout) == found
+    for number, words in enumerate(found[:2]):
+        roadgpt(*words, "--out", f"again{number}", "--quiet")
+    roadgpt("report", out)
+    with (out / "tables" / "next.csv").open(newline="") as file:
+        assert [shlex.split(row["command"])[1:] for row in csv.DictReader(file)] == found
+
+
+def test_nothing_is_said_where_a_road_failed_or_few_were_driven() -> None:
+    assert HEAD not in roadgpt("run", *WORDS, "-n", 5, "--no-plot", "--friction", 0.3).stdout
+    assert HEAD not in roadgpt("run", *WORDS, "-n", 2, "--no-plot").stdout
+    assert HEAD not in roadgpt("run", *WORDS, "-n", 5, "--no-plot", "--no-drive").stdout
+    assert roadgpt("run", *WORDS, "-n", 5, "--no-plot", "--quiet").stdout == ""
+
+
+def test_what_is_set_already_is_not_proposed_again() -> None:
+    hard = World(lane_departure=True, oob_tolerance=0.4, friction=0.3, speed_limit=200 / 3.6)
+    told = next_steps(Quiet(REQUEST.model_copy(update={"world": hard}), 20, 20))
+    assert [why for why, _ in told] == ["search for failures among such roads"]
+    assert "--lane-departure" in told[0][1]
+    wet = next_steps(Quiet(REQUEST.model_copy(update={"world": World(friction=0.6)}), 20, 20))
+    assert any("--friction 0.35" in command for why, command in wet if why == "snow")
+    # what no option can say is not left out silently: there is no such command
+    odd = REQUEST.model_copy(update={"world": World(min_radius=30.0)})
+    assert next_steps(Quiet(odd, 20, 20)) == []
+    assert next_steps(Quiet(Request(), 20, 20)) == []
