@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadgpt.cli.flags import WORLD
-from roadgpt.cli.replay import request_words
 
 if TYPE_CHECKING:
     from roadgpt.campaign.status import Status
@@ -90,6 +89,8 @@ def _steps(quiet: Quiet) -> Iterator[tuple[str, str]]:
 
 
 def _command(quiet: Quiet, **world: Any) -> str:
+    from roadgpt.cli.replay import request_words
+
     request = quiet.request.model_copy(update={"world": quiet.request.world.model_copy(update=world)})
     if not quiet.is_search:
         return shlex.join(["roadgpt", "run", *request_words(request, quiet.tests)])
