@@ -133,3 +133,22 @@ def test_the_status_is_that_of_the_signal_whatever_a_library_has_seen() -> None:
     process.send_signal(signal.SIGTERM)
     process.communicate(timeout=20)
     assert process.returncode == 143
+
+
+def test_objects_that_were_half_made_end_in_silence() -> None:
+    code = (
+        HEAD
+        + """
+class Thing:
+    def __del__(self): self.half
+try: time.sleep(60)
+except KeyboardInterrupt:
+    Thing()
+    stopping.leave()
+"""
+    )
+    process = begun(code)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    _, complained = process.communicate(timeout=20)
+    assert (process.returncode, complained) == (130, "")

@@ -122,9 +122,11 @@ def _heard(number: int, frame: FrameType | None) -> None:
 
 def _dropped(what: Any) -> None:
     """Python's hook for exceptions that nobody can catch."""
-    if not _State.number or not issubclass(what.exc_type, KeyboardInterrupt):
+    if not _State.number:
         sys.__unraisablehook__(what)
         return
+    if not issubclass(what.exc_type, KeyboardInterrupt):
+        return  # of an object that was half made when the signal came
     timer = threading.Timer(AGAIN, _once_more)
     timer.daemon = True
     with suppress(RuntimeError):  # Python is ending, and so is the program

@@ -223,3 +223,24 @@ def test_roads_of_files_are_given_up_as_well(
     assert "given up" in done.output
     assert "drive the roads from 0.json on again" in done.output
     assert "3.json" not in done.output
+
+
+def test_a_generator_of_the_competition_is_stopped_where_the_simulator_is_dead(
+    tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, "while True: self.executor.execute_test(RoadTestFactory.create_road_test(straight()))")
+    experiment = Experiment(
+        module_name="misbehaves", class_name="Generator", module_path=str(tmp_path), test_budget=50
+    )
+    monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
+    monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
+    fake = FakeBeamNG(port, protocol=OURS)
+    runs = iter(compete(experiment, setup=Setup(simulator="beamng"), out=tmp_path / "out"))
+    outcomes = [next(runs).outcome for _ in range(2)]
+    fake.stop()
+    leave_all()
+    outcomes += [next(runs).outcome for _ in range(3)]
+    with pytest.raises(GivenUpError, match=r"nobody listens on .*the tests until then are in .*out"):
+        next(runs)
+    assert outcomes == ["PASS", "PASS", "ERROR", "ERROR", "ERROR"]
+    assert len([*(tmp_path / "out").glob("test.*.json")]) == 5
