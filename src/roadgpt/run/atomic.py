@@ -19,12 +19,14 @@ except ImportError:  # Windows has no such locks, and does without
 PART = ".part"  # end of the name of what is not yet whole
 
 
-def write_whole(path: Path, content: str | bytes) -> None:
-    """Write a file beside its place and then move it there."""
+def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> None:
+    """Write a file beside its place and then move it there; a private one is for its owner alone."""
     data = to_bytes(content) if isinstance(content, str) else content
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
         draft.unlink(missing_ok=True)  # were it a link, it would be written through
+        if is_private:
+            draft.touch(0o600, exist_ok=False)
         draft.write_bytes(data)
         draft.replace(path)
     except BaseException:

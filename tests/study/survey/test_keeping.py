@@ -1,5 +1,6 @@
 """Answers are kept: of many raters at once, and when the server's process is killed."""
 
+import os
 import re
 import signal
 import sqlite3
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey import serving
 from roadgpt.study.survey.questions import ALIKE, MATCHES
 from roadgpt.study.survey.serving import LINKS, opened
@@ -190,7 +192,7 @@ def test_links_that_cannot_be_written_are_not_used_up(
 ) -> None:
     folder = folder_of(survey(), tmp_path / "s")
 
-    def full(path: Path, content: str) -> None:
+    def full(path: Path, content: str, **_: object) -> None:
         raise OSError(28, "No space left on device")
 
     told: list[str] = []
@@ -227,3 +229,34 @@ def test_what_cannot_be_served_is_told_in_a_sentence(tmp_path: Path) -> None:
     (folder / "survey.json").write_text("{}")
     with pytest.raises(UsageError, match="damaged"):
         read_survey(folder)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such rights")
+def test_answers_are_for_their_owner_alone(tmp_path: Path) -> None:
+    """Whatever the usual rights of new files are, and also where the file was there before."""
+    before = os.umask(0)
+    try:
+        store = Store(tmp_path / ANSWERS)
+        store.add_rater()
+        made = [*tmp_path.iterdir()]
+        assert {path.stat().st_mode & 0o777 for path in made} == {0o600}
+        assert len(made) > 1  # its log is beside it
+        store.close()
+        (tmp_path / ANSWERS).chmod(0o666)
+        Store(tmp_path / ANSWERS).close()
+        assert (tmp_path / ANSWERS).stat().st_mode & 0o777 == 0o600
+    finally:
+        os.umask(before)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such rights")
+def test_a_private_file_is_never_readable_by_others(tmp_path: Path) -> None:
+    before = os.umask(0)
+    try:
+        write_whole(tmp_path / "links.txt", "x", is_private=True)
+        (tmp_path / "links.txt").chmod(0o666)
+        write_whole(tmp_path / "links.txt", "y", is_private=True)
+        assert (tmp_path / "links.txt").stat().st_mode & 0o777 == 0o600
+        assert (tmp_path / "links.txt").read_text() == "y"
+    finally:
+        os.umask(before)

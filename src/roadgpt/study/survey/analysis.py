@@ -70,7 +70,7 @@ def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
         )
     try:
         (out / FIGURES).mkdir(parents=True, exist_ok=True)
-        write_whole(out / TABLES[answers.source], csv_of(answers.rows))
+        write_whole(out / TABLES[answers.source], csv_of(answers.rows), is_private=True)
         page = page_of(answers, out / FIGURES, command)
     except OSError as error:
         raise RoadGPTError(

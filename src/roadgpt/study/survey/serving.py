@@ -96,8 +96,7 @@ def _invited(folder: Path, store: Store, wanted: int, base: str) -> list[str]:
         return [f"{there} links were made earlier; {path}, which held them, is gone"] if there else []
     links = [f"{base}/r/{token}" for token in tokens]
     try:
-        write_whole(path, "\n".join(links) + "\n")
-        path.chmod(0o600)
+        write_whole(path, "\n".join(links) + "\n", is_private=True)
     except OSError as error:
         raise RoadGPTError(f"cannot write {path}: {error.strerror or error}; make room there") from error
     for token in new:  # last: a link that stands nowhere is lost, one that opens nothing is made again
