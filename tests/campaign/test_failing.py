@@ -289,3 +289,17 @@ def test_the_report_of_runs_tells_their_faults_as_well(tmp_path: Path) -> None:
     assert "## Distinct faults" in text
     for fault in found.them:
         assert f"`roadgpt view {tmp_path / 'runs'}/{fault.names[0]}`" in text
+
+
+def test_a_report_goes_on_without_a_drive_that_cannot_be_read(looked: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(looked, tmp_path / "c")
+    shutil.rmtree(folder / "faults")
+    for trace in (folder / "traces").iterdir():
+        trace.write_bytes(b"spoilt")
+    roadgpt("report", folder)
+    text = (folder / "report.md").read_text(encoding="utf-8")
+    assert faults_in(folder).sentence in text
+    assert "Left its lane to the" in text
+    done = CliRunner().invoke(app, ["view", f"{folder}/c01/1", "--out", str(tmp_path / "v.html")])
+    assert done.exit_code == 2
+    assert "holds no drive of test 1 of c01" in done.output

@@ -34,24 +34,24 @@ def read_trace(folder: Path, cell: str, number: int) -> Drive:
     return found
 
 
-def kept_run(folder: Path, cell: str, number: int) -> Run:
+def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Run:
     """The Run of a test as the campaign kept it: nobody drives, and no driver's file is read.
 
     The road is built from the stored design, the drive is the kept one, to half a millimetre, and outcome,
-    margin and place are those of the campaign.
+    margin and place are those of the campaign. Without ``has_drive``, drive and verdict are left out.
 
     Raises:
         UsageError: there is no campaign or no such test, it has no road, or its drive cannot be read.
     """
     with Record.opened(folder) as record:
-        return kept_in(record, record.cell(cell), record.result(cell, number))
+        return kept_in(record, record.cell(cell), record.result(cell, number), has_drive)
 
 
-def kept_in(record: Record, cell: Cell, result: Result) -> Run:
+def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) -> Run:
     """The same, of a result that was read; see ``kept_run``."""
     request, brief = cell.request, cell.brief
     road = build(_design_of(record.folder, cell.name, result), request.setup.geometry)
-    drive = _kept_drive(record, cell.name, result.number)
+    drive = _kept_drive(record, cell.name, result.number) if has_drive else None
     is_invalid = result.outcome == "INVALID"
     with sound(record.path):
         versions = {str(name): str(number) for name, number in json_of(record.meta("versions")).items()}

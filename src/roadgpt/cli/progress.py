@@ -41,11 +41,13 @@ def _with_bar(steps: Iterable[T], total: int, what: str) -> Iterator[T]:
 
 
 def _with_lines(steps: Iterable[T], total: int, what: str) -> Iterator[T]:
-    begun = told = time.monotonic()
+    first = told = time.monotonic()
     for done, step in enumerate(steps, 1):
         now = time.monotonic()
-        if now - told >= EVERY and done < total:
-            left = (now - begun) / done * (total - done)
+        if done == 1:
+            first = now  # the first waits for all to start, and tells nothing of the others
+        elif now - told >= EVERY and done < total:
+            left = (now - first) / (done - 1) * (total - done)
             click.echo(f"roadgpt: {done:,} of {total:,} {what}, about {duration(left)} to go", err=True)
             told = now
         yield step

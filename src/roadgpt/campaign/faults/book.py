@@ -129,7 +129,8 @@ def looked_into(folder: Path, fault: Fault) -> Looked | None:
         UsageError: it cannot be read.
     """
     pages = [name for name in fault.names if _page(folder, name).is_file()]
-    found = [its for name in pages if (its := _read(_page(folder, name), failed_run(folder, name), name))]
+    runs = [(name, failed_run(folder, name, has_drive=False)) for name in pages]
+    found = [its for name, run in runs if (its := _read(_page(folder, name), run, name))]
     # of equals max takes the first, which is the most typical
     return max(found, key=lambda its: its.stability.is_stable or its.stability.share, default=None)
 

@@ -20,6 +20,8 @@ from roadgpt.run.card import CARD, read_card
 from roadgpt.run.folder import is_run, run_folder
 from roadgpt.verdict.verdict import Verdict
 
+AT_ONCE = 500  # tests that a store is asked for
+
 
 @dataclass(frozen=True, eq=False)
 class Departure:
@@ -108,14 +110,17 @@ def _of_run(run: Run) -> Departure:
 
 def _of_campaign(record: Record, some: Sequence[Name]) -> Iterator[Departure]:
     cells: dict[str, Cell] = {cell.name: cell for cell in record.cells()}
-    wanted = {name: {each.number for each in some if each.cell == name} for name in cells}
+    wanted = {name: [each.number for each in some if each.cell == name] for name in cells}
     for name, cell in cells.items():
         if not wanted[name]:
             continue
         whose = system_of(cell.request.world, cell.request.setup)
-        for its in record.results(name, "outcome = 'FAIL'"):
-            if its.number in wanted[name] and (found := _of_result(cell, its, whose)) is not None:
-                yield found
+        for start in range(0, len(wanted[name]), AT_ONCE):
+            numbers = wanted[name][start : start + AT_ONCE]
+            where = f"tests.number IN ({', '.join('?' * len(numbers))})"
+            for its in record.results(name, where, numbers):
+                if (found := _of_result(cell, its, whose)) is not None:
+                    yield found
 
 
 def _of_result(cell: Cell, its: Result, whose: str) -> Departure | None:
@@ -142,12 +147,12 @@ def _departure(name: Name, road: Road, world: World, whose: str, its: Verdict | 
     return Departure(name, around, manner, station, its.max_oob, its.beyond)
 
 
-def failed_run(folder: Path, name: Name) -> Run:
-    """The Run of a failure, as it was kept.
+def failed_run(folder: Path, name: Name, has_drive: bool = True) -> Run:
+    """The Run of a failure, as it was kept; of a campaign without its drive, where that is not wanted.
 
     Raises:
         UsageError: a file cannot be read.
     """
     if name.cell:
-        return kept_run(folder, name.cell, name.number)
+        return kept_run(folder, name.cell, name.number, has_drive)
     return read_run(folder if is_run(folder) else run_folder(folder, name.number))

@@ -9,6 +9,7 @@ from roadgpt.campaign.faults import Fault, Faults, Looked, Why, failed_run, look
 from roadgpt.campaign.faults.book import FOLDER, TABLE
 from roadgpt.campaign.faults.fault import DEFINED
 from roadgpt.campaign.names import Name
+from roadgpt.errors import UsageError
 from roadgpt.report.page import Block, Card, Cards, Cell, Command, Details, Line, Section, Table, cell, linked
 from roadgpt.report.page.spot import spot, spot_of
 from roadgpt.run import Run
@@ -51,9 +52,17 @@ def told_of(folder: Path, found: Faults) -> list[Told]:
 def _told(folder: Path, fault: Fault) -> Told:
     looked = looked_into(folder, fault)
     name = looked.name if looked else fault.names[0]
-    run = failed_run(folder, name)
+    run = _run_of(folder, name)
     reason = looked.why if looked else why(run) if run.drive is not None else None
     return Told(fault, run, name, looked, reason)
+
+
+def _run_of(folder: Path, name: Name) -> Run:
+    """With its drive, or without where the file of that cannot be read: a report tells what is known."""
+    try:
+        return failed_run(folder, name)
+    except UsageError:
+        return failed_run(folder, name, has_drive=False)
 
 
 def headline(found: Faults, told: Sequence[Told]) -> list[str]:
