@@ -13,6 +13,7 @@ ROAD_WIDTH = 8.0  # metres: two lanes of 4 m
 EDGE = 0.3  # metres kept free between ribbon and border of the map, for rounding and the bulge of splines
 WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, verges, and the bow of the turn itself
 SIDES_OF_ROAD = 1.3  # sides of the map that a road with turns is sure to find room for
+BESIDE_TURNS = 0.6  # of the longest straight that are sure to fit on a road with turns
 ROUND_MAP = 50.0  # metres: sizes of maps are proposed in steps of so many
 LARGEST_MAP = 10_000.0  # metres
 
@@ -71,9 +72,12 @@ def _straights(brief: Brief, map_size: float, road_width: float) -> None:
 
 def _too_long(what: str, metres: float, brief: Brief, map_size: float, road_width: float) -> NoRoomError:
     longest, size = longest_straight(map_size, road_width), map_for_straight(metres, road_width)
+    is_all = brief.turns is not None and brief.turns.hi == 0
+    offer = floor(longest if is_all else BESIDE_TURNS * longest)
+    size *= 1 if is_all else round(1 / BESIDE_TURNS)
     larger = f" or use --map-size {size:g}" if size <= LARGEST_MAP else ""
     return NoRoomError(
         f"{what} of {metres:g} m does not fit on a map of {map_size:g} m, which is {floor(longest)} m from"
-        f" corner to corner; ask for {floor(longest)} m{larger}",
+        f" corner to corner; ask for {offer} m{larger}",
         brief,
     )

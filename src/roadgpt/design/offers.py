@@ -14,7 +14,7 @@ from roadgpt.road import World
 SIDES = 7.0  # of the map: roads so long were never drafted, so the search for the longest begins there
 SHORTER = 0.8  # ratio of one length that is tried to the one before
 HALVINGS = 2  # between the last length that failed and the first that did not
-SURE = 0.97  # of the longest length that was drafted is offered
+SURE = 0.92  # of the longest length that was drafted is offered
 LIKELY = 0.4  # side of a map over the length of a winding road that it may hold
 LARGER = 1.3  # ratio of one map that is tried to the one before
 FEWEST_METRES = 30.0
@@ -57,11 +57,15 @@ def no_room(error: NoRoomError, world: World) -> str:
     from roadgpt.design.designers.planner import fits  # the planner asks for offers, too
 
     brief = error.brief
-    if brief.length is None or (brief.turns and brief.turns.hi == 0):
+    if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):
         return str(error)  # of a straight road, the longest is known
-    metres = max(least_length(brief, world.min_radius), brief.length.lo or 0.0)
+    said = (brief.length.lo or 0.0) if brief.length else 0.0
+    metres = max(least_length(brief, world.min_radius), said)
     found = offer(brief, world, fits, LIKELY * metres)
-    return f"a map of {world.map_size:g} m has no room for {metres:.0f} m of such road; {found.sentence}"
+    room = f"a map of {world.map_size:g} m has no room for"
+    if brief.length is None:
+        return f"{room} a straight of {_asked(brief):g} m and what else is asked for; {found.sentence}"
+    return f"{room} {metres:.0f} m of such road; {found.sentence}"
 
 
 def _less(brief: Brief, world: World, fits: Fits) -> str | None:

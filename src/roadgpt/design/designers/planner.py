@@ -43,7 +43,7 @@ CROWDED = (
 )
 FINISHED = 100  # drafts that fit, of which none keeps every promise, before the search is given up
 LAST_RESORTS = 20  # drafts like earlier roads that are tried where there are no others
-TRIALS = (1, 2, 3)  # seeds with which it is tried whether there is room
+TRIALS = (1, 2, 3, 4)  # seeds with which it is tried whether there is room
 TRIED = 110  # drafts that are drawn for each of these
 GROWN = 20  # drafts of a road whose length was asked for, that grow on the map where no other was found
 GROWN_ON_TRIAL = 5  # of these, where it is tried whether there is room
