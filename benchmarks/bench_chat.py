@@ -17,7 +17,7 @@ from bench_design import EVALUATION, is_kept, the_referee
 from roadgpt.brief import read
 from roadgpt.chat import Chat, ChatError, ChatSettings, Message, Reply, ReplyError, Spent, counting, open_chat
 from roadgpt.chat.meter import Meter
-from roadgpt.check import GUARDS, inspect
+from roadgpt.check import inspect
 from roadgpt.design.designers.chat import ChatDesigner
 from roadgpt.design.designers.thesis import ThesisDesigner
 from roadgpt.errors import DesignError
@@ -113,7 +113,7 @@ def made(words: str, way: str, number: int, folder: Path, base_url: str | None) 
         "; ".join(finding.sentence for finding in found),
         is_valid=broken <= {"promises"},
         is_valid_for_sbft=not inspect(road, None, world, "sbft"),
-        is_as_asked=not broken & {"promises", *GUARDS},
+        is_as_asked=not any(finding.stops or finding.rule == "promises" for finding in found),
         is_right=REFEREE is not None and is_kept(road, EVALUATION[words], REFEREE),
     )
 

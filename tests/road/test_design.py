@@ -124,3 +124,18 @@ def test_anything_else_is_a_design_or_a_sentence(data: object) -> None:
     except UsageError:
         return
     assert isinstance(design, Design)
+
+
+def test_a_vertical_radius_that_does_not_fit_is_remarked_on() -> None:
+    def written(radius: float) -> tuple[str, ...]:
+        level = {"distance": 40, "direction": "straight", "incline": 0, "turn_degrees": 0}
+        steep = {**level, "incline": 10, "vertical_radius": radius}
+        data = {"starting_point": [10, 10, 0], "theta": 0, "road_segment1": level, "road_segment2": steep}
+        return read_design(data)[1]
+
+    assert written(300) == ()  # 15 m to either side
+    (remark,) = written(2000)
+    assert remark == (
+        "segment 2: a vertical radius of 2000 m does not fit between the changes of grade beside it; "
+        "it becomes 784 m"
+    )

@@ -10,17 +10,19 @@ and optional.
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roadgpt.errors import UsageError
+from roadgpt.road.grades import parabolas_of
 
 MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
 MAX_SEGMENTS = 500
 REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # of a segment in a file
+FITS = 0.99  # of a vertical radius that was written: what is built of it, without a remark
 KEY = re.compile(r"road_segment(\d{1,6})")
 
 Direction = Literal["left", "right", "straight"]
@@ -111,7 +113,18 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
         )
     except ValidationError as error:
         raise UsageError(f"the design cannot be read: {_first(error)}") from error
-    return design, tuple(remarks)
+    return design, (*remarks, *_unfit(design.segments))
+
+
+def _unfit(segments: Sequence[Segment]) -> Iterator[str]:
+    """A sentence for each vertical radius that has no room."""
+    for parabola in parabolas_of(segments):
+        asked = segments[parabola.number].vertical_radius
+        if asked and parabola.radius < FITS * asked:
+            yield (
+                f"segment {parabola.number + 1}: a vertical radius of {asked:g} m does not fit between the "
+                f"changes of grade beside it; it becomes {parabola.radius:.0f} m"
+            )
 
 
 def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
