@@ -3,8 +3,8 @@
 Sizes of BeamNG's ETK 800, a mid-size saloon, as the simulator has them.
 """
 
-import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,10 +12,12 @@ from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.road.ends import GOAL, START
+from roadgpt.road.speed_profile import GRAVITY, Limits, lane_speed
 
-GRAVITY = 9.81  # m/s^2
 COMFORT = 3.0  # m/s^2, lateral, ISO 11270
 GRIP = 0.5  # share of the friction that a calm driver uses
+PULL = 2.0  # m/s^2, of driving off and slowing down: what ISO 15622 allows cruise control to speed up
+STEP = 0.5  # m between the places for which a speed is planned
 
 
 @dataclass(frozen=True)
@@ -52,11 +54,49 @@ def goal_of(road: Road) -> float:
     return max(road.length - GOAL, (start_of(road) + road.length) / 2)
 
 
-def calm_speed(road: Road, world: World) -> float:
-    """The speed in m/s that a calm driver holds all along: the limit, or what the tightest bend allows."""
-    tightest = float(np.abs(road.sample().curvature).max())
+class SpeedProfile(NamedTuple):
+    """How fast a calm driver goes, from a standing start; arrays of one length."""
+
+    s: Array
+    """Stations along the road, metres."""
+    speed: Array
+    """m/s."""
+    time: Array
+    """Seconds since the start, at a constant acceleration between the stations."""
+
+
+def calm_speeds(road: Road, world: World, s: Array) -> Array:
+    """Speeds in m/s that suit a calm driver at stations ``s``: the limit, or what the bend allows."""
+    bend = np.maximum(np.abs(road.curvature(s)), 1e-9)
     sideways = min(COMFORT, GRIP * world.friction * GRAVITY)
-    return min(world.speed_limit, math.sqrt(sideways / tightest) if tightest > 0 else math.inf)
+    return np.asarray(np.minimum(world.speed_limit, np.sqrt(sideways / bend)))
+
+
+def calm_speed(road: Road, world: World) -> float:
+    """The speed in m/s that a calm driver may hold all along: that of the tightest bend, or the limit."""
+    return float(calm_speeds(road, world, road.sample().s).min())
+
+
+def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
+    """How a calm driver drives the middle of the right lane: off from rest, slower for bends in time.
+
+    Args:
+        road: where.
+        world: speed limit, friction, width of the lane.
+        start: station where the drive begins, metres.
+    """
+    count = max(2, int(np.ceil((road.length - start) / STEP)) + 1)
+    s = np.linspace(start, road.length, count)
+    step, bend = float(s[1] - s[0]), road.curvature(s)
+    grip = GRIP * world.friction
+    pull = min(PULL / GRAVITY, grip)
+    limits = Limits(min(COMFORT / GRAVITY, grip), pull, pull, world.speed_limit)
+    speed = lane_speed(bend, 0.0, step, world, limits)
+    stretch = np.maximum(1 + bend * world.lane_width / 2, 0.0)
+    along = step * (stretch[1:] + stretch[:-1]) / 2
+    # the plan's first station lies one step behind rest
+    speed = np.minimum(speed, np.sqrt(2 * pull * GRAVITY * np.r_[0.0, np.cumsum(along)]))
+    return SpeedProfile(s, speed, np.r_[0.0, np.cumsum(2 * along / (speed[1:] + speed[:-1]))])
 
 
 def on_the_ground(poses: Poses, ahead: float) -> Array:

@@ -79,22 +79,31 @@ class _Lane(NamedTuple):
 def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: World) -> Array:
     """Speeds that a car is expected to have on a road, m/s, from a standing start.
 
-    It drives in the middle of the right lane, on dry asphalt, under the speed limit, at the default driver's
-    share of gravity. It slows down for bends and not for crests, as that driver does not: so a crest cannot
-    make itself look gentle.
+    On dry asphalt, under the speed limit, at the default driver's share of gravity; see ``lane_speed``.
+    """
+    limits = Limits(LATERAL, BRAKING, TRACTION, world.speed_limit)
+    return lane_speed(curvature, grade, step, world, limits)
+
+
+def lane_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: World, limits: Limits) -> Array:
+    """Speeds in m/s, from a standing start, of a car in the middle of the right lane.
+
+    It slows down for bends and not for crests, as the default driver does not: so a crest cannot make itself
+    look gentle.
 
     Args:
         curvature: of the centre line, 1/m, ``(n,)``.
         grade: as ratios, ``(n,)``, or one for all.
         step: metres between stations.
-        world: speed limit and width of the lane.
+        world: width of the lane.
+        limits: what the driver asks of car and road.
     """
     bend = np.asarray(curvature, float)
     along = np.maximum(1 + bend * world.lane_width / 2, LEAST_STRETCH)
     grades = np.broadcast_to(np.asarray(grade, float), bend.shape)
     level = [0.0] * len(bend)
     lane = _Lane(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level)
-    return np.array(plan_speed(lane, Limits(LATERAL, BRAKING, TRACTION, world.speed_limit)))
+    return np.array(plan_speed(lane, limits))
 
 
 def plan_speed(line: Way, limits: Limits) -> list[float]:

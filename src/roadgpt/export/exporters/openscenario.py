@@ -7,8 +7,9 @@ on the ground; angles are right-handed, so a pitch is positive nose down (ISO 88
 from pathlib import Path
 
 import numpy as np
+from shapely.geometry import LineString
 
-from roadgpt.export.ego import CAR, calm_speed, goal_of, on_the_ground, start_of
+from roadgpt.export.ego import CAR, SpeedProfile, calm_profile, goal_of, on_the_ground, start_of
 from roadgpt.export.exporters.opendrive import ROAD, OpenDrive
 from roadgpt.export.markup import Element, Value
 from roadgpt.export.poses import Poses
@@ -18,7 +19,7 @@ from roadgpt.road import Road, World
 EGO = "Ego"
 DATE = "2026-01-01T00:00:00"  # of every file: the same road gives the same bytes
 LANE = "-1"  # the right one
-PULL = 2.0  # m/s^2, of driving off
+KEPT = 0.02  # m/s, or s
 PATIENCE = 60.0  # s beyond the time that the drive should take, after which a player gives up
 STANDS = 0.01  # m; a car that has moved less stands
 DECIMALS = 6
@@ -42,8 +43,8 @@ class OpenScenario:
 
 
 def scenario(road: Road, world: World, map_: str) -> Element:
-    """The car starts at rest in the right lane, drives off, and follows its route to the end."""
-    speed = calm_speed(road, world)
+    """The car starts at rest in the right lane, drives off, slows down for bends, and goes on to the end."""
+    profile = calm_profile(road, world, start_of(road))
     # stations are those of the rear axle
     start, end = max(start_of(road) + CAR.rear_axle, 0.0), goal_of(road) + CAR.rear_axle
     root, actions, story = _frame(
@@ -55,7 +56,7 @@ def scenario(road: Road, world: World, map_: str) -> Element:
     points = route.add("Route", {"name": "to the end", "closed": "false"})
     for s in (start, road.length):
         points.add("Waypoint", {"routeStrategy": "shortest"}).extended(_in_lane(s))
-    _act(story, "drive off").extended(_speed(round(speed, DECIMALS), PULL))
+    _act(story, "drive").extended(_profile(profile))
     reached = Element("EntityCondition")
     reached.add(
         "DistanceCondition",
@@ -70,7 +71,7 @@ def scenario(road: Road, world: World, map_: str) -> Element:
     ego = Element("ByEntityCondition")
     ego.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
     ego.extended(reached)
-    most = round(road.length / speed + speed / PULL + PATIENCE, DECIMALS)
+    most = round(float(profile.time[-1]) + PATIENCE, DECIMALS)
     _stop(root, {"the end is near": ego, "too long": _after(most)})
     return root
 
@@ -183,15 +184,25 @@ def _after(seconds: float) -> Element:
     return out
 
 
-def _speed(target: float, rate: float | None = None) -> Element:
-    """At once, or with an acceleration in m/s^2."""
+def _speed(target: float) -> Element:
+    """At once."""
     out = Element("LongitudinalAction")
     action = out.add("SpeedAction")
     shape: dict[str, Value] = {"dynamicsShape": "step", "value": 0, "dynamicsDimension": "time"}
-    if rate is not None:
-        shape = {"dynamicsShape": "linear", "value": rate, "dynamicsDimension": "rate"}
     action.add("SpeedActionDynamics", shape)
     action.add("SpeedActionTarget").add("AbsoluteTargetSpeed", {"value": target})
+    return out
+
+
+def _profile(profile: SpeedProfile) -> Element:
+    """Speeds over time, with as few entries as keep them within KEPT of what was planned."""
+    graph = LineString(np.column_stack([profile.time, profile.speed])).simplify(KEPT)
+    time, speed = np.array(graph.coords).T
+    out = Element("LongitudinalAction")
+    action = out.add("SpeedProfileAction", {"followingMode": "position"})
+    for duration, value in zip(np.diff(time, prepend=0.0).tolist(), speed.tolist(), strict=True):
+        entry: dict[str, Value] = {"speed": round(value, DECIMALS), "time": round(duration, DECIMALS)}
+        action.add("SpeedProfileEntry", entry)
     return out
 
 

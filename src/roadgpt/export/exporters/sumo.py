@@ -7,14 +7,17 @@ import os
 import re
 import shutil
 import subprocess
+from collections.abc import Sequence
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.errors import ExportError
 from roadgpt.export.edges import line, stations
-from roadgpt.export.ego import CAR, calm_speed
+from roadgpt.export.ego import CAR, PULL, calm_speeds
 from roadgpt.export.markup import Element, Value, number
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
@@ -23,6 +26,9 @@ from roadgpt.road import Road, World
 PATIENCE = 120.0  # s, for netconvert
 PRECISION = 4  # decimals of a metre in a network
 DECIMALS = 4
+SHORTEST = 12.0  # m, of a piece with a limit of its own
+LOOKS = 13  # places in such a piece at which the bend is looked at
+ROUND = 5 / 3.6  # m/s: limits are whole multiples of 5 km/h, as signs have them
 
 
 class Sumo:
@@ -35,11 +41,12 @@ class Sumo:
         """Write NAME.nod.xml, .edg.xml, .netccfg, .rou.xml, .sumocfg, and .net.xml if it can be made."""
         stem = path.name.removesuffix(self.suffix)
         shape = np.round(line(road, stations(road, world.lane_width), 0.0), DECIMALS) + 0.0
+        limits = limits_of(road, world)
         files = {
             self.suffix: _nodes(shape),
-            ".edg.xml": _edges(shape, world),
+            ".edg.xml": _edges(shape, world, limits),
             ".netccfg": _conversion(stem),
-            ".rou.xml": _trip(road, world),
+            ".rou.xml": _trip(limits),
             ".sumocfg": _settings(stem),
         }
         for suffix, document in files.items():
@@ -68,31 +75,68 @@ def _nodes(shape: Array) -> Element:
     return out
 
 
-def _edges(shape: Array, world: World) -> Element:
-    """One edge each way along the centre line; lanes lie to the right of it."""
+class Limit(NamedTuple):
+    """A piece of the road with a speed of its own."""
+
+    start: float
+    """Station, metres."""
+    speed: float
+    """m/s."""
+
+
+def limits_of(road: Road, world: World) -> list[Limit]:
+    """Pieces of SHORTEST metres and more, each with the least speed that suits a calm driver there.
+
+    A car of SUMO brakes for the limit of the next piece in time, so bends are driven as they suit.
+    """
+    count = max(1, int(road.length / SHORTEST))
+    ends = np.linspace(0.0, road.length, count + 1)
+    out: list[Limit] = []
+    for a, b in pairwise(ends.tolist()):
+        least = float(calm_speeds(road, world, np.linspace(a, b, LOOKS)).min())
+        rounded = float(np.clip(np.floor(least / ROUND) * ROUND, ROUND, world.speed_limit))
+        if not out or rounded != out[-1].speed:
+            out.append(Limit(a, rounded))
+    return out
+
+
+def _edges(shape: Array, world: World, limits: Sequence[Limit]) -> Element:
+    """One edge each way along the centre line, split where limits change; lanes lie to the right of it."""
+    along = float(np.hypot(*np.diff(shape[:, :2], axis=0).T).sum())
+    back = [Limit(along - end, speed) for end, speed in _ends(limits, along)]
     out = Element("edges")
     lanes: dict[str, Value] = {
         "numLanes": 1,
-        "speed": round(world.speed_limit, 6),
+        "speed": 0,
         "width": world.lane_width,
         "friction": world.friction,
         "spreadType": "right",
     }
-    ways = (("road", "start", "end", shape), ("back", "end", "start", shape[::-1]))
-    for name, start, end, points in ways:
+    ways = (("road", "start", "end", shape, limits), ("back", "end", "start", shape[::-1], back))
+    for name, start, end, points, pieces in ways:
         told = " ".join(",".join(map(number, point)) for point in points.tolist())
-        out.add("edge", {"id": name, "from": start, "to": end, **lanes, "shape": told})
+        lanes["speed"] = round(pieces[0].speed, 6)
+        edge = out.add("edge", {"id": name, "from": start, "to": end, **lanes, "shape": told})
+        for n, piece in enumerate(pieces[1:], 1):
+            at: dict[str, Value] = {"pos": round(piece.start, DECIMALS), "speed": round(piece.speed, 6)}
+            edge.add("split", {**at, "id": f"{name}_at_{n}", "idAfter": f"{name}_{n}"})
     return out
 
 
-def _trip(road: Road, world: World) -> Element:
+def _ends(limits: Sequence[Limit], length: float) -> list[tuple[float, float]]:
+    """Where each piece ends, and its speed, from the last to the first."""
+    ends = [*(limit.start for limit in limits[1:]), length]
+    return [(end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
+
+
+def _trip(limits: Sequence[Limit]) -> Element:
     out = Element("routes")
-    car = {"length": CAR.length, "width": CAR.width, "maxSpeed": round(calm_speed(road, world), 6)}
+    car = {"length": CAR.length, "width": CAR.width, "accel": PULL, "decel": PULL}
     out.add("vType", {"id": "saloon", "vClass": "passenger", **car, "sigma": 0, "speedDev": 0})
     ego = out.add(
         "vehicle", {"id": "ego", "type": "saloon", "depart": 0, "departPos": "base", "departSpeed": 0}
     )
-    ego.add("route", {"edges": "road"})
+    ego.add("route", {"edges": " ".join(["road", *(f"road_{n}" for n in range(1, len(limits)))])})
     return out
 
 
