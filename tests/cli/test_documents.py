@@ -5,6 +5,7 @@ import importlib.util
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -98,28 +99,34 @@ def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
 
 def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.brief.readers.grammar import MOST_CHARACTERS
-    from roadgpt.chat import fault, strict, talk
+    from roadgpt.chat import bounded, fault, strict, talk
     from roadgpt.chat.providers.openai import MOST_REQUESTS
     from roadgpt.drive import seat
-    from roadgpt.errors import ChatError
+    from roadgpt.drive.drive import UNPACKED
+    from roadgpt.errors import ChatError, GivenUpError
     from roadgpt.report.overview import MOST_PAGES, PER_PAGE
     from roadgpt.road.design import MAX_SEGMENTS
+    from roadgpt.road.road import MOST_POINTS, STEEPEST
     from roadgpt.road.source import LARGEST
     from roadgpt.run import MOST_ROUNDS
     from roadgpt.run.campaign import GIVE_UP
+    from roadgpt.run.losses import MOST
 
     cli_app = importlib.import_module("roadgpt.cli.app")
     text = (ROOT / "docs" / "reference" / "limits.md").read_text(encoding="utf-8")
     found = [row.replace(",", "") for row in re.findall(r"^\| [^|]+ \| ([\d,; ]+) \|$", text, re.MULTILINE)]
     seconds = [seat.BEFORE_START, seat.BEFORE_START, seat.ONE_ANSWER, seat.WHOLE_DRIVE]
     said = "; ".join(f"{limit:g}" for limit in seconds)
-    counts = [MOST_CHARACTERS, LARGEST, MAX_SEGMENTS, MOST_ROUNDS, GIVE_UP, MOST_PAGES * PER_PAGE]
+    files = [LARGEST, MOST_POINTS, round(STEEPEST), UNPACKED // 1_000_000, bounded.OF_AN_ERROR]
+    tries = [MAX_SEGMENTS, MOST_ROUNDS, GIVE_UP, MOST]
+    counts = [MOST_CHARACTERS, *files, *tries, MOST_PAGES * PER_PAGE]
     asked = [fault.PATIENCE, fault.LONGEST_WAIT, strict.MOST_CHARACTERS, strict.MOST_DEPTH, MOST_REQUESTS]
     assert found == [*map(str, counts), said, *(f"{limit:.0f}" for limit in [*asked, talk.MOST_TURNS])]
     guide = (ROOT / "docs" / "how-to" / "own-driver.md").read_text(encoding="utf-8")
     assert re.findall(r"\| (\d+) \|$", guide, re.MULTILINE) == said.split("; ")
     statuses = {int(status) for status in re.findall(r"^\| (\d+) \| [^\d]", text, re.MULTILINE)}
-    stopped = {ChatError.exit_status, cli_app.INTERRUPTED, cli_app.NO_READER}
+    signals = {128 + signal.SIGINT, 128 + signal.SIGTERM}
+    stopped = {ChatError.exit_status, GivenUpError.exit_status, cli_app.NO_READER, *signals}
     assert statuses == {0, 2, 3, *stopped, cli_app.REFUSED, cli_app.INTERNAL}
 
 

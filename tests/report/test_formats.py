@@ -190,3 +190,14 @@ for value in (design, roadgpt.build(design), roadgpt.prove(design)):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert [line.partition("(")[0] for line in done.stdout.splitlines()] == ["Design", "Road", "Run"]
+
+
+def test_the_verb_campaign_can_be_called_whatever_room_was_imported(tmp_path: Path) -> None:
+    code = "import sys, roadgpt.campaign.names, roadgpt.run; from roadgpt.run import Setup; "
+    code += (
+        "print(len(list(roadgpt.campaign('a straight road', 1, setup=Setup(drives=False), out=sys.argv[1]))))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "c")], capture_output=True, text=True, check=False
+    )
+    assert (done.stdout.strip(), done.stderr) == ("1", "")

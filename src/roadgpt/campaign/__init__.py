@@ -9,7 +9,9 @@ a campaign in a folder, and ``work`` on it as often as it takes; ``status_of`` s
 ``read_trace`` and ``run_again`` give one test of it.
 """
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 # Each is imported when it is first used: a worker that starts wants none of it yet.
@@ -39,3 +41,14 @@ def __getattr__(name: str) -> Any:
     if name not in _MODULES:
         raise AttributeError(f"roadgpt.campaign has no '{name}'; it offers {', '.join(sorted(_MODULES))}")
     return getattr(import_module(f"roadgpt.campaign.{_MODULES[name]}"), name)
+
+
+class _Room(ModuleType):
+    """This room, which bears the name of a verb that the package offers: called, it is that verb."""
+
+    def __call__(self, *values: Any, **named: Any) -> Any:
+        """``roadgpt.run.campaign``: once this room is imported, ``roadgpt.campaign`` names the room."""
+        return import_module("roadgpt.run").campaign(*values, **named)
+
+
+sys.modules[__name__].__class__ = _Room
