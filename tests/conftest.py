@@ -5,8 +5,12 @@ To hunt for new ones: HYPOTHESIS_PROFILE=hunt python -m pytest
 
 import os
 import signal
+from collections.abc import Iterator
 
+import pytest
 from hypothesis import settings
+
+from roadgpt import provenance
 
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("hunt", deadline=None, print_blob=True)
@@ -15,3 +19,11 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
 # Tests that a shell started in the background ignore Ctrl-C, and all that they start would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(autouse=True)
+def nothing_was_named() -> Iterator[None]:
+    """What a test named as its own, a driver or a server, is a stranger's again in the next one."""
+    yield
+    for names in (provenance.CODE, provenance.SERVERS):
+        names.forget()

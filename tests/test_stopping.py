@@ -64,7 +64,7 @@ def begun(code: str) -> "subprocess.Popen[str]":
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("between", ["stopping.look()", "pass"])
+@pytest.mark.parametrize("between", ["stopping.look()", "time.sleep(0.02)"])
 def test_one_that_python_drops_is_told_all_the_same(sent: signal.Signals, between: str) -> None:
     for wait in (0.1, 0.25):
         process = begun(DROPS.replace("{between}", between))

@@ -24,6 +24,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 USUAL = (signal.default_int_handler, signal.SIG_DFL)
 ONE_PRESS = 0.3  # s: a terminal and a program that hands signals on send the same one twice
 AGAIN = 0.05  # s until an exception that Python dropped is raised once more
+LONGER = 1.3  # times as long each time, so that it does not always fall into the same callback
 
 
 class _State:
@@ -35,6 +36,7 @@ class _State:
     is_raised = False
     """Has somebody who looked been told?"""
     is_again = False
+    drops = 0
     """Is the next signal one of our own?"""
     is_over = False
     """Is all work done, so that nothing is lost?"""
@@ -127,7 +129,8 @@ def _dropped(what: Any) -> None:
         return
     if not issubclass(what.exc_type, KeyboardInterrupt):
         return  # of an object that was half made when the signal came
-    timer = threading.Timer(AGAIN, _once_more)
+    timer = threading.Timer(min(AGAIN * LONGER**_State.drops, 1.0), _once_more)
+    _State.drops += 1
     timer.daemon = True
     with suppress(RuntimeError):  # Python is ending, and so is the program
         timer.start()

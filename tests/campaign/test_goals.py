@@ -49,7 +49,7 @@ def test_others_may_stand_beside_a_search_to_be_compared_with() -> None:
 
 
 def status(goal: str | None, **outcomes: int) -> CellStatus:
-    return CellStatus("c01", "a road", "d", "g", 1, 100, outcomes, None, goal, None)  # type: ignore[arg-type]
+    return CellStatus("c01", "a road", "d", "g", 1, 100, outcomes, None, 0, 0, None, None, goal, None)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

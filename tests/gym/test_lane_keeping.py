@@ -195,7 +195,7 @@ def test_actions_beyond_the_ends_are_cut() -> None:
         ({"world": {"frction": 0.6}}, UsageError, "frction"),
         ({"world": {"friction": -1}}, UsageError, "friction = -1"),
         ({"prompt": []}, UsageError, "give one"),
-        ({"prompt": "a road with 400 hairpins"}, BriefError, "fit on any map"),
+        ({"prompt": "a road with 400 hairpins"}, BriefError, "no map holds so many turns"),
         ({"reader": "crystal ball"}, UsageError, "crystal ball"),
     ],
 )

@@ -264,7 +264,8 @@ def test_plates_that_stand_close_together_do_not_cover_each_other(
     place = driven.road.at(40.0)
     texts = ["left its lane\nto the right", "too tight", "overlaps itself", "leaves the map"]
     made["places"] = [
-        {"x": float(place[0]) + n, "y": float(place[1]), "s": 40.0 + n, "text": text}
+        {"x": float(place[0]) + n, "y": float(place[1]), "s": 40.0 + n, "text": text, "time": None}
+        | {"colour": "#c04f00", "letters": "#c04f00"}
         for n, text in enumerate(texts)
     ]
     path = tmp_path / "plates.html"

@@ -21,6 +21,7 @@ from roadgpt.run.folder import RUNS, is_run, run_folder
 
 Choice = Literal["failures", "faults", "worst"]
 """All failures; a typical one of each distinct fault; the one with the least margin, or else the nearest."""
+LONGEST = 255  # bytes of one name, in every file system of today
 DIGITS = 18  # of a number that a store can look for
 WORST = "outcome != 'FAIL', margin IS NULL, margin, max_oob DESC,"  # first
 MOST_NEAR = 3  # names that are offered for a wrong one
@@ -71,6 +72,8 @@ def place_of(text: str) -> Place | None:
         UsageError: it names a test or a cell that is not there.
     """
     path = Path(text)
+    if any(len(part.encode()) > LONGEST for part in path.parts):
+        raise UsageError(f"there is no test or file called {text[:40]}...: the name is too long")
     if path.exists():
         is_many = path.is_dir() and not is_run(path) and (_is_store(path) or (path / RUNS).is_dir())
         return Place(text, path) if is_many else None
