@@ -73,7 +73,7 @@ def place_of(text: str) -> Place | None:
     """
     path = Path(text)
     if any(len(part.encode()) > LONGEST for part in path.parts):
-        raise UsageError(f"there is no test or file called {text[:40]}...: the name is too long")
+        raise UsageError(f"there is no test or file called {text[:100]}...: the name is too long")
     if path.exists():
         is_many = path.is_dir() and not is_run(path) and (_is_store(path) or (path / RUNS).is_dir())
         return Place(text, path) if is_many else None

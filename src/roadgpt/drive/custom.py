@@ -62,7 +62,11 @@ def _run(path: Path) -> ModuleType:
     sys.modules[name] = module  # dataclasses and pickles look their module up there
     sys.path.insert(0, str(whole.parent))
     try:
-        described.loader.exec_module(module)
+        kept, sys.dont_write_bytecode = sys.dont_write_bytecode, True  # or a quick change is missed
+        try:
+            described.loader.exec_module(module)
+        finally:
+            sys.dont_write_bytecode = kept
     except SyntaxError as error:
         del sys.modules[name]
         raise UsageError(
