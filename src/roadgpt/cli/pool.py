@@ -48,7 +48,9 @@ def shared(function: Callable[[T], U], items: Iterable[T], workers: int) -> Iter
         for child in ours:
             child.terminate()
         for child in ours:
-            child.join()
+            # the pool's own thread waits for it as well, and only one of the two is told that it ended
+            while child.is_alive():
+                child.join(0.02)
         raise
     pool.shutdown()
 
