@@ -60,7 +60,7 @@ def snake(length: float) -> Road:
 
 def fresh(road: Road) -> Road:
     """The same road, not yet sampled: what a designer checks is new each time."""
-    return Road(road.plan, road.profile, road.nodes)
+    return Road(road.plan, road.elevation, road.nodes)
 
 
 def median_ms(work: Callable[[], object], rounds: int = 200) -> float:

@@ -18,7 +18,7 @@ from roadgpt.brief import read
 from roadgpt.design import draft
 from roadgpt.errors import DesignError
 from roadgpt.export import save
-from roadgpt.road import Road, World, build, in_hops, read_opendrive
+from roadgpt.road import Road, World, build, in_short_segments, read_opendrive
 
 WORDS = (
     "an uphill road with 3 turns",
@@ -78,7 +78,8 @@ def drawn() -> Iterator[tuple[Road, World, str]]:
         except DesignError:
             continue
         is_spline = number % SPLINES == 0
-        yield (build(in_hops(design), "spline"), world, "s") if is_spline else (build(design), world, "a")
+        road = build(in_short_segments(design), "spline") if is_spline else build(design)
+        yield road, world, "s" if is_spline else "a"
 
 
 def apart(one: Road, other: Road) -> float:

@@ -19,8 +19,8 @@ import numpy as np
 from roadgpt.brief import read
 from roadgpt.design import draft
 from roadgpt.export import Poses, save
-from roadgpt.export.place import LATITUDE, LONGITUDE
-from roadgpt.road import Road, World, build, in_hops
+from roadgpt.export.georeference import LATITUDE, LONGITUDE
+from roadgpt.road import Road, World, build, in_short_segments
 
 WORDS = (
     "a road",
@@ -62,7 +62,9 @@ def drawn(count: int) -> list[Road]:
     briefs = [read(words) for words in WORDS]
     designs = [draft(briefs[i % len(briefs)], WORLD, seed=i) for i in range(count)]
     # splines through hops, as `roadgpt run --geometry spline` draws them
-    return [build(in_hops(each), "spline") if i % 2 else build(each) for i, each in enumerate(designs)]
+    return [
+        build(in_short_segments(each), "spline") if i % 2 else build(each) for i, each in enumerate(designs)
+    ]
 
 
 def drive(road: Road) -> Poses:

@@ -41,7 +41,7 @@ def test_overlap_is_found_or_ruled_out_soon_and_in_little_memory(name: str) -> N
     assert time.process_time() - begun < SECONDS  # 0.04 s on the machine it was written on
     assert bool(found) == overlaps
     tracemalloc.start()
-    inspect(Road(plan, road.profile), None, WORLD)
+    inspect(Road(plan, road.elevation), None, WORLD)
     sbft_verdict(road.control_points(), WORLD.map_size)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()

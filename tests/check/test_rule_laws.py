@@ -41,16 +41,16 @@ def roads(draw: st.DrawFn) -> Road:
 def laid(road: Road, x: float, y: float, turn: float) -> Road:
     """The same road at another place, turned."""
     assert isinstance(road.plan, PieceCurve)
-    return Road(PieceCurve(x, y, road.plan.heading0 + turn, road.plan.pieces), road.profile)
+    return Road(PieceCurve(x, y, road.plan.heading0 + turn, road.plan.pieces), road.elevation)
 
 
 def reversed_way(road: Road) -> Road:
     """The same road driven from its end."""
     assert isinstance(road.plan, PieceCurve)
-    assert isinstance(road.profile, GradeProfile)
+    assert isinstance(road.elevation, GradeProfile)
     x, y, z = road.at(road.length)
     back = tuple(Piece(p.length, -p.k1, -p.k0) for p in road.plan.pieces[::-1])
-    g0, g1 = road.profile.grades
+    g0, g1 = road.elevation.grades
     plan = PieceCurve(x, y, float(road.heading(road.length)) + math.pi, back)
     return Road(plan, GradeProfile(z, (0.0, road.length), (-g1, -g0)))
 
@@ -120,6 +120,6 @@ def test_what_strict_lets_pass_the_competition_lets_pass(
 @given(roads(), st.floats(0.01, 0.6))
 @settled
 def test_a_road_is_too_steep_exactly_beyond_its_steepest_place(road: Road, limit: float) -> None:
-    steepest = float(np.abs(road.profile.grade(np.array([0.0, road.length]))).max())
+    steepest = float(np.abs(road.elevation.grade(np.array([0.0, road.length]))).max())
     assume(abs(steepest - limit) > 0.001)
     assert objects("too_steep", road, World(map_size=1000, max_grade=limit)) == (steepest > limit)

@@ -16,7 +16,7 @@ from roadgpt.drive.driving_line import line_along
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve, interpolate
 from roadgpt.road import Design, Road, Segment, World, build
-from roadgpt.road.speed_profile import Limits, plan_speed
+from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 WORLD = World()
 LEVEL = GradeProfile(0.0, (0.0, 1.0), (0.0, 0.0))
@@ -149,7 +149,7 @@ def felt(road: Road, world: World = WORLD) -> float:
     bend = np.gradient(np.gradient(road.at(s)[:, 2], 0.25), 0.25)[4:-4]
     lane = line_along(road, -world.lane_width / 2)
     level = replace(lane, crest=[0.0] * len(lane.crest))
-    speed = np.array(plan_speed(level, Limits(0.64, 0.9, 0.7, world.speed_limit)))
+    speed = np.array(plan_speed(level, DrivingLimits(0.64, 0.9, 0.7, world.speed_limit)))
     v = np.interp(s[4:-4], lane.step * np.arange(len(speed)), speed)
     return float((v**2 * np.abs(bend)).max())
 
@@ -182,14 +182,14 @@ class TestTooAbrupt:
         assert not findings("too_abrupt", humped(30), World(speed_limit=9.0))
         hairpin = Road(
             PieceCurve(60.0, 60.0, 0.0, (Piece(80), Piece(50, 1 / 16, 1 / 16), Piece(80))),
-            humped(40, at=105, length=210).profile,
+            humped(40, at=105, length=210).elevation,
         )
         assert not findings("too_abrupt", hairpin)
         assert felt(hairpin) < 3
         assert findings("too_abrupt", humped(40, at=105, length=210))
 
     def test_a_faster_road_needs_more(self) -> None:
-        long = Road(straight(400).plan, humped(200, at=300, length=400).profile)
+        long = Road(straight(400).plan, humped(200, at=300, length=400).elevation)
         assert not findings("too_abrupt", long)
         assert findings("too_abrupt", long, World(speed_limit=100 / 3.6))
 
@@ -203,8 +203,8 @@ class TestTooAbrupt:
         assert rule(humped(45), Brief(clauses=(Clause(kind="straight"),)), WORLD)
         # a crest behind a turn, where the words asked for a dip in front of it
         turn = (Piece(70), Piece(40, 1 / 40, 1 / 40), Piece(150))
-        behind = Road(PieceCurve(20.0, 60.0, 0.0, turn), humped(45, at=220, length=260).profile)
-        before = Road(PieceCurve(20.0, 60.0, 0.0, turn), humped(45, at=45, length=260).profile)
+        behind = Road(PieceCurve(20.0, 60.0, 0.0, turn), humped(45, at=220, length=260).elevation)
+        before = Road(PieceCurve(20.0, 60.0, 0.0, turn), humped(45, at=45, length=260).elevation)
         assert rule(behind, dip_first, WORLD)
         assert not rule(before, dip_first, WORLD)
 

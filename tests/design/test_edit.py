@@ -14,7 +14,7 @@ from roadgpt.design import draft
 from roadgpt.design.edit import edit
 from roadgpt.design.edit.anatomy import blocks_of, joined
 from roadgpt.errors import EditError
-from roadgpt.road import Design, Segment, World, build, in_hops
+from roadgpt.road import Design, Segment, World, build, in_short_segments
 
 WORLD = World()
 ROADS = roads()
@@ -156,7 +156,7 @@ def test_a_changed_road_is_told_as_it_measures() -> None:
 
 
 def test_a_road_of_hops_and_splines_is_changed_as_it_is_seen() -> None:
-    design = in_hops(ROADS["h01"])
+    design = in_short_segments(ROADS["h01"])
     after = edit(design, "make the second turn sharper by 20 degrees", WORLD, "spline").design
     before, now = (measure(build(one, "spline").centreline()).turns for one in (design, after))
     assert now[1].degrees - before[1].degrees == pytest.approx(20, abs=2)

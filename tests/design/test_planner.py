@@ -138,7 +138,7 @@ def test_roads_stay_above_the_floor() -> None:
 def test_the_lowest_place_of_a_hilly_road_is_no_lower_than_the_ground() -> None:
     for seed in range(40):
         road = build(planner.draft(Brief(hills=at_least(3)), WORLD, (), (), seed))
-        lowest = road.profile.height(np.linspace(0, road.length, 20_000)).min()
+        lowest = road.elevation.height(np.linspace(0, road.length, 20_000)).min()
         assert 0 <= lowest < 6.02
 
 

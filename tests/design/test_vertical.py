@@ -23,8 +23,8 @@ from roadgpt.design.vertical import softened
 from roadgpt.drive.driving_line import line_along
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, World, build, read_design
-from roadgpt.road.grades import parabolas
-from roadgpt.road.speed_profile import Limits, plan_speed
+from roadgpt.road.elevation import vertical_curves
+from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 WORLD = World()
 WORDS = [
@@ -45,7 +45,7 @@ def felt(design: Design, world: World = WORLD) -> float:
     bend = np.gradient(np.gradient(road.at(s)[:, 2], 0.25), 0.25)[4:-4]
     lane = line_along(road, -world.lane_width / 2)
     level = replace(lane, crest=[0.0] * len(lane.crest))
-    speed = np.array(plan_speed(level, Limits(0.64, 0.9, 0.7, world.speed_limit)))
+    speed = np.array(plan_speed(level, DrivingLimits(0.64, 0.9, 0.7, world.speed_limit)))
     v = np.interp(s[4:-4], lane.step * np.arange(len(speed)), speed)
     return float((v**2 * np.abs(bend)).max())
 
@@ -95,7 +95,7 @@ def test_parabolas_keep_their_radius_or_the_room_between_them(data: st.DataObjec
     lengths = data.draw(st.lists(st.floats(0.5, 200), min_size=n, max_size=n))
     grades = data.draw(st.lists(st.sampled_from([-0.1, -0.03, 0.0, 0.02, 0.12]), min_size=n, max_size=n))
     radii = data.draw(st.lists(st.none() | st.floats(1, 3000), min_size=n, max_size=n))
-    found = parabolas(lengths, grades, radii)
+    found = vertical_curves(lengths, grades, radii)
     ends = np.cumsum(lengths)
     for parabola in found:
         assert parabola.s == pytest.approx(ends[parabola.number - 1])

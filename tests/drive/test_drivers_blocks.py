@@ -15,9 +15,9 @@ from roadgpt.drive.pedals import pedals
 from roadgpt.drive.pursuit import pursued
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, World
-from roadgpt.road.speed_profile import SLOWEST, Limits, plan_speed
+from roadgpt.road.speed_profile import SLOWEST, DrivingLimits, plan_speed
 
-LIMITS = Limits(lateral=0.6, braking=0.6, traction=0.5, speed=30.0, power=1e9)
+LIMITS = DrivingLimits(lateral=0.6, braking=0.6, traction=0.5, speed=30.0, power=1e9)
 
 
 def road_of(*pieces: Piece, grade: float = 0.0) -> Road:

@@ -15,7 +15,7 @@ from exported import ROADS, WORLD
 from roadgpt.export import save
 from roadgpt.export.exporters.beamng import level_name
 from roadgpt.export.exporters.beamng.files import ground_model, rotation
-from roadgpt.export.exporters.beamng.scene import scene_of
+from roadgpt.export.exporters.beamng.roads import level_road
 from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.road import Design, Segment, World, build
 
@@ -142,7 +142,7 @@ def test_the_curve_through_the_nodes_is_the_road(
     )
     straight = Segment(distance=40, direction="straight", incline=-incline)
     road = build(Design(starting_point=(0, 0, 0), theta=10, segments=(straight, bend, straight)))
-    scene = scene_of(road, World(), 3)
+    scene = level_road(road, World(), 3)
     decal = next(strip for strip in scene.strips if strip.name == "lanes").nodes
     curve = catmull_rom(decal[:, :3])
     s, t = road.locate(curve[:, 0], curve[:, 1])
@@ -155,7 +155,7 @@ def test_the_curve_through_the_nodes_is_the_road(
 
 
 def test_the_road_shakes_with_the_seed_and_the_decal_lies_above_the_mesh() -> None:
-    one, same, other = (scene_of(ROADS["arcs"], WORLD, seed) for seed in (1, 1, 2))
+    one, same, other = (level_road(ROADS["arcs"], WORLD, seed) for seed in (1, 1, 2))
     for a, b in zip(one.strips, same.strips, strict=True):
         assert (a.nodes == b.nodes).all()
     verge, mesh, decal = one.strips[:3]
@@ -179,7 +179,7 @@ def test_cars_look_along_the_road(heading: float, grade: float) -> None:
 
 def test_start_and_goal_lie_in_the_right_lane() -> None:
     road = ROADS["arcs"]
-    scene = scene_of(road, WORLD, 0, lift=28.0)
+    scene = level_road(road, WORLD, 0, lift=28.0)
     for point, s in ((scene.start, 2.5), (scene.goal, road.length - 4.0)):
         assert point == pytest.approx(road.at(s, -WORLD.lane_width / 2) + [0, 0, 28.0], abs=1e-6)
 

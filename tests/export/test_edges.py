@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from exported import ROADS, WORLD
 from roadgpt.errors import ExportError
 from roadgpt.export.edges import CHORD, LONGEST, line, stations
-from roadgpt.export.sections import sections
+from roadgpt.export.lanelets import lanelet_pairs
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Design, Road, build
 from strategies import designs
@@ -68,7 +68,7 @@ def test_numbers_that_are_not_finite_are_refused() -> None:
 @pytest.mark.parametrize("name", ROADS)
 def test_sections_meet_and_cover_the_road(name: str) -> None:
     road = ROADS[name]
-    found = sections(road, WORLD)
+    found = lanelet_pairs(road, WORLD)
     assert found[0].start == 0
     assert found[-1].end == pytest.approx(road.length)
     assert len(found) == max(1, round(road.length / 50))

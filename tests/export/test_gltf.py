@@ -11,7 +11,7 @@ from hypothesis import given, settings
 
 from exported import ROADS, WORLD, drive
 from roadgpt.export import Poses, save
-from roadgpt.export.exporters.gltf.surfaces import shapes
+from roadgpt.export.exporters.gltf.surfaces import meshes
 from roadgpt.road import Design, Road, World, build
 from strategies import designs
 
@@ -127,9 +127,9 @@ def test_the_file_is_laid_out_as_the_standard_says(tmp_path: Path) -> None:
 
 @settings(max_examples=25)
 @given(design=designs())
-def test_no_road_folds_or_breaks_its_shapes(design: Design) -> None:
+def test_no_road_folds_or_breaks_its_meshes(design: Design) -> None:
     road = build(design)
-    for shape in shapes(road, WORLD):
+    for shape in meshes(road, WORLD):
         assert np.isfinite(shape.points).all()
         assert np.linalg.norm(shape.normals, axis=1) == pytest.approx(1.0)
         assert len(shape.points) == len(shape.normals) == len(shape.texture)

@@ -9,7 +9,7 @@ import pytest
 
 from exported import ROADS, WORLD
 from roadgpt.export import save
-from roadgpt.export.place import LATITUDE, LONGITUDE
+from roadgpt.export.georeference import LATITUDE, LONGITUDE
 from roadgpt.road import Road
 
 NEAR = [name for name in ROADS if name != "far away"]  # the others leave the UTM zone's middle

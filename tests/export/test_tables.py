@@ -9,7 +9,7 @@ import pytest
 
 from exported import ROADS, WORLD, drive
 from roadgpt.export import save
-from roadgpt.export.place import FLATTENING, LATITUDE, LONGITUDE, SEMI_MAJOR, degrees
+from roadgpt.export.georeference import FLATTENING, LATITUDE, LONGITUDE, SEMI_MAJOR, degrees
 from roadgpt.road import read_road
 
 

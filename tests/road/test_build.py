@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.errors import UsageError
-from roadgpt.road import Design, Road, Segment, build, in_hops
+from roadgpt.road import Design, Road, Segment, build, in_short_segments
 
 turns = st.one_of(st.floats(-70, -1), st.floats(1, 70))
 segments = st.builds(
@@ -131,14 +131,14 @@ def test_hops_make_a_spline_that_keeps_the_bends_and_grades() -> None:
         Segment(distance=45, direction="right", incline=-3, turn_degrees=-60, radius=20, transition=8),
     ]
     design = Design(starting_point=(50, 50, 0), theta=20, segments=(lead, *bends, lead))
-    arcs, spline = build(design), build(in_hops(design), "spline")
+    arcs, spline = build(design), build(in_short_segments(design), "spline")
     assert spline.length == pytest.approx(arcs.length, abs=0.1)
     s = np.linspace(20, arcs.length - 2, 300)
     assert spline.at(s)[:, :2] == pytest.approx(arcs.at(s)[:, :2], abs=0.05)
     assert 1 / np.abs(spline.curvature(s)).max() == pytest.approx(20, rel=0.05)
     assert spline.grade(s) == pytest.approx(arcs.grade(s), abs=0.01)
     assert np.abs(spline.grade(np.linspace(0, 20, 50))).max() < 0.12
-    assert all(abs(segment.turn_degrees) <= 70 for segment in in_hops(design).segments)
+    assert all(abs(segment.turn_degrees) <= 70 for segment in in_short_segments(design).segments)
 
 
 @given(designs, st.floats(0, 1), st.floats(-4, 4))

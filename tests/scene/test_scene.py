@@ -107,7 +107,7 @@ def test_what_lies_behind_a_crest_is_hidden() -> None:
     sight = [
         (np.linspace(0, 1, 400)[:, None] * (dash - eye) + eye) for dash in dashes
     ]  # where the line of sight is above the road all along, the dash is seen
-    free = np.array([(line[:-4, 2] > over.profile.height(line[:-4, 0]) - 1e-3).all() for line in sight])
+    free = np.array([(line[:-4, 2] > over.elevation.height(line[:-4, 0]) - 1e-3).all() for line in sight])
     seen = projected(camera, place, pose, dashes)
     ahead = (s > 28) & (seen[:, 1] < 355)
     assert (free & ahead).sum() >= 2

@@ -20,7 +20,7 @@ from roadgpt.design.vertical import Pace, joined, made_to_fit, runs_of, too_abru
 from roadgpt.road import Design, Segment, World
 from roadgpt.road.alignment import LONGEST_TRANSITION, TRANSITION_SHARE
 from roadgpt.road.design import MAX_INCLINE
-from roadgpt.road.grades import profile_of
+from roadgpt.road.elevation import elevation_of
 
 SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn between two straights
 SHORTEST = 0.5  # m, of a straight that is written
@@ -141,7 +141,7 @@ def _cut(genes: Genes, grades: Sequence[float]) -> list[Segment]:
 def design_of(genes: Genes, place: Place, world: World) -> Design:
     """The design that lies at a place of the map, its lowest point a little above the ground."""
     segments = segments_of(genes, world)
-    profile = profile_of(segments, 0.0)
+    profile = elevation_of(segments, 0.0)
     _, sag = lowest(profile, profile.stations[-1])
     ground = max(0.0, world.z_floor) + ABOVE_GROUND
     height = ceil((ground - sag) * CENTIMETRE) / CENTIMETRE

@@ -1,7 +1,7 @@
 """From geometry back to a Brief: what a finished road is like, said in the terms of a description."""
 
 from roadgpt.brief.model import Brief, Clause, exactly
-from roadgpt.check.measures import LEVEL, Measures, Stretch, measure
+from roadgpt.check.measures import LEVEL, MeasuredFeature, Measures, measure
 from roadgpt.road import Road
 
 
@@ -27,7 +27,7 @@ def described(found: Measures) -> Brief:
     )
 
 
-def _clause(feature: Stretch) -> Clause:
+def _clause(feature: MeasuredFeature) -> Clause:
     grade = round(feature.grade)
     slope = "flat" if abs(feature.grade) < LEVEL else "up" if grade > 0 else "down"
     incline = exactly(abs(grade)) if slope != "flat" and grade else None

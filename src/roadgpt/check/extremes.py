@@ -6,7 +6,7 @@ ends; a parabola is lowest there or where its grade is 0.
 
 import numpy as np
 
-from roadgpt.geometry import GradeProfile, PieceCurve, Profile
+from roadgpt.geometry import ElevationProfile, GradeProfile, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
@@ -27,9 +27,9 @@ def tightest(road: Road) -> tuple[float, float]:
 
 def steepest(road: Road) -> tuple[float, float]:
     """Station and grade (ratio, uphill positive) of the steepest place; the first one of several."""
-    if isinstance(road.profile, GradeProfile):
-        s = _stations(road.profile, road.length)
-        return _greatest(s, road.profile.grade(s))
+    if isinstance(road.elevation, GradeProfile):
+        s = _stations(road.elevation, road.length)
+        return _greatest(s, road.elevation.grade(s))
     return _greatest(road.sample().s, road.sample().grade)
 
 
@@ -39,15 +39,15 @@ def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
     Parabolas as they are; of other profiles every stretch of about ``KINK`` metres, in which a kink counts
     as spread over it.
     """
-    if isinstance(road.profile, GradeProfile):
-        s = _stations(road.profile, road.length)
+    if isinstance(road.elevation, GradeProfile):
+        s = _stations(road.elevation, road.length)
     else:
         s = np.linspace(0.0, road.length, max(1, round(road.length / KINK)) + 1)
-    grade = road.profile.grade(s)
+    grade = road.elevation.grade(s)
     return s[:-1], s[1:], np.diff(grade) / np.diff(s)
 
 
-def lowest(profile: Profile, length: float) -> tuple[float, float]:
+def lowest(profile: ElevationProfile, length: float) -> tuple[float, float]:
     """Station and height (m) of the lowest place over so many metres."""
     if isinstance(profile, GradeProfile):
         s = _stations(profile, length)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.words import Range
-from roadgpt.check.measures import Measures, Stretch
+from roadgpt.check.measures import MeasuredFeature, Measures
 
 
 class Complaint(NamedTuple):
@@ -36,7 +36,7 @@ RIGHT = _Cost(0.0, ())
 IMPOSSIBLE = _Cost(inf, ())
 
 
-def fits(stretch: Stretch, feature: Feature) -> bool:
+def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
     """Does a measured stretch show a feature?"""
     return (
         stretch.kind == feature.kind
@@ -50,14 +50,14 @@ def fits(stretch: Stretch, feature: Feature) -> bool:
     )
 
 
-def _is_rounded_off(stretch: Stretch, asked: Range) -> bool:
+def _is_rounded_off(stretch: MeasuredFeature, asked: Range) -> bool:
     """Is a straight too gentle as a whole, but as steep as asked over its middle half?"""
     least = asked.lo if asked.lo > 0 else -asked.hi if asked.hi < 0 else 0.0
     return stretch.kind == "straight" and 0 < least > abs(stretch.grade) and stretch.inner_grade in asked
 
 
 def turn_complaints(
-    number: int, turn: Stretch, feature: Feature, side: str | None = None
+    number: int, turn: MeasuredFeature, feature: Feature, side: str | None = None
 ) -> tuple[Complaint, ...]:
     """What is wrong with one turn.
 
@@ -116,7 +116,7 @@ def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...
     return cost.says
 
 
-def _group_cost(group: Group, turns: tuple[Stretch, ...], first: int) -> _Cost:
+def _group_cost(group: Group, turns: tuple[MeasuredFeature, ...], first: int) -> _Cost:
     says: list[Complaint] = []
     wrong = 0
     side: str | None = None
@@ -129,7 +129,7 @@ def _group_cost(group: Group, turns: tuple[Stretch, ...], first: int) -> _Cost:
     return _Cost(wrong, tuple(says))
 
 
-def _gap_cost(gap: tuple[Stretch, ...], wanted: tuple[Feature, ...], turn: int) -> _Cost:
+def _gap_cost(gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int) -> _Cost:
     """The wanted straights before a turn, counted from 0: in order among the pieces that are there."""
     if not wanted or (len(wanted) == 1 and any(fits(straight, wanted[0]) for straight in gap)):
         return RIGHT
@@ -160,7 +160,7 @@ def _asked(wish: Feature) -> str:
     return " and ".join(text.format(span) for span, text in spans if span) or "no turn in it"
 
 
-def _said(pieces: tuple[Stretch, ...]) -> str:
+def _said(pieces: tuple[MeasuredFeature, ...]) -> str:
     return ", then ".join(f"{piece.length:.0f} m at {piece.grade:.1f} %" for piece in pieces)
 
 

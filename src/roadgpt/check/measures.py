@@ -41,7 +41,7 @@ Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class MeasuredFeature:
     """A turn, a straight, or a piece of a straight, as it was measured."""
 
     kind: Literal["turn", "straight"]
@@ -57,7 +57,7 @@ class Stretch:
     """Percent, from end to end."""
     inner_grade: float
     """Percent, over its middle half: a short slope between others is mostly rounded off at its ends."""
-    pieces: tuple["Stretch", ...] = ()
+    pieces: tuple["MeasuredFeature", ...] = ()
     """Of a straight: where its grade changes class."""
 
     @property
@@ -70,7 +70,7 @@ class Stretch:
 class Measures:
     """A road as it was measured."""
 
-    features: tuple[Stretch, ...]
+    features: tuple[MeasuredFeature, ...]
     """Turns and straights in driving order."""
     length: float
     """Metres in plan."""
@@ -92,19 +92,19 @@ class Measures:
     """Degrees, all changes of heading added up, whichever way."""
 
     @property
-    def turns(self) -> tuple[Stretch, ...]:
+    def turns(self) -> tuple[MeasuredFeature, ...]:
         """The turns in driving order."""
         return tuple(f for f in self.features if f.kind == "turn")
 
     @property
-    def straights(self) -> tuple[Stretch, ...]:
+    def straights(self) -> tuple[MeasuredFeature, ...]:
         """The straights in driving order."""
         return tuple(f for f in self.features if f.kind == "straight")
 
     @property
-    def gaps(self) -> tuple[tuple[Stretch, ...], ...]:
+    def gaps(self) -> tuple[tuple[MeasuredFeature, ...], ...]:
         """The straights before the first turn, between turns, and after the last: one more than turns."""
-        out: list[tuple[Stretch, ...]] = [()]
+        out: list[tuple[MeasuredFeature, ...]] = [()]
         for feature in self.features:
             if feature.kind == "turn":
                 out.append(())
@@ -265,8 +265,8 @@ def _joined(bends: Sequence[_Bend], s: Array) -> list[_Bend]:
     return out
 
 
-def _features(line: _Line, bends: Sequence[_Bend]) -> tuple[Stretch, ...]:
-    s, out = line.s, list[Stretch]()
+def _features(line: _Line, bends: Sequence[_Bend]) -> tuple[MeasuredFeature, ...]:
+    s, out = line.s, list[MeasuredFeature]()
     marks = [0, *(index for bend in bends for index in (bend.first, bend.last)), len(s) - 1]
     gaps = list(zip(marks[::2], marks[1::2], strict=True))
     for (a, b), bend in zip(gaps, [*bends, None], strict=True):
@@ -274,19 +274,19 @@ def _features(line: _Line, bends: Sequence[_Bend]) -> tuple[Stretch, ...]:
             out.append(_straight(line, a, b))
         if bend:
             side: Literal["left", "right"] = "left" if bend.sign > 0 else "right"
-            out.append(_stretch(line, "turn", bend.first, bend.last, side, bend.degrees))
+            out.append(_feature(line, "turn", bend.first, bend.last, side, bend.degrees))
     return tuple(out)
 
 
-def _stretch(
+def _feature(
     line: _Line,
     kind: Literal["turn", "straight"],
     first: int,
     last: int,
     side: Literal["left", "right"] | None = None,
     degrees: float = 0.0,
-    pieces: tuple[Stretch, ...] = (),
-) -> Stretch:
+    pieces: tuple[MeasuredFeature, ...] = (),
+) -> MeasuredFeature:
     last = min(max(last, first + 1), len(line.s) - 1)
     first = min(first, last - 1)
     if kind == "straight":
@@ -295,7 +295,8 @@ def _stretch(
     start, end = float(line.s[first]), float(line.s[last])
     grade = 100 * float(line.z[last] - line.z[first]) / (end - start)
     radius = _radius(line.curvature[first : last + 1])
-    return Stretch(kind, start, end, side, degrees, radius, grade, _inner_grade(line, first, last), pieces)
+    inner_grade = _inner_grade(line, first, last)
+    return MeasuredFeature(kind, start, end, side, degrees, radius, grade, inner_grade, pieces)
 
 
 def _inner_grade(line: _Line, first: int, last: int) -> float:
@@ -304,18 +305,18 @@ def _inner_grade(line: _Line, first: int, last: int) -> float:
     return 100 * float(line.z[b] - line.z[a]) / float(line.s[b] - line.s[a])
 
 
-def _straight(line: _Line, first: int, last: int) -> Stretch:
+def _straight(line: _Line, first: int, last: int) -> MeasuredFeature:
     """A straight and its pieces; itself as the only one where all are too short to count."""
     here = np.arange(first, last + 1)
     before, after = np.maximum(here - HALF_WINDOW, 0), np.minimum(here + HALF_WINDOW, len(line.s) - 1)
     local = 100 * (line.z[after] - line.z[before]) / (line.s[after] - line.s[before])
     classes = (local >= LEVEL).astype(np.int8) - (local <= -LEVEL).astype(np.int8)
     cuts = zip(*_stretches(classes), strict=True)
-    found = (_stretch(line, "straight", first + int(a), min(first + int(b) + 1, last)) for a, b in cuts)
+    found = (_feature(line, "straight", first + int(a), min(first + int(b) + 1, last)) for a, b in cuts)
     pieces = tuple(piece for piece in found if piece.length >= LEAST_PIECE)
-    return _stretch(
-        line, "straight", first, last, pieces=pieces or (_stretch(line, "straight", first, last),)
+    return _feature(
+        line, "straight", first, last, pieces=pieces or (_feature(line, "straight", first, last),)
     )
 
 
-__all__ = ["Measures", "Stretch", "measure", "way"]
+__all__ = ["MeasuredFeature", "Measures", "measure", "way"]

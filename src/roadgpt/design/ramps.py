@@ -17,7 +17,7 @@ from roadgpt.check.measures import HALF_WINDOW, LEVEL
 from roadgpt.design.spans import Inclines, Slope, Span
 from roadgpt.design.vertical import ROUNDING, Pace
 from roadgpt.geometry.curve import Array
-from roadgpt.road.grades import parabolas
+from roadgpt.road.elevation import vertical_curves
 
 ROUNDS = 8
 PUSHED = 1.0  # percentage points that a grade may be written off what was drawn, so that its mean is right
@@ -177,7 +177,8 @@ def _spread(joints: Array) -> Array:
 def _halves(joints: Array, grades: Array, radii: Sequence[float]) -> Array:
     """Half of what the change of grade takes at every inner joint, as the road will be built."""
     out = np.zeros(len(joints) - 1)
-    for parabola in parabolas(np.diff(joints, prepend=0.0).tolist(), (grades / 100).tolist(), [None, *radii]):
+    lengths = np.diff(joints, prepend=0.0).tolist()
+    for parabola in vertical_curves(lengths, (grades / 100).tolist(), [None, *radii]):
         out[parabola.number - 1] = parabola.half
     return out
 

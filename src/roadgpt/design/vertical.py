@@ -21,7 +21,7 @@ from roadgpt.design.layout import bends_of
 from roadgpt.design.spans import Span
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Segment, World, build
-from roadgpt.road.grades import MOST_OF_SLOPE, Parabola, parabolas_of
+from roadgpt.road.elevation import MOST_OF_SLOPE, VerticalCurve, vertical_curves_of
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
 
 COMFORT = 0.5  # m/s^2
@@ -210,7 +210,7 @@ def joined(
             radius = None
         out.append(segment if radius == segment.vertical_radius else _with_radius(segment, radius))
         at += segment.distance
-    for parabola in parabolas_of(out):
+    for parabola in vertical_curves_of(out):
         if parabola.number in own or opened is None:
             built = max(floor(parabola.radius * TENTH + 1e-6) / TENTH, 1 / TENTH)
             out[parabola.number] = _with_radius(out[parabola.number], built)
@@ -234,7 +234,7 @@ def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
     """
     out, opened = tuple(segments), set[int]()
     while small := {parabola.number for parabola in _too_small(out, pace)}:
-        numbers = [parabola.number for parabola in parabolas_of(segments)]
+        numbers = [parabola.number for parabola in vertical_curves_of(segments)]
         beside = {n for pair in pairwise(numbers) if small & {*pair} for n in pair}
         more = small - opened or beside - opened
         if not more:
@@ -253,7 +253,7 @@ def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> 
     return any(True for _ in _too_small(segments, pace, bumps))
 
 
-def _too_small(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> Iterator[Parabola]:
-    for parabola in parabolas_of(segments):
+def _too_small(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> Iterator[VerticalCurve]:
+    for parabola in vertical_curves_of(segments):
         if parabola.radius < pace.least(parabola.s, bumps) * (1 - ROUNDING):
             yield parabola

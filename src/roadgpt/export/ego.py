@@ -12,7 +12,7 @@ from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.road.ends import GOAL, START
-from roadgpt.road.speed_profile import GRAVITY, Limits, lane_speed
+from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, lane_speed
 
 COMFORT = 3.0  # m/s^2, lateral, ISO 11270
 GRIP = 0.5  # share of the friction that a calm driver uses
@@ -21,7 +21,7 @@ STEP = 0.5  # m between the places for which a speed is planned
 
 
 @dataclass(frozen=True)
-class Car:
+class EgoVehicle:
     """In metres and kilograms; heights above the ground."""
 
     length: float = 4.70
@@ -41,7 +41,7 @@ class Car:
     """Radians, of the front wheels."""
 
 
-CAR = Car()
+CAR = EgoVehicle()
 
 
 def start_of(road: Road) -> float:
@@ -90,7 +90,7 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
     step, bend = float(s[1] - s[0]), road.curvature(s)
     grip = GRIP * world.friction
     pull = min(PULL / GRAVITY, grip)
-    limits = Limits(min(COMFORT / GRAVITY, grip), pull, pull, world.speed_limit)
+    limits = DrivingLimits(min(COMFORT / GRAVITY, grip), pull, pull, world.speed_limit)
     speed = lane_speed(bend, 0.0, step, world, limits)
     stretch = np.maximum(1 + bend * world.lane_width / 2, 0.0)
     along = step * (stretch[1:] + stretch[:-1]) / 2

@@ -4,19 +4,19 @@ A plan curve answers ``at(s)``, ``heading(s)`` and ``curvature(s)`` by exact arc
 ``height(s)``, ``grade(s)`` and ``vertical_curvature(s)`` at the same stations.
 """
 
-from roadgpt.geometry.curve import PlanCurve, Profile, wrap_angle
+from roadgpt.geometry.curve import ElevationProfile, PlanCurve, wrap_angle
+from roadgpt.geometry.elevation import CubicProfile, GradeProfile, shifted
 from roadgpt.geometry.pieces import Piece, PieceCurve
-from roadgpt.geometry.profile import CubicProfile, GradeProfile, shifted
 from roadgpt.geometry.projection import project
 from roadgpt.geometry.spline import SplineCurve, SplineProfile, interpolate, walked
 
 __all__ = [
     "CubicProfile",
+    "ElevationProfile",
     "GradeProfile",
     "Piece",
     "PieceCurve",
     "PlanCurve",
-    "Profile",
     "SplineCurve",
     "SplineProfile",
     "interpolate",

@@ -29,7 +29,7 @@ class PlanCurve(Protocol):
         ...
 
 
-class Profile(Protocol):
+class ElevationProfile(Protocol):
     """Heights over the same stations as the plan."""
 
     def height(self, s: ArrayLike) -> Array:

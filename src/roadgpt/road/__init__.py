@@ -6,23 +6,23 @@ A Design is the blueprint that a designer writes and a person reads; a Road is 3
 
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, Segment, read_design
-from roadgpt.road.hops import in_hops
 from roadgpt.road.moving import moved
-from roadgpt.road.opendrive import Imported, read_opendrive
+from roadgpt.road.opendrive import ImportedRoad, read_opendrive
 from roadgpt.road.road import Road, Samples
+from roadgpt.road.short_segments import in_short_segments
 from roadgpt.road.source import read_blueprint, read_road
 from roadgpt.road.world import World
 
 __all__ = [
     "Design",
     "Geometry",
-    "Imported",
+    "ImportedRoad",
     "Road",
     "Samples",
     "Segment",
     "World",
     "build",
-    "in_hops",
+    "in_short_segments",
     "moved",
     "read_blueprint",
     "read_design",

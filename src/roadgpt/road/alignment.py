@@ -25,7 +25,7 @@ SETTLED = 1e-12  # 1/m
 EQUAL = 1e-9  # 1/m; between curvatures so near no clothoid is needed
 
 
-class _Bend(NamedTuple):
+class _TurnSpec(NamedTuple):
     """What a segment asks of its turn; angle and curvatures without their sign."""
 
     distance: float
@@ -35,7 +35,7 @@ class _Bend(NamedTuple):
     hand: float
 
 
-class _Shape(NamedTuple):
+class _TurnLayout(NamedTuple):
     """How the turn is laid out: own curvature, and lengths of clothoid, arc, clothoid and spare straight."""
 
     own: float
@@ -58,15 +58,15 @@ def pieces_of(segments: Sequence[Segment]) -> list[Piece]:
     return out
 
 
-def _bend(segment: Segment) -> _Bend | None:
+def _bend(segment: Segment) -> _TurnSpec | None:
     turn = math.radians(segment.turn_degrees)
     if abs(turn) < 1e-9:
         return None
     ramp = segment.transition or min(TRANSITION_SHARE * segment.distance, LONGEST_TRANSITION)
-    return _Bend(segment.distance, abs(turn), ramp, segment.radius, math.copysign(1.0, turn))
+    return _TurnSpec(segment.distance, abs(turn), ramp, segment.radius, math.copysign(1.0, turn))
 
 
-def _settled_joints(bends: Sequence[_Bend | None]) -> list[float]:
+def _settled_joints(bends: Sequence[_TurnSpec | None]) -> list[float]:
     """Curvatures at the start, between all segments, and at the end: a fixed point, reached from below."""
     joints = [0.0] * (len(bends) + 1)
     meets = [i for i in range(1, len(bends)) if _same_hand(bends[i - 1], bends[i])]
@@ -80,11 +80,11 @@ def _settled_joints(bends: Sequence[_Bend | None]) -> list[float]:
     return joints
 
 
-def _same_hand(one: _Bend | None, other: _Bend | None) -> bool:
+def _same_hand(one: _TurnSpec | None, other: _TurnSpec | None) -> bool:
     return one is not None and other is not None and one.hand == other.hand
 
 
-def _solve(bend: _Bend, entry: float, exit_: float) -> _Shape:
+def _solve(bend: _TurnSpec, entry: float, exit_: float) -> _TurnLayout:
     """The layout whose lengths add up to the distance and whose curvature adds up to the turn."""
     if bend.radius and 0 in (entry, exit_):
         kept = _with_radius(bend, 1 / bend.radius, entry, exit_)
@@ -92,10 +92,10 @@ def _solve(bend: _Bend, entry: float, exit_: float) -> _Shape:
             return kept
     ramp = min(bend.ramp, MOST_TRANSITION * bend.distance)
     own = (bend.turn - (entry + exit_) * ramp / 2) / (bend.distance - ramp)
-    return _Shape(own, ramp, bend.distance - 2 * ramp, ramp, 0.0)
+    return _TurnLayout(own, ramp, bend.distance - 2 * ramp, ramp, 0.0)
 
 
-def _with_radius(bend: _Bend, own: float, entry: float, exit_: float) -> _Shape | None:
+def _with_radius(bend: _TurnSpec, own: float, entry: float, exit_: float) -> _TurnLayout | None:
     """The layout with this curvature, the spare length straight; None where the distance is too short."""
     first = bend.ramp if entry < own - EQUAL else 0.0
     last = bend.ramp if exit_ < own - EQUAL else 0.0
@@ -104,10 +104,10 @@ def _with_radius(bend: _Bend, own: float, entry: float, exit_: float) -> _Shape 
     first, last, arc = first * shrink, last * shrink, (bend.turn - turned * shrink) / own
     spare = bend.distance - first - last - arc
     fits = spare > -1e-6 and own >= max(entry, exit_)
-    return _Shape(own, first, arc, last, max(spare, 0.0)) if fits else None
+    return _TurnLayout(own, first, arc, last, max(spare, 0.0)) if fits else None
 
 
-def _pieces(bend: _Bend, entry: float, exit_: float) -> list[Piece]:
+def _pieces(bend: _TurnSpec, entry: float, exit_: float) -> list[Piece]:
     """Clothoid, arc, clothoid; the spare length lies at the ends where the curvature is 0."""
     shape = _solve(bend, entry, exit_)
     free = (entry == 0) + (exit_ == 0)

@@ -7,7 +7,7 @@ from roadgpt.geometry import PieceCurve
 from roadgpt.geometry.pieces import joined
 from roadgpt.road.alignment import pieces_of
 from roadgpt.road.design import Design
-from roadgpt.road.grades import profile_of
+from roadgpt.road.elevation import elevation_of
 from roadgpt.road.nodes import nodes_of
 from roadgpt.road.road import Road, check_length
 
@@ -30,4 +30,4 @@ def build(design: Design, geometry: Geometry = "arcs") -> Road:
     check_length(sum(segment.distance for segment in design.segments))
     x, y, z = design.starting_point
     plan = PieceCurve(x, y, math.radians(design.theta), joined(pieces_of(design.segments)))
-    return Road(plan, profile_of(design.segments, z))
+    return Road(plan, elevation_of(design.segments, z))

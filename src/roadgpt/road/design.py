@@ -16,7 +16,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roadgpt.errors import UsageError
-from roadgpt.road.grades import parabolas_of
+from roadgpt.road.elevation import vertical_curves_of
 
 MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
@@ -118,7 +118,7 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
 
 def _unfit(segments: Sequence[Segment]) -> Iterator[str]:
     """A sentence for each vertical radius that has no room."""
-    for parabola in parabolas_of(segments):
+    for parabola in vertical_curves_of(segments):
         asked = segments[parabola.number].vertical_radius
         if asked and parabola.radius < FITS * asked:
             yield (

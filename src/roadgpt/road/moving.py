@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve, Profile
+from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, PieceCurve
 from roadgpt.road.road import Road
 
 
@@ -17,10 +17,10 @@ def moved(road: Road, x: float, y: float, z: float = 0.0) -> Road:
         return Road.through(nodes, None if road.road_points is None else road.road_points + shift)
     assert isinstance(road.plan, PieceCurve)
     plan = replace(road.plan, x=road.plan.x + x, y=road.plan.y + y)
-    return Road(plan, _lifted(road.profile, z) if z else road.profile)
+    return Road(plan, _lifted(road.elevation, z) if z else road.elevation)
 
 
-def _lifted(profile: Profile, z: float) -> Profile:
+def _lifted(profile: ElevationProfile, z: float) -> ElevationProfile:
     if isinstance(profile, GradeProfile):
         return replace(profile, z0=profile.z0 + z)
     assert isinstance(profile, CubicProfile)

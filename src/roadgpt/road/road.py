@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from roadgpt.errors import UsageError
 from roadgpt.geometry import (
     CubicProfile,
+    ElevationProfile,
     GradeProfile,
     Piece,
     PieceCurve,
     PlanCurve,
-    Profile,
     SplineCurve,
     SplineProfile,
     project,
@@ -54,7 +54,7 @@ class Road:
     """A centre line in plan and the heights over it; ``nodes`` are control points, if it came from such."""
 
     plan: PlanCurve
-    profile: Profile
+    elevation: ElevationProfile
     nodes: Array | None = None
     road_points: Array | None = None
     """Control points ``(n, 2)`` of the SBFT test that the road was read from, if they are not its nodes."""
@@ -81,7 +81,7 @@ class Road:
         return cls(plan, profile, nodes, control)
 
     def __repr__(self) -> str:
-        low, high = self.profile.height(self.sample().s[[0, -1]])
+        low, high = self.elevation.height(self.sample().s[[0, -1]])
         (x0, y0), (x1, y1) = self.plan.at(np.array([0.0, self.length]))
         ends = f"({x0:.1f}, {y0:.1f}, {low:.1f}) to ({x1:.1f}, {y1:.1f}, {high:.1f})"
         return f"Road({self.length:.1f} m, from {ends}, {self._tightest()})"
@@ -101,7 +101,7 @@ class Road:
         heading = self.plan.heading(s)
         xy = self.plan.at(s)
         x, y = xy[..., 0] - t * np.sin(heading), xy[..., 1] + t * np.cos(heading)
-        return np.stack([x, y, self.profile.height(s)], axis=-1)
+        return np.stack([x, y, self.elevation.height(s)], axis=-1)
 
     def locate(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
         """Stations and offsets (``s``, ``t``) of points in plan; the nearest place where several would do."""
@@ -119,11 +119,11 @@ class Road:
 
     def grade(self, s: ArrayLike) -> Array:
         """Slopes, as ratios."""
-        return self.profile.grade(s)
+        return self.elevation.grade(s)
 
     def vertical_curvature(self, s: ArrayLike) -> Array:
         """Change of slope in 1/m, negative on a crest."""
-        return self.profile.vertical_curvature(s)
+        return self.elevation.vertical_curvature(s)
 
     def sample(self, step: float = 1.0) -> Samples:
         """The road about every ``step`` metres, both ends included; measured once and kept."""
@@ -134,7 +134,7 @@ class Road:
                 s,
                 xy[:, 0],
                 xy[:, 1],
-                self.profile.height(s),
+                self.elevation.height(s),
                 self.heading(s),
                 self.curvature(s),
                 self.grade(s),
@@ -164,15 +164,15 @@ class Road:
             "start": [self.plan.x, self.plan.y, self.plan.heading0],
             "pieces": [[p.length, p.k0, p.k1] for p in self.plan.pieces],
         }
-        if isinstance(self.profile, CubicProfile):
-            rows = zip(self.profile.stations, self.profile.coefficients, strict=True)
+        if isinstance(self.elevation, CubicProfile):
+            rows = zip(self.elevation.stations, self.elevation.coefficients, strict=True)
             return {**out, "cubics": [[s, *cubic] for s, cubic in rows]}
-        assert isinstance(self.profile, GradeProfile)
+        assert isinstance(self.elevation, GradeProfile)
         return {
             **out,
-            "height": self.profile.z0,
-            "stations": list(self.profile.stations),
-            "grades": list(self.profile.grades),
+            "height": self.elevation.z0,
+            "stations": list(self.elevation.stations),
+            "grades": list(self.elevation.grades),
         }
 
     @classmethod
@@ -200,7 +200,7 @@ class Road:
             ) from error
 
 
-def _profile(data: Mapping[str, Any]) -> tuple[Profile, list[float]]:
+def _profile(data: Mapping[str, Any]) -> tuple[ElevationProfile, list[float]]:
     """The heights that ``to_json`` wrote, and all numbers in them."""
     if "cubics" in data:
         rows = [(float(s), (float(a), float(b), float(c), float(d))) for s, a, b, c, d in data["cubics"]]
@@ -223,7 +223,7 @@ def check_length(length: float) -> None:
         )
 
 
-def check_grade(profile: Profile, length: float) -> None:
+def check_grade(profile: ElevationProfile, length: float) -> None:
     """Refuses roads that stand like a wall.
 
     Raises:

@@ -12,7 +12,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.reading import json_of, read_text
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, read_design
-from roadgpt.road.opendrive import Imported, read_opendrive
+from roadgpt.road.opendrive import ImportedRoad, read_opendrive
 from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
 from roadgpt.road.road import Road
 from roadgpt.road.world import World
@@ -72,7 +72,7 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
         raise UsageError(f"{path}: {error}") from error
 
 
-def _lanes_told(found: Imported) -> tuple[str, ...]:
+def _lanes_told(found: ImportedRoad) -> tuple[str, ...]:
     """What its file says of lanes and limits that a World as usual does not have."""
     usual = World()
     own = found.world(usual)

@@ -26,7 +26,7 @@ LATERAL, BRAKING, TRACTION = 0.64, 0.9, 0.7  # g, of the car that a road is expe
 LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves to a lane on the inside of a bend
 
 
-class Way(Protocol):
+class PathGeometry(Protocol):
     """What has to be known of a line; the lists have one number for every station, ``step`` metres apart."""
 
     @property
@@ -51,7 +51,7 @@ class Way(Protocol):
 
 
 @dataclass(frozen=True)
-class Limits:
+class DrivingLimits:
     """What a driver asks of car and road, as shares of the load on the wheels."""
 
     lateral: float
@@ -66,8 +66,8 @@ class Limits:
     """W per kg: above some speed the engine allows less than the tyres."""
 
 
-class _Lane(NamedTuple):
-    """The middle of a lane, as a Way."""
+class _LanePath(NamedTuple):
+    """The middle of a lane, as a PathGeometry."""
 
     step: float
     stretch: Sequence[float]
@@ -81,11 +81,13 @@ def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: W
 
     On dry asphalt, under the speed limit, at the default driver's share of gravity; see ``lane_speed``.
     """
-    limits = Limits(LATERAL, BRAKING, TRACTION, world.speed_limit)
+    limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
     return lane_speed(curvature, grade, step, world, limits)
 
 
-def lane_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: World, limits: Limits) -> Array:
+def lane_speed(
+    curvature: ArrayLike, grade: ArrayLike, step: float, world: World, limits: DrivingLimits
+) -> Array:
     """Speeds in m/s, from a standing start, of a car in the middle of the right lane.
 
     It slows down for bends and not for crests, as the default driver does not: so a crest cannot make itself
@@ -102,11 +104,11 @@ def lane_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: World
     along = np.maximum(1 + bend * world.lane_width / 2, LEAST_STRETCH)
     grades = np.broadcast_to(np.asarray(grade, float), bend.shape)
     level = [0.0] * len(bend)
-    lane = _Lane(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level)
+    lane = _LanePath(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level)
     return np.array(plan_speed(lane, limits))
 
 
-def plan_speed(line: Way, limits: Limits) -> list[float]:
+def plan_speed(line: PathGeometry, limits: DrivingLimits) -> list[float]:
     """Speeds in m/s at every station of the line.
 
     The load on the wheels is that of the slope and of the crest or dip: ``g cos + v^2 * vertical curvature``.
@@ -117,7 +119,7 @@ def plan_speed(line: Way, limits: Limits) -> list[float]:
     return top
 
 
-def _corner_speed(line: Way, i: int, limits: Limits) -> float:
+def _corner_speed(line: PathGeometry, i: int, limits: DrivingLimits) -> float:
     """The speed at which a steady bend takes all of the lateral limit, or a crest too much of the load."""
     steep = 1 / math.hypot(1.0, line.grade[i])
     crest = line.crest[i] * steep**3
@@ -130,7 +132,9 @@ def _corner_speed(line: Way, i: int, limits: Limits) -> float:
     return math.sqrt(max(square, SLOWEST**2))
 
 
-def _sweep(line: Way, top: list[float], lateral: float, along: float, power: float, *, forward: bool) -> None:
+def _sweep(
+    line: PathGeometry, top: list[float], lateral: float, along: float, power: float, *, forward: bool
+) -> None:
     """Lowers speeds that cannot be reached from the station before (forward) or left in time (backward)."""
     way = 1 if forward else -1
     order = range(len(top)) if forward else range(len(top) - 1, -1, -1)

@@ -26,7 +26,7 @@ from roadgpt.design.report import DesignReport
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.apart import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
-from roadgpt.road import Design, Geometry, Road, World, build, in_hops
+from roadgpt.road import Design, Geometry, Road, World, build, in_short_segments
 from roadgpt.run.campaign import Campaign
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
@@ -244,7 +244,8 @@ def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: i
                 raise
             break
         if setup.geometry == "spline" and own_geometry is None:
-            design = in_hops(design)  # designers draw bends, which a spline keeps only through many nodes
+            # designers draw bends, which a spline keeps only through many nodes
+            design = in_short_segments(design)
         road = build(design, own_geometry or setup.geometry)
         findings = inspect(road, brief, world, setup.rules)
         kept = _Made(design, road, findings, attempt + 1, getattr(designer, "report", None))

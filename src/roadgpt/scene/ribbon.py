@@ -1,11 +1,11 @@
-"""The road itself: carriageway and verges as one surface, its banks, and the posts beside it."""
+"""The road itself: carriageway and verges as one surface, its embankments, and the posts beside it."""
 
 from functools import cache
 
 import numpy as np
 
-from roadgpt.export.banks import FOOT, Bank, banks
 from roadgpt.export.edges import line, stations
+from roadgpt.export.embankments import FOOT, Embankment, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.scene.light import daylight, level_light
@@ -28,7 +28,7 @@ def road_patches(road: Road, world: World, meadow: Meadow) -> list[Patch]:
     s = _stations(road, rim)
     if world.verge == 0:
         return [*_surface(road, world, s), *_slab(road, world, s)]
-    slopes = [patch for bank in banks(road, rim, s, meadow.land) for patch in _slope(bank, meadow)]
+    slopes = [patch for bank in embankments(road, rim, s, meadow.land) for patch in _slope(bank, meadow)]
     return [*_surface(road, world, s), *slopes, *_posts(road, world)]
 
 
@@ -64,7 +64,7 @@ def _upwards(road: Road, s: Array) -> Array:
     return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
 
 
-def _slope(bank: Bank, meadow: Meadow) -> list[Patch]:
+def _slope(bank: Embankment, meadow: Meadow) -> list[Patch]:
     """A slope has the light of the land that it runs into, where it is low, so that nothing shows there."""
     edge, foot, is_left = bank
     rows = np.stack([edge, foot] if is_left else [foot, edge], axis=1)

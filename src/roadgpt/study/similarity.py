@@ -20,7 +20,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.check.measures import Stretch, measure
+from roadgpt.check.measures import MeasuredFeature, measure
 from roadgpt.design.variety import ENOUGH, POINTS, Shape, shape_of
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
@@ -133,7 +133,7 @@ def _ratio(one: float, other: float) -> float:
     return min(one, other) / max(one, other) if max(one, other) > 0 else 1.0
 
 
-def _letter(feature: Stretch) -> str:
+def _letter(feature: MeasuredFeature) -> str:
     return "S" if feature.kind == "straight" else "L" if feature.side == "left" else "R"
 
 

@@ -21,7 +21,7 @@ from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
 from roadgpt.drive.simulators.beamng.session import leave_all, session_of
 from roadgpt.errors import DriverError, PartError, SimulationError, UsageError
 from roadgpt.export.exporters.beamng.files import items
-from roadgpt.export.exporters.beamng.scene import scene_of
+from roadgpt.export.exporters.beamng.roads import level_road
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Setup, campaign, prove
 from roadgpt.verdict import judge
@@ -334,7 +334,7 @@ def test_lines_lie_on_the_asphalt_in_the_game_as_in_our_level(fake: FakeBeamNG) 
             laid.extend(each for each in objects if each["class"] == "DecalRoad")
 
     simulator(fake).simulate(SHORT, WORLD, Looks(), 7)
-    level = items("level", scene_of(SHORT, WORLD, 7), WORLD)["MissionGroup/roads"]
+    level = items("level", level_road(SHORT, WORLD, 7), WORLD)["MissionGroup/roads"]
     decals = [each for each in level if each["class"] == "DecalRoad"]
     ours = {each["name"].partition("_")[0]: each["renderPriority"] for each in decals}  # of dashes, one
     theirs = {each["name"].rpartition("_")[2]: each["renderPriority"] for each in laid}

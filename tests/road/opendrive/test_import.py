@@ -14,7 +14,7 @@ from roadgpt.errors import UsageError
 from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import GradeProfile
-from roadgpt.road import Imported, Road, World, build, moved, read_blueprint, read_opendrive
+from roadgpt.road import ImportedRoad, Road, World, build, moved, read_blueprint, read_opendrive
 from strategies import designs
 
 DATA = Path(__file__).parent / "data"
@@ -38,7 +38,7 @@ def file(
     return path
 
 
-def written(road: Road, folder: Path, world: World = WORLD) -> Imported:
+def written(road: Road, folder: Path, world: World = WORLD) -> ImportedRoad:
     (path,) = save(road, folder, ["opendrive"], world)
     return read_opendrive(path)
 
@@ -60,7 +60,7 @@ def test_what_we_export_comes_back_as_it_was(
     found = read_opendrive(path)
     assert found.remarks == ()
     assert apart(found.road, road) < 1e-5
-    assert isinstance(found.road.profile, GradeProfile)
+    assert isinstance(found.road.elevation, GradeProfile)
 
 
 @pytest.mark.parametrize("name", ROADS)
@@ -150,7 +150,7 @@ def test_the_edge_of_the_driven_lane_is_the_centre_line(tmp_path: Path) -> None:
     arc = '<geometry s="0" x="0" y="0" hdg="0" length="40"><arc curvature="0.02"/></geometry>'
     found = read_opendrive(file(tmp_path, arc, right=right, offset='<laneOffset s="0" a="0.5"/>'))
     assert found.lane_width == 3.2
-    assert found.verge == 0
+    assert found.shoulder == 0
     x, y, _ = found.road.centreline().T
     around = np.arctan2(x, 50 - y)
     assert np.hypot(x, y - 50) == pytest.approx(50 + 1.0 + 0.025 * 50 * around, abs=1e-3)
@@ -188,7 +188,7 @@ def test_borders_instead_of_widths(tmp_path: Path) -> None:
         '<lane id="-2" type="shoulder"><border sOffset="0" a="-4.1"/></lane>'
     )
     found = read_opendrive(file(tmp_path, right=right))
-    assert (found.lane_width, found.verge) == (3.1, 1.0)
+    assert (found.lane_width, found.shoulder) == (3.1, 1.0)
 
 
 def test_kinks_are_rounded_off_and_told_of(tmp_path: Path) -> None:

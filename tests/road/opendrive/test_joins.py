@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from roadgpt.errors import UsageError
-from roadgpt.road import Imported, read_opendrive
+from roadgpt.road import ImportedRoad, read_opendrive
 
 LANES = """<lanes>{offset}<laneSection s="0"><left>
 <lane id="1" type="driving"><width sOffset="0" a="3"/></lane></left>
@@ -60,7 +60,7 @@ class Pen:
         self.heading += curvature * length
         return self
 
-    def read(self, folder: Path, rest: str = "", right: str = RIGHT, offset: str = "") -> Imported:
+    def read(self, folder: Path, rest: str = "", right: str = RIGHT, offset: str = "") -> ImportedRoad:
         path = folder / "joins.xodr"
         lanes = LANES.format(right=right, offset=offset)
         path.write_text(
@@ -69,13 +69,13 @@ class Pen:
         )
         return read_opendrive(path)
 
-    def away(self, found: Imported) -> float:
+    def away(self, found: ImportedRoad) -> float:
         """The largest distance from the file's line to the road, by brute force."""
         road = cKDTree(found.road.at(np.linspace(0, found.road.length, 40_000))[:, :2])
         return float(road.query(np.array(self.points))[0].max())
 
 
-def tightest(found: Imported) -> float:
+def tightest(found: ImportedRoad) -> float:
     bend = np.abs(found.road.curvature(np.linspace(0, found.road.length, 20_000)))
     return float(1 / max(bend.max(), 1e-9))
 

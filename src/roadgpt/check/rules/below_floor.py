@@ -10,7 +10,7 @@ ROUNDING = 1e-6  # m
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Says where the road is lowest, where that is under the ground."""
-    s, z = lowest(road.profile, road.length)
+    s, z = lowest(road.elevation, road.length)
     if z >= world.z_floor - ROUNDING:
         return ()
     x, y, _ = (float(v) for v in road.at(s))

@@ -11,7 +11,7 @@ from roadgpt.cli.flags import WORLD
 from roadgpt.errors import RoadGPTError
 
 if TYPE_CHECKING:
-    from roadgpt.road import Imported, Road, World
+    from roadgpt.road import ImportedRoad, Road, World
 
 ROOM = 20.0  # m kept free around a road that is moved onto the map
 LARGEST_MAP = 10_000.0  # m
@@ -64,7 +64,7 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
         click.echo(f"written to {out}; drive it: {_drive(out, world)}")
 
 
-def _on_a_map(found: "Imported") -> tuple["Road", "World", list[str]]:
+def _on_a_map(found: "ImportedRoad") -> tuple["Road", "World", list[str]]:
     """The road on a map that the rules find it on, that map with its lanes and limits, and what was done."""
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
@@ -83,7 +83,7 @@ def _on_a_map(found: "Imported") -> tuple["Road", "World", list[str]]:
     else:
         x, y = (round(float(each), 3) for each in size / 2 - (low + high) / 2)
         remarks.append(f"it is moved by ({x:g}, {y:g}) m into the middle of the map")
-    deepest = lowest(road.profile, road.length)[1]
+    deepest = lowest(road.elevation, road.length)[1]
     z = round(-deepest, 3) if deepest < world.z_floor else 0.0
     if z:
         remarks.append(f"it is lifted by {z:g} m: its lowest place was below the ground of the map")

@@ -32,7 +32,7 @@ from roadgpt.design.variety import ENOUGH, Shape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace, joined, too_abrupt
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Road, Segment, World, build
-from roadgpt.road.grades import profile_of
+from roadgpt.road.elevation import elevation_of
 
 DRAFTS = 320  # that are drawn for one road at most
 ALIKE = 120  # drafts like earlier roads, after which the least alike is taken
@@ -236,13 +236,13 @@ class _Search:
         """The promises that a plan with these slopes would break, and the rule for their changes."""
         if too_abrupt(segments, pace, self.bumps):
             return [Complaint(TOO_ABRUPT, on_heights=True)]
-        heights = profile_of(segments, 0.0).height(line.s)
+        heights = elevation_of(segments, 0.0).height(line.s)
         points = np.stack([line.z.real, line.z.imag, heights], axis=1)
         return complaints(measure(points, self.outline.widest), self.outline)
 
     def _start(self, segments: Sequence[Segment]) -> float:
         """Height of the start, such that the lowest place lies a little above 0, or above the floor."""
-        profile = profile_of(segments, 0.0)
+        profile = elevation_of(segments, 0.0)
         _, sag = lowest(profile, profile.stations[-1])
         low, high = STARTS_AT
         ground = max(low, self.world.z_floor + 1) + self.rng.random() * (high - low)

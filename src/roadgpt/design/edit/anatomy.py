@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from roadgpt.brief.model import Side
-from roadgpt.check.measures import LEAST_TURN, Measures, Stretch, measure
+from roadgpt.check.measures import LEAST_TURN, MeasuredFeature, Measures, measure
 from roadgpt.road import Design, Geometry, Segment, build
 
 SEEN = 1.5  # m of a segment within a turn, at least, for it to be a part of the turn
@@ -29,7 +29,7 @@ class Block:
     kind: Literal["turn", "gap"]
     segments: tuple[Segment, ...]
     side: Side | None = None
-    seen: Stretch | None = None
+    seen: MeasuredFeature | None = None
     """As it was measured before the edit; None of what is new, or too short to be seen."""
 
     @property
@@ -81,7 +81,7 @@ def blocks_of(design: Design, geometry: Geometry = "arcs") -> tuple[Blocks, Meas
 
 
 def _members(
-    segments: Sequence[Segment], joints: "np.typing.NDArray[np.float64]", turn: Stretch, scale: float
+    segments: Sequence[Segment], joints: "np.typing.NDArray[np.float64]", turn: MeasuredFeature, scale: float
 ) -> tuple[int, int]:
     """First segment of a turn, and the one behind its last."""
     low, high = turn.start * scale, turn.end * scale

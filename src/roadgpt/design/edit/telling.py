@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from roadgpt.check.measures import Measures, Stretch
+from roadgpt.check.measures import MeasuredFeature, Measures
 from roadgpt.design.edit.anatomy import Block, Blocks, blocks_of
 from roadgpt.design.edit.trying import Made, seen_as
 from roadgpt.road import Design, Geometry
@@ -72,7 +72,7 @@ def _names(blocks: Sequence[Block]) -> dict[str, str]:
     return out
 
 
-def _turn(seen: Stretch) -> str:
+def _turn(seen: MeasuredFeature) -> str:
     return f"{seen.degrees:.0f} degrees to the {seen.side}, radius {seen.radius:.0f} m, {seen.grade:+.1f} %"
 
 

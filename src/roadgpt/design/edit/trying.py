@@ -10,7 +10,7 @@ from math import atan2, cos, degrees, hypot, radians, sin
 from typing import NamedTuple
 
 from roadgpt import check
-from roadgpt.check.measures import Measures, Stretch, measure
+from roadgpt.check.measures import MeasuredFeature, Measures, measure
 from roadgpt.design.edit.anatomy import Block, Blocks, joined
 from roadgpt.design.edit.room import with_room
 from roadgpt.design.edit.steps import FlipAll, Goal, Quantity, Step
@@ -206,7 +206,7 @@ def _unlike(blocks: Blocks, found: Measures) -> str:
     return "a turn would be seen to the wrong side"
 
 
-def seen_as(name: str, blocks: Blocks, found: Measures) -> Stretch | None:
+def seen_as(name: str, blocks: Blocks, found: Measures) -> MeasuredFeature | None:
     """How a block measures on the finished road; None where it is not seen by itself."""
     turns = [block.name for block in blocks if block.kind == "turn"]
     if name in turns:

@@ -30,7 +30,7 @@ from roadgpt.design.repair.wishes import wishes_of
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Segment, World, build
-from roadgpt.road.grades import profile_of
+from roadgpt.road.elevation import elevation_of
 
 How = Literal["none", "place", "full"]
 MOST_SEGMENTS = 60  # of a list that is repaired in full; on more, a road of a map's size is no longer a list
@@ -80,7 +80,7 @@ def _in_place(design: Design, world: World) -> Design:
         design = placed(design, world) or design
     if "below_floor" in found:
         x, y, z = design.starting_point
-        profile = profile_of(design.segments, z)
+        profile = elevation_of(design.segments, z)
         missing = world.z_floor + ABOVE_GROUND - lowest(profile, profile.stations[-1])[1]
         design = design.model_copy(
             update={"starting_point": (x, y, ceil((z + missing) * CENTIMETRE) / CENTIMETRE)}

@@ -20,7 +20,7 @@ from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World, build
 from roadgpt.road.design import Design
-from roadgpt.road.grades import profile_of
+from roadgpt.road.elevation import elevation_of
 
 ROUNDS = 24
 ROOMIER = (1.0, 1.5, 2.5)  # times the room that parabolas need, so that a slope is seen between them
@@ -70,7 +70,7 @@ def sloped(
             if too_abrupt(tried, pace):
                 now = np.array(made_to_fit(now.tolist(), lengths, runs, bounds, pace, roomier))
                 tried = widened(with_inclines(segments, now), pace)
-            points[:, 2] = profile_of(tried, 0.0).height(stations)
+            points[:, 2] = elevation_of(tried, 0.0).height(stations)
             missing = _missing(points, tried, parts, windows)
             if not missing.any():
                 break

@@ -9,7 +9,7 @@ import numpy as np
 from roadgpt.drive.driving_line import FloatArray, line_along, stations
 from roadgpt.drive.pursuit import pursued
 from roadgpt.drive.view import Command, View
-from roadgpt.road.speed_profile import Limits, plan_speed
+from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -84,7 +84,9 @@ class BeamngLike:
         line = line_along(road, self.offsets(road, world))
         friction = world.friction if self.assumed_friction is None else self.assumed_friction
         most = 0.95 * friction
-        limits = Limits(min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.speed_limit)
+        limits = DrivingLimits(
+            min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.speed_limit
+        )
         # Like BeamNG's, its plan knows slopes, and no crests.
         self._line, self._speed = line, plan_speed(replace(line, crest=[0.0] * len(line.crest)), limits)
 

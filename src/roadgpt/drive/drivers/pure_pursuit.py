@@ -7,7 +7,7 @@ from roadgpt.drive.driving_line import line_along
 from roadgpt.drive.pedals import pedals
 from roadgpt.drive.pursuit import pursued
 from roadgpt.drive.view import Command, View
-from roadgpt.road.speed_profile import Limits, plan_speed
+from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -36,7 +36,8 @@ class PurePursuit:
         del seed  # the same road is driven the same way every time
         line = line_along(road, -world.lane_width / 2)
         lateral = min(self.risk, 0.95 * world.friction)
-        self._line, self._speed = line, plan_speed(line, Limits(lateral, lateral, lateral, world.speed_limit))
+        limits = DrivingLimits(lateral, lateral, lateral, world.speed_limit)
+        self._line, self._speed = line, plan_speed(line, limits)
 
     def steer(self, view: View) -> Command:
         """Aim at the point ahead; follow the planned speed."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from roadgpt.drive.driving_line import line_along
 from roadgpt.drive.pedals import pedals
 from roadgpt.drive.view import Command, View
-from roadgpt.road.speed_profile import Limits, plan_speed
+from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -56,7 +56,7 @@ class Reference:
         del seed  # the same road is driven the same way every time
         line = line_along(road, -world.lane_width / 2)
         lateral = min(self.risk, FRICTION_USED * world.friction)
-        limits = Limits(lateral, BRAKING * lateral, TRACTION * lateral, world.speed_limit)
+        limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.speed_limit)
         self._line, self._speed = line, plan_speed(line, limits)
 
     def steer(self, view: View) -> Command:

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.export.ego import calm_speed, start_of
+from roadgpt.export.georeference import LATITUDE, LONGITUDE
+from roadgpt.export.lanelets import LaneletPair, lanelet_pairs
 from roadgpt.export.markup import Element, number
-from roadgpt.export.place import LATITUDE, LONGITUDE
 from roadgpt.export.poses import Poses
-from roadgpt.export.sections import Section, sections
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
@@ -41,7 +41,7 @@ def document(road: Road, world: World) -> Element:
     Raises:
         ExportError: the road has a number that is not finite.
     """
-    parts = sections(road, world)
+    parts = lanelet_pairs(road, world)
     right, left = range(1, len(parts) + 1), range(len(parts) + 1, 2 * len(parts) + 1)
     sign = 2 * len(parts) + 1
     root = Element(
@@ -71,11 +71,11 @@ def document(road: Road, world: World) -> Element:
     return root
 
 
-def _forward(part: Section) -> tuple[Array, Array]:
+def _forward(part: LaneletPair) -> tuple[Array, Array]:
     return part.middle, part.right
 
 
-def _backward(part: Section) -> tuple[Array, Array]:
+def _backward(part: LaneletPair) -> tuple[Array, Array]:
     return part.middle[::-1], part.left[::-1]
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from roadgpt.export.finite import finite
-from roadgpt.export.place import degrees
+from roadgpt.export.georeference import degrees
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
@@ -24,7 +24,7 @@ class GeoJson:
     suffix = ".geojson"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write one collection of features; the map's corner lies where ``roadgpt.export.place`` says."""
+        """Write one collection of features; ``export.georeference`` says where the map's corner lies."""
         s, wide = road.sample(STEP).s, world.lane_width
         right, middle, left = road.at(s, -wide), road.at(s), road.at(s, wide)
         features = [

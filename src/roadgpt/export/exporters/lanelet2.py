@@ -7,10 +7,10 @@ Map Framework for the Future of Automated Driving, ITSC 2018. Its usual projecto
 from itertools import count
 from pathlib import Path
 
+from roadgpt.export.georeference import degrees
+from roadgpt.export.lanelets import lanelet_pairs
 from roadgpt.export.markup import Element
-from roadgpt.export.place import degrees
 from roadgpt.export.poses import Poses
-from roadgpt.export.sections import sections
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 
@@ -36,9 +36,9 @@ def document(road: Road, world: World) -> Element:
     Raises:
         ExportError: the road has a number that is not finite.
     """
-    book = _Book()
+    book = _MapBuilder()
     limit = f"{world.speed_limit * 3.6:.6g} km/h"
-    for section in sections(road, world):
+    for section in lanelet_pairs(road, world):
         right = book.way("right", section.right, "solid")
         middle = book.way("middle", section.middle, "dashed")
         left = book.way("left", section.left, "solid")
@@ -48,7 +48,7 @@ def document(road: Road, world: World) -> Element:
     return root.extended(*book.nodes, *book.ways, *book.lanelets)
 
 
-class _Book:
+class _MapBuilder:
     """What has been written down so far, each with a number of its own."""
 
     def __init__(self) -> None:

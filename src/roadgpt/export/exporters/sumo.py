@@ -41,7 +41,7 @@ class Sumo:
         """Write NAME.nod.xml, .edg.xml, .netccfg, .rou.xml, .sumocfg, and .net.xml if it can be made."""
         stem = path.name.removesuffix(self.suffix)
         shape = np.round(line(road, stations(road, world.lane_width), 0.0), DECIMALS) + 0.0
-        limits = limits_of(road, world)
+        limits = speed_zones(road, world)
         files = {
             self.suffix: _nodes(shape),
             ".edg.xml": _edges(shape, world, limits),
@@ -75,7 +75,7 @@ def _nodes(shape: Array) -> Element:
     return out
 
 
-class Limit(NamedTuple):
+class SpeedZone(NamedTuple):
     """A piece of the road with a speed of its own."""
 
     start: float
@@ -84,26 +84,26 @@ class Limit(NamedTuple):
     """m/s."""
 
 
-def limits_of(road: Road, world: World) -> list[Limit]:
+def speed_zones(road: Road, world: World) -> list[SpeedZone]:
     """Pieces of SHORTEST metres and more, each with the least speed that suits a calm driver there.
 
     A car of SUMO brakes for the limit of the next piece in time, so bends are driven as they suit.
     """
     count = max(1, int(road.length / SHORTEST))
     ends = np.linspace(0.0, road.length, count + 1)
-    out: list[Limit] = []
+    out: list[SpeedZone] = []
     for a, b in pairwise(ends.tolist()):
         least = float(calm_speeds(road, world, np.linspace(a, b, LOOKS)).min())
         rounded = float(np.clip(np.floor(least / ROUND) * ROUND, ROUND, world.speed_limit))
         if not out or rounded != out[-1].speed:
-            out.append(Limit(a, rounded))
+            out.append(SpeedZone(a, rounded))
     return out
 
 
-def _edges(shape: Array, world: World, limits: Sequence[Limit]) -> Element:
+def _edges(shape: Array, world: World, limits: Sequence[SpeedZone]) -> Element:
     """One edge each way along the centre line, split where limits change; lanes lie to the right of it."""
     along = float(np.hypot(*np.diff(shape[:, :2], axis=0).T).sum())
-    back = [Limit(along - end, speed) for end, speed in _ends(limits, along)]
+    back = [SpeedZone(along - end, speed) for end, speed in _ends(limits, along)]
     out = Element("edges")
     lanes: dict[str, Value] = {
         "numLanes": 1,
@@ -123,13 +123,13 @@ def _edges(shape: Array, world: World, limits: Sequence[Limit]) -> Element:
     return out
 
 
-def _ends(limits: Sequence[Limit], length: float) -> list[tuple[float, float]]:
+def _ends(limits: Sequence[SpeedZone], length: float) -> list[tuple[float, float]]:
     """Where each piece ends, and its speed, from the last to the first."""
     ends = [*(limit.start for limit in limits[1:]), length]
     return [(end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
 
 
-def _trip(limits: Sequence[Limit]) -> Element:
+def _trip(limits: Sequence[SpeedZone]) -> Element:
     out = Element("routes")
     car = {"length": CAR.length, "width": CAR.width, "accel": PULL, "decel": PULL}
     out.add("vType", {"id": "saloon", "vClass": "passenger", **car, "sigma": 0, "speedDev": 0})

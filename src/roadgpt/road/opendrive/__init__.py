@@ -1,7 +1,7 @@
 """Roads out of ASAM OpenDRIVE files, 1.1 to 1.8, of whatever tool. Verb: ``read_opendrive``.
 
 tree       the XML, bounded and without entities; one road of the file
-stretch    lines, arcs, spirals, poly3, paramPoly3
+geometries lines, arcs, spirals, poly3, paramPoly3
 lanes      which lane is driven, and where its inner edge runs: the centre line of our Road
 line       the plan: as it is where it can be, else clothoids through poses a metre apart
 joins      where elements do not meet to the last digit, and what is done about it
@@ -17,22 +17,22 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
+from roadgpt.road.opendrive.geometries import GeometryElement, reference_line
 from roadgpt.road.opendrive.heights import carried_over, elevation, jumps, plain
-from roadgpt.road.opendrive.joins import KINK, Line, misses, turns_back
+from roadgpt.road.opendrive.joins import KINK, SampledLine, misses, turns_back
 from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, speed_limit, speed_limits
 from roadgpt.road.opendrive.left_out import is_one_way, left_out
 from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
-from roadgpt.road.opendrive.stretch import Stretch, stretches
+from roadgpt.road.opendrive.reversal import reversed_road
 from roadgpt.road.opendrive.tree import Choice, Node, read_tree
-from roadgpt.road.opendrive.turning import turned_round
 from roadgpt.road.road import Road, check_length
 from roadgpt.road.world import World
 
-__all__ = ["Imported", "read_opendrive"]
+__all__ = ["ImportedRoad", "read_opendrive"]
 
 VARIES = 0.05  # m; lanes that vary by more are remarked on
 WIDTHS = (2.0, 10.0)  # m, of lanes that a World may have
-VERGES = (0.0, 100.0)  # m
+SHOULDERS = (0.0, 100.0)  # m
 FRICTIONS = (0.05, 2.0)
 SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s
 NODES = 5.0  # m between the nodes of a spline that rounds off kinks
@@ -43,7 +43,7 @@ PLACES = 1_000  # at which the spline is held against the line
 
 
 @dataclass(frozen=True)
-class Imported:
+class ImportedRoad:
     """A road of somebody else's file, and what that file says of its lanes."""
 
     road: Road
@@ -51,7 +51,7 @@ class Imported:
     name: str
     lane_width: float
     """Metres, of the lane that is driven."""
-    verge: float
+    shoulder: float
     """Metres of shoulder beside it."""
     speed_limit: float | None
     """m/s; None where the file does not say."""
@@ -63,10 +63,10 @@ class Imported:
         """A World with these lanes; what the file does not say is as in ``base``."""
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         known = {name: value for name, value in told.items() if value is not None}
-        return base.model_copy(update={"lane_width": self.lane_width, "verge": self.verge, **known})
+        return base.model_copy(update={"lane_width": self.lane_width, "verge": self.shoulder, **known})
 
 
-def read_opendrive(path: Path | str, road: str | None = None) -> Imported:
+def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
     """A road of an OpenDRIVE file; its centre line is the inner edge of the lane that is driven.
 
     Args:
@@ -88,22 +88,22 @@ def read_opendrive(path: Path | str, road: str | None = None) -> Imported:
         raise UsageError(f"{path}: road {number_}: {error}") from error
 
 
-def _imported(choice: Choice, id_: str, is_our_choice: bool) -> Imported:
+def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
     node, remarks = choice.road, []
     if is_our_choice and len(choice.others) > 1:
         which = f"the longest of {len(choice.others)} with a driving lane"
         remarks.append(f"road {id_} is taken, {which}; say --road ID for another")
-    line = stretches(node)
+    line = reference_line(node)
     lanes = read_lanes(node, line[-1].s + line[-1].length)
     grown, said = _grown(node, line, lanes)
     remarks += said
     if lanes.side == 1:
-        grown = turned_round(grown)
+        grown = reversed_road(grown)
         remarks.append(
             "no lane is driven to the right of its line; it is taken in the direction of its left lanes"
         )
     remarks += _driven_otherwise(node, lanes)
-    widths, limit = lanes.widths(), speed_limit(node, lanes)
+    widths, limit = lanes.lane_widths(), speed_limit(node, lanes)
     width = float(np.clip(np.median(widths), *WIDTHS))
     if np.ptp(widths) > VARIES or abs(width - float(np.median(widths))) > VARIES:
         span = f"{widths.min():.2f} to {widths.max():.2f} m"
@@ -115,19 +115,19 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> Imported:
     sentence = left_out(choice, lanes)
     remarks += [sentence] if sentence else []
     rubbed = friction(lanes)
-    return Imported(
+    return ImportedRoad(
         grown,
         id_,
         node.attributes.get("name", "")[:80],
         round(width, 4),
-        round(float(np.clip(np.median(lanes.verges()), *VERGES)), 4) + 0.0,
+        round(float(np.clip(np.median(lanes.shoulder_widths()), *SHOULDERS)), 4) + 0.0,
         None if limit is None or limit <= 0 else float(np.clip(limit, *SPEEDS)),
         None if rubbed is None else float(np.clip(rubbed, *FRICTIONS)),
         tuple(remarks),
     )
 
 
-def _grown(node: Node, line: list[Stretch], lanes: Lanes) -> tuple[Road, list[str]]:
+def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, list[str]]:
     """The road, and what had to be settled on the way."""
     heights, length = elevation(node), line[-1].s + line[-1].length
     step = jumps(heights, length)
@@ -162,14 +162,14 @@ def _grown(node: Node, line: list[Stretch], lanes: Lanes) -> tuple[Road, list[st
     return road, remarks
 
 
-def _away(found: Line, road: Road) -> float:
+def _away(found: SampledLine, road: Road) -> float:
     """The largest distance between places of the file's line and the road, metres."""
     beside = found.poses[np.abs(found.kinks) > KINK, :2]
     some = [each[:: max(1, len(each) // PLACES)] for each in (beside, found.ends, found.poses[:, :2])]
     return float(np.abs(road.locate(*np.concatenate(some).T)[1]).max())
 
 
-def _rounded(found: Line, heights: Array) -> Road:
+def _rounded(found: SampledLine, heights: Array) -> Road:
     """A spline through a line whose joins lie too close to each other for anything else."""
     kept = [0]
     for i in range(1, len(found.s) - 1):

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from roadgpt.geometry import CubicProfile, GradeProfile, Profile, shifted
+from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, shifted
 from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.numbers import cubics
 from roadgpt.road.opendrive.tree import Node
@@ -20,7 +20,7 @@ def elevation(road: Node) -> CubicProfile:
     return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
 
 
-def plain(profile: CubicProfile, length: float) -> Profile:
+def plain(profile: CubicProfile, length: float) -> ElevationProfile:
     """The same heights as steady grades and parabolas, where they are such and do not jump."""
     stations = [s for s in profile.stations if s < length - SAME]
     stations = [0.0, *(s for s in stations if s > SAME)]

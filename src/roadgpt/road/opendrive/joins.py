@@ -26,7 +26,7 @@ WIDEST = 12.0  # m between two poses; a line that misses so long has no course
 
 
 @dataclass(frozen=True)
-class Line:
+class SampledLine:
     """Poses along the edge that is driven along."""
 
     s: Array
@@ -40,12 +40,12 @@ class Line:
     ends: Array
     """Where the elements of the file end and begin, ``(m, 2)``: a pose between two is in their middle."""
 
-    def only(self, kept: Array) -> "Line":
+    def only(self, kept: Array) -> "SampledLine":
         """Some of the poses."""
-        return Line(self.s[kept], self.poses[kept], self.gaps[kept], self.kinks[kept], self.ends)
+        return SampledLine(self.s[kept], self.poses[kept], self.gaps[kept], self.kinks[kept], self.ends)
 
 
-def bridged(line: Line) -> Line | None:
+def bridged(line: SampledLine) -> SampledLine | None:
     """The line without the poses beside its joins; None where too little is left to tell its course."""
     kept = _thinned(line.s, _away_from_joins(line))
     if np.diff(line.s[kept]).max() > WIDEST:
@@ -57,7 +57,7 @@ def bridged(line: Line) -> Line | None:
     return replace(line, poses=poses).only(kept)
 
 
-def turns_back(line: Line) -> tuple[float, float] | None:
+def turns_back(line: SampledLine) -> tuple[float, float] | None:
     """Station and radians of a kink behind which the line runs back on itself; None where there is none."""
     kept = bridged(line)
     for i in np.flatnonzero(np.abs(line.kinks) > BACK):
@@ -70,7 +70,7 @@ def turns_back(line: Line) -> tuple[float, float] | None:
     return None
 
 
-def _away_from_joins(line: Line) -> Array:
+def _away_from_joins(line: SampledLine) -> Array:
     # a clothoid of length l that makes up for a gap g bends by 6 g / l^2, for a kink d by 4 d / l
     wanted = np.maximum(np.sqrt(1.5 * line.gaps / GENTLE), 2 * np.abs(line.kinks) / GENTLE)
     joins = np.flatnonzero(wanted > NEAREST)
@@ -100,7 +100,7 @@ def _thinned(s: Array, kept: Array) -> Array:
     return np.array(out)
 
 
-def misses(line: Line) -> str:
+def misses(line: SampledLine) -> str:
     """How many joins there are to speak of, and how bad the worst are; empty where there are none."""
     kinks, gaps = np.abs(line.kinks), line.gaps
     parts = []

@@ -21,7 +21,7 @@ NEAR = 1.0  # m; gaps without a driving lane that nobody needs to know of
 PLACES = 64  # along a section, at which widths are looked at
 MOST_SECTIONS = 5_000
 
-Which = Callable[["Section"], tuple[int, int]]
+Which = Callable[["LaneSection"], tuple[int, int]]
 """First and last lane of a section, by index."""
 
 
@@ -36,7 +36,7 @@ class Lane:
 
 
 @dataclass(frozen=True)
-class Section:
+class LaneSection:
     """One lane section, the lanes of the driven side from the inside out."""
 
     s: float
@@ -51,7 +51,7 @@ class Lanes:
 
     side: int
     """-1: the driven lane is to the right of the reference line, 1: to the left."""
-    sections: tuple[Section, ...]
+    sections: tuple[LaneSection, ...]
     offset: CubicProfile | None
     length: float
 
@@ -68,7 +68,7 @@ class Lanes:
                 slope[some] += self.side * lean
         return t, slope
 
-    def _outer(self, section: Section, last: int, s: Array) -> tuple[Array, Array]:
+    def _outer(self, section: LaneSection, last: int, s: Array) -> tuple[Array, Array]:
         """How far the outer edge of a lane is from lane 0, and the slope of that; 0 before the first."""
         across, lean = np.zeros(len(s)), np.zeros(len(s))
         for lane in section.lanes[: last + 1]:
@@ -89,14 +89,14 @@ class Lanes:
                     found += profile.stations if profile else ()
         return found
 
-    def widths(self) -> Array:
+    def lane_widths(self) -> Array:
         """Of the driven lane, along all of the road, metres."""
         return self._spread(lambda section: (section.driven, section.driven))
 
-    def verges(self) -> Array:
+    def shoulder_widths(self) -> Array:
         """Of the shoulder beside the driven lanes, along all of the road, metres."""
 
-        def beside(section: Section) -> tuple[int, int]:
+        def beside(section: LaneSection) -> tuple[int, int]:
             kinds = [lane.kind for lane in section.lanes]
             first = section.driven
             while first < len(kinds) and kinds[first] in DRIVING:
@@ -162,7 +162,7 @@ def read_lanes(road: Node, length: float) -> Lanes:
     raise UsageError(f"it has no lane of type driving (its lanes are: {told}); take another road")
 
 
-def _section(node: Node, side: str) -> Section:
+def _section(node: Node, side: str) -> LaneSection:
     s = number(node, "s")
     nodes = sorted(node.all(side, "lane"), key=lambda lane: abs(number(lane, "id")))
     lanes = tuple(
@@ -175,7 +175,7 @@ def _section(node: Node, side: str) -> Section:
         for lane in nodes
     )
     driven = next((i for i, lane in enumerate(lanes) if lane.kind in DRIVING), len(lanes))
-    return Section(s, lanes, driven)
+    return LaneSection(s, lanes, driven)
 
 
 def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:

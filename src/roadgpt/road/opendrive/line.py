@@ -15,9 +15,9 @@ from roadgpt.geometry import PieceCurve, wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import advance, joined
 from roadgpt.road.opendrive.fit import clothoids
-from roadgpt.road.opendrive.joins import Line, bridged
+from roadgpt.road.opendrive.geometries import GeometryElement, PieceShape, Polynomial
+from roadgpt.road.opendrive.joins import SampledLine, bridged
 from roadgpt.road.opendrive.lanes import Lanes
-from roadgpt.road.opendrive.stretch import Bend, Polynomial, Stretch
 
 MEETS = 5e-4  # m, between the end of an element and the start of the next
 SAME_WAY = 1e-4  # rad
@@ -26,15 +26,15 @@ STEP = 1.0  # m between the poses that clothoids are fitted to, and less where t
 CLOSE = 1e-4  # m, between clothoids and the line
 GENTLE = 0.02  # rad; over a turn so slight a clothoid strays by micrometres
 LEAST = 0.1  # m; nearer to each other no poses are taken
-FEWEST = 2  # stretches of an element: its middle tells its direction best
+FEWEST = 2  # parts of an element: its middle tells its direction best
 TOGETHER = 1e-3  # m; nearer than this, joints are one
 LEFT_OVER = 0.05  # of a metre of the line, that a bend leaves to the edge of the lane
 
 
-def exact(line: list[Stretch]) -> PieceCurve | None:
+def exact(line: list[GeometryElement]) -> PieceCurve | None:
     """The plan as the file has it; None where it is not made of lines, arcs and spirals that meet."""
     shapes = [each.shape for each in line]
-    pieces = [shape.piece for shape in shapes if isinstance(shape, Bend)]
+    pieces = [shape.piece for shape in shapes if isinstance(shape, PieceShape)]
     if len(pieces) < len(shapes):
         return None
     first = line[0]
@@ -54,7 +54,7 @@ def lies_on_the_line(lanes: Lanes, length: float) -> bool:
     return bool(np.abs(t).max() < 1e-9 and np.abs(slope).max() < 1e-9)
 
 
-def walk(line: list[Stretch], lanes: Lanes | None) -> Line:
+def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
     """Poses along the edge of the lane, about a metre apart and wherever something changes.
 
     Args:
@@ -83,15 +83,16 @@ def walk(line: list[Stretch], lanes: Lanes | None) -> Line:
     s = np.concatenate([part[0][:-1] for part in parts] + [parts[-1][0][-1:]])
     end = np.zeros(1)
     poses = np.concatenate([*rows, parts[-1][1][-1:]])
-    return Line(s, poses, np.concatenate([*gaps, end]), np.concatenate([*kinks, end]), np.concatenate(ends))
+    missed, turned = np.concatenate([*gaps, end]), np.concatenate([*kinks, end])
+    return SampledLine(s, poses, missed, turned, np.concatenate(ends))
 
 
-def _parts(stretch: Stretch, joints: Array, lanes: Lanes | None) -> Iterator[tuple[Array, Array]]:
+def _parts(element: GeometryElement, joints: Array, lanes: Lanes | None) -> Iterator[tuple[Array, Array]]:
     """Stations ``(n,)`` and poses ``(n, 3)`` along one element, both ends included, cut at the joints."""
-    start, end = stretch.s, stretch.s + stretch.length
-    count = max(FEWEST, int(np.ceil(stretch.length / STEP)))
+    start, end = element.s, element.s + element.length
+    count = max(FEWEST, int(np.ceil(element.length / STEP)))
     while (
-        isinstance(stretch.shape, Polynomial) and count * LEAST < stretch.length and _strays(stretch, count)
+        isinstance(element.shape, Polynomial) and count * LEAST < element.length and _strays(element, count)
     ):
         count *= 2
     even = np.linspace(start, end, count + 1)
@@ -99,8 +100,8 @@ def _parts(stretch: Stretch, joints: Array, lanes: Lanes | None) -> Iterator[tup
     cuts = [start, *(b for a, b in pairwise(cuts[:-1]) if b - a > TOGETHER), end]
     for a, b in pairwise(cuts):
         s = np.r_[a, even[(even > a + TOGETHER) & (even < b - TOGETHER)], b]
-        share = np.clip((s - start) / stretch.length, 0.0, 1.0)
-        poses = stretch.poses(share)
+        share = np.clip((s - start) / element.length, 0.0, 1.0)
+        poses = element.poses(share)
         yield s, poses if lanes is None else _moved_aside(s, poses, lanes)
 
 
@@ -119,9 +120,9 @@ def _moved_aside(s: Array, poses: Array, lanes: Lanes) -> Array:
     return np.stack([x, y, poses[:, 2] + np.arctan2(slope, stays)], -1)
 
 
-def _strays(stretch: Stretch, count: int) -> bool:
+def _strays(element: GeometryElement, count: int) -> bool:
     """Would clothoids between so many poses leave the line?"""
-    poses = stretch.poses(np.linspace(0.0, 1.0, 2 * count + 1))
+    poses = element.poses(np.linspace(0.0, 1.0, 2 * count + 1))
     ends, middles = poses[::2], poses[1::2]
     if np.abs(np.diff(ends[:, 2])).max() < GENTLE:
         return False
@@ -135,7 +136,7 @@ def _strays(stretch: Stretch, count: int) -> bool:
     return bool(np.abs(aside).max() > CLOSE)
 
 
-def fitted(line: Line) -> tuple[PieceCurve, Array, Array] | None:
+def fitted(line: SampledLine) -> tuple[PieceCurve, Array, Array] | None:
     """The plan through the poses away from joins, their stations in the file and on it; None where clothoids
     cannot follow."""
     kept = bridged(line)

@@ -26,7 +26,7 @@ from roadgpt.drive.simulators.beamng.stage import Stage, as_quaternion
 from roadgpt.drive.view import Camera
 from roadgpt.export.exporters.beamng import write_level
 from roadgpt.export.exporters.beamng.files import ABOVE_GROUND, rotation
-from roadgpt.export.exporters.beamng.scene import GOAL, scene_of
+from roadgpt.export.exporters.beamng.roads import GOAL, level_road
 from roadgpt.road import Design, Road, Segment, World, build
 
 REPORT = "beamng-selftest"
@@ -177,7 +177,7 @@ class Selftest:
         written = write_level(road, levels, LEVEL, WORLD)
         if LEVEL not in session.bng.scenario.get_levels():
             return False, f"BeamNG does not list the level in {written}"
-        package, scene = client(), scene_of(road, WORLD, 0)
+        package, scene = client(), level_road(road, WORLD, 0)
         scenario = package.Scenario(LEVEL, f"{LEVEL}_{time.time_ns()}")
         car = package.Vehicle("ego", self.settings.model)
         session.vehicle = car

@@ -12,7 +12,7 @@ from roadgpt.drive.simulators.beamng.session import Session, client
 from roadgpt.drive.view import Camera
 from roadgpt.errors import RoadGPTError, SimulationError
 from roadgpt.export.exporters.beamng.files import ABOVE_GROUND, rotation
-from roadgpt.export.exporters.beamng.scene import GOAL, Materials, Strip, scene_of
+from roadgpt.export.exporters.beamng.roads import GOAL, Materials, Strip, level_road
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -54,7 +54,7 @@ class Stage:
         session.laid += 1
         self.prefix = f"roadgpt_{os.getpid()}_{session.laid}_"
         materials = TIG if session.level == "tig" else STOCK
-        self.scene = scene_of(road, world, seed, materials, self.lift, self.prefix)
+        self.scene = level_road(road, world, seed, materials, self.lift, self.prefix)
         self.goal = self.prefix + GOAL
         self.camera: Any = None
         self.now: Moment
@@ -278,7 +278,7 @@ def _mesh_road(package: Any, strip: Strip) -> Any:
 
 def _decal_road(package: Any, strip: Strip) -> Any:
     # BeamNGpy numbers a scenario's decal roads anew, from 0 in the order in which they are added, and so does
-    # scene_of: whichever holds, it is the same.
+    # level_road: whichever holds, it is the same.
     road = package.Road(
         strip.material, rid=strip.name, drivability=strip.drivability, render_priority=strip.priority
     )

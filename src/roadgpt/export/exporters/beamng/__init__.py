@@ -14,7 +14,7 @@ import re
 from pathlib import Path
 
 from roadgpt.export.exporters.beamng import files
-from roadgpt.export.exporters.beamng.scene import scene_of
+from roadgpt.export.exporters.beamng.roads import level_road
 from roadgpt.export.poses import Poses
 from roadgpt.road import Road, World
 
@@ -49,7 +49,7 @@ def write_level(
         ExportError: the road has a number that is not finite.
         OSError: the folder cannot be written.
     """
-    scene = scene_of(road, world, seed)
+    scene = level_road(road, world, seed)
     title = title or name
     about, group = files.scenario(name, title)
     written = {

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from roadgpt.export.exporters.beamng.scene import GOAL, OWN, Scene, Strip
+from roadgpt.export.exporters.beamng.roads import GOAL, OWN, LevelRoad, Strip
 from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
@@ -31,7 +31,7 @@ def ground_model(friction: float) -> str:
     return next(name for least, name in GROUNDS if friction >= least)
 
 
-def items(name: str, scene: Scene, world: World) -> Mapping[str, Sequence[Item]]:
+def items(name: str, scene: LevelRoad, world: World) -> Mapping[str, Sequence[Item]]:
     """What each ``items.level.json`` holds, by its folder below ``main``."""
     groups = ("sky_and_ground", "roads", "player")
     return {
@@ -122,7 +122,7 @@ def _strip(level: str, strip: Strip) -> Item:
     )
 
 
-def _player(level: str, scene: Scene) -> Iterator[Item]:
+def _player(level: str, scene: LevelRoad) -> Iterator[Item]:
     start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
     matrix = rotation(scene.heading, scene.grade).ravel().round(9).tolist()
     yield _object(
@@ -214,7 +214,7 @@ def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
     return about, [_object(name, "drive_group", "SimGroup", "")]
 
 
-def car(name: str, scene: Scene, model: str) -> Item:
+def car(name: str, scene: LevelRoad, model: str) -> Item:
     """The car on its start, as a prefab holds it."""
     start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
     return _object(

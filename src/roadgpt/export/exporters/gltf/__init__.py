@@ -1,4 +1,4 @@
-"""Binary glTF 2.0: the road as solid shapes for renderers, game engines and mesh tools.
+"""Binary glTF 2.0: the road as solid meshes for renderers, game engines and mesh tools.
 
 Source: Khronos Group, glTF 2.0 (ISO/IEC 12113:2022).
 """
@@ -6,7 +6,7 @@ Source: Khronos Group, glTF 2.0 (ISO/IEC 12113:2022).
 from pathlib import Path
 
 from roadgpt.export.exporters.gltf.container import to_bytes
-from roadgpt.export.exporters.gltf.surfaces import shapes
+from roadgpt.export.exporters.gltf.surfaces import meshes
 from roadgpt.export.poses import Poses
 from roadgpt.road import Road, World
 
@@ -19,4 +19,4 @@ class Gltf:
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Write the scene; the path is the driven one, or the middle of the right lane."""
-        path.write_bytes(to_bytes(shapes(road, world, poses), road.at(0.0)))
+        path.write_bytes(to_bytes(meshes(road, world, poses), road.at(0.0)))

@@ -1,4 +1,4 @@
-"""The file: shapes become accessors of one buffer, beside a JSON that says what they are."""
+"""The file: meshes become accessors of one buffer, beside a JSON that says what they are."""
 
 import json
 import struct
@@ -28,7 +28,7 @@ MATERIALS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class TriangleMesh:
     """Triangles of one material; z is up."""
 
     name: str
@@ -43,18 +43,18 @@ class Shape:
     """Shape (m, 3), indices of points, counter-clockwise seen from outside."""
 
 
-def to_bytes(shapes: Sequence[Shape], near: Array) -> bytes:
+def to_bytes(meshes: Sequence[TriangleMesh], near: Array) -> bytes:
     """The whole file.
 
     Args:
-        shapes: what is in the scene, each a node of its own.
+        meshes: what is in the scene, each a node of its own.
         near: a point of the scene; single precision is kept about it, and not about the map's corner.
     """
     origin = np.round(near)
-    used = list(dict.fromkeys(shape.material for shape in shapes))
-    data = _scene(shapes, origin, used)
+    used = list(dict.fromkeys(shape.material for shape in meshes))
+    data = _scene(meshes, origin, used)
     content = bytearray()
-    for shape in shapes:
+    for shape in meshes:
         where = {
             "POSITION": _put(data, content, (shape.points - origin) @ Y_UP.T, bounded=True),
             "NORMAL": _put(data, content, shape.normals @ Y_UP.T),
@@ -74,7 +74,7 @@ def to_bytes(shapes: Sequence[Shape], near: Array) -> bytes:
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks) + len(content)) + chunks + bytes(content)
 
 
-def _scene(shapes: Sequence[Shape], origin: Array, materials: Sequence[str]) -> dict[str, Any]:
+def _scene(meshes: Sequence[TriangleMesh], origin: Array, materials: Sequence[str]) -> dict[str, Any]:
     """What is where, before any shape is put into the buffer."""
     grained = [name for name in materials if name in GRAINS]
     return {
@@ -85,9 +85,9 @@ def _scene(shapes: Sequence[Shape], origin: Array, materials: Sequence[str]) -> 
             {
                 "name": "map",
                 "translation": (Y_UP @ origin + 0.0).tolist(),
-                "children": list(range(1, len(shapes) + 1)),
+                "children": list(range(1, len(meshes) + 1)),
             },
-            *({"name": shape.name, "mesh": i} for i, shape in enumerate(shapes)),
+            *({"name": shape.name, "mesh": i} for i, shape in enumerate(meshes)),
         ],
         "materials": [_material(name, grained) for name in materials],
         "textures": [{"source": i, "sampler": 0} for i in range(len(grained))],

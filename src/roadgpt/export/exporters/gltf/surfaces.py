@@ -1,4 +1,4 @@
-r"""The shapes of a road: slabs closed all round, thin strips that lie on them, the ground around.
+r"""The meshes of a road: slabs closed all round, thin strips that lie on them, the ground around.
 
 verge   ______|____________:____________|______   verge        the slabs of road and verges touch;
        |______|_________________________|______|               lines and path lie a little above them
@@ -6,10 +6,10 @@ verge   ______|____________:____________|______   verge        the slabs of road
 
 import numpy as np
 
-from roadgpt.export.banks import Bank, banks
 from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import goal_of, on_the_ground, start_of
-from roadgpt.export.exporters.gltf.container import Shape
+from roadgpt.export.embankments import Embankment, embankments
+from roadgpt.export.exporters.gltf.container import TriangleMesh
 from roadgpt.export.exporters.opendrive.lanes import DASH, GAP, NO_VERGE
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
@@ -24,7 +24,7 @@ PATH_WIDTH = 0.3  # m
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def shapes(road: Road, world: World, poses: Poses | None = None) -> list[Shape]:
+def meshes(road: Road, world: World, poses: Poses | None = None) -> list[TriangleMesh]:
     """Everything in the scene.
 
     Raises:
@@ -45,7 +45,7 @@ def shapes(road: Road, world: World, poses: Poses | None = None) -> list[Shape]:
     return out
 
 
-def _ground(road: Road, world: World, s: Array) -> Shape:
+def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
     """The land around the road, and the banks that run down into it from rims and ends."""
     land = Land.around(road, world)
     near = slice(len(FAR), -len(FAR))  # what lies farther is for horizons
@@ -58,23 +58,23 @@ def _ground(road: Road, world: World, s: Array) -> Shape:
     low = np.stack([at, at + 1, at + columns + 1], axis=-1)
     high = np.stack([at, at + columns + 1, at + columns], axis=-1)
     normals = up / np.linalg.norm(up, axis=-1, keepdims=True)
-    parts = [Shape("", "grass", points, normals, points[:, :2], np.concatenate([low, high]))]
-    for bank in banks(road, world.lane_width + world.verge, s, land):
+    parts = [TriangleMesh("", "grass", points, normals, points[:, :2], np.concatenate([low, high]))]
+    for bank in embankments(road, world.lane_width + world.verge, s, land):
         parts.append(_sloped(bank))
     return _joined("ground", parts)
 
 
-def _sloped(bank: Bank) -> Shape:
+def _sloped(bank: Embankment) -> TriangleMesh:
     """A bank, seen from outside."""
     left, right = (bank.foot, bank.edge) if bank.is_left else (bank.edge, bank.foot)
     along = np.gradient(bank.edge, axis=0)
     facing = np.cross(along, left - right)
     normals = facing / np.maximum(np.linalg.norm(facing, axis=-1, keepdims=True), 1e-9)
     points, both, _, triangles = _band(left, right, normals, np.zeros(len(left)), np.zeros(2))
-    return Shape("", "grass", points, both, points[:, :2], triangles)
+    return TriangleMesh("", "grass", points, both, points[:, :2], triangles)
 
 
-def _dashed(road: Road, s: Array, width: float) -> Shape:
+def _dashed(road: Road, s: Array, width: float) -> TriangleMesh:
     """The broken line in the middle; its last dash may be shorter."""
     starts = np.arange(0.0, road.length, DASH + GAP).tolist()
     ends = [min(start + DASH, road.length) for start in starts]
@@ -91,10 +91,10 @@ def _dashed(road: Road, s: Array, width: float) -> Shape:
     )
     across = np.array([width, -width]) / 2
     dashes = [_band(*each, across) for each in zip(left, right, normals, parts, strict=True)]
-    return _joined("middle line", [Shape("", "paint", *dash) for dash in dashes])
+    return _joined("middle line", [TriangleMesh("", "paint", *dash) for dash in dashes])
 
 
-def _path(road: Road, s: Array, world: World, poses: Poses | None) -> Shape:
+def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMesh:
     if poses is None:
         start, end = start_of(road), goal_of(road)
         part = np.r_[start, s[(s > start) & (s < end)], end]
@@ -111,18 +111,18 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> Shape:
     along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(ground[:, :2], axis=0).T))]
     normals = np.repeat(UP[None], len(ground), axis=0)
     across = np.array([PATH_WIDTH, -PATH_WIDTH]) / 2
-    return Shape("path", "path", *_band(ground + left, ground - left, normals, along, across))
+    return TriangleMesh("path", "path", *_band(ground + left, ground - left, normals, along, across))
 
 
 def _strip(
     name: str, material: str, road: Road, s: Array, left: float, right: float, lift: float = PAINT
-) -> Shape:
+) -> TriangleMesh:
     """The surface between two offsets, seen from above."""
     a, b = line(road, s, left) + lift * UP, line(road, s, right) + lift * UP
-    return Shape(name, material, *_band(a, b, _normals(road, s), s, np.array([left, right])))
+    return TriangleMesh(name, material, *_band(a, b, _normals(road, s), s, np.array([left, right])))
 
 
-def _slab(name: str, material: str, road: Road, s: Array, left: float, right: float) -> Shape:
+def _slab(name: str, material: str, road: Road, s: Array, left: float, right: float) -> TriangleMesh:
     """The ground between two offsets with its underside, its flanks and its ends: closed all round."""
     a, b = line(road, s, left), line(road, s, right)
     low_a, low_b = a - THICKNESS * UP, b - THICKNESS * UP
@@ -136,7 +136,7 @@ def _slab(name: str, material: str, road: Road, s: Array, left: float, right: fl
         _end(low_a[0], low_b[0], b[0], a[0], across),
         _end(low_b[-1], low_a[-1], a[-1], b[-1], across[::-1]),
     ]
-    return _joined(name, [Shape(name, material, *side) for side in sides])
+    return _joined(name, [TriangleMesh(name, material, *side) for side in sides])
 
 
 _Band = tuple[Array, Array, Array, np.ndarray]
@@ -162,13 +162,13 @@ def _end(a: Array, b: Array, c: Array, d: Array, across: Array) -> _Band:
     return points, normals, texture, np.array([[0, 1, 2], [0, 2, 3]])
 
 
-def _joined(name: str, parts: list[Shape]) -> Shape:
-    """Several shapes of one material as one."""
+def _joined(name: str, parts: list[TriangleMesh]) -> TriangleMesh:
+    """Several meshes of one material as one."""
     shifts = np.cumsum([0, *(len(part.points) for part in parts)])
     triangles = [part.triangles + shift for part, shift in zip(parts, shifts, strict=False)]
     columns = [(part.points, part.normals, part.texture) for part in parts]
     points, normals, texture = (np.concatenate(column) for column in zip(*columns, strict=True))
-    return Shape(name, parts[0].material, points, normals, texture, np.concatenate(triangles))
+    return TriangleMesh(name, parts[0].material, points, normals, texture, np.concatenate(triangles))
 
 
 def _normals(road: Road, s: Array) -> Array:

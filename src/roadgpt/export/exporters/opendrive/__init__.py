@@ -8,8 +8,8 @@ from pathlib import Path
 from roadgpt.export.exporters.opendrive.heights import elevations
 from roadgpt.export.exporters.opendrive.lanes import lanes, speed_kmh
 from roadgpt.export.exporters.opendrive.plan import geometries
+from roadgpt.export.georeference import PROJECTION
 from roadgpt.export.markup import Element
-from roadgpt.export.place import PROJECTION
 from roadgpt.export.poses import Poses
 from roadgpt.road import Road, World
 

@@ -24,7 +24,7 @@ def elevations(road: Road) -> list[Element]:
 
 def _table(road: Road) -> tuple[Array, Array]:
     """Stations ``(n,)``, and the height over each as a cubic ``(n, 4)`` of the distance from it."""
-    profile, length = road.profile, road.length
+    profile, length = road.elevation, road.length
     if isinstance(profile, GradeProfile):
         stations = _within(profile.stations[:-1], length)
         half = profile.vertical_curvature(stations) / 2

@@ -13,7 +13,7 @@ GROWS = 2  # hops until the grade is that of the road
 HOP = 2.0  # m; a spline through points so dense keeps radii of 14.8 m and more at SBFT's 14.33 m
 
 
-def in_hops(design: Design) -> Design:
+def in_short_segments(design: Design) -> Design:
     """The design whose spline runs along the lines, arcs and clothoids of this one.
 
     RoadGPT's translation begins with a level stub, behind which the grade grows over a few hops: a spline

@@ -16,7 +16,7 @@ DECIMALS = 4  # of a metre
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class LaneletPair:
     """Polylines ``(n, 3)`` of one section in the direction of the road, in metres."""
 
     start: float
@@ -26,7 +26,7 @@ class Section:
     left: Array
 
 
-def sections(road: Road, world: World) -> list[Section]:
+def lanelet_pairs(road: Road, world: World) -> list[LaneletPair]:
     """The sections from the road's start to its end, at least one.
 
     Raises:
@@ -40,5 +40,5 @@ def sections(road: Road, world: World) -> list[Section]:
     for start, end in zip(cuts.tolist(), cuts[1:].tolist(), strict=False):
         s = np.r_[start, fine[(fine > start + 1e-3) & (fine < end - 1e-3)], end]
         right, middle, left = (np.round(each, DECIMALS) + 0.0 for each in lines(road, s, (-wide, 0.0, wide)))
-        out.append(Section(start, end, right, middle, left))
+        out.append(LaneletPair(start, end, right, middle, left))
     return out

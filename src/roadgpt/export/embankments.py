@@ -16,7 +16,7 @@ OUTSIDE = 2.0  # m beyond the rim, where the land's height is asked
 ACROSS = 7  # points of a rim at an end of the road
 
 
-class Bank(NamedTuple):
+class Embankment(NamedTuple):
     """One slope: its upper edge and its foot, points ``(n, 3)`` each, metres."""
 
     edge: Array
@@ -25,7 +25,7 @@ class Bank(NamedTuple):
     """Does it fall to the left of whoever walks along the edge?"""
 
 
-def banks(road: Road, rim: float, s: Array, land: Land) -> Iterator[Bank]:
+def embankments(road: Road, rim: float, s: Array, land: Land) -> Iterator[Embankment]:
     """The slopes at both rims, ``rim`` metres beside the centre line, and at both ends.
 
     Args:
@@ -49,7 +49,7 @@ def banks(road: Road, rim: float, s: Array, land: Land) -> Iterator[Bank]:
         yield _bank(edge, near, np.repeat(way[None], len(edge), axis=0), land, is_left=True)
 
 
-def _bank(edge: Array, near: Array, outward: Array, land: Land, is_left: bool) -> Bank:
+def _bank(edge: Array, near: Array, outward: Array, land: Land, is_left: bool) -> Embankment:
     drop = edge[:, 2] - np.minimum(land.height(near[:, 0], near[:, 1]), edge[:, 2]) + FOOT
     foot = np.column_stack([edge[:, :2] + RUN * drop[:, None] * outward, edge[:, 2] - drop])
-    return Bank(edge, foot, is_left)
+    return Embankment(edge, foot, is_left)

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve, Profile, shifted
+from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, Piece, PieceCurve, shifted
 from roadgpt.road.road import Road
 
 
-def turned_round(road: Road) -> Road:
+def reversed_road(road: Road) -> Road:
     """A road of pieces, or through nodes, from its end to its start."""
     if road.nodes is not None:
         return Road.through(road.nodes[::-1])
@@ -16,10 +16,10 @@ def turned_round(road: Road) -> Road:
     x, y = road.plan.at(road.length).tolist()
     heading = float(road.plan.heading(road.length)) + math.pi
     pieces = tuple(Piece(piece.length, -piece.k1, -piece.k0) for piece in reversed(road.plan.pieces))
-    return Road(PieceCurve(x, y, heading, pieces), _turned(road.profile, road.length))
+    return Road(PieceCurve(x, y, heading, pieces), _turned(road.elevation, road.length))
 
 
-def _turned(profile: Profile, length: float) -> Profile:
+def _turned(profile: ElevationProfile, length: float) -> ElevationProfile:
     if isinstance(profile, GradeProfile):
         stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
         grades = -profile.grade(stations)[::-1]

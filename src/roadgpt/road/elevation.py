@@ -14,7 +14,7 @@ MOST_OF_SEGMENT = 0.9  # the two parabolas of a segment may take this share of i
 MOST_OF_SLOPE = 0.98  # what parabolas with a radius of their own may take of a slope, over all its segments
 
 
-class Parabola(NamedTuple):
+class VerticalCurve(NamedTuple):
     """The change of grade at the start of a segment."""
 
     number: int
@@ -32,9 +32,9 @@ class Parabola(NamedTuple):
         return 2 * self.half / abs(self.change)
 
 
-def parabolas(
+def vertical_curves(
     distances: Sequence[float], grades: Sequence[float], radii: Sequence[float | None]
-) -> list[Parabola]:
+) -> list[VerticalCurve]:
     """The parabolas where grades change, in order.
 
     One with a radius of its own is as long as that takes. Where it does not fit between its neighbours, it is
@@ -68,7 +68,7 @@ def parabolas(
             half = min(half, _share(wants, own, rooms[n], n, before if n else None))
             half = min(half, _share(wants, own, rooms[n + 1], n, after if after < len(joints) else None))
         if half > 1e-6:
-            out.append(Parabola(i, s, half, change))
+            out.append(VerticalCurve(i, s, half, change))
     return out
 
 
@@ -81,20 +81,20 @@ def _share(wants: Sequence[float], own: Sequence[bool], room: float, n: int, oth
     return room * wants[n] / max(wants[n] + wants[other], 1e-9)
 
 
-def parabolas_of(segments: "Sequence[Segment]") -> list[Parabola]:
+def vertical_curves_of(segments: "Sequence[Segment]") -> list[VerticalCurve]:
     """The parabolas between segments."""
-    return parabolas(
+    return vertical_curves(
         [segment.distance for segment in segments],
         [segment.incline / 100 for segment in segments],
         [segment.vertical_radius for segment in segments],
     )
 
 
-def profile_of(segments: "Sequence[Segment]", z0: float) -> GradeProfile:
+def elevation_of(segments: "Sequence[Segment]", z0: float) -> GradeProfile:
     """The profile over the plan stations of the segments; parabolas change no height at the far joints."""
     grades = [segment.incline / 100 for segment in segments]
     stations, values = [0.0], [grades[0]]
-    for i, at, half, _ in parabolas_of(segments):
+    for i, at, half, _ in vertical_curves_of(segments):
         stations += [at - half, at + half]
         values += [grades[i - 1], grades[i]]
     at = 0.0

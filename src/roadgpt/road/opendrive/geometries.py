@@ -36,7 +36,7 @@ class Shape(Protocol):
 
 
 @dataclass(frozen=True)
-class Stretch:
+class GeometryElement:
     """One element of the reference line."""
 
     s: float
@@ -55,7 +55,7 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Bend:
+class PieceShape:
     """A line, an arc or a spiral."""
 
     piece: Piece
@@ -113,7 +113,7 @@ class Polynomial:
         return np.stack([x, y, np.unwrap(heading) if len(heading) else heading], -1)
 
 
-def stretches(road: Node) -> list[Stretch]:
+def reference_line(road: Node) -> list[GeometryElement]:
     """The reference line of a road, in its order.
 
     Raises:
@@ -124,7 +124,7 @@ def stretches(road: Node) -> list[Stretch]:
         raise UsageError(f"its line has more than {MOST:,} elements; cut out the part that you need")
     check_length(sum(abs(number(node, "length")) for node in nodes) or 1.0)
     nodes.sort(key=lambda node: number(node, "s"))
-    kept = [_stretch(node) for node in _long_enough(nodes)]
+    kept = [_element(node) for node in _long_enough(nodes)]
     if not kept:
         raise UsageError("its <planView> has no geometry; add the reference line")
     if abs(kept[0].s) > LONGEST:
@@ -153,7 +153,7 @@ def _long_enough(nodes: list[Node]) -> Iterator[Node]:
             yield node
 
 
-def _stretch(node: Node) -> Stretch:
+def _element(node: Node) -> GeometryElement:
     s, x, y = (number(node, name) for name in ("s", "x", "y"))
     heading, length = number(node, "hdg"), number(node, "length")
     if length < 0:
@@ -162,20 +162,20 @@ def _stretch(node: Node) -> Stretch:
     if not shapes:
         what = f"is a <{node.children[0].tag[:40]}>" if node.children else "has no shape"
         raise UsageError(f"the geometry at s = {s:g} {what}; known are {', '.join(KNOWN)}")
-    return Stretch(s, x, y, heading, length, _shape(shapes[0], s, max(length, SMALLEST)))
+    return GeometryElement(s, x, y, heading, length, _shape(shapes[0], s, max(length, SMALLEST)))
 
 
 def _shape(node: Node, s: float, length: float) -> Shape:
     if node.tag == "line":
-        return Bend(Piece(length))
+        return PieceShape(Piece(length))
     if node.tag in ("arc", "spiral"):
         names = ("curvStart", "curvEnd") if node.tag == "spiral" else ("curvature", "curvature")
         k0, k1 = (number(node, name) for name in names)
         if max(abs(k0), abs(k1)) * SMALLEST_RADIUS > 1:
             if length < SMALLEST_RADIUS:
-                return Bend(Piece(length))  # too short to be a bend: its turn is a kink where it ends
+                return PieceShape(Piece(length))  # too short to be a bend: its turn is a kink where it ends
             raise UsageError(f"the {node.tag} at s = {s:g} turns more tightly than {SMALLEST_RADIUS:g} m")
-        return Bend(Piece(length, k0, k1))
+        return PieceShape(Piece(length, k0, k1))
     if node.tag == "poly3":
         v = (number(node, "a"), number(node, "b"), number(node, "c"), number(node, "d"))
         return Polynomial((0.0, 1.0, 0.0, 0.0), v, length).up_to(length)

@@ -71,7 +71,7 @@ class Strip:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class LevelRoad:
     """Strips from below upwards, and where the drive begins and ends."""
 
     strips: tuple[Strip, ...]
@@ -86,9 +86,9 @@ class Scene:
     """Height of the level's ground, metres."""
 
 
-def scene_of(
+def level_road(
     road: Road, world: World, seed: int, materials: Materials = OWN, lift: float = 0.0, prefix: str = ""
-) -> Scene:
+) -> LevelRoad:
     """The road with verge, markings, start and goal; the same arguments give the same numbers.
 
     Args:
@@ -114,7 +114,7 @@ def scene_of(
     decals = _decals(road, world, s, up + above, materials, prefix)
     first, last = start_of(road), goal_of(road)
     right = -world.lane_width / 2
-    return Scene(
+    return LevelRoad(
         (*meshes, *decals),
         road.at(first, right) + up,
         float(road.heading(first)),
