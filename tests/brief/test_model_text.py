@@ -11,12 +11,12 @@ from roadgpt.brief import model
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import vocabulary
-from roadgpt.brief.readers.model.listing import listed_sides, sides_of
+from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.numerals import LANGUAGES, spell, words
-from roadgpt.brief.readers.model.slots import Slot, slotted
+from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
+from roadgpt.brief.readers.model.slots import NumberSlot, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces
-from roadgpt.brief.readers.model.writer import END, PlanWriter
 
 
 @pytest.mark.parametrize(
@@ -92,7 +92,12 @@ def test_any_text_can_be_slotted(text: str) -> None:
     ],
 )  # fmt: skip
 def test_tokens_write_the_plan_that_they_were_cut_from(line: str) -> None:
-    slots = [Slot(91.4, "metres"), Slot(25.0, "metres"), Slot(8.0, "percent"), Slot(8.0, "metres")]
+    slots = [
+        NumberSlot(91.4, "metres"),
+        NumberSlot(25.0, "metres"),
+        NumberSlot(8.0, "percent"),
+        NumberSlot(8.0, "metres"),
+    ]
     tokens = tokens_of(line, slots)
     assert tokens is not None
     assert {*tokens} <= {*TOKENS}
@@ -100,15 +105,15 @@ def test_tokens_write_the_plan_that_they_were_cut_from(line: str) -> None:
 
 
 def test_a_number_that_nobody_said_has_no_token() -> None:
-    assert tokens_of("straight len=77", [Slot(60.0, "metres")]) is None
+    assert tokens_of("straight len=77", [NumberSlot(60.0, "metres")]) is None
 
 
 @given(st.integers(0, 10_000), st.lists(st.floats(1, 900).map(lambda x: round(x, 1)), max_size=4))
 def test_whatever_the_grammar_allows_is_a_brief(seed: int, values: list[float]) -> None:
     rng = np.random.default_rng(seed)
     units = ("metres", "percent", "degrees", "")
-    slots = [Slot(value, units[index % 4]) for index, value in enumerate(values)]  # type: ignore[arg-type]
-    writer = PlanWriter(slots, frozenset({"3", "15"}))
+    slots = [NumberSlot(value, units[index % 4]) for index, value in enumerate(values)]  # type: ignore[arg-type]
+    writer = PlanAutomaton(slots, frozenset({"3", "15"}))
     tokens: list[str] = []
     while len(tokens) < 60:
         allowed = writer.allowed()

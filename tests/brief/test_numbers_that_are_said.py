@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.brief import reader_of
-from roadgpt.brief.readers.model.negatives import negative
+from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.errors import BriefError
 
@@ -90,7 +90,7 @@ def test_an_angle_of_a_turn_stays_an_angle(text: str) -> None:
     ],
 )
 def test_what_cannot_be_negative_is_found(text: str, below: str | None) -> None:
-    assert negative(slotted(text)) == below
+    assert negative_number(slotted(text)) == below
 
 
 def test_a_negative_number_of_turns_is_refused_with_its_words() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from chat.stub_server import Stub, says, serving
 from roadgpt import provenance
-from roadgpt.chat import habits, wire
+from roadgpt.chat import client, server_quirks
 
 KEY = "sk-canary-0123456789abcdefghijklmnop"
 OURS = ("OPENAI_", "ROADGPT_", "AZURE_OPENAI_")
@@ -22,10 +22,10 @@ def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     place = tmp_path / "here"
     place.mkdir()
     monkeypatch.chdir(place)
-    habits.forget()
+    server_quirks.forget()
     provenance.SERVERS.forget()
     yield
-    habits.forget()
+    server_quirks.forget()
     provenance.SERVERS.forget()
 
 
@@ -39,5 +39,5 @@ def stub() -> Iterator[Stub]:
 def waits(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The pauses between tries, which nobody has to sit through."""
     taken: list[float] = []
-    monkeypatch.setattr(wire, "sleep", taken.append)
+    monkeypatch.setattr(client, "sleep", taken.append)
     return taken

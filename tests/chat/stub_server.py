@@ -25,7 +25,7 @@ class Request:
     body: dict[str, Any]
 
     @property
-    def rung(self) -> str:
+    def response_format(self) -> str:
         """How JSON was asked for: json_schema, json_object or text."""
         form = self.body.get("response_format") or self.body.get("text", {}).get("format") or {}
         return str(form.get("type", "text"))
@@ -52,8 +52,8 @@ class Stub:
     models: list[str] = field(default_factory=lambda: [MODEL])
 
     @property
-    def rungs(self) -> list[str]:
-        return [request.rung for request in self.requests]
+    def response_formats(self) -> list[str]:
+        return [request.response_format for request in self.requests]
 
     def play(self, *scenes: Scene) -> None:
         """From now on these."""
@@ -127,11 +127,11 @@ def fails(status: int, message: str = "", headers: dict[str, str] | None = None,
     return lambda request, handler: send(handler, status, body, headers)
 
 
-def only(*rungs: str, text: str, message: str = "response_format of this type is not supported") -> Scene:
+def only(*formats: str, text: str, message: str = "response_format of this type is not supported") -> Scene:
     """A server that knows some ways of asking for JSON and refuses the others."""
 
     def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
-        (says(text) if request.rung in rungs else fails(400, message))(request, handler)
+        (says(text) if request.response_format in formats else fails(400, message))(request, handler)
 
     return scene
 

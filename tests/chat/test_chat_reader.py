@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from chat.stub_server import Stub, in_order, says
 from roadgpt.brief import exactly, read
 from roadgpt.brief.plan import plan
-from roadgpt.brief.readers.chat import EXAMPLES, RULES, ChatReader, Plan
+from roadgpt.brief.readers.chat import EXAMPLES, RULES, ChatReader, PlanAnswer
 from roadgpt.chat import ChatSettings, Message, Reply, Spent
 from roadgpt.errors import BriefError
 
@@ -27,7 +27,7 @@ class Parrot:
         self.asked.append([*messages])
         line = self.plans.pop(0) if len(self.plans) > 1 else self.plans[0]
         things, _, wishes = line.partition("|")
-        data = Plan(along=things.split(";"), road=wishes, unused=[*self.unused])
+        data = PlanAnswer(along=things.split(";"), road=wishes, unused=[*self.unused])
         return Reply(text=line, data=data, model="parrot")
 
 
@@ -38,7 +38,7 @@ def reader(*plans: str, unused: tuple[str, ...] = ()) -> tuple[ChatReader, Parro
 
 @pytest.mark.parametrize(("words", "answer"), EXAMPLES)
 def test_the_examples_that_the_model_is_shown_are_right(words: str, answer: str) -> None:
-    data = Plan.model_validate_json(answer)
+    data = PlanAnswer.model_validate_json(answer)
     part, _ = reader("; ".join(data.along) + "|" + data.road)
     assert plan(part.read(words)) == plan(read(words, "grammar"))
 

@@ -74,7 +74,7 @@ def test_a_conversation_that_is_full_is_followed_by_another(stub: Stub) -> None:
 def test_the_ladder_holds_here_as_well(stub: Stub) -> None:
     stub.play(only("text", text=f"```json\n{GOOD}\n```"))
     assert open_chat(settings(stub)).ask(QUESTION, Turn).data == Turn(degrees=5)
-    assert stub.rungs == ["json_schema", "json_object", "text"]
+    assert stub.response_formats == ["json_schema", "json_object", "text"]
     stub.play(says(f"```json\n{GOOD}\n```"))  # LM Studio: 200 and the schema ignored
     assert open_chat(settings(stub)).ask(QUESTION, Turn).data == Turn(degrees=5)
 

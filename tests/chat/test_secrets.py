@@ -22,7 +22,7 @@ from chat.stub_server import (
     send,
 )
 from roadgpt.chat import ChatError, ChatSettings, Message, open_chat
-from roadgpt.chat.secret import Key, cleaned, masked, usable
+from roadgpt.chat.secret import Key, masked, redacted, usable
 from roadgpt.cli import app
 
 ESCAPED = "".join(f"\\u{ord(letter):04x}" for letter in KEY)
@@ -211,8 +211,8 @@ def test_an_exception_keeps_no_key_in_its_chain(stub: Stub, monkeypatch: pytest.
 )
 def test_what_looks_like_a_key_is_taken_out(text: str, clean: str) -> None:
     key = Key(KEY, "environment")
-    assert cleaned(text, key) == clean
-    assert cleaned({text: [text, 5, None]}, key) == {clean: [clean, 5, None]}
+    assert redacted(text, key) == clean
+    assert redacted({text: [text, 5, None]}, key) == {clean: [clean, 5, None]}
 
 
 def test_masks_show_little() -> None:

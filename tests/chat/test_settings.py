@@ -10,8 +10,8 @@ from click.testing import CliRunner, Result
 from chat.conftest import KEY
 from chat.stub_server import Stub, says
 from roadgpt.chat import ChatError, ChatSettings, configured, open_chat
-from roadgpt.chat.config import gathered, key_for, user_file
-from roadgpt.chat.place import place_of
+from roadgpt.chat.address import address_of
+from roadgpt.chat.config import key_for, settings_with_origin, user_file
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
 
@@ -27,7 +27,7 @@ def write(path: Path, text: str) -> None:
 
 def test_every_place_yields_to_those_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     def found() -> tuple[Any, str]:
-        return tuple(gathered(flags)["model"])  # type: ignore[return-value]
+        return tuple(settings_with_origin(flags)["model"])  # type: ignore[return-value]
 
     flags: dict[str, Any] = {}
     assert found() == (None, "default")
@@ -170,7 +170,7 @@ def test_azure_has_a_key_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )
 def test_where_the_servers_are(given: str | None, place: str) -> None:
-    assert place_of(given) == place
+    assert address_of(given) == place
 
 
 def test_openai_without_a_key_is_told_before_anything_is_sent() -> None:
@@ -205,20 +205,20 @@ def test_options_for_models_are_refused_where_none_is_asked() -> None:
 
 
 def test_doctor_looks_for_the_model_that_is_named(stub: Stub, monkeypatch: pytest.MonkeyPatch) -> None:
-    from roadgpt.chat.looking import looked
+    from roadgpt.chat.diagnosis import diagnose
 
-    assert "none is needed" in looked()
+    assert "none is needed" in diagnose()
     monkeypatch.setenv("OPENAI_API_KEY", KEY)
-    assert "none is needed" in looked()  # a key alone is for other programs
+    assert "none is needed" in diagnose()  # a key alone is for other programs
     stub.play(says("{}"))
     monkeypatch.setenv("ROADGPT_BASE_URL", stub.url)
-    assert f"any of 1 at {stub.url}, through openai 3" in looked()
+    assert f"any of 1 at {stub.url}, through openai 3" in diagnose()
     monkeypatch.setenv("ROADGPT_MODEL", "other")
     with pytest.raises(ChatError, match="has no model 'other'; it has stub-model"):
-        looked()
+        diagnose()
     monkeypatch.setenv("ROADGPT_BASE_URL", "http://127.0.0.1:9/v1")
     with pytest.raises(ChatError, match="cannot be reached"):
-        looked()
+        diagnose()
 
 
 @pytest.mark.parametrize(

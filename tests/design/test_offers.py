@@ -8,7 +8,7 @@ import pytest
 
 from roadgpt import check
 from roadgpt.brief import read
-from roadgpt.brief.room import longest_straight
+from roadgpt.brief.map_fit import longest_straight
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.errors import RoadGPTError

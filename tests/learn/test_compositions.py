@@ -10,17 +10,17 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.normal import turns_of
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.learn.compositions import WAYS, composed
-from roadgpt.learn.compositions.kept_apart import kept_apart
 from roadgpt.learn.compositions.limits import limited
 from roadgpt.learn.compositions.numbered import numbered_sides
-from roadgpt.learn.compositions.said import ORDINALS, Said, Voice
+from roadgpt.learn.compositions.spaced_turns import spaced_turns
 from roadgpt.learn.compositions.sums import ranged, sided_sum
+from roadgpt.learn.compositions.voice import ORDINALS, Composition, Voice
 
 ADJECTIVES = "(?:alternating|left|right|sharp|tight|gentle|easy)"
-Way = Callable[[Voice], Said]
+Way = Callable[[Voice], Composition]
 
 
-def many(way: Way, number: int = 400) -> Iterator[Said]:
+def many(way: Way, number: int = 400) -> Iterator[Composition]:
     """Said by voices that write digits, so that these tests need not read number words."""
     for seed in range(number):
         voice = Voice(np.random.default_rng(seed))
@@ -62,7 +62,7 @@ def test_every_way_writes_plans_that_can_be_read(way: Way) -> None:
 
 
 def test_the_straights_kept_between_are_one_fewer_than_the_turns() -> None:
-    for said in many(kept_apart):
+    for said in many(spaced_turns):
         brief = read_plan(said.plan)
         turns = sum(turns_of(clause)[0] for clause in brief.clauses if clause.kind != "straight")
         straights = sum(clause.kind == "straight" for clause in brief.clauses)

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from roadgpt.cli.commands.learn import command
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.labels import read_pairs
-from roadgpt.learn.originality import report
+from roadgpt.learn.near_duplicates import report
 
 HAND = Path(__file__).parents[2] / "data" / "descriptions"
 SPLITS = ("train", "validation", "test", "exam")

@@ -11,8 +11,8 @@ from roadgpt.learn.generator import assembled, draw, pairs
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of, read_grammar
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.labels import REFUSALS
-from roadgpt.learn.refusing import contradicted, overdone
-from roadgpt.learn.sense import makes_sense
+from roadgpt.learn.negative_examples import contradicted, overdone
+from roadgpt.learn.plausibility import makes_sense
 from roadgpt.learn.standard import standard
 
 

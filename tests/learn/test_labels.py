@@ -12,7 +12,7 @@ from roadgpt.errors import BriefError, LearnError
 from roadgpt.learn.evaluate import HEAD, confusion, readings, score, worst
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.labels import read_pair, read_pairs, split
-from roadgpt.learn.originality import masked, report, twins
+from roadgpt.learn.near_duplicates import masked, near_duplicates, report
 
 
 def line(text: str, plan: str, family: str = "f") -> str:
@@ -63,12 +63,12 @@ def test_templates_with_other_words_are_found() -> None:
         "the goat path zigzagged off the ridge and nobody followed it down",
     ]
     assert masked(texts[0])[:4] == ("please", "build", "A", "R")
-    assert [(twin.first, twin.second) for twin in twins(texts)] == [(0, 1)]
+    assert [(pair.first, pair.second) for pair in near_duplicates(texts)] == [(0, 1)]
     assert len(report({"train": texts[:1], "test": texts[1:]})) == 1
 
 
 def test_short_texts_of_the_bare_vocabulary_are_no_twins() -> None:
-    assert twins(["two left bends", "three right turns"]) == []
+    assert near_duplicates(["two left bends", "three right turns"]) == []
 
 
 class Parrot:

@@ -15,6 +15,7 @@ from typing import Protocol, cast, runtime_checkable
 
 from roadgpt import plugins
 from roadgpt.brief.feasible import check
+from roadgpt.brief.map_fit import ROAD_WIDTH
 from roadgpt.brief.model import (
     Amount,
     Brief,
@@ -33,10 +34,9 @@ from roadgpt.brief.motorway import remarks, says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.refusal import NoRoomError, TooMuchError
-from roadgpt.brief.room import ROAD_WIDTH
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, USUAL_MAP, Range
-from roadgpt.chat import ChatSettings, made, meant_for
+from roadgpt.chat import ChatSettings, instantiate, settings_for
 from roadgpt.errors import BriefError, PartError
 
 __all__ = [
@@ -78,7 +78,7 @@ class Reader(Protocol):
 
 
 @runtime_checkable
-class Doubtful(Protocol):
+class ReaderWithAlternatives(Protocol):
     """A reader that knows more than one reading of vague words."""
 
     def alternatives(self, words: str, number: int, temperature: float, seed: int) -> tuple[Brief, ...]:
@@ -145,7 +145,7 @@ def alternatives(
     """
     first = read(words, reader, map_size, min_radius, max_grade)
     part = reader_of(reader)
-    if not isinstance(part, Doubtful):
+    if not isinstance(part, ReaderWithAlternatives):
         return (first,)
     try:
         others = part.alternatives(first.words, number, temperature, seed)[1:]
@@ -171,7 +171,7 @@ def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:
         PartError: no such reader, or no weights in the folder.
     """
     part, _, folder = name.partition(":")
-    return _made(part, meant_for(plugins.find("readers", part), chat), folder)
+    return _made(part, settings_for(plugins.find("readers", part), chat), folder)
 
 
 @cache
@@ -179,7 +179,7 @@ def _made(name: str, chat: ChatSettings | None, folder: str) -> Reader:
     """The one reader of that name: a network is loaded once."""
     part = plugins.find("readers", name)
     if not folder:
-        return cast(Reader, made(part, chat))
+        return cast(Reader, instantiate(part, chat))
     if not callable(getattr(part, "from_folder", None)):
         raise PartError(f"the reader '{name}' takes no folder; say --reader {name}")
     return cast(Reader, part.from_folder(folder))

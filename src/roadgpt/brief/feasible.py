@@ -3,10 +3,10 @@
 from math import inf
 from typing import NamedTuple
 
+from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
+from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
-from roadgpt.brief.need import least_length
 from roadgpt.brief.normal import SINGLE, STRAIGHT, normal, total, turns_of
-from roadgpt.brief.room import ROAD_WIDTH, check_room
 from roadgpt.brief.words import (
     KINDS,
     LEAST_RADIUS,

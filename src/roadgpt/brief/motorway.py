@@ -16,9 +16,9 @@ import unicodedata
 from collections.abc import Iterator
 from math import ceil, radians
 
+from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.brief.normal import STRAIGHT, normal, total, turns_of
-from roadgpt.brief.room import LARGEST_MAP
 from roadgpt.brief.words import LENGTH_SLACK, MOTORWAY_GRADE, MOTORWAY_RADIUS, ROAD_LENGTH_SLACK
 
 

@@ -38,9 +38,9 @@ __all__ = [
     "asks_a_model",
     "configured",
     "counting",
-    "made",
-    "meant_for",
+    "instantiate",
     "open_chat",
+    "settings_for",
 ]
 
 
@@ -97,12 +97,12 @@ def asks_a_model(part: Any) -> bool:
     return isinstance(part, type) and "settings" in inspect.signature(part).parameters
 
 
-def meant_for(part: Any, settings: ChatSettings | None) -> ChatSettings | None:
+def settings_for(part: Any, settings: ChatSettings | None) -> ChatSettings | None:
     """What a part is made with: the user's own settings where none are given, None where it takes none."""
     return (settings or configured()) if asks_a_model(part) else None
 
 
-def made(part: Any, settings: ChatSettings | None = None) -> Any:
+def instantiate(part: Any, settings: ChatSettings | None = None) -> Any:
     """An object of a part: made with the settings where its class takes some, else without arguments."""
     if asks_a_model(part):
         return part(settings)

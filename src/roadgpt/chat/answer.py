@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from roadgpt.chat.model import Usage
-from roadgpt.chat.strict import plain
+from roadgpt.chat.strict_json import plain
 
 NOTHING = Usage()
 MOST_TOKENS = 100_000_000  # of one exchange; a larger count is no count
@@ -21,7 +21,7 @@ class Answer:
     refusal: str | None = None
 
 
-def of_chat(body: dict[str, Any]) -> Answer:
+def from_chat(body: dict[str, Any]) -> Answer:
     """An answer of Chat Completions."""
     choices = body.get("choices")
     choice = choices[0] if isinstance(choices, list) and choices and isinstance(choices[0], dict) else {}
@@ -41,7 +41,7 @@ def of_chat(body: dict[str, Any]) -> Answer:
     )
 
 
-def of_responses(body: dict[str, Any]) -> Answer:
+def from_responses(body: dict[str, Any]) -> Answer:
     """An answer of Responses."""
     said: list[str] = []
     refusal: str | None = None

@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
+from roadgpt.chat.address import origin_of
 from roadgpt.chat.model import ChatSettings
-from roadgpt.chat.place import origin_of
 from roadgpt.chat.secret import Key, usable
 from roadgpt.errors import ChatError, UsageError
 from roadgpt.provenance import SERVERS
@@ -65,10 +65,12 @@ def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None
     Raises:
         UsageError: a value that cannot be; the sentence says where it stands.
     """
-    return settings_from(gathered(flags, plan))
+    return settings_from(settings_with_origin(flags, plan))
 
 
-def gathered(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> dict[str, Setting]:
+def settings_with_origin(
+    flags: Mapping[str, Any] | None = None, plan: Layer | None = None
+) -> dict[str, Setting]:
     """Every setting with its origin; the first place that has it counts.
 
     Raises:
@@ -145,7 +147,7 @@ def key_for(base_url: str | None) -> Key | None:
         for name in (*names, KEY)
         if (value := layer.found.get(name))
     ]
-    place = stranger(base_url)
+    place = untrusted_source(base_url)
     if place and keys and (place not in FOLDER or host not in LOOPBACK):
         keys = [key for key in keys if place in FOLDER and key.origin.startswith(FOLDER)]
         if not keys and host not in LOOPBACK:
@@ -169,7 +171,7 @@ def name_server(base_url: str, wanted: str | None, place: object) -> None:
     SERVERS.name(str(origin_of(base_url)))
 
 
-def stranger(base_url: str | None) -> str:
+def untrusted_source(base_url: str | None) -> str:
     """The file that names this server, where the user does not; empty where they do, or nobody does."""
     if not base_url:
         return ""
@@ -268,7 +270,7 @@ def _toml(path: Path) -> dict[str, Any]:
     return dict(table)
 
 
-def strangers() -> list[str]:
+def unknown_variables() -> list[str]:
     """Variables that look like settings of ours and are none, with the place where they stand."""
     known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS}
     places = (("the environment", os.environ), (DOTENV, _dotenv(Path(DOTENV))))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from roadgpt.chat.model import ChatSettings, Message, Spent, Usage
 from roadgpt.chat.prices import cost_of, price_of
-from roadgpt.chat.strict import plain
+from roadgpt.chat.strict_json import plain
 from roadgpt.errors import BudgetError
 
 LETTERS_PER_TOKEN = 4  # bytes of English and JSON; only guesses what is still to be counted by the server

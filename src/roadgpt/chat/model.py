@@ -5,7 +5,7 @@ from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, field_validator
 
-from roadgpt.chat.place import origin_of
+from roadgpt.chat.address import origin_of
 from roadgpt.provenance import SERVERS
 
 Api = Literal["chat", "responses"]
@@ -15,20 +15,20 @@ DECIMALS = 9  # of seconds and USD: a difference of sums is the same whatever ca
 Role = Literal["system", "user", "assistant"]
 
 
-class Frozen(BaseModel):
+class ChatValue(BaseModel):
     """A value: never changed, compared by content, read from and written to JSON."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)  # it may hold a key
 
 
-class Message(Frozen):
+class Message(ChatValue):
     """One turn of a conversation."""
 
     role: Role
     text: str
 
 
-class Usage(Frozen):
+class Usage(ChatValue):
     """Tokens, as the server counts them."""
 
     prompt: int = 0
@@ -43,7 +43,7 @@ class Usage(Frozen):
         return Usage(prompt=self.prompt + other.prompt, completion=self.completion + other.completion)
 
 
-class Reply(Frozen):
+class Reply(ChatValue):
     """What came of one question, all attempts at an answer together."""
 
     text: str
@@ -61,7 +61,7 @@ class Reply(Frozen):
     """Where the server keeps the conversation, with ``api="responses"``."""
 
 
-class Spent(Frozen):
+class Spent(ChatValue):
     """What a conversation has cost so far, questions that came to nothing included."""
 
     calls: int = 0
@@ -94,7 +94,7 @@ class Spent(Frozen):
         )
 
 
-class ChatSettings(Frozen):
+class ChatSettings(ChatValue):
     """Which language model is asked, and how; goes into run folders and never holds a key."""
 
     provider: str = "openai"

@@ -9,8 +9,8 @@ say ``--price``.
 import re
 from urllib.parse import urlsplit
 
+from roadgpt.chat.address import OPENAI
 from roadgpt.chat.model import ChatSettings, Usage, two_prices
-from roadgpt.chat.place import OPENAI
 
 TAKEN = "2026-11-20"
 PRICES: dict[str, tuple[float, float]] = {
@@ -47,7 +47,7 @@ DATED = re.compile(r"-\d{4}-\d{2}-\d{2}$")  # of a snapshot of a model
 SOLD_BY = ("api.openai.com", ".openai.azure.com")
 
 
-def is_sold(base_url: str | None) -> bool:
+def has_openai_prices(base_url: str | None) -> bool:
     """Does the server ask OpenAI's prices?"""
     host = urlsplit(base_url or OPENAI).hostname or ""
     return host.endswith(SOLD_BY)
@@ -57,7 +57,7 @@ def price_of(settings: ChatSettings, model: str = "") -> tuple[float, float] | N
     """USD per million tokens of prompt and completion; None: not known."""
     if settings.price is not None:
         return two_prices(settings.price)
-    if not is_sold(settings.base_url):
+    if not has_openai_prices(settings.base_url):
         return None
     for name in (model, settings.model or ""):
         found = PRICES.get(name) or PRICES.get(DATED.sub("", name))

@@ -5,10 +5,10 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from roadgpt.chat.flat import schema_of
+from roadgpt.chat.json_schema import schema_of
 from roadgpt.chat.meter import Account, occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
-from roadgpt.chat.store import Store
+from roadgpt.chat.store import ExchangeStore
 from roadgpt.errors import RefusedError, ReplyError, UnparsableError
 
 FAILURES = {kind.__name__: kind for kind in (RefusedError, UnparsableError, ReplyError)}
@@ -38,7 +38,7 @@ class Recorder:
     def __init__(self, settings: ChatSettings, live: Any) -> None:
         assert settings.record is not None
         self._settings, self._live = settings, live
-        self._store = Store(settings.record)
+        self._store = ExchangeStore(settings.record)
         self._account = Account(settings)
 
     @property

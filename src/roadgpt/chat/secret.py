@@ -23,7 +23,7 @@ class Key:
         return masked(self.value)
 
 
-NOBODY = Key("none", "nowhere")
+NO_KEY = Key("none", "nowhere")
 """For servers that want no key; the library insists on one."""
 
 
@@ -48,14 +48,14 @@ def usable(key: Key) -> Key:
     return Key(value, key.origin)
 
 
-def cleaned(value: Any, key: Key) -> Any:
+def redacted(value: Any, key: Key) -> Any:
     """A text, or all texts in lists and dictionaries, without the key and what looks like one."""
     if isinstance(value, str):
         if len(key.value) >= SHORTEST and key.value in value:
             value = value.replace(key.value, GONE)
         return LOOKS_LIKE_A_KEY.sub(GONE, value)
     if isinstance(value, dict):
-        return {cleaned(name, key): cleaned(item, key) for name, item in value.items()}
+        return {redacted(name, key): redacted(item, key) for name, item in value.items()}
     if isinstance(value, list):
-        return [cleaned(item, key) for item in value]
+        return [redacted(item, key) for item in value]
     return value

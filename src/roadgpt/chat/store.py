@@ -23,7 +23,7 @@ Turns = Counter[tuple[str, str, str]]
 """How often a question was kept or taken in this campaign, by its name and occasion."""
 
 
-class Store:
+class ExchangeStore:
     """A folder of exchanges."""
 
     def __init__(self, folder: str) -> None:

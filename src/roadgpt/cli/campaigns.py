@@ -168,7 +168,7 @@ def cell_columns(cell: "CellStatus") -> tuple[str, ...]:
 
 def one_line(text: str, most: int = 300) -> str:
     """A text of other people as it may stand in a line: no breaks, nothing that a terminal obeys, cut."""
-    from roadgpt.chat.strict import plain
+    from roadgpt.chat.strict_json import plain
 
     return plain(text, most)
 

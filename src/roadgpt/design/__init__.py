@@ -20,7 +20,7 @@ from typing import Protocol, cast
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
-from roadgpt.chat import ChatSettings, made, meant_for
+from roadgpt.chat import ChatSettings, instantiate, settings_for
 from roadgpt.road import Design, World
 
 
@@ -68,13 +68,13 @@ def draft(
 
 def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
     """The designer of that name."""
-    return _made(name, meant_for(plugins.find("designers", name), chat))
+    return _made(name, settings_for(plugins.find("designers", name), chat))
 
 
 @cache
 def _made(name: str, chat: ChatSettings | None) -> Designer:
     """The one designer of that name: it remembers the shapes of earlier designs."""
-    return cast(Designer, made(plugins.find("designers", name), chat))
+    return cast(Designer, instantiate(plugins.find("designers", name), chat))
 
 
 __all__ = ["Designer", "designer_of", "draft"]

@@ -9,8 +9,8 @@ from math import inf
 
 import numpy as np
 
+from roadgpt.brief.map_fit import longest_straight
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.room import longest_straight
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, inside, turn_rooms
 from roadgpt.design.heights import Windows

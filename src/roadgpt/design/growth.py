@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.brief.room import EDGE
 from roadgpt.brief.words import Range
 from roadgpt.design.compose import asked_length, gap_between
 from roadgpt.design.draw import TurnRoom, drawn_turn, longest_turn, turn_rooms

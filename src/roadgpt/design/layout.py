@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from roadgpt.brief.room import EDGE
+from roadgpt.brief.map_fit import EDGE
 from roadgpt.design.spans import Span
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World

@@ -6,9 +6,9 @@ from math import ceil, floor, log10
 from typing import NamedTuple
 
 from roadgpt.brief import NoRoomError
+from roadgpt.brief.map_fit import LARGEST_MAP, ROUND_MAP
+from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause
-from roadgpt.brief.need import least_length
-from roadgpt.brief.room import LARGEST_MAP, ROUND_MAP
 from roadgpt.road import World
 
 SIDES = 7.0  # of the map: roads so long were never drafted, so the search for the longest begins there

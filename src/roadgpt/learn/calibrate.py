@@ -9,9 +9,9 @@ import numpy.typing as npt
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.coverage import Coverage
-from roadgpt.brief.readers.model.looks import drafts, refusal
 from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.test_time_augmentation import refusal, scored_plans
 from roadgpt.brief.readers.model.vocabulary import REFUSALS
 from roadgpt.errors import BriefError
 from roadgpt.learn.generator import Pair
@@ -24,27 +24,27 @@ PULL = 0.01  # towards zero, so that few pairs do not make bold weights
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class Calibration:
     """What stands in ``settings.json``."""
 
     refuse_from: float
     confidence: dict[str, float]
 
 
-def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> Settings:
+def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> Calibration:
     """Settings fitted on pairs that the network was not trained on."""
     honest = [pair for pair in pairs if pair.plan not in REFUSALS]
     threshold = _threshold(network, honest)
     rows, rights = [], []
     for pair in honest:
-        draft = drafts(network, pair.text, refuse_from=2.0)[0]
+        draft = scored_plans(network, pair.text, refuse_from=2.0)[0]
         unused = len(coverage.unused(slotted(pair.text), draft.tokens))
         rows.append((1.0, *draft.features.values(), float(unused)))
         rights.append(_plan(draft.line) == _plan(pair.plan))
     fitted = _fitted(np.array(rows), np.array(rights, dtype=float))
     names = ("bias", *draft.features, "unused")
     weights = {name: round(float(value), 4) for name, value in zip(names, fitted, strict=True)}
-    return Settings(threshold, weights)
+    return Calibration(threshold, weights)
 
 
 def _threshold(network: Network, honest: Sequence[Pair]) -> float:

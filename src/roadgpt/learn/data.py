@@ -7,14 +7,14 @@ import numpy as np
 import numpy.typing as npt
 
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.slots import SLOTS, Slot, slot_name, slotted
+from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.sentence import sentence
+from roadgpt.learn.augmentation import augmented
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.held_out import is_held_out
-from roadgpt.learn.said_once import said_once
-from roadgpt.learn.variation import varied
+from roadgpt.learn.shared_values import with_shared_values
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
@@ -36,7 +36,7 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     With ``rng`` slots get numbers at random, so that all slot tokens are learnt alike.
     """
     taken = slotted(pair.text)
-    tokens = tokens_of(said_once(pair.plan, taken.slots), taken.slots)
+    tokens = tokens_of(with_shared_values(pair.plan, taken.slots), taken.slots)
     if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
         return None
     words = [word.text for word in taken.words]
@@ -47,7 +47,7 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
 
 
 def _reslotted(
-    words: list[str], tokens: list[str], slots: Sequence[Slot], rng: np.random.Generator
+    words: list[str], tokens: list[str], slots: Sequence[NumberSlot], rng: np.random.Generator
 ) -> tuple[list[str], list[str]]:
     """Slots renumbered, still in rising order."""
     chosen = np.sort(rng.permutation(SLOTS)[: len(slots)])
@@ -66,7 +66,7 @@ def examples(seed: int, hand: Sequence[Pair], hand_share: float, pieces: WordPie
     while True:
         if hand and rng.random() < hand_share:
             pair = hand[int(rng.integers(len(hand)))]
-            pair = _said_back(pair) if rng.random() < SAID_BACK else varied(pair, by_language, rng)
+            pair = _said_back(pair) if rng.random() < SAID_BACK else augmented(pair, by_language, rng)
         else:
             pair = next(generated)
         made = None if is_held_out(pair.text) else example(pair, pieces, rng)

@@ -19,9 +19,9 @@ from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.known_words import known_words
-from roadgpt.learn.network import Reader, Shape
-from roadgpt.learn.origin import NOTICE
-from roadgpt.learn.pieces import read_vocabulary
+from roadgpt.learn.network import NetworkSizes, ReaderNetwork
+from roadgpt.learn.piece_vocabulary import read_vocabulary
+from roadgpt.learn.pretrained import NOTICE
 
 OPSET = 17
 COUNTED = 20_000
@@ -31,7 +31,7 @@ COUNTED = 20_000
 class EncoderGraph(nn.Module):
     """Pieces (batch, n) -> keys and values of the description (layers, 2, batch, heads, n, size)."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: ReaderNetwork) -> None:
         super().__init__()
         self.reader = reader
 
@@ -49,7 +49,7 @@ class DecoderGraph(nn.Module):
     scores (batch, tokens), own with t + 1.
     """
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: ReaderNetwork) -> None:
         super().__init__()
         self.reader = reader
 
@@ -69,7 +69,7 @@ class DecoderGraph(nn.Module):
         return reader.scores(x)[:, 0], torch.stack(kept)
 
 
-def export(reader: Reader, folder: Path) -> None:
+def export(reader: ReaderNetwork, folder: Path) -> None:
     """Writes ``encoder.onnx`` and ``decoder.onnx``, weights in int8, into the folder."""
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
@@ -91,9 +91,9 @@ def export(reader: Reader, folder: Path) -> None:
 
 
 def _graphs(
-    reader: Reader,
+    reader: ReaderNetwork,
 ) -> Sequence[tuple[str, nn.Module, tuple[Tensor, ...], list[str], list[str], dict[str, dict[int, str]]]]:
-    shape: Shape = reader.shape
+    shape: NetworkSizes = reader.shape
     size = shape.width // shape.decoder_heads
     pieces = torch.ones((2, 9), dtype=torch.long)
     own = torch.zeros((shape.decoder_layers, 2, 2, shape.decoder_heads, 4, size))
@@ -129,7 +129,7 @@ def export_checkpoint(
     if not (checkpoint / "checkpoint.pt").exists():
         raise LearnError(f"there is no checkpoint.pt in {checkpoint}; train first")
     pieces = read_vocabulary(checkpoint / "pieces.txt")
-    reader = Reader(Shape(pieces=len(pieces), tokens=len(TOKENS)))
+    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS)))
     state = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)
     reader.load_state_dict(state["reader"])
     export(reader, folder)

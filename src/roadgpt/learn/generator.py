@@ -11,9 +11,9 @@ from roadgpt.errors import BriefError
 from roadgpt.learn.compositions import composed
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
 from roadgpt.learn.held_out import is_held_out
+from roadgpt.learn.negative_examples import contradicted, overdone
 from roadgpt.learn.noise import noisy, tidy
-from roadgpt.learn.refusing import contradicted, overdone
-from roadgpt.learn.sense import makes_sense
+from roadgpt.learn.plausibility import makes_sense
 from roadgpt.learn.standard import standard
 
 SPOILED = 0.045
@@ -47,10 +47,10 @@ def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair
         is_composed = code == "en" and rng.random() < COMPOSED
         pair = _composed(rng) if is_composed else draw(code, rng)
         if pair:
-            yield refused(pair, rng)
+            yield sometimes_spoiled(pair, rng)
 
 
-def refused(pair: Pair, rng: np.random.Generator) -> Pair:
+def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
     """Now and then the pair with a wish that spoils it; else the pair as it is."""
     way = rng.random()
     if way < SPOILED / 2:

@@ -39,7 +39,7 @@ class Discarded(Exception):  # noqa: N818 - no error: another throw of the dice 
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class Production:
     """One way to say a symbol."""
 
     text: str
@@ -51,7 +51,7 @@ class Grammar:
     """The rules of one language."""
 
     language: str
-    rules: Mapping[str, tuple[Rule, ...]]
+    rules: Mapping[str, tuple[Production, ...]]
     weights: Mapping[str, tuple[float, ...]]
     """Cumulative, for drawing."""
 
@@ -62,7 +62,7 @@ def read_grammar(text: str, language: str) -> Grammar:
     Raises:
         LearnError: a symbol that is used but has no rules.
     """
-    rules: dict[str, list[Rule]] = {}
+    rules: dict[str, list[Production]] = {}
     weights: dict[str, list[float]] = {}
     symbol = ""
     for line in text.splitlines():
@@ -79,7 +79,7 @@ def read_grammar(text: str, language: str) -> Grammar:
         said, arrow, plan = body.partition("=>")
         said = JOINT.sub(r" <\1> ", said)
         rules[symbol].append(
-            Rule(said.strip() if said.strip() != "-" else "", plan.strip() if arrow else None)
+            Production(said.strip() if said.strip() != "-" else "", plan.strip() if arrow else None)
         )
         weights[symbol].append(float(weighted[1]) if weighted else 1.0)
     for name, its in rules.items():

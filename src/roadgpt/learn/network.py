@@ -14,7 +14,7 @@ from torch.nn import functional
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class NetworkSizes:
     """Sizes of the network."""
 
     pieces: int = 30522
@@ -64,7 +64,7 @@ class Attention(nn.Module):
 class EncoderLayer(nn.Module):
     """A layer of BERT: norms after the sums."""
 
-    def __init__(self, shape: Shape, dropout: float) -> None:
+    def __init__(self, shape: NetworkSizes, dropout: float) -> None:
         super().__init__()
         self.attention = Attention(shape.width, shape.heads, dropout)
         self.norm = nn.LayerNorm(shape.width, eps=1e-12)
@@ -84,7 +84,7 @@ class EncoderLayer(nn.Module):
 class DecoderLayer(nn.Module):
     """Attention to what was written, then to the description; norms before."""
 
-    def __init__(self, shape: Shape, dropout: float) -> None:
+    def __init__(self, shape: NetworkSizes, dropout: float) -> None:
         super().__init__()
         self.own = Attention(shape.width, shape.decoder_heads, dropout)
         self.across = Attention(shape.width, shape.decoder_heads, dropout)
@@ -117,10 +117,10 @@ class DecoderLayer(nn.Module):
         return self.across.split(self.across.key(memory)), self.across.split(self.across.value(memory))
 
 
-class Reader(nn.Module):
+class ReaderNetwork(nn.Module):
     """Pieces of a description in, scores for the next token of its plan out."""
 
-    def __init__(self, shape: Shape, dropout: float = 0.1) -> None:
+    def __init__(self, shape: NetworkSizes, dropout: float = 0.1) -> None:
         super().__init__()
         self.shape = shape
         width = shape.width
@@ -170,7 +170,7 @@ class Reader(nn.Module):
         return self.write(tokens, self.encode(pieces, seen), seen)
 
 
-def load_minilm(reader: Reader, path: Path, pieces: Sequence[str]) -> None:
+def load_minilm(reader: ReaderNetwork, path: Path, pieces: Sequence[str]) -> None:
     """Fills the encoder with the pretrained weights of all-MiniLM-L6-v2 (safetensors).
 
     ``pieces`` may be a part of BERT's vocabulary, in any order; ``vocab.txt`` must lie beside the weights.
@@ -188,7 +188,7 @@ def load_minilm(reader: Reader, path: Path, pieces: Sequence[str]) -> None:
         _copy(weights, prefix, reader)
 
 
-def _copy(weights: Mapping[str, Tensor], prefix: str, reader: Reader) -> None:
+def _copy(weights: Mapping[str, Tensor], prefix: str, reader: ReaderNetwork) -> None:
     def get(name: str) -> Tensor:
         return weights[f"{prefix}{name}"]
 

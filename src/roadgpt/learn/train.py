@@ -15,9 +15,9 @@ from torch.nn import functional
 from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.learn.data import Numbers, batches, examples
-from roadgpt.learn.exported import exported_weights
 from roadgpt.learn.generator import Pair
-from roadgpt.learn.network import Reader, Shape, load_minilm
+from roadgpt.learn.network import NetworkSizes, ReaderNetwork, load_minilm
+from roadgpt.learn.onnx_weights import exported_weights
 
 POOL = 24  # batches that are sorted by length together
 SMOOTHING = 0.03
@@ -26,7 +26,7 @@ FROZEN = ("pieces", "places", "kind", "norm")
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class TrainingSettings:
     """How to train."""
 
     steps: int = 14_000
@@ -52,10 +52,10 @@ def train(
     pieces: Sequence[str],
     weights: Path | None,
     hand: Sequence[Pair],
-    plan: Plan,
+    plan: TrainingSettings,
     report: Callable[[str], None] = print,
     check: Callable[[], None] = lambda: None,
-) -> Reader:
+) -> ReaderNetwork:
     """Trains from where the folder's checkpoint stands, and leaves one there.
 
     Args:
@@ -71,7 +71,7 @@ def train(
     folder.mkdir(parents=True, exist_ok=True)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     torch.manual_seed(plan.seed)
-    reader = Reader(Shape(pieces=len(pieces), tokens=len(TOKENS)))
+    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS)))
     checkpoint = folder / "checkpoint.pt"
     state: dict[str, Any] = {}
     if checkpoint.exists():
@@ -107,7 +107,7 @@ def train(
     return reader
 
 
-def _optimiser(reader: nn.Module, plan: Plan) -> torch.optim.Optimizer:
+def _optimiser(reader: nn.Module, plan: TrainingSettings) -> torch.optim.Optimizer:
     own = ("tokens", "plan_places", "decoder", "final", "bias")
     groups: dict[bool, list[nn.Parameter]] = {True: [], False: []}
     for name, parameter in reader.named_parameters():
@@ -125,7 +125,7 @@ def _optimiser(reader: nn.Module, plan: Plan) -> torch.optim.Optimizer:
     )
 
 
-def _rate(step: int, plan: Plan) -> float:
+def _rate(step: int, plan: TrainingSettings) -> float:
     """Share of the full rate: up in a line, level, down along a cosine."""
     if step < plan.warm_up:
         return (step + 1) / plan.warm_up
@@ -134,7 +134,7 @@ def _rate(step: int, plan: Plan) -> float:
 
 
 def _step(
-    reader: Reader,
+    reader: ReaderNetwork,
     optimiser: torch.optim.Optimizer,
     batch: tuple[Numbers, Numbers],
     rate: float,
@@ -160,7 +160,12 @@ def _loss(scores: Tensor, wanted: Tensor) -> Tensor:
 
 
 def _note(
-    folder: Path, step: int, plan: Plan, losses: list[float], speed: float, report: Callable[[str], None]
+    folder: Path,
+    step: int,
+    plan: TrainingSettings,
+    losses: list[float],
+    speed: float,
+    report: Callable[[str], None],
 ) -> None:
     loss = sum(losses) / len(losses)
     with (folder / "losses.jsonl").open("a", encoding="utf-8") as file:
@@ -176,7 +181,11 @@ def _note(
 
 
 def average(
-    folder: Path, reader: nn.Module, plan: Plan, step: int, check: Callable[[], None] = lambda: None
+    folder: Path,
+    reader: nn.Module,
+    plan: TrainingSettings,
+    step: int,
+    check: Callable[[], None] = lambda: None,
 ) -> None:
     """Waits for the weights of all workers at this step, and goes on with their mean."""
     own = folder / f"weights-{step}-{plan.rank}.pt"

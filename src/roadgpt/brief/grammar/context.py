@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from roadgpt.brief.grammar.quantities import Item
+from roadgpt.brief.grammar.quantities import Term
 
 SKIPPED = frozenset({"-", "a", "the", "too", "hyphen"})
 SIDES = frozenset({"left", "right"})
@@ -45,9 +45,9 @@ LANES = frozenset({"lane", "lanes"})
 BEFORE_A_VERB = frozenset({"", "that", "road", "and", "then", ",", "stop", "first_of_all", "start", "end"})
 
 
-def settle(items: Sequence[Item]) -> list[Item]:
+def settle(items: Sequence[Term]) -> list[Term]:
     """The same items, each with one meaning left."""
-    out = list[Item]()
+    out = list[Term]()
     at = 0
     while at < len(items):
         size, name = _sides(items, at)
@@ -63,7 +63,7 @@ def settle(items: Sequence[Item]) -> list[Item]:
     return out
 
 
-def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str) -> str:
+def _settled(items: Sequence[Term], at: int, item: Term, before: str, after: str) -> str:
     match item.name:
         case "hard":
             return "sharp" if after in TURNING | SIDES | {"sharp"} else "hard_road"
@@ -102,7 +102,7 @@ def _settled(items: Sequence[Item], at: int, item: Item, before: str, after: str
             return item.name
 
 
-def _hill(items: Sequence[Item], at: int, before: str) -> str:
+def _hill(items: Sequence[Term], at: int, before: str) -> str:
     """'a steep hill' is a climb, 'up a hill' says no more than 'up', any other hill is a crest."""
     if before in ("steep", "mild"):
         return "up~" if _name(items, at, -1, {"steep", "mild"}) not in SLOPING else "-"
@@ -110,7 +110,7 @@ def _hill(items: Sequence[Item], at: int, before: str) -> str:
     return "-" if near & SLOPING else "crest"
 
 
-def _is_beyond(items: Sequence[Item], at: int, before: str, after: str) -> bool:
+def _is_beyond(items: Sequence[Term], at: int, before: str, after: str) -> bool:
     """What no Brief can hold: 'a left turn at 50 m', 'total turning of 300 degrees', '3 lanes'."""
     item = items[at]
     match item.name:
@@ -126,7 +126,7 @@ def _is_beyond(items: Sequence[Item], at: int, before: str, after: str) -> bool:
             return item.amount is None  # a unit without a number; 'total turning'
 
 
-def _gentle(items: Sequence[Item], at: int, item: Item, before: str, after: str) -> str:
+def _gentle(items: Sequence[Term], at: int, item: Term, before: str, after: str) -> str:
     adverb = item.text.endswith("ly")
     if after in CLIMBING | {"hill"} or (adverb and after in SLOPING):
         return "mild"
@@ -135,7 +135,7 @@ def _gentle(items: Sequence[Item], at: int, item: Item, before: str, after: str)
     return "mild" if before in SLOPING and after not in TURNING | SIDES else "gentle"
 
 
-def _noun_or_verb(items: Sequence[Item], at: int, item: Item, before: str) -> str:
+def _noun_or_verb(items: Sequence[Term], at: int, item: Term, before: str) -> str:
     """'the road turns left' has one turn, 'a road with left turns' several."""
     verb = item.name.removesuffix("+") + "~"
     if item.name == "crest+":
@@ -146,7 +146,7 @@ def _noun_or_verb(items: Sequence[Item], at: int, item: Item, before: str) -> st
     return verb if before in ("that", "road") else item.name
 
 
-def _sides(items: Sequence[Item], at: int) -> tuple[int, str]:
+def _sides(items: Sequence[Term], at: int) -> tuple[int, str]:
     """'left and right' as one meaning, where it is: 'left and right turns', 'alternating left and right'."""
     if items[at].name not in SIDES:
         return 0, ""
@@ -173,12 +173,12 @@ def _sides(items: Sequence[Item], at: int) -> tuple[int, str]:
     return 0, ""
 
 
-def _whole_of(items: Sequence[Item], at: int, joint: int) -> bool:
+def _whole_of(items: Sequence[Term], at: int, joint: int) -> bool:
     """'turns to both left and right'."""
     return at > 0 and items[at - 1].name == "both"
 
 
-def _at(items: Sequence[Item], at: int) -> int:
+def _at(items: Sequence[Term], at: int) -> int:
     """Where the next item that is not skipped stands."""
     at += 1
     while at < len(items) - 1 and items[at].name in SKIPPED:
@@ -186,7 +186,7 @@ def _at(items: Sequence[Item], at: int) -> int:
     return min(at, len(items) - 1)
 
 
-def _name(items: Sequence[Item], at: int, step: int, also: Collection[str] = ()) -> str:
+def _name(items: Sequence[Term], at: int, step: int, also: Collection[str] = ()) -> str:
     """The next name that is not skipped, '' at the ends."""
     at += step
     while 0 <= at < len(items) and (items[at].name in SKIPPED or items[at].name in also):

@@ -1,7 +1,7 @@
 """English vocabulary, first half: things along the road, sides, shapes and slopes.
 
 A key names one meaning or several in a row; its phrases are separated by '|'. Accents, case and hyphens do
-not matter. '+' marks a plural, '~' a verb, '#' a number; the meanings are worked out in ``takes.py``. Where a
+not matter. '+' marks a plural, '~' a verb, '#' a number; the meanings are worked out in ``handlers.py``. Where a
 phrase stands under two keys the first one counts, save for bounds, which need a number beside them.
 """
 

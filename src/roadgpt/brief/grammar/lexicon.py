@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
 
-from roadgpt.brief.grammar.beyond import BEYOND
 from roadgpt.brief.grammar.english import ROAD_WORDS
-from roadgpt.brief.grammar.english_frame import FRAME_WORDS
+from roadgpt.brief.grammar.english_function_words import FUNCTION_WORDS
 from roadgpt.brief.grammar.german import GERMAN
 from roadgpt.brief.grammar.romance import ROMANCE
 from roadgpt.brief.grammar.tokens import Token, tokens
+from roadgpt.brief.grammar.unsupported_words import UNSUPPORTED_WORDS
 
 ALIKE = 0.75
 """Share of letters in common from which a word may be another one mistyped."""
@@ -62,7 +62,7 @@ class Lexicon:
 @cache
 def lexicon() -> Lexicon:
     """All vocabularies; what no Brief can hold first, then English."""
-    return Lexicon.of((BEYOND, ROAD_WORDS, FRAME_WORDS, GERMAN, ROMANCE))
+    return Lexicon.of((UNSUPPORTED_WORDS, ROAD_WORDS, FUNCTION_WORDS, GERMAN, ROMANCE))
 
 
 def lex(found: Sequence[Token]) -> list[Lexeme]:

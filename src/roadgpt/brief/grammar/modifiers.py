@@ -2,18 +2,18 @@
 
 from dataclasses import replace
 
-from roadgpt.brief.grammar.ahead import as_one_turn
+from roadgpt.brief.grammar.driving_order import DrivingOrder, plural, turns
 from roadgpt.brief.grammar.phrase import Phrase
+from roadgpt.brief.grammar.reordering import as_one_turn
 from roadgpt.brief.grammar.slopes import slope_of
-from roadgpt.brief.grammar.units import Units, plural, turns
 from roadgpt.brief.model import Amount, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.errors import BriefError
 
 
-def modify(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
+def modify(order: DrivingOrder, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
     """A phrase that names no thing: it tells more about the one before, or about the road."""
-    last, turn, wishes = units.last, units.last_turn, units.wishes
+    last, turn, wishes = order.last, order.last_turn, order.wishes
     used = (
         phrase.height is not None
         or phrase.hilly
@@ -25,19 +25,19 @@ def modify(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | 
         or phrase.changes
         or phrase.free_turns
     )
-    if as_one_turn(units, phrase):
+    if as_one_turn(order, phrase):
         return True
     if phrase.in_between and phrase.length and turn is not None:
-        units.add(replace(phrase, kind="straight"), leading=False)
+        order.add(replace(phrase, kind="straight"), leading=False)
         return True
     if phrase.same_hand and turn is not None:
         turn.side, used = turn.side or "left", True
     if phrase.series and turn is not None:
         turn.series = phrase.series
     if phrase.length is not None:
-        used |= _length(units, phrase, before, after)
+        used |= _length(order, phrase, before, after)
     if phrase.incline is not None or (phrase.slope_noun and (phrase.steep or phrase.mild)):
-        used |= _incline(units, phrase, before)
+        used |= _incline(order, phrase, before)
     on_turn = turn is not None and (before is turn or phrase.joint in ("with", "", "(", ","))
     for name in ("degrees", "radius", "sharpness"):
         value = getattr(phrase, name)
@@ -57,25 +57,25 @@ def modify(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | 
         turn.count, used = phrase.count, True
     if phrase.count and turn is not None and turn.count and not (turn.count.exact and phrase.count.exact):
         turn.count, used = _both(turn.count, phrase.count), True
-    if (phrase.times or phrase.repeat) and units.things:
-        _repeat(units, phrase)
+    if (phrase.times or phrase.repeat) and order.things:
+        _repeat(order, phrase)
         used = True
     if phrase.again and last is not None and last.kind and phrase.joint in ("then", "and"):
-        units.things.append(replace(last, joint="then", count=phrase.count))
+        order.things.append(replace(last, joint="then", count=phrase.count))
         used = True
     return used or phrase.steep or phrase.only or not (phrase.count or phrase.length or phrase.degrees)
 
 
-def _length(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
-    last, wishes = units.last, units.wishes
+def _length(order: DrivingOrder, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
+    last, wishes = order.last, order.wishes
     leads = phrase.joint in ("after", "then") or (
         phrase.fresh and after is not None and after.joint == "then"
     )
     if phrase.joint == "after" and not phrase.fresh and turns(last or phrase):
-        units.things.insert(-1, replace(phrase, kind="straight"))
+        order.things.insert(-1, replace(phrase, kind="straight"))
         return True
     if leads and not phrase.length_said:
-        units.things.append(replace(phrase, kind="straight", joint="then"))
+        order.things.append(replace(phrase, kind="straight", joint="then"))
         return True
     on_thing = last is not None and last is before and not phrase.total and last.length is None
     if on_thing and last is not None and _has_a_length(last, phrase):
@@ -87,8 +87,8 @@ def _length(units: Units, phrase: Phrase, before: Phrase | None, after: Phrase |
     return False
 
 
-def _incline(units: Units, phrase: Phrase, before: Phrase | None) -> bool:
-    last, wishes = units.last, units.wishes
+def _incline(order: DrivingOrder, phrase: Phrase, before: Phrase | None) -> bool:
+    last, wishes = order.last, order.wishes
     if last is not None and before is last:
         last.incline = last.incline or phrase.incline
         last.slope = last.slope or ("" if wishes.slope else "up")
@@ -115,18 +115,18 @@ def _both(one: Amount, other: Amount) -> Amount:
     return Amount(lo=low, hi=high)
 
 
-def _repeat(units: Units, phrase: Phrase) -> None:
+def _repeat(order: DrivingOrder, phrase: Phrase) -> None:
     times = phrase.times or phrase.count or exactly(2)
     number = int(times.lo or times.hi or 2)
-    if number * len(units.things) > 100:
+    if number * len(order.things) > 100:
         raise BriefError("so many repetitions fit on no map; ask for fewer")
-    last = units.last
-    if len(units.things) == 1 and last is not None and last.count is None and turns(last):
+    last = order.last
+    if len(order.things) == 1 and last is not None and last.count is None and turns(last):
         last.count = exactly(number)
         return
-    once = list(units.things)
+    once = list(order.things)
     for _ in range(number - 1):
-        units.things += [replace(thing, joint="then") for thing in once]
+        order.things += [replace(thing, joint="then") for thing in once]
 
 
 def _has_a_length(thing: Phrase, phrase: Phrase) -> bool:

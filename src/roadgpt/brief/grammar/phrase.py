@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from roadgpt.brief.grammar.quantities import Item
+from roadgpt.brief.grammar.quantities import Term
 from roadgpt.brief.model import Amount, Kind, Sharpness, Side, Size
 from roadgpt.brief.normal import STRAIGHT
 
@@ -95,10 +95,10 @@ class Phrase:
     mountain: bool = False
     highway: bool = False
     loop: bool = False
-    items: list[Item] = field(default_factory=list)
-    exception: list[Item] = field(default_factory=list)
+    items: list[Term] = field(default_factory=list)
+    exception: list[Term] = field(default_factory=list)
     """The word 'except', where the phrase stands behind it."""
-    ignored: list[Item] = field(default_factory=list)
+    ignored: list[Term] = field(default_factory=list)
 
     @property
     def turning(self) -> bool:

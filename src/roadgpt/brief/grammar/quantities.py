@@ -24,7 +24,7 @@ LOOK_BACK = 3  # items between a bound and its number: 'a minimum radius of 20 m
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class Term:
     """A meaning; or a quantity: then ``amount`` is set, and ``name`` is 'count' or its unit."""
 
     name: str
@@ -48,30 +48,30 @@ class _Read:
     exact: bool = True
 
 
-def quantities(lexemes: Sequence[Lexeme]) -> list[Item]:
+def quantities(lexemes: Sequence[Lexeme]) -> list[Term]:
     """The same description with its numbers put together."""
-    out, at = list[Item](), 0
+    out, at = list[Term](), 0
     while at < len(lexemes):
         lexeme = lexemes[at]
         if lexeme.name == "1:n":
-            out.append(Item("%", lexeme.start, lexeme.stop, amount=_amount(lexeme.value, lexeme.value)))
+            out.append(Term("%", lexeme.start, lexeme.stop, amount=_amount(lexeme.value, lexeme.value)))
             at += 1
         elif lexeme.name.startswith("#"):
             at = _quantity(lexemes, at, out)
         else:
-            out.append(Item(lexeme.name, lexeme.start, lexeme.stop, lexeme.text))
+            out.append(Term(lexeme.name, lexeme.start, lexeme.stop, lexeme.text))
             at += 1
     return _bounded(out)
 
 
-def _quantity(lexemes: Sequence[Lexeme], at: int, out: list[Item]) -> int:
+def _quantity(lexemes: Sequence[Lexeme], at: int, out: list[Term]) -> int:
     read = _number(lexemes, at)
     if (listed := _series(lexemes, at)) is not None:
         out.append(listed[0])
         return listed[1]
     if (slope := _one_in(lexemes, read)) is not None:
         out.append(
-            Item("%", lexemes[at].start, lexemes[slope[1] - 1].stop, amount=_amount(slope[0], slope[0]))
+            Term("%", lexemes[at].start, lexemes[slope[1] - 1].stop, amount=_amount(slope[0], slope[0]))
         )
         return slope[1]
     unit, stop = _unit(lexemes, read.stop)
@@ -83,12 +83,12 @@ def _quantity(lexemes: Sequence[Lexeme], at: int, out: list[Item]) -> int:
         read = replace(second, lo=low, hi=high)
     name, factor = UNITS[unit] if unit else ("count", 1.0)
     lo, hi = (None if x is None else x * factor for x in (read.lo, read.hi))
-    item = Item(name, lexemes[at].start, lexemes[stop - 1].stop, "#", _amount(lo, hi), read.exact)
+    item = Term(name, lexemes[at].start, lexemes[stop - 1].stop, "#", _amount(lo, hi), read.exact)
     out.append(item)
     return stop
 
 
-def _series(lexemes: Sequence[Lexeme], at: int) -> tuple[Item, int] | None:
+def _series(lexemes: Sequence[Lexeme], at: int) -> tuple[Term, int] | None:
     """A list of numbers with one unit behind the last: '45, 60 and 90 degrees'."""
     numbers, stop, joint = list[float](), at, ""
     while stop < len(lexemes) and lexemes[stop].name.startswith("#"):
@@ -104,7 +104,7 @@ def _series(lexemes: Sequence[Lexeme], at: int) -> tuple[Item, int] | None:
     unit, stop = _unit(lexemes, stop)
     if joint or len(numbers) < 2 or unit not in ("deg", "m") or _is_between(lexemes, at):
         return None
-    item = Item(unit, lexemes[at].start, lexemes[stop - 1].stop, "#", _amount(numbers[0], numbers[0]))
+    item = Term(unit, lexemes[at].start, lexemes[stop - 1].stop, "#", _amount(numbers[0], numbers[0]))
     return replace(item, series=tuple(numbers)), stop
 
 
@@ -187,10 +187,10 @@ def _second(lexemes: Sequence[Lexeme], at: int, first: _Read) -> _Read | None:
     return None
 
 
-def _bounded(items: list[Item]) -> list[Item]:
+def _bounded(items: list[Term]) -> list[Term]:
     """Bounds put into the amounts beside them, and left out themselves."""
-    out = list[Item]()
-    waiting: Item | None = None
+    out = list[Term]()
+    waiting: Term | None = None
     for at, item in enumerate(items):
         if item.amount is not None:
             if waiting is not None and not (waiting.text == "over" and _passed(items, at, out)):
@@ -206,7 +206,7 @@ def _bounded(items: list[Item]) -> list[Item]:
                 _bound_behind(out, waiting)
                 waiting = None
             if waiting is not None and item.name == "a":  # 'at least a left turn'
-                out.append(_with(Item("count", item.start, item.stop, "#", _amount(1, 1)), waiting.name))
+                out.append(_with(Term("count", item.start, item.stop, "#", _amount(1, 1)), waiting.name))
                 waiting = None
             else:
                 out.append(item)
@@ -215,20 +215,20 @@ def _bounded(items: list[Item]) -> list[Item]:
     return out
 
 
-def _passed(items: list[Item], at: int, out: list[Item]) -> bool:
+def _passed(items: list[Term], at: int, out: list[Term]) -> bool:
     """'climbs 10 m over 200 m', 'over three crests': a way, and no bound."""
     if at + 1 < len(items) and items[at + 1].name in ("crest", "crest+", "hill", "hilly"):
         return True
     return any(item.amount is not None for item in out[-LOOK_BACK - 1 :])
 
 
-def _without_between(out: list[Item], item: Item) -> Item:
+def _without_between(out: list[Term], item: Term) -> Term:
     if out and out[-1].name == "between" and item.amount and not item.amount.exact:
         out.pop()
     return item
 
 
-def _with_other_bound(out: list[Item], item: Item) -> Item:
+def _with_other_bound(out: list[Term], item: Term) -> Term:
     """'at least 4 and at most 6 turns': one range, whose first bound is taken out."""
     first = out[-2] if len(out) > 1 and out[-1].name in ("and", ",") else None
     if first is None or first.amount is None or item.amount is None or first.name not in ("count", item.name):
@@ -240,7 +240,7 @@ def _with_other_bound(out: list[Item], item: Item) -> Item:
     return replace(item, start=first.start, amount=Amount(lo=low, hi=high))
 
 
-def _bound_behind(out: list[Item], bound: Item) -> None:
+def _bound_behind(out: list[Term], bound: Term) -> None:
     """'3 turns minimum': the bound stands behind its number."""
     for at in range(len(out) - 1, max(len(out) - 1 - LOOK_BACK, -1), -1):
         if out[at].amount is not None:
@@ -248,7 +248,7 @@ def _bound_behind(out: list[Item], bound: Item) -> None:
             return
 
 
-def _with(item: Item, bound: str) -> Item:
+def _with(item: Term, bound: str) -> Term:
     """The item with 'at least' and the like applied; whole numbers step over the number that was said."""
     amount = item.amount
     number = amount.lo if amount and amount.lo is not None else amount.hi if amount else None

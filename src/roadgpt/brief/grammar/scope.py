@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
+from roadgpt.brief.grammar.driving_order import DrivingOrder, how_many, plural, turns
 from roadgpt.brief.grammar.phrase import Phrase
 from roadgpt.brief.grammar.slopes import slope_of
-from roadgpt.brief.grammar.units import Units, how_many, plural, turns
 from roadgpt.brief.model import Amount, at_least, at_most, between, exactly
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
@@ -12,47 +12,47 @@ from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
 ATTRIBUTES = ("side", "sharpness", "degrees", "radius", "incline")
 
 
-def select(units: Units, phrase: Phrase, after: Phrase | None) -> bool:
+def select(order: DrivingOrder, phrase: Phrase, after: Phrase | None) -> bool:
     """Gives what the phrase says to the things that it points to."""
     if phrase.pick is not None:
-        return _pick(units, phrase)
+        return _pick(order, phrase)
     if (phrase.kind in STRAIGHT and phrase.scope == "each") or (
         phrase.scope and phrase.turning and _said_nothing(phrase) and after and after.kind in STRAIGHT
     ):
         if after is not None and after.kind in STRAIGHT:  # 'each turn followed by a straight'
             after.in_between = True
         return True
-    if phrase.count and phrase.kind and units.last_turn is None:  # 'all 3 turns to the left'
-        units.things.append(replace(phrase, scope=""))
+    if phrase.count and phrase.kind and order.last_turn is None:  # 'all 3 turns to the left'
+        order.things.append(replace(phrase, scope=""))
         return True
-    targets = _targets(units, phrase)
-    if not targets and phrase.scope == "rest" and units.things:
-        return _rest(units, phrase)
+    targets = _targets(order, phrase)
+    if not targets and phrase.scope == "rest" and order.things:
+        return _rest(order, phrase)
     if not targets:
-        return _wish(units, phrase)
+        return _wish(order, phrase)
     if (
         phrase.slope
         and not phrase.turning
         and phrase.scope == "all"
-        and not any(t.slope for t in units.things)
+        and not any(t.slope for t in order.things)
     ):
-        units.wishes.slope, units.wishes.incline = slope_of(phrase), phrase.incline
+        order.wishes.slope, order.wishes.incline = slope_of(phrase), phrase.incline
         phrase.slope, phrase.incline = "", None
     if phrase.alternating and len(targets) > 1:
-        units.wishes.alternating, phrase.alternating = True, False
+        order.wishes.alternating, phrase.alternating = True, False
     for thing in targets:
         give(thing, phrase)
     return True
 
 
-def _rest(units: Units, phrase: Phrase) -> bool:
+def _rest(order: DrivingOrder, phrase: Phrase) -> bool:
     """'the first two turns are left, the others right', 'the first 100 m are flat, the rest is uphill'."""
     if turns(phrase) or phrase.sharpness or phrase.degrees or phrase.radius:
         phrase.kind, phrase.count, phrase.joint = phrase.kind or "turn", None, "then"
-        units.things.append(phrase)
+        order.things.append(phrase)
         return True
     if phrase.slope:
-        units.things.append(replace(phrase, scope="", joint="then"))
+        order.things.append(replace(phrase, scope="", joint="then"))
     return phrase.slope != ""
 
 
@@ -62,17 +62,17 @@ def _said_nothing(phrase: Phrase) -> bool:
     )
 
 
-def _targets(units: Units, phrase: Phrase) -> list[Phrase]:
+def _targets(order: DrivingOrder, phrase: Phrase) -> list[Phrase]:
     if phrase.scope == "both":
-        last = units.last_turn
+        last = order.last_turn
         if last is not None and how_many(last) == 2:
             return [last]
-        return [thing for thing in units.things if turns(thing)][-2:]
+        return [thing for thing in order.things if turns(thing)][-2:]
     if phrase.scope == "rest":
-        units.expand()
+        order.expand()
         wanted = [name for name in (*ATTRIBUTES, "slope") if getattr(phrase, name)]
-        return [t for t in units.things if turns(t) and not any(getattr(t, name) for name in wanted)]
-    return [thing for thing in units.things if turns(thing)]
+        return [t for t in order.things if turns(t) and not any(getattr(t, name) for name in wanted)]
+    return [thing for thing in order.things if turns(thing)]
 
 
 def give(thing: Phrase, phrase: Phrase) -> None:
@@ -95,9 +95,9 @@ def give(thing: Phrase, phrase: Phrase) -> None:
         )
 
 
-def _wish(units: Units, phrase: Phrase) -> bool:
+def _wish(order: DrivingOrder, phrase: Phrase) -> bool:
     """'every bend is sharp', where no bend was named: a wish for the road."""
-    wishes = units.wishes
+    wishes = order.wishes
     for name in ("sharpness", "degrees", "radius"):
         if getattr(phrase, name) is not None:
             setattr(wishes, name, getattr(phrase, name))
@@ -107,36 +107,36 @@ def _wish(units: Units, phrase: Phrase) -> bool:
         wishes.slope, wishes.incline = slope_of(phrase), phrase.incline
     wishes.alternating |= phrase.alternating
     if phrase.turning and phrase.kind != "turn":
-        units.things.append(replace(phrase, scope=""))
+        order.things.append(replace(phrase, scope=""))
     return True
 
 
-def _pick(units: Units, phrase: Phrase) -> bool:
+def _pick(order: DrivingOrder, phrase: Phrase) -> bool:
     """'the first two uphill', 'the last is a hairpin'; with nothing to pick from, it is a thing itself."""
     first, number = phrase.pick or (0, 1)
-    units.expand()
-    places = [at for at, thing in enumerate(units.things) if turns(thing) and thing.pick is None]
+    order.expand()
+    places = [at for at, thing in enumerate(order.things) if turns(thing) and thing.pick is None]
     if phrase.kind in STRAIGHT:
-        places = [at for at, thing in enumerate(units.things) if thing.kind in STRAIGHT]
+        places = [at for at, thing in enumerate(order.things) if thing.kind in STRAIGHT]
     picked = places[first : first + number] if first >= 0 else places[first:][:number]
-    if any(plural(units.things[at]) for at in picked):
+    if any(plural(order.things[at]) for at in picked):
         return False  # of turns that alternate among others, none can be told apart
     if not picked:
         kind = phrase.kind or ("turn" if phrase.side or phrase.sharpness or phrase.degrees else None)
         if kind is None:
             return False
         count = exactly(number) if number > 1 else None
-        units.things.append(replace(phrase, kind=kind, count=count, joint="then"))
+        order.things.append(replace(phrase, kind=kind, count=count, joint="then"))
         return True
     for at in picked:
-        give(units.things[at], phrase)
+        give(order.things[at], phrase)
     return True
 
 
-def halve(units: Units, phrase: Phrase) -> bool:
+def halve(order: DrivingOrder, phrase: Phrase) -> bool:
     """'the first half uphill': the slope goes to that half of the turns; False where none is named."""
-    units.expand()
-    turning = [thing for thing in units.things if turns(thing)]
+    order.expand()
+    turning = [thing for thing in order.things if turns(thing)]
     if not turning:
         return False
     middle = (len(turning) + 1) // 2
@@ -145,9 +145,9 @@ def halve(units: Units, phrase: Phrase) -> bool:
     return True
 
 
-def take_some(units: Units, phrase: Phrase) -> bool:
+def take_some(order: DrivingOrder, phrase: Phrase) -> bool:
     """'two of them to the left', 'one of which is a hairpin'."""
-    whole = units.last_turn
+    whole = order.last_turn
     if whole is None:
         return False
     if phrase.count and _said_nothing(phrase) and phrase.kind is None:  # 'sharp turns, 5 of them'
@@ -159,12 +159,12 @@ def take_some(units: Units, phrase: Phrase) -> bool:
         and phrase.side
         and not (phrase.sharpness or phrase.degrees or phrase.slope)
     ):
-        setattr(units.wishes, phrase.side, amount)
+        setattr(order.wishes, phrase.side, amount)
         return True
-    units.expand()
+    order.expand()
     number = how_many(replace(phrase, count=amount))
     plain = [
-        thing for thing in units.things if turns(thing) and thing.kind == whole.kind and not thing.of_them
+        thing for thing in order.things if turns(thing) and thing.kind == whole.kind and not thing.of_them
     ]
     for thing in plain[len(plain) - number :] if number else []:
         give(thing, phrase)
@@ -172,9 +172,9 @@ def take_some(units: Units, phrase: Phrase) -> bool:
     return True
 
 
-def negate(units: Units, phrase: Phrase) -> bool:
+def negate(order: DrivingOrder, phrase: Phrase) -> bool:
     """'no left turns', 'not steep', 'without hairpins'; False where a Brief cannot say it."""
-    wishes = units.wishes
+    wishes = order.wishes
     if phrase.hilly or phrase.slope_noun:
         wishes.slope = wishes.slope or "flat"
     elif phrase.mountain or phrase.hard or phrase.highway:
@@ -188,16 +188,16 @@ def negate(units: Units, phrase: Phrase) -> bool:
     elif phrase.side:
         setattr(wishes, phrase.side, exactly(0))
     elif phrase.sharpness or phrase.degrees or phrase.radius:
-        _negate_shape(units, phrase)
+        _negate_shape(order, phrase)
     elif phrase.kind is not None:
-        return _negate_kind(units, phrase)
+        return _negate_kind(order, phrase)
     else:
         return False
     return True
 
 
-def _negate_shape(units: Units, phrase: Phrase) -> None:
-    target = units.last_turn if phrase.kind is None and units.last_turn is not None else units.wishes
+def _negate_shape(order: DrivingOrder, phrase: Phrase) -> None:
+    target = order.last_turn if phrase.kind is None and order.last_turn is not None else order.wishes
     if phrase.degrees:
         target.degrees = _other_side(phrase.degrees)
     elif phrase.radius:
@@ -215,8 +215,8 @@ def _other_side(amount: Amount) -> Amount:
     return at_most(amount.lo if amount.lo is not None else 0)
 
 
-def _negate_kind(units: Units, phrase: Phrase) -> bool:
-    wishes, kind = units.wishes, phrase.kind
+def _negate_kind(order: DrivingOrder, phrase: Phrase) -> bool:
+    wishes, kind = order.wishes, phrase.kind
     if kind == "turn":
         wishes.turns = exactly(0)
     elif kind == "winding":

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
+from roadgpt.brief.grammar.driving_order import DrivingOrder, RoadWishes, how_many, turns
 from roadgpt.brief.grammar.phrase import WAVY, Phrase
-from roadgpt.brief.grammar.units import Units, Wishes, how_many, turns
 from roadgpt.brief.model import Slope, exactly
 from roadgpt.brief.normal import SINGLE, STRAIGHT
 from roadgpt.errors import BriefError
@@ -32,26 +32,26 @@ def slope_of(phrase: Phrase) -> Slope | None:
     return _WORDS[phrase.slope, manner]
 
 
-def settle_slopes(units: Units) -> None:
+def settle_slopes(order: DrivingOrder) -> None:
     """Gives every slope that was said alone to its things, or to the road, or makes it a straight."""
-    alone = [thing for thing in units.things if _alone(thing)]
-    if alone and not _shared_out(units, alone):
-        only = len({_said(thing) for thing in units.things if thing.slope}) == 1 and not _rises_and_falls(
-            units
+    alone = [thing for thing in order.things if _alone(thing)]
+    if alone and not _shared_out(order, alone):
+        only = len({_said(thing) for thing in order.things if thing.slope}) == 1 and not _rises_and_falls(
+            order
         )
-        if only and _of_the_road(units, alone):
-            _to_the_road(units, alone)
+        if only and _of_the_road(order, alone):
+            _to_the_road(order, alone)
         else:
-            _along_the_road(units, only)
+            _along_the_road(order, only)
 
 
-def _shared_out(units: Units, alone: list[Phrase]) -> bool:
+def _shared_out(order: DrivingOrder, alone: list[Phrase]) -> bool:
     """'3 turns, first uphill, then downhill': each slope gets its share of the turns."""
-    things = [thing for thing in units.things if not _alone(thing)]
+    things = [thing for thing in order.things if not _alone(thing)]
     if len(alone) < 2 or len(things) != 1 or not turns(things[0]) or things[0].slope:
         return False
-    turn, first = things[0], units.things[0] is things[0]
-    if (not first and (units.things[-1] is not turn or turn.joint != "with")) or any(a.length for a in alone):
+    turn, first = things[0], order.things[0] is things[0]
+    if (not first and (order.things[-1] is not turn or turn.joint != "with")) or any(a.length for a in alone):
         return False
     if turn.alternating or (turn.count and not turn.count.exact) or turn.kind not in SINGLE:
         return False
@@ -63,7 +63,7 @@ def _shared_out(units: Units, alone: list[Phrase]) -> bool:
         part = replace(turn, count=exactly(share), joint="then" if at else turn.joint)
         _give(part, slope, with_number=True)
         out.append(part)
-    units.things = out
+    order.things = out
     return True
 
 
@@ -75,13 +75,13 @@ def _said(thing: Phrase) -> tuple[str, bool]:
     return thing.slope, thing.nearly
 
 
-def _rises_and_falls(units: Units) -> bool:
-    return any(thing.kind in ("crest", "dip") for thing in units.things)
+def _rises_and_falls(order: DrivingOrder) -> bool:
+    return any(thing.kind in ("crest", "dip") for thing in order.things)
 
 
-def _of_the_road(units: Units, alone: list[Phrase]) -> bool:
+def _of_the_road(order: DrivingOrder, alone: list[Phrase]) -> bool:
     """One slope only, and not as one leg of several: 'climbing, with 3 turns', '3 turns, uphill'."""
-    slope, things = alone[0], units.things
+    slope, things = alone[0], order.things
     if len(alone) > 1 or slope.joint in ("start", "end") or slope.place:
         return False
     at = next(i for i, thing in enumerate(things) if thing is slope)
@@ -107,16 +107,16 @@ def _of_the_road(units: Units, alone: list[Phrase]) -> bool:
     return (slope.after_road or follows.joint in ("with", ",", "stop")) and follows.joint not in ONE_LEG
 
 
-def _to_the_road(units: Units, alone: list[Phrase]) -> None:
-    slope, wishes = alone[0], units.wishes
-    units.things = [thing for thing in units.things if thing is not slope]
-    for thing in units.things:
+def _to_the_road(order: DrivingOrder, alone: list[Phrase]) -> None:
+    slope, wishes = alone[0], order.wishes
+    order.things = [thing for thing in order.things if thing is not slope]
+    for thing in order.things:
         if thing.kind in STRAIGHT and thing.slope == "" and thing.joint == "" and thing.incline:
             thing.slope = slope.slope
     _wish(wishes, slope)
 
 
-def _wish(wishes: Wishes, slope: Phrase) -> None:
+def _wish(wishes: RoadWishes, slope: Phrase) -> None:
     if slope.length is not None and wishes.length is None:
         wishes.length = slope.length
     said = slope_of(slope)
@@ -131,9 +131,9 @@ def _wish(wishes: Wishes, slope: Phrase) -> None:
         )
 
 
-def _along_the_road(units: Units, only: bool) -> None:
+def _along_the_road(order: DrivingOrder, only: bool) -> None:
     out, carried = list[Phrase](), None
-    things = units.things
+    things = order.things
     for at, thing in enumerate(things):
         after = things[at + 1] if at + 1 < len(things) else None
         if not _alone(thing):
@@ -156,7 +156,7 @@ def _along_the_road(units: Units, only: bool) -> None:
         else:
             out.append(replace(thing, kind="straight", count=None, slope_alone=True))
             carried = thing if thing.climbs and not thing.article else None
-    units.things = out
+    order.things = out
 
 
 def _carry(thing: Phrase, carried: Phrase | None) -> Phrase | None:

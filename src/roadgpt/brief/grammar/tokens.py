@@ -8,7 +8,7 @@ from functools import cache
 from typing import Literal
 
 from roadgpt.brief.grammar.english import ROAD_WORDS
-from roadgpt.brief.grammar.english_frame import FRAME_WORDS
+from roadgpt.brief.grammar.english_function_words import FUNCTION_WORDS
 from roadgpt.brief.grammar.german import GERMAN
 from roadgpt.brief.grammar.romance import ROMANCE
 
@@ -125,7 +125,7 @@ def _has_decimal_commas(words: Sequence[str]) -> bool:
 @cache
 def _vocabularies() -> tuple[frozenset[str], frozenset[str]]:
     """Words of German, French, Spanish and Italian, and of English."""
-    both = ((GERMAN, ROMANCE), (ROAD_WORDS, FRAME_WORDS))
+    both = ((GERMAN, ROMANCE), (ROAD_WORDS, FUNCTION_WORDS))
     theirs, english = (
         frozenset(word for listed in some for said in listed.values() for word in said.split())
         for some in both

@@ -73,7 +73,7 @@ SAID = {
 }
 
 
-class Plan(BaseModel):
+class PlanAnswer(BaseModel):
     """What the model is asked for."""
 
     along: list[str] = Field(description="What comes along the road, in driving order.")
@@ -105,7 +105,7 @@ class ChatReader:
         asked = opening
         problem: BriefError | None = None
         for _ in range(self._settings.rounds):
-            reply = self._chat.ask(asked, Plan)
+            reply = self._chat.ask(asked, PlanAnswer)
             try:
                 return _brief(reply.data, words)
             except BriefError as error:
@@ -127,7 +127,7 @@ def _opening() -> list[Message]:
     return turns
 
 
-def _brief(answer: Plan, words: str) -> Brief:
+def _brief(answer: PlanAnswer, words: str) -> Brief:
     """The Brief of an answer, if it holds one."""
     things = "; ".join(_in_our_words(thing) for thing in answer.along if thing.strip())
     line = f"{things} | {_in_our_words(answer.road)}"

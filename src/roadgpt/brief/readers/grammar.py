@@ -1,11 +1,11 @@
 """The grammar reader: deterministic, instant, and plain about what it did not understand."""
 
 from roadgpt.brief.feasible import check
+from roadgpt.brief.grammar.brief_builder import build_brief
+from roadgpt.brief.grammar.chunking import chunk
 from roadgpt.brief.grammar.context import TURNING, settle
 from roadgpt.brief.grammar.lexicon import UNKNOWN, Lexeme, is_strange, lex, similar
-from roadgpt.brief.grammar.phrases import phrases
-from roadgpt.brief.grammar.promises import promises
-from roadgpt.brief.grammar.quantities import Item, quantities
+from roadgpt.brief.grammar.quantities import Term, quantities
 from roadgpt.brief.grammar.tokens import Token, tokens
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
@@ -52,7 +52,7 @@ class GrammarReader:
         found = tokens(words)
         lexemes = lex(found)
         items = settle(quantities(lexemes))
-        brief, left_over = promises(phrases(items))
+        brief, left_over = build_brief(chunk(items))
         unused = _unused(found, lexemes, items, left_over)
         share = len(unused) / max(sum(token.sort != "sign" for token in found), 1)
         _about_a_road(words, found, lexemes, share)
@@ -93,7 +93,7 @@ def _about_a_road(words: str, found: list[Token], lexemes: list[Lexeme], share: 
 
 
 def _unused(
-    found: list[Token], lexemes: list[Lexeme], items: list[Item], left_over: list[Item]
+    found: list[Token], lexemes: list[Lexeme], items: list[Term], left_over: list[Term]
 ) -> tuple[str, ...]:
     """The words that were not understood, as they were written and in order."""
     places = {at for lexeme in lexemes if lexeme.name == UNKNOWN for at in range(lexeme.start, lexeme.stop)}

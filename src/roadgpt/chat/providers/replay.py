@@ -8,7 +8,7 @@ from pydantic import BaseModel
 from roadgpt.chat.meter import Account, occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
 from roadgpt.chat.recording import question_of, replayed
-from roadgpt.chat.store import Store
+from roadgpt.chat.store import ExchangeStore
 from roadgpt.errors import ChatError, UsageError
 
 
@@ -20,7 +20,7 @@ class Replay:
             raise UsageError("which recording is to be replayed? Say --replay FOLDER")
         if not Path(settings.replay).is_dir():
             raise UsageError(f"there is no recording in {settings.replay}; make one with --record")
-        self._store = Store(settings.replay)
+        self._store = ExchangeStore(settings.replay)
         self._account = Account(settings)
         if settings.provider == "replay":  # asked for by that name; recordings are made of servers
             settings = settings.model_copy(update={"provider": "openai"})

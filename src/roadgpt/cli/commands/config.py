@@ -25,9 +25,9 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
     OPENAI_API_KEY), then a file .env in this folder, then roadgpt.toml in this folder, then the user's own
     roadgpt/config.toml.
     """
-    from roadgpt.chat.config import gathered, key_for, settings_from, strangers
+    from roadgpt.chat.config import key_for, settings_from, settings_with_origin, unknown_variables
 
-    found = gathered({flag.field: flag.read(values[flag.field]) for flag in CHAT})
+    found = settings_with_origin({flag.field: flag.read(values[flag.field]) for flag in CHAT})
     settings = settings_from(found)
     key = key_for(settings.base_url)
     rows = [(name, getattr(settings, name), setting.origin) for name, setting in found.items()]
@@ -43,5 +43,5 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
     for name, value, origin in rows:
         shown = "-" if value is None else str(value)
         click.echo(f"{name:<{wide}}  {shown:<{far}}  {origin}" if with_origin else f"{name:<{wide}}  {shown}")
-    for name in strangers():
+    for name in unknown_variables():
         click.echo(f"roadgpt: {name} is no setting; there are those above", err=True)

@@ -68,10 +68,10 @@ def _shelves() -> Iterator[Answer]:
 
 def _model() -> Answer:
     """Can the language model of the settings be asked? To name none is fine: nothing else needs one."""
-    from roadgpt.chat.looking import looked
+    from roadgpt.chat.diagnosis import diagnose
 
     try:
-        return Answer("model", True, looked())
+        return Answer("model", True, diagnose())
     except RoadGPTError as error:
         return Answer("model", False, str(error))
 

@@ -41,7 +41,7 @@ def command() -> None:
 @click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
 def data(out: Path, hand: Path, number: int, seed: int) -> None:
     """Check the hand-written pairs, and write generated ones into the folder OUT."""
-    from roadgpt.learn.originality import report
+    from roadgpt.learn.near_duplicates import report
 
     splits = {name: _pairs_of(hand / name) for name in SPLITS if (hand / name).is_dir()}
     for line in report({name: [pair.text for pair in its] for name, its in splits.items()}):
@@ -100,13 +100,13 @@ def train(
     roadgpt learn train runs/reader --installed --steps 2000 --own my-pairs
     """
     try:
-        from roadgpt.learn.team import train_together
-        from roadgpt.learn.train import Plan
+        from roadgpt.learn.data_parallel import train_together
+        from roadgpt.learn.train import TrainingSettings
     except ImportError as error:
         raise LearnError(EXTRA) from error
     from roadgpt.brief.readers.model import WEIGHTS
-    from roadgpt.learn.back import measured_pairs
-    from roadgpt.learn.origin import begin
+    from roadgpt.learn.back_labelling import measured_pairs
+    from roadgpt.learn.pretrained import begin
 
     if weights and installed:
         raise LearnError("a training starts from --weights or from what is --installed; name one of them")
@@ -115,7 +115,12 @@ def train(
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
     train_together(
-        out, pieces, start, pairs, Plan(steps=steps, size=size, seed=seed, workers=workers), click.echo
+        out,
+        pieces,
+        start,
+        pairs,
+        TrainingSettings(steps=steps, size=size, seed=seed, workers=workers),
+        click.echo,
     )
 
 
@@ -156,7 +161,7 @@ def chats(out: Path, number: int, seed: int) -> None:
 
 
 def _write_chats(out: Path, number: int, seed: int) -> None:
-    from roadgpt.learn.chat import brief_chats, design_chats
+    from roadgpt.learn.fine_tuning_chats import brief_chats, design_chats
     from roadgpt.learn.generator import pairs
     from roadgpt.road import World
 
@@ -199,7 +204,7 @@ def evaluate(hand: Path, split: str, names: Sequence[str], misses: int, card: Pa
 
 def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]", shown: "list[Reading]") -> None:
     from roadgpt.brief.readers.model import WEIGHTS
-    from roadgpt.learn.card import card
+    from roadgpt.learn.model_card import card
 
     counts = {
         f"hand-written, {name}": len(_pairs_of(hand / name)) for name in SPLITS if (hand / name).is_dir()

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 
 from roadgpt.brief.model import Brief
 from roadgpt.chat import Chat, ChatSettings, Message, UnparsableError, configured, open_chat
-from roadgpt.chat.strict import NotReadableError, read_object
+from roadgpt.chat.strict_json import NotReadableError, read_object
 from roadgpt.design.asking import rules, words_of
 from roadgpt.design.report import DesignReport
 from roadgpt.errors import UsageError

@@ -16,19 +16,19 @@ from roadgpt.brief.plan import plan, read_plan
 from roadgpt.errors import BriefError
 from roadgpt.learn.compositions.by_parts import by_parts
 from roadgpt.learn.compositions.endings import corrected, nothing_more
-from roadgpt.learn.compositions.kept_apart import kept_apart
 from roadgpt.learn.compositions.limits import limited, with_limits
 from roadgpt.learn.compositions.numbered import numbered_kinds, numbered_sides
+from roadgpt.learn.compositions.out_of_order import out_of_order
 from roadgpt.learn.compositions.repeated import lettered, repeated
-from roadgpt.learn.compositions.said import Said, Voice
+from roadgpt.learn.compositions.spaced_turns import spaced_turns
 from roadgpt.learn.compositions.sums import ranged, sided_sum
-from roadgpt.learn.compositions.turned_round import turned_round
+from roadgpt.learn.compositions.voice import Composition, Voice
 from roadgpt.learn.noise import noisy, tidy
 from roadgpt.learn.standard import standard
 
 MAP_SIZE = 750.0  # metres: what is said of eight turns and their straights need not fit on the usual map
-WAYS: tuple[tuple[Callable[[Voice], Said], float], ...] = (
-    (kept_apart, 0.16),
+WAYS: tuple[tuple[Callable[[Voice], Composition], float], ...] = (
+    (spaced_turns, 0.16),
     (numbered_sides, 0.13),
     (numbered_kinds, 0.13),
     (by_parts, 0.10),
@@ -39,7 +39,7 @@ WAYS: tuple[tuple[Callable[[Voice], Said], float], ...] = (
     (limited, 0.10),
     (corrected, 0.03),
     (nothing_more, 0.03),
-    (turned_round, 0.05),
+    (out_of_order, 0.05),
 )
 SEVERAL = 2
 WITH_LIMITS = 0.4
@@ -47,7 +47,7 @@ WITH_LIMITS = 0.4
 SHARES = np.cumsum([share for _, share in WAYS])
 
 
-def composed(rng: np.random.Generator) -> Said | None:
+def composed(rng: np.random.Generator) -> Composition | None:
     """A description and its plan in standard form; None where no road could be so."""
     way = WAYS[int(np.searchsorted(SHARES, rng.random() * SHARES[-1], side="right"))][0]
     voice = Voice(rng)
@@ -59,7 +59,7 @@ def composed(rng: np.random.Generator) -> Said | None:
         check(brief, MAP_SIZE)
     except BriefError:
         return None
-    return Said(noisy(tidy(said.text), "en", rng), _written(brief))
+    return Composition(noisy(tidy(said.text), "en", rng), _written(brief))
 
 
 def _written(brief: Brief) -> str:

@@ -1,6 +1,6 @@
 """The first so many turns one way and the rest another."""
 
-from roadgpt.learn.compositions.said import SHARPNESS, Said, Turn, Voice, clauses
+from roadgpt.learn.compositions.voice import SHARPNESS, Composition, DescribedTurn, Voice, clauses
 
 Words = tuple[tuple[str, str], ...]
 ASPECTS: tuple[tuple[str, Words, float], ...] = (
@@ -15,11 +15,11 @@ ASPECTS: tuple[tuple[str, Words, float], ...] = (
 """What the parts differ in, its words, and how often they do."""
 
 
-def by_parts(voice: Voice) -> Said:
+def by_parts(voice: Voice) -> Composition:
     """Three to eight turns in two parts that differ in some way; now and then a hairpin at an end."""
     total = voice.whole(3, 8)
     first = voice.whole(1, total - 1)
-    turns = [Turn() for _ in range(total)]
+    turns = [DescribedTurn() for _ in range(total)]
     said = []
     for key, words, share in ASPECTS:
         if not voice.chance(share):
@@ -36,7 +36,7 @@ def by_parts(voice: Voice) -> Said:
     return voice.framed(text, clauses(turns), may_slope=False)
 
 
-def _hairpins(voice: Voice, turns: list[Turn]) -> str:
+def _hairpins(voice: Voice, turns: list[DescribedTurn]) -> str:
     way = voice.pick(("first", "last", "both ends"))
     for turn in (*turns[: way != "last"], *turns[len(turns) - (way != "first") :]):
         turn.kind = "hairpin"

@@ -1,9 +1,9 @@
 """Numbers that are taken back, and lists that say that they are whole."""
 
-from roadgpt.learn.compositions.said import SIDES, Said, Voice
+from roadgpt.learn.compositions.voice import SIDES, Composition, Voice
 
 
-def corrected(voice: Voice) -> Said:
+def corrected(voice: Voice) -> Composition:
     """A number that is taken back, and another in its place; what follows stands."""
     side, other = voice.pick(SIDES), voice.pick(SIDES)
     wrong, angle = (5 * voice.whole(5, 22) for _ in range(2))
@@ -18,7 +18,7 @@ def corrected(voice: Voice) -> Said:
     return voice.framed(text, f"turn {side}; straight len={kept}; turn {other} deg={angle}")
 
 
-def nothing_more(voice: Voice) -> Said:
+def nothing_more(voice: Voice) -> Composition:
     """Things along the road, and no others."""
     said: list[str] = []
     parts: list[str] = []

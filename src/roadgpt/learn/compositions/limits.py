@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from roadgpt.learn.compositions.said import NOUNS, SIDES, Said, Voice
+from roadgpt.learn.compositions.voice import NOUNS, SIDES, Composition, Voice
 
 
 class _Wish(NamedTuple):
@@ -13,7 +13,7 @@ class _Wish(NamedTuple):
     of_road: str = ""
 
 
-def with_limits(voice: Voice, said: Said) -> Said:
+def with_limits(voice: Voice, said: Composition) -> Composition:
     """The same road with one to three limits for the whole of it, before or behind what was said."""
     ways = [_grade, _length, _height]
     if not any(word in said.plan for word in ("sharp", "gentle", "sweeping")):
@@ -25,7 +25,7 @@ def with_limits(voice: Voice, said: Said) -> Said:
     parts.insert(0 if voice.chance(0.7) else voice.whole(0, len(parts)), said.text.rstrip(". "))
     text = _joined(voice, parts)
     road = " ".join(f"{wish.of_turns} {wish.of_road}" for wish in wishes)
-    return Said(text, f"{said.plan}{' ' if '|' in said.plan else ' | '}{road}")
+    return Composition(text, f"{said.plan}{' ' if '|' in said.plan else ' | '}{road}")
 
 
 def _joined(voice: Voice, parts: list[str]) -> str:
@@ -42,7 +42,7 @@ def _joined(voice: Voice, parts: list[str]) -> str:
     return voice.pick((", ", "; ", ", ", ", and ")).join(parts)
 
 
-def limited(voice: Voice) -> Said:
+def limited(voice: Voice) -> Composition:
     """A number of turns and two to four wishes with numbers, in any order."""
     number = voice.whole(2, 7)
     count, side = voice.pick((voice.turns(number), f"{voice.pick(NOUNS)}: {number}")), ""

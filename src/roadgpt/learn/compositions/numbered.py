@@ -1,16 +1,25 @@
 """Turns spoken of by their numbers: which go left, which are hairpins, sharp, or of an angle."""
 
-from roadgpt.learn.compositions.said import NOUNS, OTHER, SHARPNESS, SIDES, Said, Turn, Voice, clauses
+from roadgpt.learn.compositions.voice import (
+    NOUNS,
+    OTHER,
+    SHARPNESS,
+    SIDES,
+    Composition,
+    DescribedTurn,
+    Voice,
+    clauses,
+)
 
 GO = (("go", "goes"), ("turn", "turns"), ("are", "is"), ("bend", "bends"), ("go to the", "goes to the"))
 
 
-def numbered_sides(voice: Voice) -> Said:
+def numbered_sides(voice: Voice) -> Composition:
     """Three to eight turns, the sides of some said by their numbers and of the others together."""
     total = voice.whole(3, 8)
     side = voice.pick(SIDES)
     names, chosen, is_one = _chosen(voice, total)
-    turns = [Turn(mods={"side": side if at in chosen else OTHER[side]}) for at in range(total)]
+    turns = [DescribedTurn(mods={"side": side if at in chosen else OTHER[side]}) for at in range(total)]
     first = f"{names} {voice.pick(GO)[is_one]} {side}"
     second = f"{_rest(voice, total, chosen)} {OTHER[side]}"
     count = voice.turns(total)
@@ -18,12 +27,12 @@ def numbered_sides(voice: Voice) -> Said:
     return voice.framed(text, clauses(turns))
 
 
-def numbered_kinds(voice: Voice) -> Said:
+def numbered_kinds(voice: Voice) -> Composition:
     """Some of the turns are told apart; others may be something else; now and then all have a side."""
     total = voice.whole(3, 7)
     names, chosen, is_one = _chosen(voice, total)
     shape, kind, mods = _shape(voice, len(chosen) == 1)
-    turns = [Turn(kind, dict(mods)) if at in chosen else Turn() for at in range(total)]
+    turns = [DescribedTurn(kind, dict(mods)) if at in chosen else DescribedTurn() for at in range(total)]
     said = f"{names} {'is' if is_one else 'are'} {shape}"
     if "sharpness" not in mods and voice.chance(0.35):
         word, sharpness = voice.pick(SHARPNESS)

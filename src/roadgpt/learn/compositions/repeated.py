@@ -1,9 +1,9 @@
 """Patterns that come again, and sides as letters with an angle for each."""
 
-from roadgpt.learn.compositions.said import SIDES, Said, Turn, Voice, clauses
+from roadgpt.learn.compositions.voice import SIDES, Composition, DescribedTurn, Voice, clauses
 
 
-def repeated(voice: Voice) -> Said:
+def repeated(voice: Voice) -> Composition:
     """A pattern of two or three things two to four times, and now and then one more thing."""
     parts = [_part(voice, may_be_straight=at > 0) for at in range(voice.whole(2, 3))]
     times = voice.pick((2, 2, 3, 3, 4))
@@ -35,9 +35,9 @@ def _part(voice: Voice, may_be_straight: bool) -> tuple[str, str]:
     return voice.pick((f"a {side}", f"{side} turn", f"a bend to the {side}", side)), f"turn {side}"
 
 
-def lettered(voice: Voice) -> Said:
+def lettered(voice: Voice) -> Composition:
     """L, L, R: a list of letters; the lefts of one angle, the rights of another."""
-    turns = [Turn(mods={"side": voice.pick(SIDES)}) for _ in range(voice.whole(3, 7))]
+    turns = [DescribedTurn(mods={"side": voice.pick(SIDES)}) for _ in range(voice.whole(3, 7))]
     text = voice.pick((", ", "-", " ", ", ")).join(turn.mods["side"][0].upper() for turn in turns)
     said = []
     for side in SIDES:

@@ -1,9 +1,9 @@
 """Counts that add up: so many in all, so many to a side, and which come first or last."""
 
-from roadgpt.learn.compositions.said import NOUNS, OTHER, SIDES, Said, Turn, Voice, clauses
+from roadgpt.learn.compositions.voice import NOUNS, OTHER, SIDES, Composition, DescribedTurn, Voice, clauses
 
 
-def sided_sum(voice: Voice) -> Said:
+def sided_sum(voice: Voice) -> Composition:
     """A number of turns, those of each side, and now and then their order."""
     total = voice.whole(2, 9)
     side = voice.pick(SIDES)
@@ -18,7 +18,7 @@ def sided_sum(voice: Voice) -> Said:
         return voice.framed(text, f"| turns={total} lefts={left} rights={right}")
     place = voice.pick(("last", "last", "first"))
     text += voice.pick((", ", "; ", ", and ")) + voice.say(f"{'one' if few == 1 else 'many'} {place}", s=side)
-    own, rest = [Turn(mods={"side": side})] * few, [Turn(mods={"side": OTHER[side]})] * many
+    own, rest = [DescribedTurn(mods={"side": side})] * few, [DescribedTurn(mods={"side": OTHER[side]})] * many
     return voice.framed(text, clauses([*rest, *own] if place == "last" else [*own, *rest]))
 
 
@@ -28,7 +28,7 @@ def _sided(voice: Voice, number: int, side: str) -> str:
     )
 
 
-def ranged(voice: Voice) -> Said:
+def ranged(voice: Voice) -> Composition:
     """Between three and five turns, one of which may be told apart."""
     low = voice.whole(2, 5)
     high = low + voice.whole(1, 3)

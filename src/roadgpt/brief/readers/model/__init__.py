@@ -17,15 +17,15 @@ from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.grammar import GrammarReader
+from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.coverage import Coverage
-from roadgpt.brief.readers.model.listing import listed_sides, sides_of
-from roadgpt.brief.readers.model.looks import Draft, drafts
-from roadgpt.brief.readers.model.negatives import negative
+from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
+from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.network import Network
-from roadgpt.brief.readers.model.recheck import rechecked
-from roadgpt.brief.readers.model.slots import Slotted, slotted
-from roadgpt.brief.readers.model.turned import turned_in_all
-from roadgpt.brief.readers.model.usual import usual
+from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
+from roadgpt.brief.readers.model.slots import SlottedText, slotted
+from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
+from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.refusal import TooMuchError
 from roadgpt.errors import BriefError, PartError
@@ -73,7 +73,7 @@ class ModelReader:
             BriefError: the words are empty, too many, no road, contradictory or ask for the impossible.
         """
         _text(words)
-        turned = turned_in_all(words)
+        turned = total_turning(words)
         if turned is None:
             return self._read(words)
         update = {"words": words, "turning": turned.degrees}
@@ -85,7 +85,7 @@ class ModelReader:
 
     def _read(self, words: str) -> Brief:
         text = _text(words)
-        found = drafts(self._network, words, self._settings["refuse_from"])
+        found = scored_plans(self._network, words, self._settings["refuse_from"])
         return self._brief(words, text, _as_listed(found, text) or _consistent(found))
 
     def alternatives(
@@ -96,7 +96,7 @@ class ModelReader:
         Raises:
             BriefError: as ``read``.
         """
-        turned = turned_in_all(words)
+        turned = total_turning(words)
         if turned:
             rest = self.alternatives(turned.rest, number, temperature, seed) if turned.is_more_said else ()
             update = {"words": words, "turning": turned.degrees}
@@ -109,18 +109,18 @@ class ModelReader:
         for _ in range(4 * number):
             written = self._network.drawn(across, text, rng, temperature)
             line = plan_of(written.tokens, text.slots)
-            draft = Draft(written.tokens, line, written.worth, written.log_chances, agreement=0.0)
+            draft = ScoredPlan(written.tokens, line, written.score, written.log_chances, agreement=0.0)
             found.setdefault(line, self._brief(words, text, draft))
         others = sorted(found.values(), key=lambda brief: -brief.confidence)
         same = first.model_copy(update={"confidence": 1.0})
         return (first, *(b for b in others if b.model_copy(update={"confidence": 1.0}) != same))[:number]
 
-    def _brief(self, words: str, text: Slotted, draft: Draft) -> Brief:
+    def _brief(self, words: str, text: SlottedText, draft: ScoredPlan) -> Brief:
         if draft.is_refusal:
             raise self._refusal(words, text, draft.line)
         return self._as_brief(words, text, draft)
 
-    def _refusal(self, words: str, text: Slotted, why: str) -> BriefError:
+    def _refusal(self, words: str, text: SlottedText, why: str) -> BriefError:
         """What the network has against the words; where it may be the usual map, with the Brief they make."""
         brief, reason = _by_rules(words) if why != "!nonsense" else (None, "")
         if why == "!impossible":
@@ -129,12 +129,14 @@ class ModelReader:
                 return TooMuchError(reason or TOO_MUCH, brief)
         return BriefError(reason or ADVICE[why])
 
-    def _for_the_usual_map(self, words: str, text: Slotted) -> Brief | None:
+    def _for_the_usual_map(self, words: str, text: SlottedText) -> Brief | None:
         """The Brief, read as if its numbers were ordinary; None where they are, or if it is refused then."""
-        as_usual = usual(text)
+        as_usual = with_ordinary_numbers(text)
         if as_usual.text == text:
             return None
-        found = drafts(self._network, words, self._settings["refuse_from"], lambda seen: usual(seen).text)
+        found = scored_plans(
+            self._network, words, self._settings["refuse_from"], lambda seen: with_ordinary_numbers(seen).text
+        )
         if not found or found[0].is_refusal:
             return None
         tokens = as_usual.told(found[0].tokens)
@@ -144,16 +146,16 @@ class ModelReader:
         except BriefError:
             return None
 
-    def _as_brief(self, words: str, text: Slotted, draft: Draft) -> Brief:
+    def _as_brief(self, words: str, text: SlottedText, draft: ScoredPlan) -> Brief:
         try:
-            brief = rechecked(read_plan(draft.line), text)
+            brief = with_checked_counts(read_plan(draft.line), text)
         except BriefError as error:
             raise BriefError("this could not be read as one road; say it in shorter sentences") from error
         unused = self._coverage.unused(text, draft.tokens)
         sure = self._confidence(draft, len(unused))
         return brief.model_copy(update={"words": words, "unused": unused, "confidence": sure})
 
-    def _confidence(self, draft: Draft, unused: int) -> float:
+    def _confidence(self, draft: ScoredPlan, unused: int) -> float:
         """How often a reading like this one was right on descriptions held back from training."""
         weights = self._settings["confidence"]
         features = {**draft.features, "unused": unused}
@@ -174,7 +176,7 @@ class ModelReader:
         return settings
 
 
-def _as_listed(found: Sequence[Draft], text: Slotted) -> Draft | None:
+def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
     """The likeliest draft whose turns have the sides that the words list; None where they list none."""
     sides = listed_sides(text)
     if not sides or not found or found[0].is_refusal:
@@ -183,12 +185,12 @@ def _as_listed(found: Sequence[Draft], text: Slotted) -> Draft | None:
     return next((draft for draft in kept if sides_of(read_plan(draft.line)) == sides), None)
 
 
-def _consistent(found: Sequence[Draft]) -> Draft:
+def _consistent(found: Sequence[ScoredPlan]) -> ScoredPlan:
     """The likeliest draft; or one almost as likely, where that contradicts itself and this one does not."""
     if not found:
         raise BriefError("this could not be read as one road; say it in shorter sentences")
     for draft in found:
-        if draft.worth < found[0].worth - ALMOST:
+        if draft.score < found[0].score - ALMOST:
             break
         if draft.is_refusal or _can_be_kept(draft.line):
             return draft
@@ -227,7 +229,7 @@ def _sides_add_up(brief: Brief) -> bool:
     return None in most or turns.lo is None or sum(number or 0 for number in most) >= turns.lo
 
 
-def _text(words: str) -> Slotted:
+def _text(words: str) -> SlottedText:
     if not words.strip():
         raise BriefError("the description is empty; say how it should be, such as 'two sharp turns'")
     if len(words) > MOST_LETTERS:
@@ -235,7 +237,7 @@ def _text(words: str) -> Slotted:
             f"the description has {len(words)} letters; {MOST_LETTERS} are the most, so say it shorter"
         )
     text = slotted(words)
-    below = negative(text)
+    below = negative_number(text)
     if below:
         raise BriefError(f"no road has '{below}'; ask for a number above 0")
     return text

@@ -7,43 +7,43 @@ judged of which the training pairs agree what they mean; "over 60 m" is as often
 from collections.abc import Sequence
 from typing import Literal
 
-from roadgpt.brief.readers.model.bag import bag
-from roadgpt.brief.readers.model.slots import Slotted, slot_name
+from roadgpt.brief.readers.model.slots import SlottedText, slot_name
 from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+from roadgpt.brief.readers.model.word_set import word_set
 
 Bound = Literal["lo", "hi", "none"]
 """At least, at most, or none for sure: "60 m or so"."""
 KEYS = frozenset(["deg=", "r=", "len=", "pct=", "steepest="])
 """Whose bounds are judged; a climb's turns round where it falls."""
-SMALLER = bag(
+SMALLER = word_set(
     "below under less smaller shorter fewer lower inside unter weniger kleiner kurzer geringer",
     "unterhalb moins inferieur inferieure inferieurs inferieures sous menos menor inferior inferiores",
     "meno minore minori inferiore inferiori sotto",
 )
-LARGER = bag(
+LARGER = word_set(
     "above over more larger longer greater higher exceed exceeds exceeding exceeded beyond past uber",
     "ueber mehr grosser langer laenger hoher oberhalb uberschreiten uberschreitet plus superieur",
     "superieure depasse depasser depassant mas mayor superior supera superar superando superare piu",
     "maggiore superiore dessus encima oltre bigger",
 )
-BELOW = bag("below under less unter inferieur inferieure inferior inferiore")
+BELOW = word_set("below under less unter inferieur inferieure inferior inferiore")
 """What says the most by itself, where nothing is denied; others compare with what was said before."""
-LEAST = bag("least minimum min mindestens minimal wenigstens moins minimo minima menos meno almeno")
-MOST = bag("most maximum max hochstens hoechstens maximal massimo maximo maxima massima")
-ALONE = bag("min max minimum maximum mindestens wenigstens hochstens hoechstens maximal almeno")
+LEAST = word_set("least minimum min mindestens minimal wenigstens moins minimo minima menos meno almeno")
+MOST = word_set("most maximum max hochstens hoechstens maximal massimo maximo maxima massima")
+ALONE = word_set("min max minimum maximum mindestens wenigstens hochstens hoechstens maximal almeno")
 """What says so without "at" before it."""
-AT = bag("at au al por lo du como come")
-NOT = bag(
+AT = word_set("at au al por lo du como come")
+NOT = word_set(
     "no not never none neither nor nowhere without t nothing cannot dont doesnt kein keine keinen",
     "keiner keines nicht nichts nie niemals nirgends nirgendwo ohne pas sans aucun aucune jamais nulle",
     "sin nunca ningun ninguna nada non senza mai nessun nessuna niente ne",
 )
-RULED_OUT = bag("exclude excludes excluded avoid avoids free ban banned forbidden rule ruled")
-UNITS = bag("metres degrees percent")
-OR = bag("or oder ou o")
-OR_MORE = bag("more longer larger greater above over wider mehr langer darueber davantage plus mas piu")
-OR_LESS = bag("less shorter smaller fewer below under tighter weniger kurzer darunter moins menos meno")
-FILLERS = bag("than als de que di a the of von da about mit um at su um ein eine einem un une una")
+RULED_OUT = word_set("exclude excludes excluded avoid avoids free ban banned forbidden rule ruled")
+UNITS = word_set("metres degrees percent")
+OR = word_set("or oder ou o")
+OR_MORE = word_set("more longer larger greater above over wider mehr langer darueber davantage plus mas piu")
+OR_LESS = word_set("less shorter smaller fewer below under tighter weniger kurzer darunter moins menos meno")
+FILLERS = word_set("than als de que di a the of von da about mit um at su um ein eine einem un une una")
 STOPS = frozenset(",.;:()|-")
 SENTENCE_STOPS = frozenset(".;")
 MOST_FILLERS = 2
@@ -51,7 +51,7 @@ REACH = 4
 """Words before a comparison in which what denies it stands."""
 
 
-def bounded(tokens: Sequence[str], text: Slotted) -> tuple[str, ...]:
+def bounded(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]:
     """The tokens of a plan, with the bounds of its measures as the words have them."""
     words = [word.text for word in text.words]
     out: list[str] = []

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from roadgpt.brief.readers.model.slots import Slotted
+from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
 from roadgpt.reading import read_text
 
@@ -25,7 +25,7 @@ class Coverage:
         """The words of a file, one on each line."""
         return cls(frozenset(read_text(path).split("\n")))
 
-    def unused(self, text: Slotted, tokens: Sequence[str]) -> tuple[str, ...]:
+    def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
         """Words, as they were said, that the plan does not show, each once and in order."""
         out: list[str] = []
         slot = 0

@@ -10,10 +10,10 @@ import numpy.typing as npt
 import onnxruntime
 
 from roadgpt.brief.readers.model.evidence import Evidence
-from roadgpt.brief.readers.model.slots import Slotted
+from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
+from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
-from roadgpt.brief.readers.model.writer import END, PlanWriter
 from roadgpt.reading import read_text
 
 Array = npt.NDArray[np.float32]
@@ -27,7 +27,7 @@ LAYERS, HEADS, SIZE = 3, 6, 64
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class WrittenPlan:
     """A plan as the network wrote it."""
 
     tokens: tuple[str, ...]
@@ -37,7 +37,7 @@ class Written:
     """The chance that the words make no road, before anything was written."""
 
     @property
-    def worth(self) -> float:
+    def score(self) -> float:
         """Log-chance, a little in favour of long plans: each token costs something, however sure."""
         return sum(self.log_chances) / float(max(1, len(self.log_chances)) ** FAVOUR)
 
@@ -57,15 +57,15 @@ class Network:
     def _decoder(self) -> onnxruntime.InferenceSession:
         return _session(self.folder / "decoder.onnx")
 
-    def encode(self, text: Slotted) -> Array:
+    def encode(self, text: SlottedText) -> Array:
         """Keys and values of a description, (layers, 2, 1, heads, n, size)."""
         numbers, _ = self.pieces.encode(word.text for word in text.words)
         out: Array = self._encoder.run(None, {"pieces": np.array([numbers], dtype=np.int64)})[0]
         return out
 
     def write(
-        self, across: Array, text: Slotted, refuse_from: float = 0.5, width: int = WIDTH
-    ) -> tuple[Written, ...]:
+        self, across: Array, text: SlottedText, refuse_from: float = 0.5, width: int = WIDTH
+    ) -> tuple[WrittenPlan, ...]:
         """The likeliest plans for a description, best first, found by a beam of ``width`` drafts."""
         drafts, done = [Draft.of(text)], list[Draft]()
         own, refusal = _nothing(), 0.0
@@ -90,14 +90,16 @@ class Network:
                         longer.append(draft)
                         rows.append(int(row))
             if not longer or (
-                len(done) >= width and max(d.worth for d in done) >= max(d.worth for d in longer)
+                len(done) >= width and max(d.score for d in done) >= max(d.score for d in longer)
             ):
                 break
             drafts, own = longer, own[:, :, rows]
-        best_first = sorted(done or drafts, key=lambda draft: -draft.worth)
+        best_first = sorted(done or drafts, key=lambda draft: -draft.score)
         return tuple(draft.written(refusal) for draft in best_first)
 
-    def drawn(self, across: Array, text: Slotted, rng: np.random.Generator, temperature: float) -> Written:
+    def drawn(
+        self, across: Array, text: SlottedText, rng: np.random.Generator, temperature: float
+    ) -> WrittenPlan:
         """A plan drawn token by token; the higher the temperature, the more daring. It never refuses."""
         draft, own = Draft.of(text), _nothing()
         for place in range(MOST_TOKENS):
@@ -127,20 +129,20 @@ class Network:
 class Draft:
     """A plan that is being written."""
 
-    writer: PlanWriter
+    writer: PlanAutomaton
     tokens: tuple[str, ...] = ()
     chances: tuple[float, ...] = ()
     last: int = START
     is_done: bool = False
 
     @classmethod
-    def of(cls, text: Slotted) -> "Draft":
+    def of(cls, text: SlottedText) -> "Draft":
         """An empty plan for a description."""
         said = frozenset(word.text for word in text.words)
-        return cls(PlanWriter(text.slots, said, Evidence.of(text.text)))
+        return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text)))
 
     @property
-    def worth(self) -> float:
+    def score(self) -> float:
         """Log-chance, a little in favour of long plans: each token costs something, however sure."""
         return sum(self.chances) / float(max(1, len(self.chances)) ** FAVOUR)
 
@@ -152,9 +154,9 @@ class Draft:
         writer.push(TOKENS[token])
         return Draft(writer, (*self.tokens, TOKENS[token]), (*self.chances, chance), token)
 
-    def written(self, refusal: float) -> "Written":
+    def written(self, refusal: float) -> "WrittenPlan":
         """The plan as it stands."""
-        return Written(self.tokens, self.chances, refusal)
+        return WrittenPlan(self.tokens, self.chances, refusal)
 
 
 def _nothing() -> Array:

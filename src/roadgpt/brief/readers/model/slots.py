@@ -19,7 +19,7 @@ from roadgpt.brief.readers.model.measures import (
     unit_at,
 )
 from roadgpt.brief.readers.model.numerals import plain, words
-from roadgpt.brief.readers.model.tilts import as_grade
+from roadgpt.brief.readers.model.slope_angles import as_grade
 from roadgpt.brief.readers.model.tolerances import tolerances_first, with_tolerances
 from roadgpt.brief.readers.model.units import (
     AMBIGUOUS,
@@ -57,7 +57,7 @@ class Word:
 
 
 @dataclass(frozen=True, slots=True)
-class Slot:
+class NumberSlot:
     """A number kept outside of the model: its value in the unit's base, rounded to one decimal."""
 
     value: float
@@ -65,11 +65,11 @@ class Slot:
 
 
 @dataclass(frozen=True, slots=True)
-class Slotted:
+class SlottedText:
     """A description with its numbers taken out."""
 
     words: tuple[Word, ...]
-    slots: tuple[Slot, ...]
+    slots: tuple[NumberSlot, ...]
 
     @property
     def text(self) -> str:
@@ -77,7 +77,7 @@ class Slotted:
         return " ".join(word.text for word in self.words)
 
 
-def slotted(text: str) -> Slotted:
+def slotted(text: str) -> SlottedText:
     """Takes the numbers out of a description."""
     said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
     tokens = [plain(word) for word in said]
@@ -235,9 +235,9 @@ def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
     return best
 
 
-def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> Slotted:
+def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> SlottedText:
     out: list[Word] = []
-    slots: list[Slot] = []
+    slots: list[NumberSlot] = []
     starts = {number.first: number for number in numbers}
     at = 0
     while at < len(tokens):
@@ -258,10 +258,10 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> Slot
             out.append(Word("[unused20]", spoken))
         else:
             out.append(Word(slot_name(len(slots)), spoken))
-            slots.append(Slot(number.value, number.unit))
+            slots.append(NumberSlot(number.value, number.unit))
             out += [Word(text, "") for text in _tail(number)]
         at = number.last + 1
-    return Slotted(tuple(out), tuple(slots))
+    return SlottedText(tuple(out), tuple(slots))
 
 
 def _count(number: Number, spoken: str) -> list[Word]:

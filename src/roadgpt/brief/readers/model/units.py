@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from roadgpt.brief.readers.model.bag import bag
+from roadgpt.brief.readers.model.word_set import word_set
 
 Unit = Literal["metres", "percent", "degrees", "kmh", ""]
 
@@ -59,7 +59,7 @@ SHARES: dict[str, float] = {
     for word in words.split()
 }
 """Parts of a unit: "half a mile", "drei viertel Kilometer"."""
-MILLIONS = bag("million millions millionen millones millon milione milioni billion milliarde")
+MILLIONS = word_set("million millions millionen millones millon milione milioni billion milliarde")
 AND_A_HALF: dict[str, float] = {"anderthalb": 1.5, "eineinhalb": 1.5, "zweieinhalb": 2.5}
 SHARE_FILLERS = frozenset(
     {"of", "a", "an", "de", "d", "'", "un", "di", "eines", "einem", "-", "full", "whole", "ganzer"}

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
-from roadgpt.brief.readers.model.slots import SLOTS, Slot
+from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot
 
 REFUSALS = ("!nonsense", "!contradiction", "!impossible")
 # The weights know these words by their places in the lists; so they stand here, and not in the Brief's order.
@@ -55,7 +55,7 @@ UNIT_OF = {
 }  # fmt: skip
 
 
-def tokens_of(plan: str, slots: Sequence[Slot]) -> list[str] | None:
+def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
     """The tokens of a plan, its numbers looked up among the slots; None where a number is found nowhere."""
     out: list[str] = []
     key = ""
@@ -73,7 +73,7 @@ def tokens_of(plan: str, slots: Sequence[Slot]) -> list[str] | None:
     return out
 
 
-def _number_tokens(piece: str, key: str, slots: Sequence[Slot], taken: set[int]) -> list[str] | None:
+def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set[int]) -> list[str] | None:
     sign, digits = (["-"], piece[1:]) if piece.startswith("-") else ([], piece)
     value = float(digits)
     fits = [index for index, slot in enumerate(slots) if abs(slot.value - value) < 0.051]
@@ -90,7 +90,7 @@ def _number_tokens(piece: str, key: str, slots: Sequence[Slot], taken: set[int])
     return [*sign, digits] if digits in NUMBER_OF else None
 
 
-def plan_of(tokens: Iterable[str], slots: Sequence[Slot]) -> str:
+def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
     """The plan that tokens write, slots filled in."""
     out: list[str] = []
     for word in tokens:

@@ -1,0 +1,83 @@
+"""Is there room for a Brief on the map, as far as numbers alone can tell, and for what there would be."""
+
+from math import ceil, floor, sqrt
+
+from roadgpt.brief.minimum_length import least_length
+from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import STRAIGHT
+from roadgpt.brief.refusal import NoRoomError
+from roadgpt.brief.words import LENGTH_SLACK, ROAD_LENGTH_SLACK
+from roadgpt.errors import BriefError
+
+ROAD_WIDTH = 8.0  # metres: two lanes of 4 m
+EDGE = 0.3  # metres kept free between ribbon and border of the map, for rounding and the bulge of splines
+WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, verges, and the bow of the turn itself
+SIDES_OF_ROAD = 1.3  # sides of the map that a road with turns is sure to find room for
+BESIDE_TURNS = 0.6  # of the longest straight that are sure to fit on a road with turns
+ROUND_MAP = 50.0  # metres: sizes of maps are proposed in steps of so many
+LARGEST_MAP = 10_000.0  # metres
+
+
+def longest_straight(map_size: float, road_width: float = ROAD_WIDTH) -> float:
+    """Metres from corner to corner, so far from the border that carriageway and margins lie on the map."""
+    return sqrt(2) * (map_size - road_width - 2 * EDGE)
+
+
+def map_for_straight(metres: float, road_width: float = ROAD_WIDTH) -> float:
+    """Side in metres, a round number, of the smallest map that holds such a straight."""
+    return ceil((metres / sqrt(2) + road_width + 2 * EDGE) / ROUND_MAP) * ROUND_MAP
+
+
+def check_room(brief: Brief, map_size: float, min_radius: float, road_width: float = ROAD_WIDTH) -> None:
+    """Passes a Brief, in normal form, that may fit on a map; designing finds out whether it does.
+
+    Raises:
+        NoRoomError: it surely does not; says what would.
+        BriefError: a radius is wider than the map.
+    """
+    _straights(brief, map_size, road_width)
+    for clause in brief.clauses:
+        if clause.radius and (clause.radius.lo or 0) > map_size:
+            raise BriefError(
+                f"a radius of {clause.radius.lo:g} m is wider than the map of {map_size:g} m;"
+                f" ask for {map_size / 2:g} m"
+            )
+    metres = least = least_length(brief, min_radius)
+    if brief.length and brief.length.lo is not None:
+        metres = max(metres, brief.length.lo * (1 - ROAD_LENGTH_SLACK))
+    if metres > map_size * map_size / WIDTH_OF_A_TURN:
+        offer = floor(SIDES_OF_ROAD * map_size / 10) * 10
+        less = f"{offer} m, " if brief.length and least < offer else ""
+        raise NoRoomError(
+            f"a map of {map_size:g} m has no room for {metres:.0f} m of such road; ask for {less}fewer turns"
+            " or a larger map",
+            brief,
+        )
+
+
+def _straights(brief: Brief, map_size: float, road_width: float) -> None:
+    """Each straight must fit from corner to corner; of a road without turns, all of it."""
+    longest = longest_straight(map_size, road_width)
+    lengths = [c.length.lo or 0.0 for c in brief.clauses if c.kind == "straight" and c.length]
+    if lengths and max(lengths) * (1 - LENGTH_SLACK) > longest:
+        raise _too_long("a straight", max(lengths), brief, map_size, road_width)
+    if not brief.turns or brief.turns.hi != 0:
+        return
+    said = sum((c.length.lo or 0) if c.length else 0 for c in brief.clauses if c.kind in STRAIGHT)
+    if least_length(brief, 0.0) > longest:
+        raise _too_long("a straight road", said or least_length(brief, 0.0), brief, map_size, road_width)
+    if brief.length and brief.length.lo and brief.length.lo * (1 - ROAD_LENGTH_SLACK) > longest:
+        raise _too_long("a straight road", brief.length.lo, brief, map_size, road_width)
+
+
+def _too_long(what: str, metres: float, brief: Brief, map_size: float, road_width: float) -> NoRoomError:
+    longest, size = longest_straight(map_size, road_width), map_for_straight(metres, road_width)
+    is_all = brief.turns is not None and brief.turns.hi == 0
+    offer = floor(longest if is_all else BESIDE_TURNS * longest)
+    size *= 1 if is_all else round(1 / BESIDE_TURNS)
+    larger = f" or use --map-size {size:g}" if size <= LARGEST_MAP else ""
+    return NoRoomError(
+        f"{what} of {metres:g} m does not fit on a map of {map_size:g} m, which is {floor(longest)} m from"
+        f" corner to corner; ask for {offer} m{larger}",
+        brief,
+    )

@@ -1,0 +1,43 @@
+"""Sides that are listed one after another, "left, right, right": what a plan's turns are held against.
+
+A small network loses count of what repeats. Where every side that a description names stands in one list, the
+turns of its plan have these sides, and a draft that has them is believed before a likelier one that has not.
+"""
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import SINGLE, STRAIGHT, normal
+from roadgpt.brief.readers.model.count_correction import MULTIPLES
+from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
+from roadgpt.brief.readers.model.slots import SlottedText
+
+FEWEST = 3
+JOINTS = frozenset(
+    [",", ";", ".", "-", "/", ">", "then", "and", "dann", "und", "puis", "et", "luego", "y", "poi", "e"]
+)
+
+
+def listed_sides(text: SlottedText) -> tuple[str, ...]:
+    """The sides of the one list that names them all; empty where there is none of FEWEST or more.
+
+    Where a number is said that is not the list's length, or "twice", a side may stand for several turns.
+    """
+    lists: list[list[str]] = [[]]
+    for word in text.words:
+        if word.text in LEFT | RIGHT:
+            lists[-1].append("left" if word.text in LEFT else "right")
+        elif lists[-1] and word.text not in JOINTS:
+            lists.append([])
+    named = [sides for sides in lists if sides]
+    if len(named) != 1 or len(named[0]) < FEWEST:
+        return ()
+    said = {word.text for word in text.words}
+    others = {word for word in said if word.isdecimal()} - {str(len(named[0]))}
+    return () if others or said & MULTIPLES else tuple(named[0])
+
+
+def sides_of(brief: Brief) -> tuple[str | None, ...]:
+    """The side of every turn in order; empty where their number is open."""
+    turning = [clause for clause in normal(brief).clauses if clause.kind not in STRAIGHT]
+    if any(clause.kind not in SINGLE or not clause.count.exact for clause in turning):
+        return ()
+    return tuple(clause.side for clause in turning for _ in range(int(clause.count.lo or 0)))

@@ -1,0 +1,50 @@
+"""Slopes in degrees: "a slope of 4 degrees" is one of 7 percent, and no turn.
+
+Only numbers right beside a word for a slope are taken for one; "climbs 30 degrees to the left" turns.
+"""
+
+from collections.abc import Sequence
+from math import radians, tan
+
+from roadgpt.brief.readers.model.measures import Number
+from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
+from roadgpt.brief.readers.model.word_set import word_set
+
+STEEPEST = 45.0  # degrees: what is said to be steeper is a turn, or nonsense that the network sees for itself
+NOUNS = word_set(
+    "slope slopes grade grades gradient gradients incline inclines inclination climb ascent ascents",
+    "descent descents rise decline steigung gefalle anstieg neigung pente pentes montee descente",
+    "pendiente pendientes subida bajada inclinacion pendenza pendenze salita discesa inclinazione",
+)
+VERBS = word_set(
+    "climbs climbing rises rising ascends ascending descends descending drops dropping falls falling",
+    "uphill downhill steigt steigend fallt fallend bergauf bergab monte descend sube baja sale scende",
+)
+BETWEEN = word_set(
+    "of at is are : = by with an angle angled about around roughly von mit um de d ' di con del der"
+)
+TURNING = COUNTED | ONE_TURN | LEFT | RIGHT | {"heading"}
+SKIPPED = frozenset(["-", "of", "to", "the", "nach", "a", "la", "vers"])
+REACH = 4
+"""Words of BETWEEN that may stand between the slope and its number."""
+
+
+def as_grade(number: Number, tokens: Sequence[str]) -> None:
+    """Turns a number of degrees that says how steep it is into percent."""
+    if number.unit == "degrees" and number.value <= STEEPEST and _is_tilt(number, tokens):
+        number.value, number.unit = round(100 * tan(radians(number.value)), 1), "percent"
+
+
+def _is_tilt(number: Number, tokens: Sequence[str]) -> bool:
+    after = [token for token in tokens[number.last + 1 : number.last + 5] if token not in SKIPPED]
+    if after and after[0] in NOUNS:
+        return not TURNING.intersection(after[1:2])
+    if TURNING.intersection(after[:2]):
+        return False
+    at = number.first - 1
+    while at >= 0 and tokens[at] in BETWEEN and number.first - 1 - at < REACH:
+        at -= 1
+    if at < 0:
+        return False
+    # "climb 40 degrees" says too little: it may climb and turn
+    return at < number.first - 1 and tokens[at] in NOUNS | VERBS

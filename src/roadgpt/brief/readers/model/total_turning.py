@@ -1,0 +1,66 @@
+"""Degrees of all turns together: "adding up to 270 degrees", "a total heading change of at least 300 deg".
+
+The network has no word for this wish, so it is taken out of the description before the network reads on.
+"""
+
+import re
+from typing import NamedTuple
+
+from roadgpt.brief.model import Amount, at_least, at_most, exactly
+from roadgpt.brief.readers.model.slots import slot_name, slotted
+
+TOTAL = r"(?:total|overall|cumulative|accumulated|combined|summed|absolute)"
+CHANGE = r"(?:heading changes?|changes? (?:of|in) heading|turning(?: angle)?|turn angles?)"
+IN_ALL = (
+    r"(?:in (?:all|total|sum|summe|totale|tutto)|altogether|all in all|all together|combined|overall"
+    r"|insgesamt|zusammen|au total|en tout|en total)"
+)
+BOUND = (
+    r"(?:(?P<lo>at least|no less than|not less than|more than|mindestens|au moins|al menos|almeno)"
+    r"|(?P<hi>at most|no more than|not more than|less than|below|under|hochstens|au plus|al massimo)"
+    r"|about|around|roughly|exactly) "
+)
+OR = r"(?: or (?:(?P<or_more>more|above)|(?P<or_less>less|below)))?"
+ANGLE = rf"(?:{BOUND})?(?P<slot>\[unused(?:[1-9]|1[0-2])\]) degrees(?: \[unused2\d\])?{OR}"
+IS = r"(?: (?:of|:|is|=|be|should|shall|must))*"
+LED = r"(?:(?:and|with|has|have|a|an|the|its|which|that|turning|bending|und|et|y|e|,) )*"
+TURNING = r"of (?:turning|heading change|turn|steering)"
+WAYS = tuple(
+    re.compile(r"(?<!\S)" + LED + way)
+    for way in (
+        rf"(?:{TOTAL} )+{CHANGE}{IS} {ANGLE}",
+        rf"(?:(?:all|angles|together) )*(?:add|sum)(?:s|ing|ming)?(?: up)? to (?:a total of )?{ANGLE}"
+        rf"(?: {IN_ALL})?",
+        rf"{ANGLE}(?: {TURNING})? {IN_ALL}",
+        rf"{IN_ALL} {ANGLE}(?: {TURNING})?",
+        rf"{CHANGE} {IN_ALL}{IS} {ANGLE}",
+    )
+)
+
+
+class TotalTurning(NamedTuple):
+    """Degrees of all turns together, and the description without them."""
+
+    degrees: Amount
+    rest: str
+
+    @property
+    def is_more_said(self) -> bool:
+        """Is there anything else to read?"""
+        return len(self.rest.split()) > 1
+
+
+def total_turning(words: str) -> TotalTurning | None:
+    """What a description says of the degrees of all turns together; None where it says nothing of them."""
+    text = slotted(words)
+    line = " ".join(word.text for word in text.words)
+    found = next((match for way in WAYS if (match := way.search(line))), None)
+    if found is None:
+        return None
+    slot = next(slot for at, slot in enumerate(text.slots) if slot_name(at) == found["slot"])
+    is_least, is_most = found["lo"] or found["or_more"], found["hi"] or found["or_less"]
+    amount = (at_least if is_least else at_most if is_most else exactly)(slot.value)
+    first = line[: found.start()].count(" ")
+    last = first + found[0].count(" ") + 1
+    rest = [word.said for word in (*text.words[:first], *text.words[last:]) if word.said]
+    return TotalTurning(amount, " ".join(rest))

@@ -1,0 +1,99 @@
+"""Hand-written pairs made more: in a mirror, with another number, joined, with one more wish."""
+
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.mirror import mirrored
+from roadgpt.brief.readers.model.numerals import plain, spell
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.errors import BriefError
+from roadgpt.learn.generator import Pair, assembled, sometimes_spoiled
+from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
+from roadgpt.learn.noise import noisy, tidy
+from roadgpt.learn.plausibility import makes_sense
+from roadgpt.learn.standard import standard
+
+LANGUAGES = frozenset({"en", "de", "fr", "es", "it"})
+LONGEST = 420  # letters of a joined text
+
+
+def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.Generator) -> Pair:
+    """A hand-written pair, as often as not changed in one way or another; ``others`` by language."""
+    if rng.random() < 0.5:
+        pair = _made(pair, mirrored(pair.text, pair.plan))
+    if rng.random() < 0.4:
+        pair = _made(pair, recounted(pair, rng))
+    way = rng.random()
+    if way < 0.18 and others.get(pair.lang):
+        its = others[pair.lang]
+        pair = _made(pair, joined(pair, its[int(rng.integers(len(its)))], rng))
+    elif way < 0.28:
+        pair = _made(pair, wished(pair, rng))
+    pair = sometimes_spoiled(pair, rng)
+    if rng.random() < 0.35:
+        language = pair.lang if pair.lang in LANGUAGES else "en"
+        pair = _made(pair, (noisy(pair.text, language, rng), pair.plan))
+    return pair
+
+
+def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
+    return Pair(*new, pair.family, pair.lang) if new else pair
+
+
+def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
+    """Another number of things, where the number is said once and the plan has it once."""
+    counts = re.findall(r"(?:\bx|turns=)(\d+)(?![\d.])", pair.plan)
+    if (
+        len(counts) != 1
+        or not 2 <= int(counts[0]) <= 10
+        or len(re.findall(rf"(?<![\d.]){counts[0]}\b", pair.plan)) != 1
+    ):
+        return None
+    said = [word for word in slotted(pair.text).words if word.text == counts[0]]
+    numbers = [word for word in slotted(pair.text).words if word.text.isdigit()]
+    if len(said) != 1 or len(numbers) != 1 or pair.text.count(said[0].said) != 1:
+        return None
+    new = int(rng.integers(2, 10))
+    word = said[0].said
+    if not (
+        word.isdigit()
+        or plain(word) == plain(spell(int(counts[0]), pair.lang if pair.lang in LANGUAGES else "en"))
+    ):
+        return None
+    text = pair.text.replace(word, str(new) if word.isdigit() else spell(new, pair.lang))
+    plan = re.sub(rf"((?:\bx|turns=)){counts[0]}(?![\d.])", rf"\g<1>{new}", pair.plan)
+    return text, plan
+
+
+def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
+    """One thing after the other, where both plans are clauses and nothing else."""
+    if any("|" in pair.plan or pair.plan.startswith("!") for pair in (one, other)):
+        return None
+    if len(one.text) + len(other.text) > LONGEST:
+        return None
+    try:
+        link, _ = Speaker(grammar_of(one.lang), rng).say("link")
+        brief = read_plan(f"{one.plan}; {other.plan}")
+    except (BriefError, Discarded, KeyError, ModuleNotFoundError):
+        return None
+    if not makes_sense(brief):
+        return None
+    first, second = one.text.rstrip(" .!"), other.text
+    if second[:1].isupper() and not second[1:2].isupper() and one.lang != "de":
+        second = second[:1].lower() + second[1:]
+    return tidy(f"{first} {link} {second}"), standard(brief)
+
+
+def wished(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
+    """The same with one more wish for the whole road behind it."""
+    if "|" in pair.plan or pair.plan.startswith("!") or pair.lang not in LANGUAGES:
+        return None
+    try:
+        tail, wish = Speaker(grammar_of(pair.lang), rng).say("tailwish")
+        plan = assembled(f"{pair.plan} {wish}")
+    except (BriefError, Discarded):
+        return None
+    return (tidy(f"{pair.text.rstrip(' .!')} {tail}"), plan) if plan else None

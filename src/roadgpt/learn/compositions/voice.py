@@ -1,0 +1,137 @@
+"""A voice: phrases drawn from lists, numbers as digits or spelled, and plans put together from turns."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from importlib.resources import files
+from itertools import groupby
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from roadgpt.brief.readers.model.numerals import spell
+
+Thing = TypeVar("Thing")
+PHRASES: dict[str, list[str]] = json.loads(
+    (files("roadgpt.learn") / "words" / "compositions.json").read_text(encoding="utf-8")
+)
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+NOUNS = ("turns", "bends", "curves", "corners")
+SIDES = ("left", "right")
+OTHER = {"left": "right", "right": "left"}
+SHARPNESS = (("sharp", "sharp"), ("tight", "sharp"), ("gentle", "gentle"), ("easy", "gentle"))
+BEGIN = frozenset(
+    ["put", "repeat", "do", "finish", "end", "it", "start", "between", "before", "after", "prior", "once"]
+    + ["first", "at", "twice", "total", "overall", "length"]
+)
+"""Words that begin a sentence of their own."""
+
+
+class Composition(NamedTuple):
+    """A description and its plan."""
+
+    text: str
+    plan: str
+
+
+@dataclass
+class DescribedTurn:
+    """One turn of a road that is being described."""
+
+    kind: str = "turn"
+    mods: dict[str, str] = field(default_factory=dict)
+    """Plan words by what they say: side, sharpness, slope, deg."""
+
+    @property
+    def clause(self) -> str:
+        """Its clause, without a count."""
+        order = ("side", "sharpness", "slope", "deg")
+        return " ".join([self.kind, *(self.mods[key] for key in order if key in self.mods)])
+
+
+def clauses(turns: Sequence[DescribedTurn]) -> str:
+    """Clauses of turns that follow each other, equal ones counted."""
+    out = []
+    for clause, same in groupby(turn.clause for turn in turns):
+        number = len([*same])
+        kind, _, mods = clause.partition(" ")
+        out.append(f"{kind} x{number} {mods}".strip() if number > 1 else clause)
+    return "; ".join(out)
+
+
+class Voice:
+    """Draws what is said, and how."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self.rng = rng
+        self.spells = rng.random() < 0.45
+
+    def pick(self, ways: Sequence[Thing]) -> Thing:
+        """One of them."""
+        return ways[int(self.rng.integers(len(ways)))]
+
+    def say(self, way: str, *parts: str, **named: str) -> str:
+        """A phrase of this way, filled in."""
+        return self.pick(PHRASES[way]).format(*parts, **named)
+
+    def chance(self, share: float) -> bool:
+        """True in this share of cases."""
+        return bool(self.rng.random() < share)
+
+    def whole(self, low: int, high: int) -> int:
+        """A whole number, both ends allowed."""
+        return int(self.rng.integers(low, high + 1))
+
+    def number(self, value: int) -> str:
+        """As digits or in words, as this voice does."""
+        return spell(value, "en") if self.spells else str(value)
+
+    def metres(self, low: int = 15, high: int = 80) -> tuple[str, int]:
+        """A length as said, and its number."""
+        value = 5 * self.whole(low // 5, high // 5)
+        units = (" metres", " meters") if self.spells else (" m", " m", "m", " metres", " meters")
+        return f"{self.number(value)}{self.pick(units)}", value
+
+    def angle(self, low: int = 20, high: int = 120) -> tuple[str, int]:
+        """An angle as said, and its number."""
+        value = 5 * self.whole(low // 5, high // 5)
+        return f"{self.number(value)}{self.pick((' degrees', ' degrees', ' deg', '°'))}", value
+
+    def percent(self, low: int = 3, high: int = 12) -> tuple[str, int]:
+        """A grade as said, and its number."""
+        value = self.whole(low, high)
+        return f"{self.number(value)}{self.pick((' %', ' percent', '%', ' per cent'))}", value
+
+    def turns(self, number: int) -> str:
+        """So many turns, under one of their names."""
+        return f"{self.number(number)} {self.pick(NOUNS)}"
+
+    def ordinal(self, at: int, total: int) -> str:
+        """The name of a turn, counted from 0."""
+        if at == total - 1 and self.chance(0.6):
+            return self.pick(("last", "final", "last"))
+        if self.chance(0.25):
+            return f"{at + 1}{('st', 'nd', 'rd')[at] if at < 3 else 'th'}"
+        return ORDINALS[at]
+
+    def listed(self, names: Sequence[str]) -> str:
+        """A, b and c."""
+        if len(names) == 1:
+            return names[0]
+        return f"{', '.join(names[:-1])}{self.pick((' and ', ' and ', ', and ', ' & '))}{names[-1]}"
+
+    def framed(self, text: str, plan: str, may_slope: bool = True) -> Composition:
+        """With an opening, and now and then a purpose and a wish for the whole road."""
+        if text.split()[0].strip(":;,").lower() not in BEGIN:
+            text = self.say("openings") + text
+        wishes: list[str] = []
+        if may_slope and self.chance(0.3):
+            wishes.append(self.pick(("up", "down", "flat")))
+            text += self.say(wishes[0])
+        if self.chance(0.15):
+            is_hard = self.chance(0.3)
+            wishes += ["hard"] if is_hard else []
+            text = self.say("hard" if is_hard else "purposes") + text
+        if wishes:
+            plan += (" " if "|" in plan else " | ") + " ".join(wishes)
+        return Composition(text, plan)

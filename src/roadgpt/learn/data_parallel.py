@@ -1,0 +1,82 @@
+"""Several processes train side by side, each on one core, and average their weights (local SGD)."""
+
+import multiprocessing
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+
+import torch
+
+from roadgpt.errors import LearnError
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.train import TrainingSettings, train
+
+
+def train_together(
+    folder: Path,
+    pieces: Sequence[str],
+    weights: Path | None,
+    hand: Sequence[Pair],
+    plan: TrainingSettings,
+    report: Callable[[str], None],
+) -> None:
+    """As ``train``, with ``plan.workers`` processes; on a GPU one is enough.
+
+    Raises:
+        LearnError: a worker ended before its work did.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for left_over in folder.glob("weights-*"):  # of a training that was stopped between two saves
+        left_over.unlink()
+    if torch.cuda.is_available():
+        plan = replace(plan, workers=1)
+    spawn = multiprocessing.get_context("spawn")
+    others: list[BaseProcess] = [
+        spawn.Process(
+            target=_work,
+            args=(folder, pieces, weights, hand, replace(plan, rank=rank), os.getpid()),
+            daemon=True,
+        )
+        for rank in range(1, plan.workers)
+    ]
+    for worker in others:
+        worker.start()
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1 if others else threads)
+    try:
+        train(folder, pieces, weights, hand, plan, report, lambda: _all_there(others))
+    finally:
+        torch.set_num_threads(threads)
+        for worker in others:
+            worker.join(timeout=10)
+            worker.kill()
+
+
+def _work(
+    folder: Path,
+    pieces: Sequence[str],
+    weights: Path | None,
+    hand: Sequence[Pair],
+    plan: TrainingSettings,
+    parent: int,
+) -> None:
+    """A worker's whole life."""
+    torch.set_num_threads(1)
+    train(folder, pieces, weights, hand, plan, lambda line: None, lambda: _not_alone(parent))
+
+
+def _not_alone(parent: int) -> None:
+    """Ends a worker whose training was killed: it would go on for ever, and write beside the next one."""
+    if os.getppid() != parent:
+        raise SystemExit(1)
+
+
+def _all_there(workers: Sequence[BaseProcess]) -> None:
+    for worker in workers:
+        if worker.exitcode not in (None, 0):
+            raise LearnError(
+                f"a training process ended with status {worker.exitcode}; "
+                "say the same command again to go on from the last checkpoint"
+            )

@@ -1,0 +1,104 @@
+"""The model card: what the model is, what it was trained on, how well it reads, and where it fails."""
+
+from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from pathlib import Path
+
+from roadgpt.learn import pretrained
+from roadgpt.learn.evaluate import HEAD, Reading, by, confusion, score, worst
+
+MOST_CONFUSIONS = 25
+
+
+def card(
+    weights: Path,
+    data: Mapping[str, int],
+    found: Sequence[Reading],
+    others: Mapping[str, Sequence[Reading]],
+    shown: Sequence[Reading],
+    training: str,
+) -> str:
+    """The card as Markdown. It shows no description of the test split: who writes pairs may read cards.
+
+    Args:
+        weights: the folder of the exported model.
+        data: how many pairs each part of the data has.
+        found: the model's readings of the test split.
+        others: readings of the same split by other readers, by name.
+        shown: the model's readings of the validation split, for what it takes for what and its misses.
+        training: one paragraph on how it was trained.
+    """
+    return "\n".join(
+        [
+            "# Model card: the trained reader",
+            "",
+            "Reads a description of a road in English, German, French, Spanish or Italian and writes a plan:"
+            " the Brief on one line. Encoder: MiniLM, 6 layers, fine-tuned; decoder: 3 layers, from chance;"
+            " both in int8.",
+            "",
+            *_files(weights),
+            *_data(data),
+            "## Training",
+            "",
+            training,
+            "",
+            *_scores(found, others),
+            *_confusions(shown),
+            *_misses(shown),
+            "## Licence",
+            "",
+            f"The encoder starts from {pretrained.NAME}; its `model.safetensors` has the SHA-256"
+            f" `{pretrained.HASH}`."
+            " The data, the decoder and the changed weights are under this project's licence, Apache-2.0.",
+            "",
+        ]
+    )
+
+
+def _files(weights: Path) -> list[str]:
+    rows = [
+        f"| `{path.name}` | {path.stat().st_size / 1e6:.2f} | `{sha256(path.read_bytes()).hexdigest()}` |"
+        for path in sorted(weights.iterdir())
+        if path.is_file()
+    ]
+    return ["| file | MB | SHA-256 |", "|---|---|---|", *rows, ""]
+
+
+def _data(data: Mapping[str, int]) -> list[str]:
+    rows = [f"| {name} | {number:,} |" for name, number in data.items()]
+    return ["## Data", "", "| part | pairs |", "|---|---|", *rows, ""]
+
+
+def _scores(found: Sequence[Reading], others: Mapping[str, Sequence[Reading]]) -> list[str]:
+    rows = [score(found).row("model")]
+    rows += [score(its).row(name) for name, its in others.items()]
+    languages = [its.row(f"model, {name}") for name, its in by(found, lambda pair: pair.lang).items()]
+    families = [its.row(f"model, {name}") for name, its in by(found, lambda pair: pair.family).items()]
+    text = (
+        "Percent on the test split: hand-written, in families of phrasing of which none was in training."
+        " Whole means equal in normal form; turns, slope, order and side are of those that ask for a road."
+    )
+    return ["## How well it reads", "", text, "", HEAD, *rows, *languages, *families, ""]
+
+
+def _confusions(found: Sequence[Reading]) -> list[str]:
+    rows = [
+        f"| `{wanted}` | `{got}` | {times} |"
+        for (wanted, got), times in confusion(found).most_common(MOST_CONFUSIONS)
+    ]
+    head = ["| wanted | written | times |", "|---|---|---|"]
+    return ["## What it takes for what", "", "In the validation split.", "", *head, *rows, ""]
+
+
+def _misses(found: Sequence[Reading]) -> list[str]:
+    rows = [
+        f"| {reading.pair.text.replace('|', '/')} | `{reading.pair.plan.replace('|', '/')}` |"
+        f" `{reading.got.replace('|', '/')}` | {reading.confidence:.2f} |"
+        for reading in worst(found)
+    ]
+    head = ["| description | wanted | written | confidence |", "|---|---|---|---|"]
+    text = (
+        "Wrong, and most sure of it; of the validation split, since a test whose misses are shown is none"
+        " any more."
+    )
+    return ["## The worst misses", "", text, "", *head, *rows, ""]

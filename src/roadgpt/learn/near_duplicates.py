@@ -1,0 +1,90 @@
+"""Are hand-written descriptions really written one by one? No two may share more than 60 % of their 5-grams.
+
+Numbers, sides and words of one meaning are masked first, so that a template filled with other words is found.
+"""
+
+import json
+import re
+from collections import Counter, defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from roadgpt.brief.readers.model.numerals import plain, words
+
+GRAM = 5
+MOST_SHARED = 0.6
+MASKS: dict[str, str] = json.loads(
+    (files("roadgpt.learn") / "words" / "masks.json").read_text(encoding="utf-8")
+)
+"""What stands in the place of words -> the words."""
+MASK_OF = {word: mask for mask, its in MASKS.items() for word in its.split()}
+
+
+@dataclass(frozen=True, slots=True)
+class NearDuplicate:
+    """Two descriptions that are too much alike."""
+
+    shared: float
+    first: int
+    second: int
+
+
+def masked(text: str) -> tuple[str, ...]:
+    """The words of a text, numbers, sides and synonyms masked."""
+    return tuple(_mask(word) for word in re.findall(r"\d+(?:[.,]\d+)?|[^\W\d_]+", plain(text)))
+
+
+@cache
+def _mask(word: str) -> str:
+    if word[0].isdigit() or (word,) in words():
+        return "0"
+    return MASK_OF.get(word, word)
+
+
+def grams(text: str) -> Counter[tuple[str, ...]]:
+    """How often each 5-gram occurs; a shorter text is one gram of all its words."""
+    said = masked(text)
+    size = min(GRAM, len(said))
+    return Counter(said[at : at + size] for at in range(max(1, len(said) - size + 1)))
+
+
+def near_duplicates(texts: Sequence[str], most: float = MOST_SHARED) -> list[NearDuplicate]:
+    """All pairs of texts that share more than ``most`` of the 5-grams of the shorter one, worst first.
+
+    Texts that consist of nothing but masked words are passed over: few ways exist to say "two left bends".
+    """
+    counted = [grams(text) for text in texts]
+    places: dict[tuple[str, ...], list[int]] = defaultdict(list)
+    shared: Counter[tuple[int, int]] = Counter()
+    found: list[NearDuplicate] = []
+    for index, own in enumerate(counted):
+        shared.clear()
+        for gram, times in own.items():
+            for other in places[gram]:
+                shared[other, index] += min(times, counted[other][gram])
+            places[gram].append(index)
+        for (other, _), number in shared.items():
+            share = number / min(own.total(), counted[other].total())
+            if share > most and not _are_bare(own, counted[other]):
+                found.append(NearDuplicate(share, other, index))
+    return sorted(found, key=lambda pair: (-pair.shared, pair.first, pair.second))
+
+
+def _are_bare(one: Counter[tuple[str, ...]], other: Counter[tuple[str, ...]]) -> bool:
+    """Does one of the two consist of nothing but masks, or are both shorter than a gram?"""
+    short = all(counter.total() == 1 and len(next(iter(counter))) < GRAM for counter in (one, other))
+    masks = {*MASKS}
+    return short or any(all(masks >= {*gram} for gram in counter) for counter in (one, other))
+
+
+def report(texts: Mapping[str, Sequence[str]]) -> list[str]:
+    """A sentence for each pair of twins; ``texts`` maps the name of a split to its texts."""
+    side = [name for name, its in texts.items() for _ in its]
+    every = [text for its in texts.values() for text in its]
+    return [
+        f"{pair.shared:.0%} shared ({side[pair.first]}/{side[pair.second]}):"
+        f" '{every[pair.first]}' and '{every[pair.second]}'"
+        for pair in near_duplicates(every)
+    ]

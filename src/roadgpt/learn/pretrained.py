@@ -1,0 +1,65 @@
+"""Where a training begins: the public weights that the encoder starts from, known by their hash."""
+
+from collections.abc import Sequence
+from hashlib import file_digest
+from pathlib import Path
+
+from roadgpt.errors import LearnError
+from roadgpt.learn.piece_vocabulary import read_vocabulary, trimmed
+
+NAME = "sentence-transformers/all-MiniLM-L6-v2 (Apache-2.0)"
+HASH = "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db"
+"""SHA-256 of its public ``model.safetensors``."""
+PIECES = "pieces.txt"
+NOTICE = f"""\
+These weights were trained for RoadGPT and are under its licence, Apache-2.0.
+
+The encoder was fine-tuned from all-MiniLM-L6-v2 (sentence-transformers, Apache-2.0; based on
+nreimers/MiniLM-L6-H384-uncased, and that on microsoft/MiniLM-L12-H384-uncased), whose
+model.safetensors has the SHA-256
+{HASH}.
+Changes: the vocabulary was cut to Latin letters, all layers were trained further, and the weights
+were rounded to 8 bits. pieces.txt is a part of the vocabulary of BERT (Google, Apache-2.0).
+"""
+"""What goes along with the weights."""
+
+
+def begin(out: Path, weights: Path | None, exported: Path | None = None) -> Sequence[str]:
+    """The word pieces of the training in the folder, which is prepared where it is new.
+
+    Args:
+        out: the training's folder.
+        weights: folder with ``model.safetensors`` and ``vocab.txt``; not needed to go on.
+        exported: folder of an exported reader, which a new training may start from instead.
+
+    Raises:
+        LearnError: a new training without weights, files missing, or weights that are not the public ones.
+    """
+    kept = out / PIECES
+    if kept.exists():
+        return read_vocabulary(kept)
+    if exported is not None:
+        if not (exported / PIECES).is_file():
+            raise LearnError(f"there is no {PIECES} in {exported}; give the folder of an exported reader")
+        out.mkdir(parents=True, exist_ok=True)
+        kept.write_bytes((exported / PIECES).read_bytes())
+        return read_vocabulary(kept)
+    if weights is None:
+        raise LearnError(
+            "a new training needs --weights, the folder of all-MiniLM-L6-v2, or --installed, "
+            "which goes on from the reader that is installed"
+        )
+    for name in ("model.safetensors", "vocab.txt"):
+        if not (weights / name).is_file():
+            raise LearnError(f"there is no {name} in {weights}; give the folder of all-MiniLM-L6-v2")
+    with (weights / "model.safetensors").open("rb") as file:
+        found = file_digest(file, "sha256").hexdigest()
+    if found != HASH:
+        raise LearnError(
+            f"model.safetensors in {weights} is not the public all-MiniLM-L6-v2: its SHA-256 is {found}, "
+            f"not {HASH}; get it again"
+        )
+    out.mkdir(parents=True, exist_ok=True)
+    pieces = trimmed(read_vocabulary(weights / "vocab.txt"))
+    kept.write_text("\n".join(pieces), encoding="utf-8")
+    return pieces

@@ -1,0 +1,327 @@
+"""How a server is brought to answer: the strictest way first, remembered, with patience where it helps."""
+
+import time
+from typing import Any
+
+import pytest
+from pydantic import BaseModel
+
+from chat.stub_server import (
+    Request,
+    Stub,
+    answers,
+    completion,
+    drips,
+    drips_headers,
+    drops,
+    fails,
+    floods,
+    only,
+    refuses,
+    says,
+)
+from roadgpt.chat import Chat, ChatError, ChatSettings, Message, RefusedError, UnparsableError, open_chat
+from roadgpt.chat.server_quirks import UNUSABLE_IN_A_ROW
+
+
+class Sum(BaseModel):
+    total: int
+
+
+GOOD = '{"total": 4}'
+FENCED = f"Sure!\n```json\n{GOOD}\n```"
+QUESTION = [Message(role="system", text="You add."), Message(role="user", text="2 + 2 =")]
+
+
+def chat_with(stub: Stub, **settings: Any) -> Chat:
+    return open_chat(ChatSettings(**{"base_url": stub.url, "model": "m", "timeout": 5.0, **settings}))
+
+
+def total(chat: Chat) -> int:
+    reply = chat.ask(QUESTION, Sum)
+    assert isinstance(reply.data, Sum)
+    return reply.data.total
+
+
+def test_a_reply_says_what_it_was_and_what_it_cost(stub: Stub) -> None:
+    stub.play(says(GOOD))
+    chat = chat_with(stub, price="1/10")
+    reply = chat.ask(QUESTION, Sum)
+    assert reply.data == Sum(total=4)
+    assert (reply.text, reply.finish, reply.model) == (GOOD, "stop", "stub-model-2026-11-20")
+    assert (reply.usage.prompt, reply.usage.completion) == (100, 50)
+    assert reply.cost == pytest.approx((100 * 1 + 50 * 10) / 1e6)
+    assert 0 < reply.seconds < 5
+    assert chat.spent.usage == reply.usage
+
+
+def test_without_a_schema_the_text_is_the_answer(stub: Stub) -> None:
+    stub.play(says("Four."))
+    assert chat_with(stub).ask(QUESTION).text == "Four."
+    assert stub.response_formats == ["text"]
+    assert stub.requests[0].body["messages"] == [
+        {"role": "system", "content": "You add."},
+        {"role": "user", "content": "2 + 2 ="},
+    ]
+
+
+@pytest.mark.parametrize(
+    ("knows", "text", "response_formats"),
+    [
+        (("json_schema", "json_object", "text"), GOOD, ["json_schema"]),
+        (
+            ("json_schema", "json_object", "text"),
+            FENCED,
+            ["json_schema"],
+        ),  # llama.cpp, LM Studio: schema ignored
+        (("json_object", "text"), GOOD, ["json_schema", "json_object"]),
+        (("json_schema", "text"), FENCED, ["json_schema"]),  # LM Studio: no json_object
+        (("text",), FENCED, ["json_schema", "json_object", "text"]),
+    ],
+)
+def test_the_ladder_is_gone_down_as_far_as_needed_and_remembered(
+    stub: Stub, knows: tuple[str, ...], text: str, response_formats: list[str]
+) -> None:
+    stub.play(only(*knows, text=text, message="'response_format.type' must be 'json_schema' or 'text'"))
+    assert total(chat_with(stub)) == 4
+    assert stub.response_formats == response_formats
+    stub.play(only(*knows, text=text))
+    assert total(chat_with(stub)) == 4
+    assert stub.response_formats == response_formats[-1:]
+
+
+def test_below_the_first_rung_the_schema_stands_in_the_words(stub: Stub) -> None:
+    stub.play(only("text", text=GOOD))
+    total(chat_with(stub))
+    assert "total" not in str(stub.requests[0].body["messages"])
+    assert '"required":["total"]' in stub.requests[-1].last
+
+
+def test_a_server_that_ignores_schemas_is_asked_otherwise_after_some_failures(stub: Stub) -> None:
+    def scene(request: Request, handler: Any) -> None:
+        says(GOOD if request.response_format == "json_object" else "Four, I think.")(request, handler)
+
+    for _ in range(UNUSABLE_IN_A_ROW):
+        stub.play(scene)
+        assert total(chat_with(stub)) == 4
+        assert stub.response_formats == ["json_schema", "json_object"]
+    stub.play(scene)
+    assert total(chat_with(stub)) == 4
+    assert stub.response_formats == ["json_object"]
+
+
+def test_one_bad_answer_is_no_habit(stub: Stub) -> None:
+    stub.play(says("Four"), says(GOOD))
+    assert total(chat_with(stub)) == 4
+    stub.play(says(GOOD))
+    assert total(chat_with(stub)) == 4
+    assert stub.response_formats == ["json_schema"]
+
+
+def test_a_failed_answer_is_complained_about(stub: Stub) -> None:
+    stub.play(says('{"total": "many"}'), says(GOOD))
+    reply = chat_with(stub).ask(QUESTION, Sum)
+    assert "total: Input should be a valid integer" in str(stub.requests[1].body["messages"])
+    assert reply.usage.total == 300  # of both
+
+
+@pytest.mark.parametrize(
+    ("scene", "why"),
+    [
+        (says("No."), "no JSON object"),
+        (says(" \n" * 4000, "length"), "cut off .*, and it is blank"),
+        (says('{"total": [1, 2', "length"), "cut off"),
+        (says('{"total": NaN}'), "NaN"),
+        (says('{"total": 1, "total": 2}'), "'total' twice"),
+        (says('{"sum": 4}'), "total: Field required"),
+        (says(None), "blank"),
+        (answers({}), "blank"),
+        (answers({"choices": "none"}), "blank"),
+        (answers({"choices": [{"message": {"content": 7}}]}), "blank"),
+        (floods(3), "bytes"),
+    ],
+)
+def test_after_the_whole_ladder_one_sentence_is_left(stub: Stub, scene: Any, why: str) -> None:
+    stub.play(scene)
+    with pytest.raises(UnparsableError, match=why) as caught:
+        total(chat_with(stub))
+    assert stub.response_formats == ["json_schema", "json_object", "text", "text"]
+    assert "\n" not in str(caught.value)
+    assert len(caught.value.text) <= 2000
+
+
+def test_the_text_that_failed_is_kept_short(stub: Stub) -> None:
+    stub.play(says("blah " * 9999))
+    with pytest.raises(UnparsableError) as caught:
+        total(chat_with(stub))
+    assert caught.value.text == ("blah " * 9999)[:2000]
+
+
+@pytest.mark.parametrize(
+    ("scene", "told"),
+    [
+        (says(None, refusal="I cannot help with roads."), "cannot help with roads"),
+        (says("", "content_filter"), "filter"),
+        (says(None, refusal="No\n\x1b[31mroads\x00" + "!" * 999), r"No \[31mroads"),
+    ],
+)
+def test_a_refusal_is_told_and_not_argued_with(stub: Stub, scene: Any, told: str) -> None:
+    stub.play(scene)
+    with pytest.raises(RefusedError, match=f"the model declined: .*{told}") as caught:
+        total(chat_with(stub))
+    assert len(stub.requests) == 1
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 200
+
+
+@pytest.mark.parametrize("parameter", ["temperature", "max_tokens"])
+def test_a_parameter_that_is_refused_is_left_out_from_then_on(stub: Stub, parameter: str) -> None:
+    stub.play(refuses(parameter, GOOD))
+    assert total(chat_with(stub, temperature=0.5)) == 4
+    assert len(stub.requests) == 2
+    assert parameter in stub.requests[0].body
+    stub.play(refuses(parameter, GOOD))
+    assert total(chat_with(stub, temperature=0.5)) == 4
+    assert len(stub.requests) == 1
+
+
+def test_the_cap_takes_its_other_name_where_one_is_refused(stub: Stub) -> None:
+    stub.play(refuses("max_tokens", GOOD))
+    total(chat_with(stub, max_completion=99))
+    assert stub.requests[0].body["max_tokens"] == 99
+    assert stub.requests[1].body["max_completion_tokens"] == 99
+
+
+def test_a_temperature_that_nobody_asked_for_is_not_sent(stub: Stub) -> None:
+    stub.play(says(GOOD))
+    total(chat_with(stub))
+    assert "temperature" not in stub.requests[0].body
+
+
+@pytest.mark.parametrize(
+    "scene", [fails(500), fails(503, "busy"), fails(429, "later"), drops(), drops(b'{"id": ')]
+)
+def test_what_may_pass_is_tried_again_later_and_later(stub: Stub, waits: list[float], scene: Any) -> None:
+    stub.play(scene, scene, scene, says(GOOD))
+    assert total(chat_with(stub)) == 4
+    assert len(waits) == 3
+    for wait, usual in zip(waits, (0.5, 1.0, 2.0), strict=True):
+        assert usual * 0.7 <= wait <= usual * 1.3
+
+
+@pytest.mark.parametrize(
+    "scene", [fails(500, "boom"), answers({"error": "boom"}), drops(), drops(b'{"id": ')]
+)
+def test_patience_ends(stub: Stub, waits: list[float], scene: Any) -> None:
+    stub.play(scene)
+    with pytest.raises(ChatError, match=r"\(tried 3 times\)$"):
+        total(chat_with(stub, retries=2))
+    assert len(stub.requests) == 3
+
+
+@pytest.mark.parametrize(
+    ("headers", "wait"),
+    [({"retry-after": "7"}, 7.0), ({"retry-after-ms": "1500"}, 1.5), ({"retry-after": "0.25"}, 0.25)],
+)
+def test_a_server_is_given_the_time_that_it_asks_for(
+    stub: Stub, waits: list[float], headers: dict[str, str], wait: float
+) -> None:
+    stub.play(fails(429, "slow down", headers), says(GOOD))
+    assert total(chat_with(stub)) == 4
+    assert waits == [wait]
+
+
+def test_retry_after_may_be_a_date(stub: Stub, waits: list[float]) -> None:
+    from email.utils import formatdate
+
+    stub.play(fails(429, "", {"retry-after": formatdate(time.time() + 30, usegmt=True)}), says(GOOD))
+    assert total(chat_with(stub)) == 4
+    assert 25 <= waits[0] <= 31
+
+
+@pytest.mark.parametrize("value", ["soon", "", "nan", "-5"])
+def test_a_retry_after_that_says_nothing_is_passed_over(stub: Stub, waits: list[float], value: str) -> None:
+    stub.play(fails(429, "", {"retry-after": value}), says(GOOD))
+    assert total(chat_with(stub)) == 4
+    assert 0 <= waits[0] < 1
+
+
+def test_nobody_waits_for_an_hour(stub: Stub, waits: list[float]) -> None:
+    stub.play(fails(429, "", {"retry-after": "3600"}))
+    with pytest.raises(ChatError, match="asks to wait 3600 s"):
+        total(chat_with(stub))
+    assert waits == []
+
+
+@pytest.mark.parametrize(
+    ("scene", "told"),
+    [
+        (fails(401, "Incorrect API key provided"), "wants a key, and none is set"),
+        (fails(403, "Country not supported"), "does not allow this"),
+        (fails(404, "The model `m` does not exist"), "knows no such model or address"),
+        (
+            fails(429, "You exceeded your current quota", code="insufficient_quota"),
+            "has nothing left to spend",
+        ),
+        (fails(413, "too large"), "refuses the question with status 413: too large"),
+        (fails(400, "This model's maximum context length is 8192 tokens"), "maximum context length"),
+        (answers({"error": {"message": "no such model", "code": 404}}), "knows no such model"),
+        (answers(b"<html>Welcome to nginx</html>"), "something else than JSON .*base URL"),
+        (answers([1, 2]), "something else than JSON"),
+        (fails(404, "<!DOCTYPE HTML><html><p>File not found"), "it answers with a web page, .*--base-url"),
+    ],
+)
+def test_what_will_not_pass_is_told_at_once(stub: Stub, waits: list[float], scene: Any, told: str) -> None:
+    stub.play(scene)
+    with pytest.raises(ChatError, match=told):
+        total(chat_with(stub))
+    assert len(stub.requests) == 1
+    assert waits == []
+
+
+@pytest.mark.parametrize("scene", [drips(0.05), drips_headers(0.05)])
+def test_an_answer_that_drips_in_is_given_up_in_time(stub: Stub, scene: Any) -> None:
+    stub.play(scene)
+    begun = time.perf_counter()
+    with pytest.raises(ChatError, match=r"gave no whole answer within 0\.5 s"):
+        total(chat_with(stub, timeout=0.5, retries=0))
+    assert time.perf_counter() - begun < 2.5
+
+
+def test_a_server_that_is_not_there_is_told(stub: Stub, waits: list[float]) -> None:
+    chat = open_chat(ChatSettings(base_url="http://127.0.0.1:9/v1", model="m", retries=1))
+    with pytest.raises(
+        ChatError, match=r"http://127\.0\.0\.1:9/v1 cannot be reached .*is the server running\?"
+    ):
+        chat.ask(QUESTION)
+
+
+def test_the_only_model_of_a_server_need_not_be_named(stub: Stub) -> None:
+    stub.play(says(GOOD))
+    assert total(chat_with(stub, model=None)) == 4
+    assert stub.requests[0].body["model"] == "stub-model"
+    stub.models[:] = ["one", "two"]
+    with pytest.raises(ChatError, match="has 2 models: one, two; say which with --model"):
+        chat_with(stub, model=None)
+    with pytest.raises(ChatError, match=r"no model is named \(say which with --model .*cannot be reached"):
+        open_chat(ChatSettings(base_url="http://127.0.0.1:9/v1", retries=0))
+
+
+def test_a_base_url_may_leave_out_its_path(stub: Stub) -> None:
+    stub.play(says(GOOD))
+    assert total(chat_with(stub, base_url=stub.url.removesuffix("/v1"))) == 4
+    assert stub.requests[0].path == "/v1/chat/completions"
+
+
+def test_usage_that_is_missing_is_guessed_and_nonsense_is_none(stub: Stub) -> None:
+    body = completion(GOOD)
+    for usage in (None, {}, {"prompt_tokens": -5, "completion_tokens": "many"}, {"prompt_tokens": 1e300}):
+        stub.play(answers({**body, "usage": usage}))
+        spent = chat_with(stub).ask(QUESTION, Sum).usage
+        assert 0 < spent.prompt < 20
+        assert 0 < spent.completion < 20
+
+
+def test_content_may_come_in_parts(stub: Stub) -> None:
+    stub.play(says([{"type": "text", "text": '{"total":'}, {"type": "text", "text": " 4}"}]))
+    assert total(chat_with(stub)) == 4

@@ -1,0 +1,161 @@
+"""JSON out of whatever a model writes: what is there is found, what nobody can have meant is refused."""
+
+import json
+import time
+from contextlib import suppress
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import BaseModel
+
+from roadgpt.chat.strict_json import MOST_CHARACTERS, NotReadableError, plain, read_as, read_object
+
+
+class Part(BaseModel):
+    distance: float
+    turns: int
+
+
+class Whole(BaseModel):
+    name: str
+    parts: list[Part]
+    spare: float | None = None
+
+
+texts = st.text(st.characters(codec="utf-8", exclude_characters="{}`<"), max_size=30)
+values = st.recursive(
+    st.none() | st.booleans() | st.integers(-(10**9), 10**9) | st.floats(-1e9, 1e9) | st.text(max_size=20),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
+    max_leaves=20,
+)
+objects = st.dictionaries(st.text(max_size=8), values, max_size=5)
+
+
+@given(objects, texts, texts, st.sampled_from(["plain", "fence", "named fence", "talk", "thoughts"]))
+def test_an_object_is_found_in_whatever_stands_around_it(
+    data: dict[str, Any], before: str, after: str, how: str
+) -> None:
+    inner = json.dumps(data)
+    wrapped = {
+        "plain": inner,
+        "fence": f"{before}\n```\n{inner}\n```\n{after}",
+        "named fence": f"{before}\n```json\n{inner}\n```\n{after}",
+        "talk": f"{before} {inner} {after}",
+        "thoughts": f"<think>{before} {{no}} </think>\n{inner}",
+    }[how]
+    assert read_object(wrapped) == data
+
+
+@given(st.text(max_size=400))
+def test_any_text_is_an_object_or_refused(text: str) -> None:
+    with suppress(NotReadableError):
+        assert isinstance(read_object(text), dict)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("", "blank"),
+        (" \n\t" * 10_000, "blank"),
+        ("I would rather not.", "no JSON object"),
+        ("[1, 2]", "not an object"),
+        ('{"a": NaN}', "NaN"),
+        ('{"a": -Infinity}', "Infinity"),
+        ('{"a": 1e999}', "no number"),
+        ('{"a": ' + "9" * 5000 + "}", "5,000 digits"),
+        ('{"a": 1, "a": 2}', "'a' twice"),
+        ('{"a": {"b": 1, "b": "1"}}', "'b' twice"),
+        ('{"a": 1', "not JSON"),
+        ("{'a': (1, 2)}", "not JSON"),
+        ('{"a":' * 100 + "1" + "}" * 100, "brackets"),
+        ("[" * 200_000, "brackets"),
+        ('{"a":' * 100_000, "brackets"),
+        ("x" * (MOST_CHARACTERS + 1), "characters"),
+    ],
+)
+def test_what_nobody_can_have_meant_is_refused_with_a_reason(text: str, why: str) -> None:
+    with pytest.raises(NotReadableError, match=why):
+        read_object(text)
+
+
+def test_a_key_that_is_said_twice_alike_does_no_harm() -> None:
+    assert read_object('{"a": 1, "a": 1}') == {"a": 1}
+
+
+def test_the_first_object_counts() -> None:
+    assert read_object('Like {"a": 1}, or rather {"a": 2}.') == {"a": 1}
+
+
+@pytest.mark.parametrize(
+    "text", ["{" * 50_000, "<think>" * 50_000, "```\n" * 50_000, '{"' * 50_000, "\\" * 50_000]
+)
+def test_no_flood_takes_long(text: str) -> None:
+    begun = time.perf_counter()
+    with pytest.raises(NotReadableError):
+        read_object(text)
+    assert time.perf_counter() - begun < 5.0
+
+
+@pytest.mark.parametrize(
+    ("said", "number"),
+    [
+        ("12", 12.0),
+        ("12.5 m", 12.5),
+        ("12,5 m", 12.5),
+        ("-3 %", -3.0),
+        ("45°", 45.0),
+        ("+7 degrees", 7.0),
+        ("−4", -4.0),
+    ],
+)
+def test_numbers_that_are_written_as_text_are_numbers(said: str, number: float) -> None:
+    data = {
+        "name": "x",
+        "parts": [{"distance": 1, "turns": 1}, {"distance": said, "turns": "2"}],
+        "spare": said,
+    }
+    whole = read_as(Whole, json.dumps(data))
+    assert whole.parts[1].distance == number
+    assert whole.parts[1].turns == 2
+    assert whole.spare == number
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "twelve",
+        "nan",
+        "Infinity",
+        "-inf",
+        "12 to 15",
+        "1e5",
+        "__import__('os')",
+        "12; 13",
+        "",
+        "0x10",
+        "9" * 400,
+    ],
+)
+def test_texts_that_are_no_numbers_stay_none(said: str) -> None:
+    data = {"name": "x", "parts": [{"distance": said, "turns": 1}]}
+    if said == "1e5":
+        assert read_as(Whole, json.dumps(data)).parts[0].distance == 1e5
+        return
+    with pytest.raises(NotReadableError, match=r"parts\.0\.distance|finite"):
+        read_as(Whole, json.dumps(data))
+
+
+def test_the_order_of_keys_is_free_and_ten_thousand_parts_are_read() -> None:
+    parts = [{"turns": number, "distance": 1.0} for number in range(10_000)]
+    whole = read_as(Whole, json.dumps({"parts": parts, "name": "long"}))
+    assert len(whole.parts) == 10_000
+    assert whole.parts[-1].turns == 9_999
+
+
+@given(st.text(max_size=300))
+def test_words_of_strangers_become_one_printable_line(text: str) -> None:
+    line = plain(text, 40)
+    assert line.isprintable()
+    assert len(line) <= 44

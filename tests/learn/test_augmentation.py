@@ -1,0 +1,55 @@
+"""Hand-written pairs made more: every change of the text is one of the plan, too."""
+
+import numpy as np
+
+from roadgpt.brief.readers.model.mirror import mirrored
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.vocabulary import tokens_of
+from roadgpt.learn.augmentation import joined, recounted
+from roadgpt.learn.generator import Pair, pairs
+from roadgpt.learn.labels import REFUSALS
+
+
+def test_hardly_any_generated_plan_has_a_number_that_its_text_has_not() -> None:
+    lost = 0
+    stream = pairs(5)
+    for _ in range(1000):
+        pair = next(stream)
+        if pair.plan not in REFUSALS:
+            lost += tokens_of(pair.plan, slotted(pair.text).slots) is None  # a number word hidden by a slip
+    assert lost < 30
+
+
+def test_a_mirror_swaps_sides_in_text_and_plan() -> None:
+    assert mirrored("Left, then two rights", "turn left; turn x2 right") == (
+        "Right, then two lefts",
+        "turn right; turn x2 left",
+    )
+    assert mirrored("una curva a la izquierda", "turn left") == ("una curva a la derecha", "turn right")
+    assert mirrored("a right angle to the left", "turn left deg=90") is None
+    assert mirrored("a hairpin", "hairpin") is None
+
+
+def test_another_number_changes_text_and_plan() -> None:
+    pair = Pair("gimme two hairpins", "hairpin x2", "f", "en")
+    new = [recounted(pair, np.random.default_rng(seed)) for seed in range(5)]
+    assert ("gimme five hairpins", "hairpin x5") in new or all(n and n[1] != "turn" for n in new)
+    assert (
+        recounted(
+            Pair("four turns, the first two uphill", "turn x2 up; turn x2", "f", "en"),
+            np.random.default_rng(0),
+        )
+        is None
+    )
+
+
+def test_two_descriptions_are_joined_in_order() -> None:
+    both = joined(
+        Pair("a left", "turn left", "f", "en"),
+        Pair("A hairpin", "hairpin", "f", "en"),
+        np.random.default_rng(1),
+    )
+    assert both is not None
+    assert both[1] == "turn left; hairpin"
+    assert both[0].startswith("a left")
+    assert both[0].endswith("a hairpin")

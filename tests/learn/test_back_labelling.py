@@ -1,0 +1,35 @@
+"""Descriptions of measured roads: their facts are those of the road; the same seed gives the same ones."""
+
+import re
+from itertools import islice
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.vocabulary import tokens_of
+from roadgpt.learn.back_labelling import measured_pairs
+from roadgpt.learn.standard import standard
+
+PAIRS = [*islice(measured_pairs(5), 40)]
+
+
+def test_plans_stand_as_plans_are_written_and_their_numbers_are_in_the_text() -> None:
+    for pair in PAIRS:
+        assert standard(read_plan(pair.plan)) == pair.plan
+        numbers = {float(number) for number in re.findall(r"\d+", pair.text)}
+        assert {abs(float(number)) for number in re.findall(r"=(-?\d+)", pair.plan)} <= numbers | {0.0}
+    assert sum(tokens_of(pair.plan, slotted(pair.text).slots) is not None for pair in PAIRS) > 30
+
+
+def test_sides_are_said_as_often_as_they_are_planned() -> None:
+    for pair in PAIRS:
+        for side in ("left", "right"):
+            said = len(re.findall(side, pair.text))
+            planned = sum(
+                int(clause.count.lo or 0) for clause in read_plan(pair.plan).clauses if clause.side == side
+            )
+            assert said == planned
+
+
+def test_the_same_seed_describes_the_same_roads() -> None:
+    assert [*islice(measured_pairs(5), 5)] == PAIRS[:5]
+    assert [*islice(measured_pairs(6), 5)] != PAIRS[:5]
