@@ -1,8 +1,9 @@
-"""English vocabulary, first half: things along the road, sides, shapes and slopes.
+"""English vocabulary, first part: features along the road, sides, shapes and slopes.
 
-A key names one meaning or several in a row; its phrases are separated by '|'. Accents, case and hyphens do
-not matter. '+' marks a plural, '~' a verb, '#' a number; the meanings are worked out in ``handlers.py``. Where a
-phrase stands under two keys the first one counts, save for bounds, which need a number beside them.
+A key names one meaning, or several that stand in a row; its phrases are separated by '|'. Accents, case and
+hyphens do not matter. '+' marks a plural, '~' a verb, '#' a number; ``handlers.py`` says what the meanings
+do. If a phrase stands under two keys, the first one counts, except for bounds, which need a number beside
+them.
 """
 
 ROAD_WORDS: dict[str, str] = {
