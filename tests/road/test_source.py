@@ -95,6 +95,18 @@ def test_control_points_are_dense_and_few_enough() -> None:
             '{"start": [0, 0, 0], "pieces": [[1, NaN, 0]],"height": 0, "stations": [0, 1], "grades": [0, 0]}',
             "finite",
         ),
+        (
+            '{"start": [0, 0, 0], "pieces": [[9, 0, 1e9]],"height": 0, "stations": [0, 9], "grades": [0, 0]}',
+            "curvature",
+        ),
+        (
+            '{"start": [0, 0, 1e9], "pieces": [[9, 0, 0]],"height": 0, "stations": [0, 9], "grades": [0, 0]}',
+            "beyond 1,000,000",
+        ),
+        (
+            '{"start": [0, 0, 0], "pieces": [[9, 0, 0]],"height": 1e9, "stations": [0, 9], "grades": [0, 0]}',
+            "beyond 1,000,000",
+        ),
     ],
 )
 def test_files_without_a_road_get_one_sentence(tmp_path: Path, text: str, hint: str) -> None:

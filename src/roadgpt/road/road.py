@@ -26,6 +26,7 @@ MOST_CONTROL_POINTS = 500  # SBFT rule
 LONGEST = 50_000.0  # m, of a road
 FARTHEST = 1_000_000.0  # m, of a point from the origin
 SHORTEST = 1e-3  # m
+SHARPEST = 1e3  # 1/m, of a curvature in a file
 STEEPEST = 10.0  # metres up for each metre forward
 LOOKED_AT = 5000  # places at which a road's grade is looked at
 MOST_POINTS = 200_000  # that a road may go through
@@ -191,6 +192,10 @@ class Road:
             profile, more = _profile(data)
             if not np.isfinite([*numbers, *more]).all():
                 raise ValueError("a number is not finite")
+            if max(abs(x), abs(y), *(abs(v) for v in more)) > FARTHEST or abs(heading) > FARTHEST:
+                raise ValueError(f"a number is beyond {FARTHEST:,.0f}")
+            if any(max(abs(p.k0), abs(p.k1)) > SHARPEST for p in pieces):
+                raise ValueError(f"a curvature is above {SHARPEST:,.0f} 1/m, a radius below 1 mm")
             check_length(length := sum(p.length for p in pieces))
             check_grade(profile, length)
             return cls(PieceCurve(x, y, heading, pieces), profile)
