@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 
 from roadgpt import plugins
-from roadgpt.campaign.executors import Executor, Job, Staff
+from roadgpt.campaign.executors import Executor, Job, WorkerConfig
 
 WORKERS = 2
 TEST = 0.05  # s
@@ -33,7 +33,7 @@ def all_done(workers: Executor, jobs: list[Job]) -> float:
 
 def row(name: str, count: int, log: Path) -> str:
     begun = time.perf_counter()
-    workers = plugins.find("executors", name)(Staff(WORKERS, partial(abs, 0), 600.0, log))
+    workers = plugins.find("executors", name)(WorkerConfig(WORKERS, partial(abs, 0), 600.0, log))
     try:
         workers.map(abs, range(WORKERS * 4))
         ready = time.perf_counter() - begun

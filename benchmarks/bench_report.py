@@ -13,8 +13,8 @@ from roadgpt.brief import read
 from roadgpt.campaign.model import Budget, Cell, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.campaign.store import Store
-from roadgpt.campaign.worker import Ended
 from roadgpt.design import draft
 from roadgpt.road import World
 from roadgpt.run.model import Request
@@ -46,7 +46,7 @@ def store_of(folder: Path, tests: int) -> None:
     with Store.new(folder, plan.model_dump_json(), [cell], {"roadgpt": "bench"}) as store:
         store.begin_sitting(1)
         store.add_batch("c01", 0, 1, [result.proposal for result in made])
-        store.keep([("c01", Ended(result)) for result in made], None, [], {"c01": 1.0})
+        store.keep([("c01", FinishedTest(result)) for result in made], None, [], {"c01": 1.0})
         store.finish()
     db = sqlite3.connect(folder / "campaign.sqlite")
     db.execute(

@@ -24,17 +24,17 @@ from typing import Any
 import numpy as np
 
 from roadgpt import plugins
-from roadgpt.campaign import launch, office
-from roadgpt.campaign.launch import begin, work
+from roadgpt.campaign import lifecycle, scheduler
+from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Budget, Cell, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Record
 from roadgpt.campaign.rows import design_text
+from roadgpt.campaign.single_test import FinishedTest, Task
 from roadgpt.campaign.status import status_of
 from roadgpt.campaign.store import Store
 from roadgpt.campaign.table import write_tables
 from roadgpt.campaign.traces import STEPS, Trace
-from roadgpt.campaign.worker import Ended, Task
 from roadgpt.drive import COLUMNS
 from roadgpt.road import Design, Segment
 
@@ -48,7 +48,7 @@ STEPS_OF_A_DRIVE = 1000
 ENDS = {True: ("PASS", None), False: ("FAIL", "stuck")}
 
 
-def instant(task: Task, cell: Cell) -> Ended:
+def instant(task: Task, cell: Cell) -> FinishedTest:
     """A test that does nothing, with a result of the usual size."""
     result = Result(
         task.number,
@@ -62,10 +62,10 @@ def instant(task: Task, cell: Cell) -> Ended:
         0.5,
         features=FEATURES,
     )
-    return Ended(result)
+    return FinishedTest(result)
 
 
-def with_drive(task: Task, cell: Cell) -> Ended:
+def with_drive(task: Task, cell: Cell) -> FinishedTest:
     """The same with a drive of 20 s, whose columns change about as much as those of real ones."""
     rng = np.random.default_rng(task.number)
     columns = {name: np.cumsum(rng.integers(-9, 10, STEPS_OF_A_DRIVE)).astype(np.int32) for name in COLUMNS}
@@ -77,7 +77,7 @@ def with_drive(task: Task, cell: Cell) -> Ended:
         "car": {"length": 4.7, "width": 1.9},
     }
     assert set(columns) == set(STEPS)
-    return Ended(instant(task, cell).result, Trace(header, columns))
+    return FinishedTest(instant(task, cell).result, Trace(header, columns))
 
 
 class Same:
@@ -99,7 +99,7 @@ def nothing() -> None:
     """Prepares nobody."""
 
 
-def of_no_cost(tests: int, function: Callable[..., Ended]) -> tuple[Plan, Callable[[], None]]:
+def of_no_cost(tests: int, function: Callable[..., FinishedTest]) -> tuple[Plan, Callable[[], None]]:
     """A plan of tests that cost nothing, and what puts it on its way."""
     installed = plugins.find
 
@@ -108,8 +108,8 @@ def of_no_cost(tests: int, function: Callable[..., Ended]) -> tuple[Plan, Callab
 
     def ready() -> None:
         setattr(plugins, "find", find)  # noqa: B010 - it is a function of a module
-        setattr(office, "do", function)  # noqa: B010
-        setattr(launch, "Ready", lambda setups: nothing)  # noqa: B010
+        setattr(scheduler, "execute", function)  # noqa: B010
+        setattr(lifecycle, "WorkerSetup", lambda setups: nothing)  # noqa: B010
 
     return Plan(generators=("same",), budget=Budget(tests=tests), drives=False), ready
 

@@ -35,11 +35,11 @@ from roadgpt.campaign.behaviour import cell_of
 from roadgpt.campaign.generators.genetic import Genetic
 from roadgpt.campaign.generators.quality_diversity import QualityDiversity
 from roadgpt.campaign.generators.random_ import Random
-from roadgpt.campaign.worker import Task, do, result_of
+from roadgpt.campaign.single_test import Task, execute, result_of
 from roadgpt.check import sbft_verdict
 from roadgpt.road import Road, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
-from roadgpt.run.sparseness import Spread, segment_around
+from roadgpt.run.sparseness import Sparseness, segment_around
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "search.md"
 BEGIN, END = "<!-- measured by benchmarks/bench_search.py -->", "<!-- end of what was measured -->"
@@ -203,7 +203,7 @@ def searched(cell: Cell, job: Job) -> list[tuple[Result, Road]]:
         n = min(generator.batch_size, job.tests - number + 1)
         proposals = generator.ask(len(batches), number, n, Here())
         tasks = [Task(at, len(batches), one) for at, one in enumerate(proposals, number)]
-        batches.append([do(task, cell).result for task in tasks])
+        batches.append([execute(task, cell).result for task in tasks])
         number += len(proposals)
     results = [result for batch in batches for result in batch]
     return [(result, build(result.design)) for result in results]
@@ -213,7 +213,7 @@ def figures(
     cell: Cell, tried: list[tuple[Result, Road]], referee: str | None, truth: dict[str, Any] | None
 ) -> dict[str, Any]:
     """All that tables show of a search."""
-    spread = Spread()
+    spread = Sparseness()
     failures = [(result, road) for result, road in tried if result.outcome == "FAIL"]
     for result, road in failures:
         segment = segment_around(road.control_points(), road.at(result.at_s)[:2].tolist())

@@ -20,9 +20,9 @@ from scipy.stats import rankdata, spearmanr
 from sklearn.linear_model import RidgeCV
 from sklearn.preprocessing import StandardScaler
 
-from roadgpt.campaign.signs import hazard_of
 from roadgpt.campaign.surrogate import Surrogate, target_of
-from roadgpt.campaign.vary import Setting, Task, varied
+from roadgpt.campaign.surrogate_features import hazard_of
+from roadgpt.campaign.variation import VariationContext, VariationTask, make_candidate
 from roadgpt.road import World
 from roadgpt.run import Setup, brief_of, prove
 
@@ -35,13 +35,13 @@ Predict = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 def driven(seed: int, wet: bool) -> tuple[np.ndarray, float, bool] | None:
     """Signs of a road, its margin in metres, and whether the car failed."""
     brief = brief_of("a flat road", WORLD, Setup(reader="grammar"))
-    road = varied(Task("wild", (), "", (seed,), Setting(brief, WORLD, "sbft")))
+    road = make_candidate(VariationTask("wild", (), "", (seed,), VariationContext(brief, WORLD, "sbft")))
     if road is None:
         return None
     world = WORLD.model_copy(update={"friction": 0.572}) if wet else WORLD
     driver = f"{Path(__file__).resolve().parent / 'assumes_dry.py'}:AssumesDry" if wet else "beamng_like"
     run = prove(road.design, 0, world, Setup(driver=driver))
-    return (road.signs, run.verdict.margin, run.outcome == "FAIL") if run.verdict else None
+    return (road.surrogate_features, run.verdict.margin, run.outcome == "FAIL") if run.verdict else None
 
 
 def curvature(known: np.ndarray, targets: np.ndarray, fresh: np.ndarray) -> np.ndarray:

@@ -64,7 +64,7 @@ _PICTURES = (
     ("roadgpt.road.road", "Road"),
     ("roadgpt.road.design", "Design"),
     ("roadgpt.run.model", "Run"),
-    ("roadgpt.run.campaign", "Campaign"),
+    ("roadgpt.run.campaign_runs", "Campaign"),
 )
 
 

@@ -92,10 +92,10 @@ def is_alive(pid: int) -> bool:
 
 
 def main() -> None:
-    from roadgpt.campaign.executors import Job, Staff
+    from roadgpt.campaign.executors import Job, WorkerConfig
     from roadgpt.campaign.executors.processes import Processes
 
-    workers = Processes(Staff(2, nothing, 1000.0, Path(os.devnull)))
+    workers = Processes(WorkerConfig(2, nothing, 1000.0, Path(os.devnull)))
     workers.submit([Job(key, sleeps, 1000.0) for key in range(2)])
     while len(doing := workers.under_way()) < 2:
         time.sleep(0.05)

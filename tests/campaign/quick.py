@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from roadgpt import plugins
-from roadgpt.campaign import launch, office
-from roadgpt.campaign.executors import Doing, Done, Job, Staff
+from roadgpt.campaign import lifecycle, scheduler
+from roadgpt.campaign.executors import FinishedJob, Job, RunningJob, WorkerConfig
 from roadgpt.campaign.model import Budget, Cell, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE
-from roadgpt.campaign.worker import Ended, Task
+from roadgpt.campaign.single_test import FinishedTest, Task
 from roadgpt.road import Design, Segment
 
 OUTCOMES = ("PASS", "FAIL", "INVALID", "ERROR", "VALID")
@@ -33,7 +33,7 @@ def a_design(number: int) -> Design:
     )
 
 
-def made(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended:
+def made(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest:
     """A result that depends on everything that a result may depend on."""
     proposal = task.proposal
     known = [design.theta for block in earlier for design in block]
@@ -52,10 +52,10 @@ def made(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended:
         margin=float(rng.normal()) if rng.random() < 0.9 else None,
         features={"A": float(rng.random()), f"B_{rng.integers(3)}": float(rng.integers(9))},
     )
-    return Ended(result)
+    return FinishedTest(result)
 
 
-def slowly(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> Ended:
+def slowly(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest:
     """The same, in as many seconds as the cell's settings say."""
     time.sleep(cell.settings["seconds"])
     return made(task, cell, *earlier)
@@ -95,7 +95,7 @@ class Inline:
 
     rng = np.random.default_rng(0)
 
-    def __init__(self, staff: Staff) -> None:
+    def __init__(self, staff: WorkerConfig) -> None:
         self.staff = staff
         self.values: dict[str, Any] = {}
         self.jobs: list[Job] = []
@@ -109,16 +109,18 @@ class Inline:
     def submit(self, jobs: Sequence[Job]) -> None:
         self.jobs.extend(jobs)
 
-    def done(self, seconds: float) -> list[Done]:
+    def done(self, seconds: float) -> list[FinishedJob]:
         ended = []
         for _ in range(min(len(self.jobs), int(self.rng.integers(1, 4)) if seconds else 0)):
             near = min(len(self.jobs), 3 * self.staff.workers)
             job = self.jobs.pop(int(self.rng.integers(near)))
-            ended.append(Done(job.key, job.function(job.item, *(self.values[name] for name in job.needs))))
+            ended.append(
+                FinishedJob(job.key, job.function(job.item, *(self.values[name] for name in job.needs)))
+            )
         return ended
 
-    def under_way(self) -> list[Doing]:
-        return [Doing(job.key, "me", 0.0) for job in self.jobs[: self.staff.workers]]
+    def under_way(self) -> list[RunningJob]:
+        return [RunningJob(job.key, "me", 0.0) for job in self.jobs[: self.staff.workers]]
 
     def map(self, function: Any, items: Sequence[Any]) -> list[Any]:
         return [function(item) for item in items]
@@ -146,8 +148,8 @@ def put_on_shelves(patch: Any, seconds: float = 0.0) -> None:
     installed = plugins.find
     parts = {"search": Search, "inline": Inline}
     patch(plugins, "find", lambda shelf, name: parts.get(name) or installed(shelf, name))
-    patch(office, "do", slowly if seconds else made)
-    patch(launch, "Ready", lambda setups: nothing)
+    patch(scheduler, "execute", slowly if seconds else made)
+    patch(lifecycle, "WorkerSetup", lambda setups: nothing)
 
 
 def main() -> None:
@@ -155,10 +157,10 @@ def main() -> None:
     folder, tests, workers = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     seconds = float(sys.argv[4]) if len(sys.argv) > 4 else 0.0
     put_on_shelves(setattr, seconds)
-    office.GROUP_SECONDS = 0.05  # so that kills fall into the keeping of results, too
+    scheduler.GROUP_SECONDS = 0.05  # so that kills fall into the keeping of results, too
     if not (folder / STORE).exists():
-        launch.begin(plan(tests, seconds=seconds), folder)
-    for progress in launch.work(folder, workers):
+        lifecycle.begin(plan(tests, seconds=seconds), folder)
+    for progress in lifecycle.work(folder, workers):
         print(progress.done, flush=True)
 
 

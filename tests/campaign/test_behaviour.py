@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from roadgpt.brief import read
 from roadgpt.campaign.behaviour import BOUNDS, behaviour_of, bounds_of, cell_of, directions, turns_asked
-from roadgpt.campaign.changes import mirrored
 from roadgpt.campaign.genome import design_of, genes_of
+from roadgpt.campaign.mutation import mirrored
 from roadgpt.design import draft
 from roadgpt.design.layout import Place
 from roadgpt.road import Design, Segment, World, build

@@ -19,9 +19,9 @@ from click.testing import CliRunner, Result
 
 from campaign.jobs import TESTS, is_alive
 from campaign.quick import Inline, plan, put_on_shelves
-from roadgpt.campaign.again import read_trace
-from roadgpt.campaign.launch import begin, work
+from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.rerun import read_trace
 from roadgpt.campaign.status import status_of
 from roadgpt.cli import app
 from roadgpt.run import read_run
@@ -143,7 +143,7 @@ def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
 
 def test_status_tells_of_a_campaign_at_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     put_on_shelves(monkeypatch.setattr)
-    monkeypatch.setattr("roadgpt.campaign.office.GROUP_SECONDS", 0.0)
+    monkeypatch.setattr("roadgpt.campaign.scheduler.GROUP_SECONDS", 0.0)
     begin(plan(60), tmp_path)
     steps = work(tmp_path, 2, "inline")
     next(steps)
@@ -245,15 +245,15 @@ def test_a_driver_that_kills_its_worker_costs_its_tests(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Three workers ended over a test: it is in error, with a sentence, and the campaign goes on."""
-    from roadgpt.campaign.executors import Done
+    from roadgpt.campaign.executors import FinishedJob
 
     put_on_shelves(monkeypatch.setattr)
     begin(plan(20), tmp_path)
     real = Inline.done
 
-    def lossy(self: Inline, seconds: float) -> list[Done]:
+    def lossy(self: Inline, seconds: float) -> list[FinishedJob]:
         return [
-            Done(done.key, lost="given up: 3 workers ended over it") if done.key % 7 == 0 else done
+            FinishedJob(done.key, lost="given up: 3 workers ended over it") if done.key % 7 == 0 else done
             for done in real(self, seconds)
         ]
 
@@ -272,16 +272,19 @@ def test_a_driver_that_kills_its_worker_costs_its_tests(
 def test_an_error_that_concerns_all_stops_the_campaign_and_keeps_the_rest(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from roadgpt.campaign.executors import Done
+    from roadgpt.campaign.executors import FinishedJob
     from roadgpt.errors import ChatError
 
     put_on_shelves(monkeypatch.setattr)
     begin(plan(20), tmp_path)
     real = Inline.done
 
-    def failing(self: Inline, seconds: float) -> list[Done]:
+    def failing(self: Inline, seconds: float) -> list[FinishedJob]:
         made: Any = real(self, seconds)
-        return [Done(done.key, error=ChatError("nobody answers")) if done.key == 8 else done for done in made]
+        return [
+            FinishedJob(done.key, error=ChatError("nobody answers")) if done.key == 8 else done
+            for done in made
+        ]
 
     with monkeypatch.context() as patch:
         patch.setattr(Inline, "done", failing)

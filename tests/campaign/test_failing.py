@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt.campaign.again import kept_run, read_trace, run_again
-from roadgpt.campaign.faults import Simplest, book, failures_of, faults_in
-from roadgpt.campaign.faults.book import Looked
+from roadgpt.campaign.faults import Simplest, failures_of, fault_log, faults_in
+from roadgpt.campaign.faults.fault_log import FailureAnalysis
 from roadgpt.campaign.faults.stability import repeated
+from roadgpt.campaign.rerun import kept_run, read_trace, run_again
 from roadgpt.cli import app
 from roadgpt.cli.pool import shared
 from roadgpt.cli.progress import watched
@@ -71,7 +71,9 @@ def test_only_a_typical_failure_of_each_fault_is_driven_again(
     """On 154 failures in minutes: what is alike is found first, from what is kept."""
     folder = shutil.copytree(many, tmp_path / "c")
     driven: list[int] = []
-    monkeypatch.setattr(book, "repeated", lambda run, times: driven.append(run.index) or repeated(run, times))
+    monkeypatch.setattr(
+        fault_log, "repeated", lambda run, times: driven.append(run.index) or repeated(run, times)
+    )
     found = faults_in(folder)
     assert len(found.them) < found.failures / 2
     assert not driven
@@ -98,7 +100,7 @@ def test_what_is_done_is_kept_when_it_is_stopped(
             raise KeyboardInterrupt
         return repeated(run, times)
 
-    monkeypatch.setattr(book, "repeated", stopped)
+    monkeypatch.setattr(fault_log, "repeated", stopped)
     done = CliRunner().invoke(app, ["faults", str(folder), "--repeat", "1", "--no-plot"])
     assert done.exit_code == 130
     assert f"go on with: roadgpt faults {folder} --repeat 1 --no-plot" in done.output
@@ -120,10 +122,10 @@ def test_where_the_most_typical_failure_is_a_fluke_others_are_tried(
             self.is_stable = self.share >= 0.5
             self.sentence, self.drives = "", ()
 
-    monkeypatch.setattr(book, "repeated", lambda run, times: Share(run))
-    _, found = book.look_into(book.Look(folder, 1, largest.names, 1))
+    monkeypatch.setattr(fault_log, "repeated", lambda run, times: Share(run))
+    _, found = fault_log.analyse(fault_log.AnalysisTask(folder, 1, largest.names, 1))
     assert found.name == second
-    monkeypatch.setattr(book, "repeated", lambda run, times: pytest.fail("no more drives are needed"))
+    monkeypatch.setattr(fault_log, "repeated", lambda run, times: pytest.fail("no more drives are needed"))
 
 
 def test_status_and_screen_count_faults_before_failures(many: Path) -> None:
@@ -180,7 +182,7 @@ def test_the_simplest_road_is_looked_for_once(looked: Path, monkeypatch: pytest.
         asked.append(run.index)
         return Simplest(run, 1, 1, True)
 
-    monkeypatch.setattr(book, "simplest", quick)
+    monkeypatch.setattr(fault_log, "simplest", quick)
     for _ in range(2):
         roadgpt("resume", looked, "--minimise", "--repeat", 2, "--quiet")
     rows = table(looked / "faults" / "faults.csv")
@@ -221,7 +223,7 @@ def test_a_test_as_it_was_kept_is_the_test_as_it_is_driven_again(looked: Path) -
 def test_nobody_drives_where_a_test_is_taken_as_it_was_kept(
     looked: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name in ("roadgpt.run.simulate", "roadgpt.campaign.again.run_of"):
+    for name in ("roadgpt.run.simulate", "roadgpt.campaign.rerun.run_of"):
         monkeypatch.setattr(name, lambda *_: pytest.fail("somebody drives"))
     assert kept_run(looked, "c01", 1).outcome == "FAIL"
 
@@ -272,10 +274,10 @@ def test_who_stops_listening_stops_the_workers() -> None:
 
 def test_a_page_that_was_looked_into_is_read_as_it_was(looked: Path) -> None:
     for fault in faults_in(looked).them:
-        found = book.looked_into(looked, fault)
-        assert isinstance(found, Looked)
-        _, again = book.look_into(book.Look(looked, fault.number, fault.names, 2))
-        assert (found.name, found.why, found.stability) == (again.name, again.why, again.stability)
+        found = fault_log.kept_analysis(looked, fault)
+        assert isinstance(found, FailureAnalysis)
+        _, again = fault_log.analyse(fault_log.AnalysisTask(looked, fault.number, fault.names, 2))
+        assert (found.name, found.reason, found.stability) == (again.name, again.reason, again.stability)
 
 
 def test_the_report_of_runs_tells_their_faults_as_well(tmp_path: Path) -> None:

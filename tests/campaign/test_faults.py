@@ -16,11 +16,11 @@ from roadgpt.campaign.faults import (
     Stability,
     faults_of,
     manner_of,
+    reason_of,
     repeated,
     simplest,
     smallest_change,
     stability,
-    why,
 )
 from roadgpt.campaign.faults import minimise as minimising
 from roadgpt.campaign.faults.distinct import (
@@ -32,7 +32,7 @@ from roadgpt.campaign.faults.distinct import (
     surroundings,
     typical,
 )
-from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
+from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturbance_of
 from roadgpt.campaign.faults.fault import WAYS
 from roadgpt.campaign.faults.stability import drive_disturbed
 from roadgpt.check import inspect
@@ -91,7 +91,7 @@ def failed(road: Road, until: float, t: float, speed: float = SPEED) -> Run:
 
 def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
     road = build(design(straight(60), bend(-80, 20)))
-    reason = why(failed(road, 72.0, t=1.5))
+    reason = reason_of(failed(road, 72.0, t=1.5))
     assert (reason.way, reason.side) == ("wide", "right")
     assert reason.radius == pytest.approx(20, rel=0.01)
     # the middle of the right lane lies 2 m inside of a right bend
@@ -102,7 +102,7 @@ def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
 
 def test_a_car_that_cuts_says_so_and_names_the_bend_before() -> None:
     road = build(design(straight(50), bend(-60, 25), bend(70, 16), start=(30.0, 120.0, 0.0)))
-    reason = why(failed(road, 50 + math.radians(60) * 25 + 6, t=3.0, speed=8.0))
+    reason = reason_of(failed(road, 50 + math.radians(60) * 25 + 6, t=3.0, speed=8.0))
     assert (reason.way, reason.side) == ("inside", "left")
     assert "R 16 m left at 29 km/h right after an R 25 m right and cut its inside" in reason.sentence
 
@@ -110,7 +110,7 @@ def test_a_car_that_cuts_says_so_and_names_the_bend_before() -> None:
 def test_a_crest_takes_grip_and_is_named() -> None:
     level = build(design(straight(60), bend(-80, 30)))
     humped = build(design(straight(60, 9.0), bend(-80, 30, -9.0)))
-    flat, crest = why(failed(level, 66.0, t=1.5)), why(failed(humped, 66.0, t=1.5))
+    flat, crest = reason_of(failed(level, 66.0, t=1.5)), reason_of(failed(humped, 66.0, t=1.5))
     assert " on a crest " in crest.sentence
     assert "crest" not in flat.sentence
     assert crest.hill < 0
@@ -121,7 +121,7 @@ def test_the_way_of_a_failure_needs_no_drive() -> None:
     road = build(design(straight(60), bend(-80, 20)))
     run = failed(road, 72.0, t=1.5)
     assert run.verdict is not None
-    found, reason = manner_of(road, WORLD, 72.0, run.verdict.cause, run.verdict.side), why(run)
+    found, reason = manner_of(road, WORLD, 72.0, run.verdict.cause, run.verdict.side), reason_of(run)
     assert (found.way, found.side, found.radius) == (reason.way, reason.side, reason.radius)
     assert manner_of(road, WORLD, 72.0, "out of lane", "right").way == "inside"
     assert manner_of(road, WORLD, 20.0, "out of lane", "right") == ("off", None, None)
@@ -131,13 +131,13 @@ def test_the_way_of_a_failure_needs_no_drive() -> None:
 def test_a_straight_a_standstill_and_a_car_that_kept_its_lane() -> None:
     road = build(design(straight(120, -8.0), start=(60.0, 120.0, 12.0)))
     run = failed(road, 60.0, t=1.5)
-    assert why(run).sentence == "left a straight to the left at 61 km/h after 60 m downhill at 8 %"
+    assert reason_of(run).sentence == "left a straight to the left at 61 km/h after 60 m downhill at 8 %"
     assert run.verdict is not None
     stuck = replace(run, verdict=replace(run.verdict, cause="stuck", side=None))
-    assert why(stuck).sentence == "came to a standstill after 60 m downhill at 8 %"
+    assert reason_of(stuck).sentence == "came to a standstill after 60 m downhill at 8 %"
     kept = replace(run, verdict=replace(run.verdict, outcome="PASS", cause=None))
     with pytest.raises(UsageError, match="road 7 did not fail"):
-        why(kept)
+        reason_of(kept)
 
 
 profiles = st.lists(st.floats(-0.07, 0.07), min_size=77, max_size=77)
@@ -193,10 +193,10 @@ def test_the_interval_is_scipys_exact_one(n: int, data: st.DataObject) -> None:
 
 
 def test_disturbances_are_small_seeded_and_all_different() -> None:
-    drawn = [draw(3, number) for number in range(1, 400)]
-    assert drawn == [draw(3, number) for number in range(1, 400)]
+    drawn = [disturbance_of(3, number) for number in range(1, 400)]
+    assert drawn == [disturbance_of(3, number) for number in range(1, 400)]
     assert len(set(drawn)) == 399
-    assert draw(4, 1) != draw(3, 1)
+    assert disturbance_of(4, 1) != disturbance_of(3, 1)
     offsets = np.array([each.offset for each in drawn])
     assert offsets.std() == pytest.approx(0.10, rel=0.15)
     assert all(0.85 <= each.friction <= 1.15 and 0 <= each.delay <= 0.06 for each in drawn)
@@ -402,7 +402,7 @@ def test_the_most_typical_failure_is_nearest_to_all_others(bends: list[float]) -
 @pytest.mark.parametrize("other", ["driver", "world", "same"])
 def test_a_fault_belongs_to_a_driver_and_a_world(tmp_path: Path, other: str) -> None:
     """Cells of one driver in one world share their faults."""
-    from roadgpt.campaign.faults.failed import system_of
+    from roadgpt.campaign.faults.failures import system_of
     from roadgpt.run import Setup
 
     drivers = {"driver": Setup(driver="pure_pursuit"), "world": Setup(), "same": Setup(reader="grammar")}
@@ -418,17 +418,17 @@ def test_the_command_looks_into_failures_once(
     words = ["faults", str(tmp_path), "--repeat", "2"]
     first = CliRunner().invoke(app, [*words, "--no-plot"], standalone_mode=False)
     assert first.exception is None
-    bend = f"a left bend of R {why(slid).radius:.0f} m"
-    assert f"\n1 distinct fault in 1 failure: the car {WAYS[why(slid).way]} {bend}\n" in first.output
+    bend = f"a left bend of R {reason_of(slid).radius:.0f} m"
+    assert f"\n1 distinct fault in 1 failure: the car {WAYS[reason_of(slid).way]} {bend}\n" in first.output
     assert not (tmp_path / "faults" / "0001.png").exists()
     with monkeypatch.context() as patch:
-        patch.setattr("roadgpt.campaign.faults.book.repeated", lambda *_: pytest.fail("driven again"))
+        patch.setattr("roadgpt.campaign.faults.fault_log.repeated", lambda *_: pytest.fail("driven again"))
         assert CliRunner().invoke(app, [*words, "-q"], standalone_mode=False).output == ""
     png = (tmp_path / "faults" / "0001.png").read_bytes()
     assert png.startswith(b"\x89PNG")
     table = (tmp_path / "faults" / "faults.csv").read_text(encoding="utf-8")
     assert len(table.splitlines()) == 2
-    monkeypatch.setattr("roadgpt.campaign.faults.book.repeated", lambda *_: pytest.fail("driven again"))
+    monkeypatch.setattr("roadgpt.campaign.faults.fault_log.repeated", lambda *_: pytest.fail("driven again"))
     CliRunner().invoke(app, ["faults", str(tmp_path), "--repeat", "2"], standalone_mode=False)
     assert (tmp_path / "faults" / "faults.csv").read_text(encoding="utf-8") == table
     assert folder.is_dir()

@@ -16,8 +16,8 @@ from roadgpt.brief import read
 from roadgpt.brief.model import Brief
 from roadgpt.campaign import Budget, Cell, Goal, Proposal, Result
 from roadgpt.campaign.behaviour import behaviour_of, cell_of
+from roadgpt.campaign.boundary_pairs import distance, pairs_of
 from roadgpt.campaign.genome import genes_of
-from roadgpt.campaign.pairs import distance, pairs_of
 from roadgpt.design import draft
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, World, build

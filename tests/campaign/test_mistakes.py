@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 from campaign.quick import plan, put_on_shelves
 from roadgpt.brief import Brief, read
-from roadgpt.campaign.launch import begin, work
+from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Budget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.plan_file import read_plan
@@ -33,7 +33,7 @@ def roadgpt(*words: object) -> Result:
 def begin_quickly(folder: Path, patch: pytest.MonkeyPatch, wanted: Plan) -> None:
     """A campaign whose tests cost nothing."""
     put_on_shelves(patch.setattr)
-    patch.setattr("roadgpt.campaign.launch.brief_of", lambda *_: read("two hairpins", "grammar"))
+    patch.setattr("roadgpt.campaign.lifecycle.brief_of", lambda *_: read("two hairpins", "grammar"))
     begin(wanted, folder)
 
 
@@ -148,7 +148,7 @@ def test_what_reading_has_cost_counts_for_the_limit(tmp_path: Path, monkeypatch:
         return read(words, "grammar")
 
     put_on_shelves(monkeypatch.setattr)
-    monkeypatch.setattr("roadgpt.campaign.launch.brief_of", dear)
+    monkeypatch.setattr("roadgpt.campaign.lifecycle.brief_of", dear)
     begin(plan(5), tmp_path / "c")
     with Record.opened(tmp_path / "c") as record:
         assert record.spent() == (100, 0.25)
@@ -198,7 +198,7 @@ def test_the_command_on_the_card_makes_the_same_campaign(
     begin_quickly(tmp_path / "c", monkeypatch, plain)
     words = command_of_many(tmp_path / "c")
     assert all(word in words for word in wanted), words
-    monkeypatch.setattr("roadgpt.campaign.launch.work", lambda *_: iter(()))
+    monkeypatch.setattr("roadgpt.campaign.lifecycle.work", lambda *_: iter(()))
     again = CliRunner().invoke(app, shlex.split(words)[1:])
     assert again.exit_code == 0, again.output
     assert "going on in" in again.output
@@ -207,7 +207,7 @@ def test_the_command_on_the_card_makes_the_same_campaign(
 def test_the_pace_counts_tests_of_cells_that_were_done_a_moment_ago(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadgpt.campaign.office.GROUP_SECONDS", 0.0)
+    monkeypatch.setattr("roadgpt.campaign.scheduler.GROUP_SECONDS", 0.0)
     begin_quickly(tmp_path / "c", monkeypatch, plan(5, cells=8))
     steps = work(tmp_path / "c", 1, "inline")
     while next(steps).cells < 6:

@@ -7,9 +7,9 @@ import pytest
 from click.testing import CliRunner
 
 from campaign.quick import put_on_shelves
-from roadgpt.campaign.again import run_again
 from roadgpt.campaign.plan_file import read_plan
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.rerun import run_again
 from roadgpt.cli import app
 from roadgpt.drive.custom import load_driver, located
 from roadgpt.drive.trust import named
@@ -58,12 +58,12 @@ def test_a_campaign_with_a_relative_driver_is_resumed_from_anywhere(
     monkeypatch.chdir(there)
     words = ["campaign", "a road with 2 turns", "-n", "1", "--reader", "grammar", "--driver", "mine.py:Mine"]
     with monkeypatch.context() as patch:
-        patch.setattr("roadgpt.campaign.launch.work", lambda *_: iter(()))  # as if it was stopped at once
+        patch.setattr("roadgpt.campaign.lifecycle.work", lambda *_: iter(()))  # as if it was stopped at once
         begun = CliRunner().invoke(app, [*words, "--out", "c", "--json"])
     assert begun.exit_code == 0, begun.output
     assert json.loads(begun.stdout)["done"] == 0
     monkeypatch.chdir(there.parent / "elsewhere")
-    monkeypatch.setattr("roadgpt.campaign.launch.Ready", _Nobody)
+    monkeypatch.setattr("roadgpt.campaign.lifecycle.WorkerSetup", _Nobody)
     put_on_shelves(lambda where, name, value: name == "find" and monkeypatch.setattr(where, name, value))
     done = CliRunner().invoke(app, ["resume", str(there / "c"), "--executor", "inline", "--json"])
     assert done.exit_code == 0, done.output

@@ -13,7 +13,7 @@ import pytest
 
 from campaign import jobs
 from campaign.jobs import TESTS, is_alive
-from roadgpt.campaign.executors import Done, Job, Staff
+from roadgpt.campaign.executors import FinishedJob, Job, WorkerConfig
 from roadgpt.campaign.executors import processes as shelf
 from roadgpt.campaign.executors.processes import Processes
 from roadgpt.errors import RoadGPTError, UsageError
@@ -24,14 +24,14 @@ SOON = 60.0  # s: far more than anything here takes
 @pytest.fixture
 def two(tmp_path: Path) -> Iterator[Processes]:
     """Two workers whose jobs may take two seconds."""
-    made = Processes(Staff(2, jobs.nothing, 2.0, tmp_path / "log"))
+    made = Processes(WorkerConfig(2, jobs.nothing, 2.0, tmp_path / "log"))
     yield made
     made.stop()
 
 
-def ended(workers: Processes, count: int) -> list[Done]:
+def ended(workers: Processes, count: int) -> list[FinishedJob]:
     """What becomes of so many jobs."""
-    found: list[Done] = []
+    found: list[FinishedJob] = []
     until = time.monotonic() + SOON
     while len(found) < count and time.monotonic() < until:
         found += workers.done(0.5)
@@ -86,10 +86,10 @@ def test_a_job_that_kills_or_hangs_is_given_up_after_three_workers_and_others_ar
 
 
 def test_every_job_ends_once_while_workers_are_killed(tmp_path: Path) -> None:
-    workers = Processes(Staff(2, jobs.nothing, SOON, tmp_path / "log"))
+    workers = Processes(WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log"))
     try:
         workers.submit([Job(key, jobs.sleeps, 0.02) for key in range(120)])
-        found: list[Done] = []
+        found: list[FinishedJob] = []
         for _ in range(5):
             found += workers.done(5.0)
             for doing in workers.under_way()[:1]:
@@ -104,7 +104,7 @@ def test_every_job_ends_once_while_workers_are_killed(tmp_path: Path) -> None:
 
 def test_a_worker_without_a_sign_of_life_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shelf, "SILENCE", 3.0)
-    workers = Processes(Staff(1, jobs.nothing, SOON, tmp_path / "log"))
+    workers = Processes(WorkerConfig(1, jobs.nothing, SOON, tmp_path / "log"))
     try:
         workers.submit([Job(1, jobs.stops_itself, str(tmp_path / "was_here"))])
         (done,) = ended(workers, 1)
@@ -121,12 +121,12 @@ def test_a_map_goes_before_jobs_that_wait(two: Processes) -> None:
 
 
 def test_workers_that_cannot_begin_are_told(tmp_path: Path) -> None:
-    workers = Processes(Staff(1, jobs.refuses, SOON, tmp_path / "log"))
+    workers = Processes(WorkerConfig(1, jobs.refuses, SOON, tmp_path / "log"))
     workers.submit([Job(1, jobs.square, 1)])
     with pytest.raises(UsageError, match="there is no driver of that name"):
         ended(workers, 1)
     workers.stop()
-    workers = Processes(Staff(1, jobs.leaves, SOON, tmp_path / "log"))
+    workers = Processes(WorkerConfig(1, jobs.leaves, SOON, tmp_path / "log"))
     with pytest.raises(
         RoadGPTError, match=r"workers end before they begin \(the last one ended with status 5\).*log"
     ):

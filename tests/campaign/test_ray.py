@@ -9,8 +9,8 @@ import pytest
 
 from campaign import jobs, quick
 from campaign.jobs import TESTS
-from roadgpt.campaign.executors import Done, Job, Staff
-from roadgpt.campaign.launch import begin, work
+from roadgpt.campaign.executors import FinishedJob, Job, WorkerConfig
+from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.errors import RoadGPTError, UsageError
 
 ray = pytest.importorskip("ray", reason="Ray is not installed: pip install 'roadgpt[ray]'")
@@ -39,15 +39,15 @@ def cluster() -> Iterator[Any]:
 def hands(cluster: Any, tmp_path: Path) -> Iterator[Any]:
     from roadgpt.campaign.executors.ray import Ray
 
-    made = Ray(Staff(2, jobs.nothing, 3.0, tmp_path / "log", cluster.address))
+    made = Ray(WorkerConfig(2, jobs.nothing, 3.0, tmp_path / "log", cluster.address))
     yield made
     made.stop()
     assert not ray.is_initialized()
 
 
-def ended(workers: Any, count: int) -> list[Done]:
+def ended(workers: Any, count: int) -> list[FinishedJob]:
     """What becomes of so many jobs."""
-    found: list[Done] = []
+    found: list[FinishedJob] = []
     until = time.monotonic() + SOON
     while len(found) < count and time.monotonic() < until:
         found += workers.done(0.5)
@@ -78,7 +78,7 @@ def test_a_node_is_killed_in_the_middle_and_the_table_is_that_of_processes(
     cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     quick.put_on_shelves(monkeypatch.setattr, seconds=0.05)
-    monkeypatch.setattr("roadgpt.campaign.office.GROUP_SECONDS", 0.2)
+    monkeypatch.setattr("roadgpt.campaign.scheduler.GROUP_SECONDS", 0.2)
     tables = []
     for executor in ("processes", "ray"):
         folder = tmp_path / executor
@@ -99,7 +99,7 @@ def test_a_node_is_killed_in_the_middle_and_the_table_is_that_of_processes(
 def test_what_prevents_the_work_is_said_in_one_sentence(cluster: Any, tmp_path: Path) -> None:
     from roadgpt.campaign.executors.ray import Ray
 
-    workers = Ray(Staff(1, jobs.refuses, 3.0, tmp_path / "log", cluster.address))
+    workers = Ray(WorkerConfig(1, jobs.refuses, 3.0, tmp_path / "log", cluster.address))
     try:
         workers.submit([Job(1, jobs.square, 1)])
         with pytest.raises(UsageError, match="there is no driver of that name"):
@@ -107,4 +107,4 @@ def test_what_prevents_the_work_is_said_in_one_sentence(cluster: Any, tmp_path: 
     finally:
         workers.stop()
     with pytest.raises(RoadGPTError, match=r"no Ray cluster answers at 127\.0\.0\.1:1 .*ray start --head"):
-        Ray(Staff(1, jobs.nothing, 3.0, tmp_path / "log", "127.0.0.1:1"))
+        Ray(WorkerConfig(1, jobs.nothing, 3.0, tmp_path / "log", "127.0.0.1:1"))

@@ -14,14 +14,14 @@ from hypothesis import strategies as st
 
 from campaign.quick import a_design, plan
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.executors import Doing
+from roadgpt.campaign.executors import RunningJob
 from roadgpt.campaign.model import Proposal, Result
 from roadgpt.campaign.record import STORE, Record
+from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.campaign.status import status_of
 from roadgpt.campaign.store import Store
 from roadgpt.campaign.table import write_tables
 from roadgpt.campaign.traces import STEPS, drive_of, read_traces, trace_of, write_traces
-from roadgpt.campaign.worker import Ended
 from roadgpt.chat import Spent, Usage
 from roadgpt.cli.campaigns import outside_lines
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
@@ -75,7 +75,7 @@ def test_results_cells_and_proposals_come_out_as_they_went_in(data: st.DataObjec
         store.begin_sitting(1)
         store.add_batch("c01", 0, 1, asked)
         assert [made for _, _, made in store.waiting("c01")] == asked
-        store.keep([("c01", Ended(result)) for result in done[:kept]], None, [], {"c01": 1.5})
+        store.keep([("c01", FinishedTest(result)) for result in done[:kept]], None, [], {"c01": 1.5})
         with Record.opened(Path(name)) as record:
             assert [*record.results("c01")] == done[:kept]
             assert [number for number, _, _ in record.waiting("c01")] == [*range(kept + 1, len(done) + 1)]
@@ -102,7 +102,7 @@ def test_who_was_at_which_test_is_forgotten_by_the_next_sitting(tmp_path: Path) 
     with a_store(tmp_path) as store:
         store.begin_sitting(1)
         store.add_batch("c01", 0, 1, [Proposal(None, 1, "draft")] * 3)
-        store.keep([], None, [("c01", 2, Doing(7, "worker 1", 3.0), 1e12)], {})
+        store.keep([], None, [("c01", 2, RunningJob(7, "worker 1", 3.0), 1e12)], {})
         assert store.query("SELECT cell, number, worker FROM leases") == [("c01", 2, "worker 1")]
     with Store.opened(tmp_path) as store:  # the process was killed, and another one goes on
         store.begin_sitting(1)
@@ -118,7 +118,10 @@ def test_numbers_that_are_none_are_left_out(tmp_path: Path) -> None:
         store.begin_sitting(1)
         store.add_batch("c01", 0, 1, [made])
         store.keep(
-            [("c01", Ended(broken, spent=Spent(usage=Usage(prompt=3, completion=4), cost=0.5)))], None, [], {}
+            [("c01", FinishedTest(broken, spent=Spent(usage=Usage(prompt=3, completion=4), cost=0.5)))],
+            None,
+            [],
+            {},
         )
         store.spend(Spent(usage=Usage(prompt=1), cost=0.25))
         found = store.result("c01", 1)
@@ -148,7 +151,7 @@ def test_a_store_of_an_older_version_is_read_and_gone_on_with(tmp_path: Path) ->
     with a_store(tmp_path) as store:
         store.begin_sitting(1)
         store.add_batch("c01", 0, 1, [made] * 2)
-        store.keep([("c01", Ended(done[0]))], None, [], {})
+        store.keep([("c01", FinishedTest(done[0]))], None, [], {})
         store.end_sitting()
     with sqlite3.connect(tmp_path / STORE) as db:  # as it was before this column
         db.execute("ALTER TABLE tests DROP COLUMN beyond")
@@ -170,7 +173,7 @@ def test_a_store_of_an_older_version_is_read_and_gone_on_with(tmp_path: Path) ->
     assert "an unknown distance (an older version wrote this store) beyond the marking" in line
     with Store.opened(tmp_path) as store:
         store.begin_sitting(1)
-        store.keep([("c01", Ended(done[1]))], None, [], {})
+        store.keep([("c01", FinishedTest(done[1]))], None, [], {})
         assert [one.beyond for one in store.results("c01")] == [None, 1.13]
 
 

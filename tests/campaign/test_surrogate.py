@@ -8,8 +8,8 @@ from scipy.stats import spearmanr
 from sklearn.ensemble import ExtraTreesRegressor
 
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.signs import NAMES, WINDOWS, hazard_of, signs_of
 from roadgpt.campaign.surrogate import FAILED, LEAF, TREES, Surrogate, target_of
+from roadgpt.campaign.surrogate_features import NAMES, WINDOWS, hazard_of, surrogate_features_of
 from roadgpt.design import draft
 from roadgpt.road import Design, Segment, World, build
 
@@ -91,7 +91,7 @@ def curved(turn: float, radius: float, length: float) -> Design:
 
 
 def sign(name: str, design: Design) -> float:
-    return float(signs_of(build(design), WORLD)[NAMES.index(name)])
+    return float(surrogate_features_of(build(design), WORLD)[NAMES.index(name)])
 
 
 @given(st.floats(18, 60), st.floats(40, 65), st.sampled_from([-1, 1]))
@@ -102,7 +102,7 @@ def test_signs_show_the_lanes_curvature(radius: float, turn: float, hand: int) -
     design = curved(hand * turn, radius, 60)
     assert sign(f"{side}_{WINDOWS[0]}", design) * 0.06 == pytest.approx(lane, rel=0.05)
     assert sign(f"{other}_{WINDOWS[0]}", design) == pytest.approx(0, abs=0.01)
-    assert hazard_of([signs_of(build(design), WORLD)])[0] > 0
+    assert hazard_of([surrogate_features_of(build(design), WORLD)])[0] > 0
 
 
 def test_where_the_car_is_slow_nothing_counts() -> None:
@@ -118,7 +118,7 @@ def test_a_run_up_is_the_straight_before_the_tightest_place() -> None:
 
 def test_signs_of_any_draft_are_finite_and_small() -> None:
     for seed in range(5):
-        found = signs_of(build(draft(Brief(), WORLD, seed=seed)), WORLD)
+        found = surrogate_features_of(build(draft(Brief(), WORLD, seed=seed)), WORLD)
         assert found.shape == (len(NAMES),)
         assert np.isfinite(found).all()
         assert np.abs(found).max() < 10

@@ -12,9 +12,9 @@ from campaign.quick import a_design, plan
 from campaign.test_store import BRIEFS, a_store, proposals, results
 from roadgpt.campaign.model import Proposal, Result
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.single_test import FinishedTest, seed_of_driver
 from roadgpt.campaign.store import Store
 from roadgpt.campaign.table import COLUMNS, write_tables
-from roadgpt.campaign.worker import Ended, seed_of_driver
 
 
 def slowly(record: Record) -> str:
@@ -39,7 +39,7 @@ def test_the_table_is_that_of_a_slow_writer(data: st.DataObject) -> None:
     with TemporaryDirectory() as name, a_store(Path(name)) as store:
         store.begin_sitting(1)
         store.add_batch("c01", 0, 1, asked)
-        store.keep([("c01", Ended(result)) for result in done], None, [], {})
+        store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
         write_tables(store, Path(name))
         assert (Path(name) / "results.csv").read_bytes().decode() == slowly(store)
 
@@ -61,7 +61,7 @@ def test_numbers_are_handed_on_as_they_are_in_the_store(tmp_path: Path) -> None:
     with a_store(tmp_path) as store:
         store.begin_sitting(1)
         store.add_batch("c01", 0, 1, made)
-        store.keep([("c01", Ended(result)) for result in done], None, [], {})
+        store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
         write_tables(store, tmp_path)
         told = (tmp_path / "results.csv").read_bytes().decode()
         assert told == slowly(store)
@@ -92,7 +92,7 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
     with a_store(tmp_path) as store:
         store.begin_sitting(1)
         store.add_batch("c01", 0, 1, made)
-        store.keep([("c01", Ended(result)) for result in done], None, [], {})
+        store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
         write_tables(store, tmp_path)
     (row,) = csv.DictReader((tmp_path / "cells.csv").open())
     assert (row["failing_cells"], row["least_margin_m"], row["failed_left"]) == ("2", "0.2", "3")
@@ -114,7 +114,7 @@ def test_rows_stand_in_the_order_of_cells_and_tests(tmp_path: Path) -> None:
         for cell in ("c02", "c01"):
             store.add_batch(cell, 0, 1, made)
             done = [Result(number, 0, one, "VALID", "", one.design) for number, one in enumerate(made, 1)]
-            store.keep([(cell, Ended(result)) for result in reversed(done)], None, [], {})
+            store.keep([(cell, FinishedTest(result)) for result in reversed(done)], None, [], {})
         write_tables(store, tmp_path)
     rows = csv.DictReader((tmp_path / "results.csv").open())
     every = [(cell, number) for cell in ("c01", "c02") for number in range(1, 13)]

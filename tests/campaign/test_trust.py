@@ -14,10 +14,10 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt import provenance
-from roadgpt.campaign.again import run_again
-from roadgpt.campaign.launch import begin, work
+from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Budget
 from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.rerun import run_again
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
 from roadgpt.road import World

@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 from chat.conftest import KEY
 from chat.stub_server import Request, Scene, Stub, says, send, serving
 from roadgpt import provenance
-from roadgpt.campaign.launch import begin
+from roadgpt.campaign.lifecycle import begin
 from roadgpt.campaign.model import Budget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.plan_file import read_plan

@@ -17,7 +17,7 @@ from click.testing import CliRunner
 import roadgpt
 from roadgpt.cli import app
 from roadgpt.road import build, read_design
-from roadgpt.run.naming import slug
+from roadgpt.run.folder_names import slug
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -109,8 +109,8 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.road.road import MOST_POINTS, STEEPEST
     from roadgpt.road.source import LARGEST
     from roadgpt.run import MOST_ROUNDS
-    from roadgpt.run.campaign import GIVE_UP
-    from roadgpt.run.losses import MOST
+    from roadgpt.run.campaign_runs import GIVE_UP
+    from roadgpt.run.lost_drives import MOST
 
     cli_app = importlib.import_module("roadgpt.cli.app")
     text = (ROOT / "docs" / "reference" / "limits.md").read_text(encoding="utf-8")

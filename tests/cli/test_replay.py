@@ -110,7 +110,7 @@ def test_the_defaults_of_the_options_are_those_of_world_and_setup() -> None:
 
 
 def test_a_campaign_tells_of_roads_that_cannot_be_read(tmp_path: Path) -> None:
-    from roadgpt.run.campaign import Campaign
+    from roadgpt.run.campaign_runs import Campaign
 
     def one(index: int, earlier: object) -> Run:
         return replace(a_run(Request(seed=1), index), seed=index)

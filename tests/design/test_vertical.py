@@ -13,7 +13,7 @@ from roadgpt import check, read
 from roadgpt.brief.model import Brief, Clause, at_least, exactly
 from roadgpt.brief.plan import read_plan
 from roadgpt.campaign.genome import design_of, genes_of
-from roadgpt.campaign.vary import Setting, Task, varied
+from roadgpt.campaign.variation import VariationContext, VariationTask, make_candidate
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
@@ -146,8 +146,8 @@ def test_genes_keep_vertical_radii_and_variations_the_rule() -> None:
     assert any(segment.vertical_radius for segment in design.segments)
     place = Place(*design.starting_point[:2], design.theta)
     assert design_of(genes_of(design), place, WORLD).segments == design.segments
-    setting = Setting(brief, WORLD)
-    found = [varied(Task("vary", (design,), "", (n,), setting)) for n in range(20)]
+    setting = VariationContext(brief, WORLD)
+    found = [make_candidate(VariationTask("vary", (design,), "", (n,), setting)) for n in range(20)]
     assert sum(one is not None for one in found) >= 16
     assert all(felt(one.design) <= 3.05 for one in found if one)
 

@@ -193,7 +193,7 @@ for value in (design, roadgpt.build(design), roadgpt.prove(design)):
 
 
 def test_the_verb_campaign_can_be_called_whatever_room_was_imported(tmp_path: Path) -> None:
-    code = "import sys, roadgpt.campaign.names, roadgpt.run; from roadgpt.run import Setup; "
+    code = "import sys, roadgpt.campaign.numbered_test, roadgpt.run; from roadgpt.run import Setup; "
     code += (
         "print(len(list(roadgpt.campaign('a straight road', 1, setup=Setup(drives=False), out=sys.argv[1]))))"
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from roadgpt.road import Design
 from roadgpt.run import Request, Run, Setup, prove, seed_of
-from roadgpt.run.campaign import Campaign
+from roadgpt.run.campaign_runs import Campaign
 from run.doubles import a_design
 
 PICTURE = bytes(range(256)) * 4000  # a megabyte, so that many kills fall into the writing of files

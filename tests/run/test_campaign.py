@@ -16,7 +16,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design, Road
 from roadgpt.run import Request, Run, Setup, campaign, read_run, seed_in, seed_of
-from roadgpt.run.campaign import GIVE_UP, Campaign
+from roadgpt.run.campaign_runs import GIVE_UP, Campaign
 from run.campaign_worker import Drawing
 from run.doubles import Designer, Unable, a_design, put_on_shelf
 

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.road import Road, World
-from roadgpt.run.execution import FIELDS, Record, records_of
+from roadgpt.run.execution import FIELDS, ExecutionRecord, records_of
 
 WORLD = World()
 ROAD = Road.through([[0, 0], [100, 0]])
@@ -22,7 +22,7 @@ def drive(**given: np.ndarray) -> Drive:
 
 
 def test_a_record_has_the_competition_s_17_fields_in_their_order() -> None:
-    assert Record._fields == FIELDS
+    assert ExecutionRecord._fields == FIELDS
     assert len(FIELDS) == 17
     assert FIELDS[:4] == ("timer", "pos", "dir", "vel")
     assert FIELDS[-5:] == (

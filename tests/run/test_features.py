@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.run.execution import Record
+from roadgpt.run.execution import ExecutionRecord
 from roadgpt.run.features import features_of
 
 
@@ -17,9 +17,9 @@ def circle(radius: float, count: int = 2000, turn: float = 2 * math.pi) -> np.nd
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
 
 
-def record(steering: float, oob_distance: float) -> Record:
+def record(steering: float, oob_distance: float) -> ExecutionRecord:
     zero = [0.0, 0.0, 0.0]
-    return Record(
+    return ExecutionRecord(
         0.0, zero, zero, zero, steering, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, False, 0, 0.0, oob_distance, 0.0
     )
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.run.execution import Record
-from roadgpt.run.sparseness import Spread, departure, distances, steps_of
+from roadgpt.run.execution import ExecutionRecord
+from roadgpt.run.sparseness import Sparseness, departure, distances, steps_of
 
 Points = list[tuple[float, float]]
 
@@ -62,7 +62,7 @@ def test_all_at_once_is_one_by_one(drawn: list[tuple[int, int]]) -> None:
 @given(st.lists(st.tuples(st.integers(0, 999), st.integers(2, 20)), min_size=2, max_size=6))
 def test_the_spread_that_grows_is_the_mean_of_the_largest_distances(drawn: list[tuple[int, int]]) -> None:
     walks = [walk(seed, count) for seed, count in drawn]
-    spread = Spread()
+    spread = Sparseness()
     for number, points in enumerate(walks):
         spread.add(number, points)
     furthest = [  # among later ones only, as the competition has it
@@ -80,7 +80,7 @@ def test_a_curve_and_its_copy_elsewhere_are_the_same() -> None:
 
 @pytest.mark.parametrize("count", [0, 1])
 def test_fewer_than_two_failures_have_no_spread(count: int) -> None:
-    spread = Spread()
+    spread = Sparseness()
     for _ in range(count):
         spread.add(1, walk(1, 10))
     assert math.isnan(spread.mean)
@@ -92,14 +92,14 @@ def wave(bend: float, points: int = 12) -> Points:
     return [(20.0 + 12.0 * i, 100.0 + 18.0 * math.sin(bend * i)) for i in range(points)]
 
 
-def record(x: float, y: float, is_oob: bool) -> Record:
+def record(x: float, y: float, is_oob: bool) -> ExecutionRecord:
     rest = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 10.0, 36)
-    return Record(
+    return ExecutionRecord(
         0.0, [x, y, -27.0], [1.0, 0.0, 0.0], [10.0, 0.0, 0.0], *rest, is_oob, int(is_oob), 0.0, 1.0, 0.0
     )
 
 
-def driven(road: Points, count: int, aside: float) -> list[Record]:
+def driven(road: Points, count: int, aside: float) -> list[ExecutionRecord]:
     """Records 2.4 m apart, so far to the right of the control polyline; out in the last."""
     records = []
     for i in range(count):
@@ -129,7 +129,7 @@ THEIRS = "8,1,7,30.312,  3"
 
 
 def test_departures_and_their_spread_are_what_the_official_analysis_finds() -> None:
-    spread, sides = Spread(), []
+    spread, sides = Sparseness(), []
     for number, (road, records) in enumerate(FAILED, 1):
         found = departure(road, records)
         if found is not None:
@@ -154,7 +154,7 @@ def test_a_segment_reaches_30_m_to_either_side_of_the_place() -> None:
 
 def test_the_order_of_tests_is_by_their_numbers_and_not_by_when_they_came() -> None:
     walks = {number: walk(number, 12) for number in range(6)}
-    one, other = Spread(), Spread()
+    one, other = Sparseness(), Sparseness()
     for number in (0, 1, 2, 3, 4, 5):
         one.add(number, walks[number])
     for number in (4, 2, 5, 0, 1, 3):

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 
 from roadgpt.campaign.model import Budget, Cell, Proposal, Result
 from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.campaign.store import Store
-from roadgpt.campaign.worker import Ended
 from roadgpt.cli import app
 from roadgpt.road import Design, Segment
 from roadgpt.run.model import Request, Seconds
@@ -71,7 +71,7 @@ def written(folder: Path, goes_on: bool = False) -> Path:
         for cell in CELLS:
             proposals = [result.proposal for name, result in results if name == cell]
             store.add_batch(cell, 0, 1, proposals)
-        ended = [(cell, Ended(result, seconds=Seconds(0.01, 0.1))) for cell, result in results]
+        ended = [(cell, FinishedTest(result, seconds=Seconds(0.01, 0.1))) for cell, result in results]
         store.keep(ended, None, [], {"c01": 3.0, "c02": 4.0})
         store.finish()
     return folder
@@ -207,7 +207,7 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
                 number, 0, proposals[number], outcome, outcome, design, 120.0, margin,  # type: ignore[arg-type]
                 at_s=52.0 if outcome == "FAIL" else None, cause="out of lane" if outcome == "FAIL" else None,
             )  # fmt: skip
-            store.keep([("c01", Ended(result, seconds=Seconds(0.01, 0.1)))], None, [], {"c01": 1.0})
+            store.keep([("c01", FinishedTest(result, seconds=Seconds(0.01, 0.1)))], None, [], {"c01": 1.0})
         store.finish()
     write_many(tmp_path)
     assert [[*row.values()] for row in rows(tmp_path, "pairs")] == [

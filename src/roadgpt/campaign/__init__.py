@@ -25,13 +25,13 @@ _MODULES = {
     "Result": "model",
     "Plan": "plan",
     "Record": "record",
-    "begin": "launch",
+    "begin": "lifecycle",
     "read_plan": "plan_file",
-    "kept_run": "again",
-    "read_trace": "again",
-    "run_again": "again",
+    "kept_run": "rerun",
+    "read_trace": "rerun",
+    "run_again": "rerun",
     "status_of": "status",
-    "work": "launch",
+    "work": "lifecycle",
 }
 
 __all__ = [*sorted(_MODULES)]

@@ -94,14 +94,14 @@ class PlanTable(_Strict):
     settings: dict[str, Any] = {}
 
 
-class Written(BaseModel):
+class PlanFile(BaseModel):
     """What a file says: the plan, and which settings of language models it names."""
 
     plan: Plan
     chat: dict[str, Any]
 
 
-def read_plan(path: Path) -> Written:
+def read_plan(path: Path) -> PlanFile:
     """The plan in a file.
 
     Raises:
@@ -121,7 +121,7 @@ def read_plan(path: Path) -> Written:
         raise UsageError(f"{path}: {_sentence(error, within)}") from error
     folder = path.parent.absolute()
     chat = {name: str(folder / value) if name in FOLDERS else value for name, value in table.chat.items()}
-    return Written(plan=_plan(table, folder).came_with(path), chat=chat)
+    return PlanFile(plan=_plan(table, folder).came_with(path), chat=chat)
 
 
 def _plan(table: PlanTable, folder: Path) -> Plan:

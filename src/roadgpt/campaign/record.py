@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
-from roadgpt.campaign.sound import LATER, look_at, sound
+from roadgpt.campaign.store_check import LATER, check_store, reading_store
 from roadgpt.errors import UsageError
 from roadgpt.run.card import CARD, read_card
 
@@ -102,7 +102,7 @@ class Record:
             db.close()
             raise UsageError(f"{path} was written by another version of roadgpt; start the campaign anew")
         try:
-            look_at(path, db)
+            check_store(path, db)
             record = cls(path, db)
             record.missing = _missing(db)
         except BaseException:
@@ -130,15 +130,15 @@ class Record:
 
     def query(self, sql: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
         """All rows that a SELECT gives; for counts and groups, not for a million rows."""
-        with sound(self.path):
+        with reading_store(self.path):
             return self._db.execute(sql, values).fetchall()
 
     def stream(self, sql: str, values: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
         """The rows that a SELECT gives, one by one."""
-        with sound(self.path):
+        with reading_store(self.path):
             cursor = self._db.execute(sql, values)
         while True:
-            with sound(self.path):
+            with reading_store(self.path):
                 row = cursor.fetchone()
             if row is None:
                 return
@@ -154,7 +154,7 @@ class Record:
         return [self._cell(name, text) for name, text in rows]
 
     def _cell(self, name: str, text: str) -> Cell:
-        with sound(self.path):
+        with reading_store(self.path):
             found = cell_of_text(text, self.path)
             if found.name != name:
                 raise ValueError(f"cell {name} calls itself {found.name[:20]}")
@@ -194,7 +194,7 @@ class Record:
             f"WHERE {chosen} outcome IS NOT NULL AND ({where}) ORDER BY tests.cell, tests.number"
         )
         for row in self.stream(sql, (*names, *values)):
-            with sound(self.path):
+            with reading_store(self.path):
                 told = result_of_row(row)
             yield told
 
@@ -220,7 +220,7 @@ class Record:
             "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",
             (cell,),
         )
-        with sound(self.path):
+        with reading_store(self.path):
             return [
                 (number, batch, Proposal(design_of(text), seed, origin))
                 for number, batch, seed, origin, text in rows

@@ -7,7 +7,7 @@ from typing import Any
 
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.model import Budget, Cell, Proposal, Result
-from roadgpt.campaign.worker import Ended
+from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.reading import json_of
 from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
@@ -48,7 +48,7 @@ def result_values(result: Result) -> tuple[Any, ...]:
     return (result.outcome, result.cause, result.side, *map(_number, numbers))
 
 
-def detail_values(ended: Ended) -> tuple[Any, ...]:
+def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
     """What is set in ``details`` when a test has ended."""
     result = ended.result
     features = {name: float(value) for name, value in sorted(result.features.items()) if math.isfinite(value)}

@@ -9,7 +9,7 @@ from pydantic import Field, ValidationError, field_validator
 from roadgpt.brief.model import Frozen
 from roadgpt.campaign.behaviour import BOUNDS, bounds_of
 from roadgpt.campaign.model import Cell, Pool, Proposal, Result
-from roadgpt.campaign.vary import Candidate, Setting, Task, varied
+from roadgpt.campaign.variation import Candidate, VariationContext, VariationTask, make_candidate
 from roadgpt.errors import UsageError
 from roadgpt.run import seed_of
 
@@ -18,7 +18,7 @@ DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")
 """Features that a road has only once somebody drove it."""
 
 
-class Mapped(Frozen):
+class SearchSettings(Frozen):
     """Settings of searches. A plan has one table of them for all its generators, so all know the names, and
     leave alone what they do not need: only ``batch`` is for all, the rest is ``quality_diversity``'s."""
 
@@ -49,7 +49,7 @@ class Mapped(Frozen):
         return axes
 
 
-def settings_of(cell: Cell) -> Mapped:
+def settings_of(cell: Cell) -> SearchSettings:
     """A generator's settings.
 
     Raises:
@@ -58,34 +58,34 @@ def settings_of(cell: Cell) -> Mapped:
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")
     try:
-        return Mapped.model_validate(dict(cell.settings))
+        return SearchSettings.model_validate(dict(cell.settings))
     except ValidationError as error:
         first = error.errors()[0]
         name = ".".join(str(part) for part in first["loc"])
         if first["type"] == "extra_forbidden":
-            known = ", ".join(Mapped.model_fields)
+            known = ", ".join(SearchSettings.model_fields)
             said = f"is unknown; there are {known}"
         else:
             said = str(first["msg"]).removeprefix("Value error, ")
         raise UsageError(f"setting '{name}' of the generator '{cell.generator}': {said}") from error
 
 
-def setting_of(cell: Cell) -> Setting:
+def context_of(cell: Cell) -> VariationContext:
     """What the candidates of a cell share."""
-    return Setting(cell.brief, cell.request.world, cell.request.setup.rules)
+    return VariationContext(cell.brief, cell.request.world, cell.request.setup.rules)
 
 
-def source(cell: Cell, batch: int) -> np.random.Generator:
+def batch_rng(cell: Cell, batch: int) -> np.random.Generator:
     """The chance of one batch."""
     return np.random.default_rng([cell.request.seed, batch])
 
 
-def made(tasks: Sequence[Task], pool: Pool) -> list[Candidate]:
+def make_candidates(tasks: Sequence[VariationTask], pool: Pool) -> list[Candidate]:
     """The candidates that could be made."""
-    return [candidate for candidate in pool.map(varied, tasks) if candidate is not None]
+    return [candidate for candidate in pool.map(make_candidate, tasks) if candidate is not None]
 
 
-def proposed(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]) -> list[Proposal]:
+def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]) -> list[Proposal]:
     """Proposals of candidates; where they are too few, the workers draft the rest, if there are words."""
     seed = cell.request.seed
     found = [

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from roadgpt.campaign.launch import plan_of
+from roadgpt.campaign.lifecycle import plan_of
 from roadgpt.campaign.model import Goal
 from roadgpt.campaign.record import Record
 from roadgpt.verdict.severity import MOSTLY

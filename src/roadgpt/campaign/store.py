@@ -26,11 +26,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Self
 
-from roadgpt.campaign.executors import Doing
+from roadgpt.campaign.executors import RunningJob
 from roadgpt.campaign.model import Cell, Proposal
 from roadgpt.campaign.record import FORMAT, STORE, Record
 from roadgpt.campaign.rows import cell_text, detail_values, proposal_rows, result_values
-from roadgpt.campaign.worker import Ended
+from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.chat import Spent
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.run.atomic import refuse_links
@@ -218,9 +218,9 @@ class Store(Record):
 
     def keep(
         self,
-        ended: Sequence[tuple[str, Ended]],
+        ended: Sequence[tuple[str, FinishedTest]],
         trace: tuple[int, str] | None,
-        leases: Sequence[tuple[str, int, Doing, float]],
+        leases: Sequence[tuple[str, int, RunningJob, float]],
         seconds: Mapping[str, float],
     ) -> None:
         """A group of results, in one transaction.
@@ -283,7 +283,7 @@ def refused(folder: Path, error: sqlite3.Error | OSError) -> RoadGPTError:
     )
 
 
-def _test_values(cell: str, one: Ended, now: float, trace: tuple[int, str] | None) -> tuple[Any, ...]:
+def _test_values(cell: str, one: FinishedTest, now: float, trace: tuple[int, str] | None) -> tuple[Any, ...]:
     spent = one.spent
     return (
         *result_values(one.result),

@@ -18,7 +18,7 @@ from typing import Any
 from roadgpt.campaign.behaviour import BOUNDS, cell_of
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.sound import sound
+from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import PART
@@ -60,7 +60,7 @@ OUTCOMES = {
 def write_tables(record: Record, folder: Path) -> None:
     """Write both, row by row; raises OSError."""
     features = record.feature_names()
-    with sound(record.path):
+    with reading_store(record.path):
         _write(folder / RESULTS, _lines(record.stream(EVERY), features))
     cells = [_cell_row(record, cell) for cell in record.cells()]
     _write(folder / CELLS, map(_line, [tuple(cells[0]), *(tuple(row.values()) for row in cells)]))
@@ -146,7 +146,7 @@ def _failing_cells(record: Record, cell: Cell) -> int:
         "WHERE tests.cell = ? AND outcome = 'FAIL'",
         (cell.name,),
     )
-    with sound(record.path):
+    with reading_store(record.path):
         places = {cell_of(json_of(features), axes, cells) for (features,) in failures}
     return len(places - {None})
 

@@ -14,7 +14,7 @@ from roadgpt.cli.screen import new_bar
 
 if TYPE_CHECKING:
     from roadgpt.campaign.faults import Faults
-    from roadgpt.campaign.office import Progress
+    from roadgpt.campaign.scheduler import Progress
     from roadgpt.campaign.status import CellStatus, Status
 
 MOST_WORKERS = 4096

@@ -85,10 +85,10 @@ def change(wish: Wish, screen: Screen) -> Path:
 
 def _of_test(road: str) -> "Original | None":
     """The design of a campaign's test, or of a run by its number; None: something else is named."""
-    from roadgpt.campaign.naming import place_of
+    from roadgpt.campaign.selection import selection_of
     from roadgpt.run.editing import original_of
 
-    place = place_of(road)
+    place = selection_of(road)
     return None if place is None or place.number is None else original_of(place.run(), place.said)
 
 

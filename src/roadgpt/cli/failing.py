@@ -13,8 +13,8 @@ from roadgpt.cli.pool import shared
 from roadgpt.cli.progress import watched
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.faults import Faults, Looked
-    from roadgpt.campaign.faults.book import Draws
+    from roadgpt.campaign.faults import FailureAnalysis, Faults
+    from roadgpt.campaign.faults.fault_log import FailureDrawing
 
 REPEAT = 10  # disturbed drives of each fault, where nobody says how many
 DRIVES = whole(1, 1000, "drives")
@@ -69,15 +69,15 @@ def asked(
     return Look(repeat or REPEAT, minimise, here, is_quiet=is_quiet, is_apart=is_apart)
 
 
-def look_into_failures(place: Path, look: Look) -> None:
+def analyse_failures(place: Path, look: Look) -> None:
     """Find the distinct faults of a run or a campaign, look into one failure of each, and tell.
 
     Raises:
         UsageError: there are no roads, or a file cannot be read.
         RoadGPTError: a file cannot be written.
     """
-    from roadgpt.campaign.faults import book, faults_in, look_into, write_tables
-    from roadgpt.campaign.faults.failed import drivers_of
+    from roadgpt.campaign.faults import analyse, fault_log, faults_in, write_tables
+    from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.drive.trust import admit
 
     found = faults_in(place)
@@ -89,9 +89,10 @@ def look_into_failures(place: Path, look: Look) -> None:
     look.say(f"{found.sentence}; looking into a typical one of each fault", is_news=True)
     draw = _draws(look.has_pictures)
     tasks = [
-        book.Look(place, each.number, each.names, look.repeat, look.minimise, draw) for each in found.them
+        fault_log.AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw)
+        for each in found.them
     ]
-    steps = shared(look_into, tasks, look.workers)
+    steps = shared(analyse, tasks, look.workers)
     try:
         looked = dict(watched(steps, len(tasks), "faults", look.is_quiet))
     except KeyboardInterrupt:
@@ -100,12 +101,12 @@ def look_into_failures(place: Path, look: Look) -> None:
         raise
     table = write_tables(found.them, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
-    look.say(f"tables: {table} and {table.with_name(book.FAILURES)}")
+    look.say(f"tables: {table} and {table.with_name(fault_log.FAILURES)}")
     if look.has_pictures:
         look.say(f"pictures: {_pictures(place, found)}")
 
 
-def _draws(has_pictures: bool) -> "Draws | None":
+def _draws(has_pictures: bool) -> "FailureDrawing | None":
     if not has_pictures:
         return None
     from roadgpt.report.fault import draw_fault
@@ -113,7 +114,7 @@ def _draws(has_pictures: bool) -> "Draws | None":
     return draw_fault
 
 
-def _summary(place: Path, found: "Faults", looked: "Mapping[int, Looked]") -> Iterator[str]:
+def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
     """One row per fault: how many tests, and of a typical one how stable it is, and why it failed."""
     from roadgpt.study.chapters.saying import plural
 
@@ -123,7 +124,7 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, Looked]") -> It
         its = looked[fault.number]
         again = f"{its.stability.failed}/{len(its.stability.drives)}"
         name = f"{its.name!s:<{wide}}"
-        yield f"{fault.number:>5} {len(fault.members):>8,} {again:>7}  {name}  {its.why.sentence}"
+        yield f"{fault.number:>5} {len(fault.members):>8,} {again:>7}  {name}  {its.reason.sentence}"
         if its.simplest:
             yield f"{'':>{wide + 26}}simplest: {its.simplest}"
     stable = sum(its.stability.is_stable for its in looked.values())
@@ -134,7 +135,7 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, Looked]") -> It
 
 
 def _pictures(place: Path, found: "Faults") -> str:
-    from roadgpt.campaign.faults.book import FOLDER
+    from roadgpt.campaign.faults.fault_log import FOLDER
 
     cells = sorted({fault.typical[0].name.cell for fault in found.them})
     return ", ".join(f"{place / FOLDER / cell}/*.png" for cell in cells)

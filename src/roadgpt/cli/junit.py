@@ -89,7 +89,7 @@ def _suites(folder: Path) -> Iterator["Suite"]:
 def _of_runs(folder: Path) -> "Suite":
     from roadgpt.report.junit import Suite
     from roadgpt.run import read_run
-    from roadgpt.run.campaign import finished
+    from roadgpt.run.campaign_runs import finished
     from roadgpt.run.card import read_card
     from roadgpt.run.folder import run_folder
     from roadgpt.run.sbft_json import test_name
@@ -124,7 +124,7 @@ def _of_campaign(folder: Path) -> Iterator["Suite"]:
 
 def _of_cell(folder: Path, cell: str, words: str) -> Iterator["Case"]:
     from roadgpt.campaign.record import Record
-    from roadgpt.campaign.worker import seed_of_driver
+    from roadgpt.campaign.single_test import seed_of_driver
     from roadgpt.report.junit import Case
 
     with Record.opened(folder) as record:

@@ -12,7 +12,7 @@ from roadgpt.cli.options import Decorator, together
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.naming import Choice, Place
+    from roadgpt.campaign.selection import Choice, Selection
     from roadgpt.run import Run
 
 ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
@@ -89,9 +89,9 @@ def roads_named(
 
 
 def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[Named]:
-    from roadgpt.campaign.naming import chosen, place_of
+    from roadgpt.campaign.selection import chosen, selection_of
 
-    place = place_of(file)
+    place = selection_of(file)
     if place is None or place.number is not None:
         if choice is not None and (place is not None or Path(file).exists()):
             raise UsageError(
@@ -107,7 +107,7 @@ def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[Name
     yield from map(_test, found)
 
 
-def _too_many(place: "Place", found: "Sequence[Place]") -> str:
+def _too_many(place: "Selection", found: "Sequence[Selection]") -> str:
     if not found:
         return f"{place.said} holds no road yet"
     return (
@@ -116,7 +116,7 @@ def _too_many(place: "Place", found: "Sequence[Place]") -> str:
     )
 
 
-def _test(place: "Place") -> Named:
+def _test(place: "Selection") -> Named:
     if place.is_campaign:
         return Named(place.said, place.stem, (place.folder.resolve(), place.cell, place.number), place.run)
     from roadgpt.run.folder import run_folder
@@ -143,7 +143,7 @@ def _single(file: str) -> Named:
     Raises:
         UsageError: there is nothing of that name.
     """
-    from roadgpt.campaign.naming import near
+    from roadgpt.campaign.selection import near
     from roadgpt.run.folder import is_run, run_of_test
 
     path = Path(file)

@@ -117,7 +117,7 @@ def of_runs(folder: Path) -> Quiet | None:
     """Of a folder of runs in which no road failed."""
     from roadgpt.cli.rows import row_of
     from roadgpt.run import read_run
-    from roadgpt.run.campaign import finished
+    from roadgpt.run.campaign_runs import finished
     from roadgpt.run.card import read_card
     from roadgpt.run.folder import run_folder
 

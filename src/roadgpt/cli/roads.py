@@ -13,7 +13,7 @@ from roadgpt.cli.screen import Screen
 from roadgpt.errors import PartError, UsageError
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.naming import Choice
+    from roadgpt.campaign.selection import Choice
     from roadgpt.road import Design, Geometry, Road, World
     from roadgpt.run import Run
 

@@ -102,7 +102,7 @@ def _study(
     rest: dict[str, Any],
 ) -> int:
     """Work, report, and say where the report is; the exit status."""
-    from roadgpt.run import roll_call
+    from roadgpt.run import check_parts
     from roadgpt.study.chapters.saying import plural
     from roadgpt.study.plan import open_folder
     from roadgpt.study.reporting import keep_problems, write_study
@@ -114,7 +114,7 @@ def _study(
     plan = _plan(kind, prompts, source, roads, seed, drives, rest)
     plan = plan.model_copy(update={"command": _command(plan, place)})
     for designer in plan.designers:
-        roll_call(plan.setup_of(designer), plan.world)
+        check_parts(plan.setup_of(designer), plan.world)
     open_folder(plan, place)
     total = len(plan.parts()) * plan.roads
     tell = None if quiet else _teller(total)

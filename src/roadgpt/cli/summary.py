@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadgpt.campaign.naming import Choice, Place, chosen, place_of
+from roadgpt.campaign.selection import Choice, Selection, chosen, selection_of
 from roadgpt.campaign.status import Status, status_of
 from roadgpt.campaign.table import RESULTS
 from roadgpt.chat import Spent
@@ -16,7 +16,7 @@ from roadgpt.cli.named import Named, roads_named
 from roadgpt.cli.replay import replay_lines
 from roadgpt.cli.rows import WIDEST, metres, row_of, spending
 from roadgpt.errors import UsageError
-from roadgpt.run.campaign import finished
+from roadgpt.run.campaign_runs import finished
 from roadgpt.run.card import read_card
 from roadgpt.run.folder import read_run, run_folder
 from roadgpt.run.model import Run
@@ -40,7 +40,7 @@ def show(path: Path | str, choice: Choice | None = None) -> str:
 
 
 def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
-    place = place_of(str(path))
+    place = selection_of(str(path))
     if choice is not None:
         named = [*roads_named([str(path)], choice)]
         yield from _run_of(named[0]) if len(named) == 1 else map(_one_line, named)
@@ -62,7 +62,7 @@ def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
         yield from _campaign_lines(place.folder)
 
 
-def _cell_lines(place: Place, status: Status) -> Iterator[str]:
+def _cell_lines(place: Selection, status: Status) -> Iterator[str]:
     """One cell of a campaign, and the first of its tests."""
     (cell,) = [cell for cell in status.cells if cell.name == place.cell]
     yield LINE.format(*HEAD)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from roadgpt.campaign.faults import Why
+from roadgpt.campaign.faults import FailureReason
 from roadgpt.report.birds_eye import birds_eye
 from roadgpt.report.canvas import in_our_style, save
 from roadgpt.report.scenery import Frame
@@ -16,7 +16,7 @@ ROOM = 6.0  # m beside it
 LEAST = 45.0  # m across
 
 
-def fault_picture(run: Run, reason: Why, more: str = "") -> Figure:
+def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
     """From above, closer than ``birds_eye``; the reason stands where else the outcome does.
 
     Args:
@@ -33,6 +33,6 @@ def fault_picture(run: Run, reason: Why, more: str = "") -> Figure:
 
 
 @in_our_style
-def draw_fault(run: Run, reason: Why, more: str, path: Path) -> Path:
+def draw_fault(run: Run, reason: FailureReason, more: str, path: Path) -> Path:
     """Write the picture of a failure; see ``fault_picture``."""
     return save(fault_picture(run, reason, more), path)

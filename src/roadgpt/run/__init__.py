@@ -27,12 +27,12 @@ from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.apart import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.road import Design, Geometry, Road, World, build, in_short_segments
-from roadgpt.run.campaign import Campaign
+from roadgpt.run.campaign_runs import Campaign
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
 from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
+from roadgpt.run.outcome_text import outcome_sentence
 from roadgpt.run.seeds import seed_of
-from roadgpt.run.telling import told
 from roadgpt.run.versions import versions_of
 from roadgpt.stopping import look
 from roadgpt.verdict import judge
@@ -47,10 +47,10 @@ __all__ = [
     "Setup",
     "brief_of",
     "campaign",
+    "check_parts",
     "perform",
     "prove",
     "read_run",
-    "roll_call",
     "seed_in",
     "seed_of",
     "write_run",
@@ -87,7 +87,7 @@ def perform(
         ChatError: a language model could not be asked, or did not answer as it should.
         UsageError: a part is not installed, or the driver's file makes no driver.
     """
-    roll_call(setup, world)
+    check_parts(setup, world)
     begun = time.perf_counter()
     meter = meter or Meter.of(setup.chat)
     before = meter.spent
@@ -149,7 +149,7 @@ def prove(
     Raises:
         UsageError: a part is not installed, or the driver's file makes no driver.
     """
-    roll_call(setup, world)
+    check_parts(setup, world)
     begun = time.perf_counter()
     design = blueprint if isinstance(blueprint, Design) else None
     road = build(blueprint, setup.geometry) if isinstance(blueprint, Design) else blueprint
@@ -194,7 +194,7 @@ def campaign(
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     designer_of(setup.designer, setup.chat)
-    roll_call(setup, world)
+    check_parts(setup, world)
 
     def one(index: int, earlier: Sequence[Design]) -> Run:
         return perform(brief, seed, world, setup, index, earlier, meter)
@@ -203,7 +203,7 @@ def campaign(
 
 
 @cache
-def roll_call(setup: Setup, world: World = USUAL) -> None:
+def check_parts(setup: Setup, world: World = USUAL) -> None:
     """Find rules, simulator and driver before work begins; one that fails after that costs one road.
 
     Raises:
@@ -285,5 +285,10 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
     driving = replace(run.seconds, drive=time.perf_counter() - begun)
     ended: Outcome = verdict.outcome
     return replace(
-        run, outcome=ended, description=told(verdict, drive), drive=drive, verdict=verdict, seconds=driving
+        run,
+        outcome=ended,
+        description=outcome_sentence(verdict, drive),
+        drive=drive,
+        verdict=verdict,
+        seconds=driving,
     )

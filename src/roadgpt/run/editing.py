@@ -14,8 +14,8 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Design, World, read_blueprint
 from roadgpt.run.atomic import json_text, to_bytes
 from roadgpt.run.folder import Draw, is_run, only_run, read_run, write_run
+from roadgpt.run.folder_names import new_folder
 from roadgpt.run.model import Run, Setup
-from roadgpt.run.naming import new_folder
 
 BEFORE, CARD = "before", "edit.json"
 

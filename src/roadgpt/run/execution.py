@@ -51,7 +51,7 @@ FIELDS = (
 )
 
 
-class Record(NamedTuple):
+class ExecutionRecord(NamedTuple):
     """One moment, in the competition's order."""
 
     timer: float
@@ -73,7 +73,7 @@ class Record(NamedTuple):
     oob_percentage: float
 
 
-def records_of(road: Road, drive: Drive, world: World) -> list[Record]:
+def records_of(road: Road, drive: Drive, world: World) -> list[ExecutionRecord]:
     """The Drive at 10 Hz, and at its last step and at every step that leaves the lane."""
     oracle = consult(road, drive, world)
     keep = _steps(drive["time"], np.diff(oracle.oob_counter, prepend=0) > 0)
@@ -96,7 +96,7 @@ def records_of(road: Road, drive: Drive, world: World) -> list[Record]:
         **oracle._asdict(),
     }
     rows = zip(*(_plain(columns[name][keep]) for name in FIELDS), strict=True)
-    return [Record(*row) for row in rows]
+    return [ExecutionRecord(*row) for row in rows]
 
 
 def _steps(time: NDArray[np.float64], leaves: NDArray[np.bool_]) -> NDArray[np.intp]:

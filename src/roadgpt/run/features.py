@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.check.sbft import radii
-from roadgpt.run.execution import Record
+from roadgpt.run.execution import ExecutionRecord
 
 BINS = 25
 FEWEST_RECORDS = 3  # with fewer, a drive has no features
 
 
-def features_of(points: ArrayLike, records: Sequence[Record] = ()) -> dict[str, float]:
+def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> dict[str, float]:
     """All features of a test.
 
     Args:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from roadgpt.run.atomic import json_text
-from roadgpt.run.execution import Record, records_of
+from roadgpt.run.execution import ExecutionRecord, records_of
 from roadgpt.run.features import features_of
 from roadgpt.run.model import Run
 
@@ -25,7 +25,7 @@ def test_of(run: Run) -> dict[str, Any]:
     if run.road is not None:
         points = np.round(run.road.centreline(PER_POINT), DECIMALS) + 0.0
         control = np.round(run.road.control_points(), DECIMALS) + 0.0
-    records: list[Record] = []
+    records: list[ExecutionRecord] = []
     if run.road is not None and run.drive is not None:
         records = records_of(run.road, run.drive, run.world)
     return {

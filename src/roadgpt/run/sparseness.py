@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import interpolate
-from roadgpt.run.execution import Record
+from roadgpt.run.execution import ExecutionRecord
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ class Departure(NamedTuple):
 
 
 def departure(
-    points: ArrayLike, records: Sequence[Record], before: float = AROUND, after: float = AROUND
+    points: ArrayLike, records: Sequence[ExecutionRecord], before: float = AROUND, after: float = AROUND
 ) -> Departure | None:
     """What the competition's analysis finds in a failed test; None where the car did not leave its lane.
 
@@ -127,7 +127,7 @@ def _foot(line: Array, place: Sequence[float]) -> tuple[Array, float]:
     return feet[nearest], float(away[nearest])
 
 
-def _first_record(line: Array, start: Array, records: Sequence[Record]) -> int:
+def _first_record(line: Array, start: Array, records: Sequence[ExecutionRecord]) -> int:
     """The first record beside a segment's start; the first of all where none is."""
     for number, record in enumerate(records):
         foot, _ = _foot(line, record.pos[:2])
@@ -170,7 +170,7 @@ def _cost(step: Array, others: Array) -> Array:
     return np.where((turned < EPS_DEGREES) & (longer < EPS_METRES), 0.0, cost)
 
 
-class Spread:
+class Sparseness:
     """Sparseness that grows with every failure, without measuring old pairs again."""
 
     def __init__(self) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from roadgpt.run.atomic import write_whole
 from roadgpt.run.execution import records_of
 from roadgpt.run.model import Request, Run
-from roadgpt.run.sparseness import Spread, departure
+from roadgpt.run.sparseness import Sparseness, departure
 
 TABLES = ("generation_stats.csv", "oob_stats.csv")
 DESCRIPTION = "experiment_description.csv"
@@ -29,7 +29,7 @@ class Tally:
         self.valid = 0
         self.with_road = 0
         self.designing = self.driving = self.simulated = 0.0
-        self.spread = Spread()
+        self.spread = Sparseness()
 
     def add(self, run: Run) -> None:
         """Count one more Run."""

@@ -77,10 +77,10 @@ def distance(one: Any, other: Any) -> float:
 
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
     """Where a car left its lane, as the competition's analysis finds it."""
-    from roadgpt.run.execution import Record
+    from roadgpt.run.execution import ExecutionRecord
     from roadgpt.run.sparseness import departure
 
-    found = departure(points, [Record(*record) for record in records], before, after)
+    found = departure(points, [ExecutionRecord(*record) for record in records], before, after)
     if found is None:
         return None
     parts = {"before": found.before, "after": found.after}
@@ -90,9 +90,9 @@ def left_lane(points: Any, records: Any, before: float, after: float) -> Message
 
 def spread(segments: Any) -> tuple[float, float]:
     """Mean and deviation of how much failures differ: segments ``(n, 2)`` in the order of their tests."""
-    from roadgpt.run.sparseness import Spread
+    from roadgpt.run.sparseness import Sparseness
 
-    found = Spread()
+    found = Sparseness()
     for number, points in enumerate(segments):
         found.add(number, points)
     return found.mean, found.deviation

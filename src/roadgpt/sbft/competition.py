@@ -8,8 +8,8 @@ from typing import Any
 
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.road import Road, World
-from roadgpt.run import Draw, Request, Run, Setup, prove, roll_call
-from roadgpt.run.losses import Losses
+from roadgpt.run import Draw, Request, Run, Setup, check_parts, prove
+from roadgpt.run.lost_drives import LostDrives
 from roadgpt.sbft.experiment import Ending, Experiment
 from roadgpt.sbft.host import GoneError, Host
 from roadgpt.sbft.line import Message
@@ -41,7 +41,7 @@ class Competition:
     """How the generator ended; None while it works."""
     tests: int = 0
     _deadline: float = field(default=0.0, repr=False)
-    _losses: Losses[int] = field(default_factory=Losses, repr=False)
+    _losses: LostDrives[int] = field(default_factory=LostDrives, repr=False)
     _is_begun: bool = field(default=False, repr=False)
     """Is there a generator, whose results or whose log somebody may want to see?"""
 
@@ -208,7 +208,7 @@ def compete(
         raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")
     setup = setup.model_copy(update={"rules": "sbft"})
     world = world.model_copy(update={"z_floor": GROUND})
-    roll_call(setup, world)
+    check_parts(setup, world)
     request = Request(seed=seed, world=world, setup=setup)
     folder, made = new_folder(experiment, out)
     results = Results(folder, request, draw, made)

@@ -11,7 +11,7 @@ from roadgpt.errors import PartError, RoadGPTError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 from roadgpt.run import Request, Run, Seconds, prove
-from roadgpt.run.execution import Record, records_of
+from roadgpt.run.execution import ExecutionRecord, records_of
 
 SUCCESS = "Successful test"
 WRONG_TYPE = "Wrong type"
@@ -67,14 +67,14 @@ def told(run: Run) -> str:
     return said if said == SUCCESS else f"{said} {run.request.setup.simulator}/{run.index:04d}"
 
 
-def records_at_their_height(run: Run) -> list[Record]:
+def records_at_their_height(run: Run) -> list[ExecutionRecord]:
     """Execution data; the competition's level lies 28 m below zero, and so does the car's road."""
     if run.road is None or run.drive is None:
         return []
     return [_lowered(record) for record in records_of(run.road, run.drive, run.world)]
 
 
-def _lowered(record: Record) -> Record:
+def _lowered(record: ExecutionRecord) -> ExecutionRecord:
     x, y, z = record.pos
     return record._replace(pos=[x, y, round(z + HEIGHT, 4)])
 

@@ -15,7 +15,7 @@ from roadgpt.errors import RoadGPTError
 from roadgpt.reading import read_json
 from roadgpt.road import Road, World
 from roadgpt.run import Run, read_run
-from roadgpt.run.campaign import finished
+from roadgpt.run.campaign_runs import finished
 from roadgpt.run.folder import run_folder
 from roadgpt.run.sbft_json import test_name
 from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from roadgpt.campaign.faults import faults_in
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.sound import sound
 from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
 from roadgpt.report.page import Block, Cell, Figure, Page, Section, Table, cell, linked, write
 from roadgpt.report.page.forest import Share, forest
@@ -195,7 +195,7 @@ def _forest(cells: Sequence[CellStatus]) -> Figure:
 
 
 def _card(command: str, record: Record, status: Status) -> dict[str, str]:
-    with sound(record.path):
+    with reading_store(record.path):
         versions = {str(name): str(number) for name, number in json_of(record.meta("versions")).items()}
     seeds = sorted({each.seed for each in status.cells})
     return {

@@ -13,7 +13,7 @@ from roadgpt.reading import read_json
 from roadgpt.road import World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
-from roadgpt.run.naming import slug
+from roadgpt.run.folder_names import slug
 from roadgpt.study.prompts import Prompt
 
 CARD = "study.json"

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.errors import BriefError, DesignError, GivenUpError, RoadGPTError
 from roadgpt.run import campaign
-from roadgpt.run.campaign import finished
+from roadgpt.run.campaign_runs import finished
 from roadgpt.run.folder import Draw
 from roadgpt.stopping import look, shielded
 from roadgpt.study.plan import Part, Plan

@@ -1,6 +1,6 @@
 """Executors: the workers of a campaign, one way of having them per file.
 
-An executor is a class, made with a Staff. It runs jobs and decides nothing: which tests there are, and what
+An executor is a class, made with a WorkerConfig. It runs jobs and decides nothing: which tests there are, and what
 becomes of their results, is the business of the one process that made it, which alone writes the store. So a
 way of having workers needs six methods:
 
@@ -32,7 +32,7 @@ MOST_DEATHS = 3  # of workers, over one job; then it is the job that kills them
 
 
 @dataclass(frozen=True)
-class Staff:
+class WorkerConfig:
     """Whom a campaign works with."""
 
     workers: int
@@ -58,7 +58,7 @@ class Job:
 
 
 @dataclass(frozen=True)
-class Done:
+class FinishedJob:
     """What became of a job: a value, an error that its function raised, or that it was given up."""
 
     key: int
@@ -69,7 +69,7 @@ class Done:
 
 
 @dataclass(frozen=True)
-class Doing:
+class RunningJob:
     """Who does what."""
 
     key: int
@@ -81,7 +81,7 @@ class Doing:
 class Executor(Protocol):
     """Workers; see the head of this module."""
 
-    def __init__(self, staff: Staff) -> None: ...
+    def __init__(self, staff: WorkerConfig) -> None: ...
 
     def share(self, name: str, value: Any) -> None:
         """Keep a value for jobs that need it."""
@@ -95,7 +95,7 @@ class Executor(Protocol):
         """Have jobs done."""
         ...
 
-    def done(self, seconds: float) -> list[Done]:
+    def done(self, seconds: float) -> list[FinishedJob]:
         """What has ended; none where nothing did in that time.
 
         Raises:
@@ -103,7 +103,7 @@ class Executor(Protocol):
         """
         ...
 
-    def under_way(self) -> list[Doing]:
+    def under_way(self) -> list[RunningJob]:
         """What is being done now."""
         ...
 
@@ -116,4 +116,4 @@ class Executor(Protocol):
         ...
 
 
-__all__ = ["MOST_DEATHS", "Doing", "Done", "Executor", "Job", "Staff"]
+__all__ = ["MOST_DEATHS", "Executor", "FinishedJob", "Job", "RunningJob", "WorkerConfig"]

@@ -16,11 +16,11 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import Any
 
-from roadgpt.campaign.executors import MOST_DEATHS, Doing, Staff
-from roadgpt.campaign.hands.actor import Actor
-from roadgpt.campaign.hands.desk import Desk, Work
-from roadgpt.campaign.hands.inside import READY, Order
-from roadgpt.campaign.hands.wire import frozen, thawed
+from roadgpt.campaign.executors import MOST_DEATHS, RunningJob, WorkerConfig
+from roadgpt.campaign.workers.job_queue import JobQueue, QueuedJob
+from roadgpt.campaign.workers.messages import pickled, unpickled
+from roadgpt.campaign.workers.process_loop import READY, JobMessage
+from roadgpt.campaign.workers.ray_actor import RayActor
 from roadgpt.errors import RoadGPTError, UsageError
 
 ROUND = 0.5  # s between two looks at all workers
@@ -37,7 +37,7 @@ class _Worker:
     actor: Any
     name: str
     is_ready: bool = False
-    works: list[Work] = field(default_factory=list)
+    works: list[QueuedJob] = field(default_factory=list)
     begun: float = 0.0
     has: set[str] = field(default_factory=set)
     node: str = ""
@@ -45,10 +45,10 @@ class _Worker:
     """Why it was ended; empty for one that ended by itself."""
 
 
-class Ray(Desk):
+class Ray(JobQueue):
     """Workers on a Ray cluster."""
 
-    def __init__(self, staff: Staff) -> None:
+    def __init__(self, staff: WorkerConfig) -> None:
         """Asks the cluster for them; ``staff.address`` is its head's, empty for a cluster on this machine.
 
         Raises:
@@ -57,9 +57,9 @@ class Ray(Desk):
         """
         super().__init__(staff.workers)
         self._staff = staff
-        self._prepare = frozen(staff.prepare)
+        self._prepare = pickled(staff.prepare)
         self._ray, self._is_ours = _connected(staff)
-        self._alone: set[Work] = set()  # done singly, since a worker ended over them and others
+        self._alone: set[QueuedJob] = set()  # done singly, since a worker ended over them and others
         self._in_vain = 0  # workers that ended before they were ready, since the last that was
         self._started = 0
         self._since = time.monotonic()  # nobody was ready
@@ -72,12 +72,12 @@ class Ray(Desk):
         self._thread = threading.Thread(target=self._listen, name="roadgpt-ray", daemon=True)
         self._thread.start()
 
-    def under_way(self) -> list[Doing]:
+    def under_way(self) -> list[RunningJob]:
         """What has been handed to workers; the seconds are those of the whole message."""
         now = time.monotonic()
         with self._changed:
             return [
-                Doing(work.key, worker.name, now - worker.begun)
+                RunningJob(work.key, worker.name, now - worker.begun)
                 for worker in self._workers
                 for work in worker.works
                 if work.key is not None
@@ -98,7 +98,7 @@ class Ray(Desk):
         from roadgpt import __version__
 
         self._started += 1
-        kind = self._ray.remote(num_cpus=1, max_restarts=0, max_task_retries=0)(Actor)
+        kind = self._ray.remote(num_cpus=1, max_restarts=0, max_task_retries=0)(RayActor)
         worker = _Worker(kind.remote(self._staff.patience), f"worker {self._started}")
         self._workers.append(worker)
         self._expect(worker, worker.actor.begin.remote(__version__, self._prepare))
@@ -132,10 +132,10 @@ class Ray(Desk):
                 self._end(work, kind, what)
         elif told[0] == READY:
             worker.is_ready, self._in_vain = True, 0
-            worker.node, where = thawed(told[1])
+            worker.node, where = unpickled(told[1])
             worker.name += f" ({where})"
         else:
-            self._broken = thawed(told[1])
+            self._broken = unpickled(told[1])
             return
         self._next(worker)
 
@@ -151,13 +151,13 @@ class Ray(Desk):
         worker.works, worker.begun = works, time.monotonic()
         new, old = self._news(worker.has, works)
         first, *more = works
-        orders = [Order(first.call, new, old), *(Order(work.call, {}, ()) for work in more)]
+        orders = [JobMessage(first.call, new, old), *(JobMessage(work.call, {}, ()) for work in more)]
         self._expect(worker, worker.actor.work.remote(orders))
 
-    def _some(self, waiting: deque[Work]) -> list[Work]:
+    def _some(self, waiting: deque[QueuedJob]) -> list[QueuedJob]:
         """Jobs for one message: a share of those that wait, or one that may be to blame, alone."""
         most = min(TOGETHER, -(-len(waiting) // (PER_WORKER * self._size)))
-        works: list[Work] = []
+        works: list[QueuedJob] = []
         while waiting and len(works) < most and not (works and waiting[0] in self._alone):
             works.append(waiting.popleft())
             if works[0] in self._alone:
@@ -205,7 +205,7 @@ class Ray(Desk):
                 self._changed.notify_all()
 
 
-def _connected(staff: Staff) -> tuple[Any, bool]:
+def _connected(staff: WorkerConfig) -> tuple[Any, bool]:
     """Ray, and whether we connected to it ourselves."""
     try:
         import ray

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import cdist, squareform
 
-from roadgpt.campaign.faults.why import lane_curvature
+from roadgpt.campaign.faults.reason import lane_curvature
 from roadgpt.road import Road, World
 
 Array = NDArray[np.float64]

@@ -32,7 +32,7 @@ class Disturbance:
     """Seconds by which what the driver sees is old."""
 
 
-def draw(seed: int, number: int) -> Disturbance:
+def disturbance_of(seed: int, number: int) -> Disturbance:
     """The disturbance of repetition ``number`` (from 1) of a drive with this seed."""
     rng = np.random.default_rng([seed, number, 0xD157])
     return Disturbance(1 + GRIP * _normal(rng), START * _normal(rng), float(rng.uniform(0.0, DELAY)))

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadgpt.campaign.faults.distinct import faults_of, typical
-from roadgpt.campaign.faults.failed import Departure, failures_of
-from roadgpt.campaign.faults.why import Way
-from roadgpt.campaign.names import Name
+from roadgpt.campaign.faults.failures import FailureSite, failures_of
+from roadgpt.campaign.faults.reason import Way
+from roadgpt.campaign.numbered_test import NumberedTest
 
 DEFINED = (
     "Two failures are one fault where the same driver, in the same world, left its lane for the same cause, "
@@ -30,13 +30,13 @@ class Fault:
 
     number: int
     """From 1; the fault with most failures first."""
-    members: tuple[Departure, ...]
+    members: tuple[FailureSite, ...]
     """In the order of their tests."""
-    typical: tuple[Departure, ...]
+    typical: tuple[FailureSite, ...]
     """A few of them, first the one that is nearest to all others of the fault."""
 
     @property
-    def names(self) -> tuple[Name, ...]:
+    def names(self) -> tuple[NumberedTest, ...]:
         """Of the typical ones."""
         return tuple(each.name for each in self.typical)
 
@@ -76,7 +76,7 @@ class Faults:
     @property
     def ways(self) -> list[str]:
         """In which ways the car failed, the commonest first: 'ran wide of right bends of R 15 m to 17 m'."""
-        found: dict[tuple[Way, str | None], list[Departure]] = {}
+        found: dict[tuple[Way, str | None], list[FailureSite]] = {}
         for fault in self.them:
             for each in fault.members:
                 found.setdefault((each.manner.way, each.manner.side), []).append(each)
@@ -84,7 +84,7 @@ class Faults:
         return [_told(way, side, members) for (way, side), members in ordered]
 
 
-def _told(way: Way, side: str | None, members: Sequence[Departure]) -> str:
+def _told(way: Way, side: str | None, members: Sequence[FailureSite]) -> str:
     radii = sorted(each.manner.radius for each in members if each.manner.radius is not None)
     if side is None or not radii:
         return WAYS[way]
@@ -109,8 +109,8 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
     return Faults(tuple(_grouped(failures.known)), failures.every, len(failures.known))
 
 
-def _grouped(known: Sequence[Departure]) -> Iterator[Fault]:
-    members: dict[int, list[Departure]] = {}
+def _grouped(known: Sequence[FailureSite]) -> Iterator[Fault]:
+    members: dict[int, list[FailureSite]] = {}
     for cluster, each in zip(faults_of([each.around for each in known]), known, strict=True):
         members.setdefault(cluster, []).append(each)
     ordered = sorted(members.values(), key=lambda its: (-len(its), its[0].name))

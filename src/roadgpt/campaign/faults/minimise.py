@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.faults.reductions import Step, taken, ways
+from roadgpt.campaign.faults.reductions import Simplification, simplifications, simplified
 from roadgpt.check import inspect
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.road import Design, build
@@ -111,25 +111,25 @@ def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) 
     design, before = failure.design, None
     while design != before:
         before = design
-        for way in ways():
+        for way in simplifications():
             design = _reduced(design, way(design), trial)
     run = failure if design == failure.design else trial.fails(design)
     assert run is not None
     return Simplest(run, len(failure.design.segments), trial.drives, not trial.is_exhausted)
 
 
-def _reduced(design: Design, steps: Sequence[Step], trial: Trial) -> Design:
+def _reduced(design: Design, steps: Sequence[Simplification], trial: Trial) -> Design:
     """The Design after as many of the steps as it goes on failing with: all, or halves of them."""
-    kept: list[Step] = []
+    kept: list[Simplification] = []
 
-    def take(part: Sequence[Step]) -> None:
+    def take(part: Sequence[Simplification]) -> None:
         if not part:
             return
-        if trial.fails(taken(design, [*kept, *part])) is not None:
+        if trial.fails(simplified(design, [*kept, *part])) is not None:
             kept.extend(part)
         elif len(part) > 1:
             take(part[: len(part) // 2])
             take(part[len(part) // 2 :])
 
     take(steps)
-    return taken(design, kept) or design
+    return simplified(design, kept) or design

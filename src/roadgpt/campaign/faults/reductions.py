@@ -18,7 +18,7 @@ NAMES = {"distance": "length", "turn_degrees": "turn", "radius": "radius"}
 
 
 @dataclass(frozen=True)
-class Step:
+class Simplification:
     """One simplification of one segment."""
 
     segment: int
@@ -28,10 +28,10 @@ class Step:
     told: str
 
 
-Way = Callable[[Design], list[Step]]
+Simplifier = Callable[[Design], list[Simplification]]
 
 
-def taken(design: Design, steps: Sequence[Step]) -> Design | None:
+def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None:
     """The Design after all these steps; None where no segment would be left."""
     segments: list[Segment | None] = list(design.segments)
     for step in steps:
@@ -42,7 +42,7 @@ def taken(design: Design, steps: Sequence[Step]) -> Design | None:
     return design.model_copy(update={"segments": left}) if left else None
 
 
-def ways() -> list[Way]:
+def simplifications() -> list[Simplifier]:
     """All, those that take away most first."""
     rounding = [
         _rounding(field, unit)
@@ -53,23 +53,23 @@ def ways() -> list[Way]:
     return [_dropping, _levelling, _straightening, *rounding, _whole_percent]
 
 
-def _dropping(design: Design) -> list[Step]:
+def _dropping(design: Design) -> list[Simplification]:
     # the end first: what lies behind the departure matters least
     count = len(design.segments)
-    return [Step(index, lambda segment: None, "left out") for index in reversed(range(count))]
+    return [Simplification(index, lambda segment: None, "left out") for index in reversed(range(count))]
 
 
-def _levelling(design: Design) -> list[Step]:
+def _levelling(design: Design) -> list[Simplification]:
     return [
-        Step(index, lambda segment: segment.model_copy(update={"incline": 0.0}), "made level")
+        Simplification(index, lambda segment: segment.model_copy(update={"incline": 0.0}), "made level")
         for index, segment in enumerate(design.segments)
         if segment.incline
     ]
 
 
-def _straightening(design: Design) -> list[Step]:
+def _straightening(design: Design) -> list[Simplification]:
     return [
-        Step(index, _straight, "made straight")
+        Simplification(index, _straight, "made straight")
         for index, segment in enumerate(design.segments)
         if segment.turn_degrees
     ]
@@ -84,10 +84,10 @@ def _straight(segment: Segment) -> Segment:
     )
 
 
-def _rounding(field: str, unit: float) -> Way:
-    def way(design: Design) -> list[Step]:
+def _rounding(field: str, unit: float) -> Simplifier:
+    def way(design: Design) -> list[Simplification]:
         return [
-            Step(index, lambda segment: _rounded(segment, field, unit), f"{NAMES[field]} rounded")
+            Simplification(index, lambda segment: _rounded(segment, field, unit), f"{NAMES[field]} rounded")
             for index, segment in enumerate(design.segments)
             if getattr(segment, field) and getattr(segment, field) % unit
         ]
@@ -100,9 +100,9 @@ def _rounded(segment: Segment, field: str, unit: float) -> Segment:
     return segment.model_copy(update={field: value}) if value else segment
 
 
-def _whole_percent(design: Design) -> list[Step]:
+def _whole_percent(design: Design) -> list[Simplification]:
     return [
-        Step(
+        Simplification(
             index,
             lambda segment: segment.model_copy(update={"incline": float(round(segment.incline))}),
             "grade rounded",

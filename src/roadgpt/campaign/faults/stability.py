@@ -7,13 +7,13 @@ from inspect import signature
 from scipy.stats import beta
 
 from roadgpt import plugins
-from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, draw
+from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturbance_of
 from roadgpt.drive import Simulator, simulate
 from roadgpt.drive.apart import driver_of
 from roadgpt.drive.trust import admit
 from roadgpt.errors import RoadGPTError, SimulatorError
 from roadgpt.run import Run
-from roadgpt.run.losses import Losses
+from roadgpt.run.lost_drives import LostDrives
 from roadgpt.verdict import Verdict, judge
 
 SURE = 0.95  # of the interval
@@ -93,8 +93,8 @@ def once(task: tuple[Run, int]) -> Repeated:
         GivenUpError: the simulator failed three times in a row.
     """
     run, number = task
-    disturbance = draw(run.seed, number)
-    losses: Losses[int] = Losses()
+    disturbance = disturbance_of(run.seed, number)
+    losses: LostDrives[int] = LostDrives()
     while True:
         try:
             verdict = drive_disturbed(run, disturbance)

@@ -10,14 +10,14 @@ import numpy as np
 
 from roadgpt.campaign.model import Cell, Goal, Pool, Proposal, Result
 from roadgpt.campaign.search import (
+    batch_rng,
+    context_of,
     is_usable,
-    made,
-    proposed,
-    setting_of,
+    make_candidates,
+    proposals_of,
     settings_of,
-    source,
 )
-from roadgpt.campaign.vary import Task
+from roadgpt.campaign.variation import VariationTask
 from roadgpt.road import Design
 
 POPULATION = 20  # of the fittest
@@ -36,15 +36,15 @@ class Genetic:
         Raises:
             UsageError: a setting cannot be.
         """
-        self._cell, self._setting = cell, setting_of(cell)
+        self._cell, self._setting = cell, context_of(cell)
         self.batch_size = settings_of(cell).batch
         self._fittest: list[tuple[float, int, Design]] = []
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """Children of the fittest; drafts while there are none."""
-        rng = source(self._cell, batch)
+        rng = batch_rng(self._cell, batch)
         tasks = [self._task(rng) for _ in range(n)]
-        return proposed(self._cell, first, n, made(tasks, pool))
+        return proposals_of(self._cell, first, n, make_candidates(tasks, pool))
 
     def tell(self, results: Sequence[Result]) -> None:
         """Takes in what is fitter than the least fit."""
@@ -55,14 +55,14 @@ class Genetic:
                 self._fittest.append((result.margin, result.number, result.design))
         self._fittest = sorted(self._fittest, key=lambda one: one[:2])[:POPULATION]
 
-    def _task(self, rng: np.random.Generator) -> Task:
+    def _task(self, rng: np.random.Generator) -> VariationTask:
         seed = (int(rng.integers(2**53)),)
         if not self._fittest:
-            return Task("draft", (), "draft", seed, self._setting)
+            return VariationTask("draft", (), "draft", seed, self._setting)
         (_, number, mother), (_, other, father) = self._winner(rng), self._winner(rng)
         if rng.random() < CROSSED and number != other:
-            return Task("cross", (mother, father), f"cross {number}+{other}", seed, self._setting)
-        return Task("vary", (mother,), f"vary {number}", seed, self._setting)
+            return VariationTask("cross", (mother, father), f"cross {number}+{other}", seed, self._setting)
+        return VariationTask("vary", (mother,), f"vary {number}", seed, self._setting)
 
     def _winner(self, rng: np.random.Generator) -> tuple[float, int, Design]:
         drawn = rng.integers(len(self._fittest), size=TOURNAMENT)

@@ -12,23 +12,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from roadgpt.campaign.acquisition import Predictions, dissimilar, select, spread_out
 from roadgpt.campaign.archive import Archive
+from roadgpt.campaign.boundary_pairs import paired
 from roadgpt.campaign.genome import Genes, genes_of
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
-from roadgpt.campaign.pairs import paired
-from roadgpt.campaign.picking import Expected, picked, spread, unlike
 from roadgpt.campaign.search import (
     DRIVEN,
+    batch_rng,
+    context_of,
     is_usable,
-    made,
-    proposed,
-    setting_of,
+    make_candidates,
+    proposals_of,
     settings_of,
-    source,
 )
-from roadgpt.campaign.signs import hazard_of
 from roadgpt.campaign.surrogate import FEWEST, MOST, TREES, Surrogate, target_of
-from roadgpt.campaign.vary import Candidate, Kind, Task, look
+from roadgpt.campaign.surrogate_features import hazard_of
+from roadgpt.campaign.variation import Candidate, Kind, VariationTask, describe_known
 from roadgpt.road import Design
 
 KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
@@ -50,7 +50,7 @@ class QualityDiversity:
         Raises:
             UsageError: a setting cannot be.
         """
-        self._cell, self._setting = cell, setting_of(cell)
+        self._cell, self._setting = cell, context_of(cell)
         self._wanted = settings_of(cell)
         self._goal: Goal = cell.goal or "failures"
         self.batch_size = self._wanted.batch
@@ -71,15 +71,15 @@ class QualityDiversity:
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """The candidates that are worth most for the goal."""
-        rng = source(self._cell, batch)
+        rng = batch_rng(self._cell, batch)
         self._look(pool)
         self._elites = self._archive.elites() or list(self._results)
         found = self._bisected(batch, n, pool) if self._goal == "boundary" else []
         missing = n - len(found)
         tasks = [self._task(rng) for _ in range(missing * self._wanted.candidates)]
-        fresh = made(tasks, pool)
-        fresh = unlike(fresh, [one.shape for one in self._looks.values()], self._wanted.apart) or fresh
-        return proposed(self._cell, first, n, [*found, *self._chosen(fresh, missing)])
+        fresh = make_candidates(tasks, pool)
+        fresh = dissimilar(fresh, [one.shape for one in self._looks.values()], self._wanted.apart) or fresh
+        return proposals_of(self._cell, first, n, [*found, *self._chosen(fresh, missing)])
 
     def _look(self, pool: Pool) -> None:
         """Signs and shapes of the roads that were told of since."""
@@ -87,18 +87,18 @@ class QualityDiversity:
         self._looks = {number: self._looks[number] for number in known if number in self._looks}
         new = [number for number in known if number not in self._looks]
         designs = [self._results[number].design for number in new]
-        looks = pool.map(look, [(design, self._setting) for design in designs if design])
+        looks = pool.map(describe_known, [(design, self._setting) for design in designs if design])
         self._looks |= dict(zip(new, looks, strict=True))
 
-    def _task(self, rng: np.random.Generator) -> Task:
+    def _task(self, rng: np.random.Generator) -> VariationTask:
         """A candidate to be made: a change of an elite, more often of one that failed, or something new."""
         kind = KINDS[int(rng.choice(len(KINDS), p=OFTEN))] if self._results else "wild"
         seed = (int(rng.integers(2**53)),)
         if kind == "wild":
-            return Task(kind, (), "draft", seed, self._setting)
+            return VariationTask(kind, (), "draft", seed, self._setting)
         numbers = [self._parent(rng) for _ in range(1 + (kind == "cross"))]
         parents = tuple(d for number in numbers if (d := self._results[number].design))
-        return Task(kind, parents, f"{kind} {'+'.join(map(str, numbers))}", seed, self._setting)
+        return VariationTask(kind, parents, f"{kind} {'+'.join(map(str, numbers))}", seed, self._setting)
 
     def _parent(self, rng: np.random.Generator) -> int:
         elites = self._elites
@@ -109,16 +109,20 @@ class QualityDiversity:
 
     def _chosen(self, candidates: list[Candidate], n: int) -> list[Candidate]:
         if len(self._looks) < FEWEST or not candidates:
-            return spread(candidates, n, hazard_of([one.signs for one in candidates])) if candidates else []
+            return (
+                spread_out(candidates, n, hazard_of([one.surrogate_features for one in candidates]))
+                if candidates
+                else []
+            )
         counts: Counter[int] = self._archive.tests if self._goal == "coverage" else self._archive.failures
         expected = self._expected(candidates)
-        return picked(self._goal, n, candidates, expected, counts, self._wanted.apart)
+        return select(self._goal, n, candidates, expected, counts, self._wanted.apart)
 
-    def _expected(self, candidates: Sequence[Candidate]) -> Expected:
+    def _expected(self, candidates: Sequence[Candidate]) -> Predictions:
         """What the surrogate's trees think of candidates."""
         outcomes = [self._outcome(self._results[number]) for number in self._looks]
-        model = Surrogate([one.signs for one in self._looks.values()], outcomes)
-        opinions = model.opinions([one.signs for one in candidates])
+        model = Surrogate([one.surrogate_features for one in self._looks.values()], outcomes)
+        opinions = model.opinions([one.surrogate_features for one in candidates])
         places = np.zeros((TREES, len(candidates), len(self._wanted.axes)))
         for column, axis in enumerate(self._wanted.axes):
             if axis in self._driven:
@@ -126,7 +130,7 @@ class QualityDiversity:
             else:
                 places[..., column] = [one.features.get(axis, 0.0) for one in candidates]
         cells = self._archive.cells(places.reshape(-1, places.shape[-1])).reshape(places.shape[:2])
-        return Expected(opinions[..., 0], cells)
+        return Predictions(opinions[..., 0], cells)
 
     def _outcome(self, result: Result) -> list[float]:
         assert result.margin is not None
@@ -140,14 +144,14 @@ class QualityDiversity:
                 self._genes[number] = genes_of(result.design)
         kept = [number for number, result in self._results.items() if not result.failed]
         lost = [number for number, result in self._results.items() if result.failed]
-        tasks: list[Task] = []
+        tasks: list[VariationTask] = []
         for pair in paired(self._genes, kept, lost):
             if pair.distance > CLOSE and len(tasks) < BISECTED * n:
                 ends = self._design(pair.kept), self._design(pair.lost)
                 origin = f"between {pair.kept}+{pair.lost}"
                 share = SHARES[batch % len(SHARES)]
-                tasks.append(Task("between", ends, origin, (batch,), self._setting, share))
-        return made(tasks, pool)
+                tasks.append(VariationTask("between", ends, origin, (batch,), self._setting, share))
+        return make_candidates(tasks, pool)
 
     def _design(self, number: int) -> Design:
         design = self._results[number].design

@@ -6,8 +6,8 @@ What searches are measured against: it keeps the Brief as they do, and learns no
 from collections.abc import Sequence
 
 from roadgpt.campaign.model import Cell, Pool, Proposal, Result
-from roadgpt.campaign.search import made, proposed, setting_of, settings_of, source
-from roadgpt.campaign.vary import Task
+from roadgpt.campaign.search import batch_rng, context_of, make_candidates, proposals_of, settings_of
+from roadgpt.campaign.variation import VariationTask
 
 
 class Random:
@@ -24,10 +24,12 @@ class Random:
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """The next drafts."""
-        rng = source(self._cell, batch)
-        setting = setting_of(self._cell)
-        tasks = [Task("draft", (), "draft", (int(seed),), setting) for seed in rng.integers(2**53, size=n)]
-        return proposed(self._cell, first, n, made(tasks, pool))
+        rng = batch_rng(self._cell, batch)
+        setting = context_of(self._cell)
+        tasks = [
+            VariationTask("draft", (), "draft", (int(seed),), setting) for seed in rng.integers(2**53, size=n)
+        ]
+        return proposals_of(self._cell, first, n, make_candidates(tasks, pool))
 
     def tell(self, results: Sequence[Result]) -> None:
         """Nothing is learnt."""

@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.dashes import DescribedCommand
-from roadgpt.cli.failing import asked, fault_options, look_into_failures
+from roadgpt.cli.failing import analyse_failures, asked, fault_options
 from roadgpt.cli.flags import CHAT, driver, driver_again, measure
 from roadgpt.cli.junit import junit_option, write_folder
 from roadgpt.cli.options import (
@@ -101,9 +101,9 @@ def command(
     roadgpt status study
     """
     from roadgpt import plugins
-    from roadgpt.campaign.launch import begin, work
+    from roadgpt.campaign.lifecycle import begin, work
     from roadgpt.run.atomic import to_bytes
-    from roadgpt.run.naming import new_folder
+    from roadgpt.run.folder_names import new_folder
 
     text = to_bytes(" ".join(words)).decode()  # what a broken terminal put into it becomes an escape
     plan = _filed(ctx, Path(text), rest) if text.endswith(".toml") else _described(text, rest)
@@ -119,7 +119,7 @@ def command(
     if junit is not None:
         write_folder(junit, out)
     if look := asked(faults, minimise, repeat, workers, quiet, as_json):
-        look_into_failures(out, look)
+        analyse_failures(out, look)
 
 
 def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":

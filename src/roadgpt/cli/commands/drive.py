@@ -23,7 +23,7 @@ from roadgpt.cli.screen import Screen
 
 if TYPE_CHECKING:
     from roadgpt.road import World
-    from roadgpt.run.losses import Losses
+    from roadgpt.run.lost_drives import LostDrives
     from roadgpt.run.model import Setup
 
 UNREADABLE = 2  # exit status
@@ -54,22 +54,22 @@ def command(
     two points at one place, no room for a car. With --rules sbft every objection is INVALID, as in the
     competition. The exit status is 0 when all roads could be read.
     """
-    from roadgpt.run import Request, Setup, roll_call
-    from roadgpt.run.losses import Losses
+    from roadgpt.run import Request, Setup, check_parts
+    from roadgpt.run.lost_drives import LostDrives
 
     world = world_of(rest)
     setup = Setup(**rest)
     with redirect_stdout(sys.stderr):
-        roll_call(setup, world)  # a driver that does not exist is told of before any road is looked at
+        check_parts(setup, world)  # a driver that does not exist is told of before any road is looked at
     asked = Request(seed=seed, world=world, setup=setup)
     screen = Screen(len(files), as_json, quiet, verbose, Junit.of(junit, asked))
-    losses: Losses[str] = Losses()
+    losses: LostDrives[str] = LostDrives()
     each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup, losses))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
 
 
 def _driven(
-    screen: Screen, file: str, seed: int, world: "World", setup: "Setup", losses: "Losses[str]"
+    screen: Screen, file: str, seed: int, world: "World", setup: "Setup", losses: "LostDrives[str]"
 ) -> Row:
     from roadgpt.run import prove
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from roadgpt.cli.failing import DRIVES, REPEAT, Look, look_into_failures
+from roadgpt.cli.failing import DRIVES, REPEAT, Look, analyse_failures
 from roadgpt.cli.options import driver_again_option, folder, whole
 
 
@@ -40,9 +40,9 @@ def command(
     roadgpt faults roadgpt-runs/hairpins-7
     roadgpt faults roadgpt-runs/hairpins-7 --repeat 30 --minimise -j 2
     """
-    from roadgpt.campaign.faults.failed import drivers_of
+    from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.drive.trust import expect
 
     if driver is not None:
         expect(driver, drivers_of(place), place)
-    look_into_failures(place, Look(repeat, minimise, workers, not no_plot, quiet))
+    analyse_failures(place, Look(repeat, minimise, workers, not no_plot, quiet))

@@ -133,9 +133,9 @@ def command(
 
 def _is_of_runs(files: tuple[str, ...]) -> bool:
     """Is it a folder whose runs have folders of their own?"""
-    from roadgpt.campaign.naming import place_of
+    from roadgpt.campaign.selection import selection_of
 
-    place = place_of(files[0])
+    place = selection_of(files[0])
     return place is None or not place.is_campaign
 
 

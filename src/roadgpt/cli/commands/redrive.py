@@ -11,7 +11,7 @@ from roadgpt.cli.options import driver_again_option, folder, pictures_options
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.naming import Choice, Place
+    from roadgpt.campaign.selection import Choice, Selection
 
 AGAIN = "again"  # folder of a campaign
 
@@ -43,8 +43,8 @@ def command(
     roadgpt redrive roadgpt-runs/an-uphill-road-with-3-turns-7/c01/17
     roadgpt redrive roadgpt-runs/an-uphill-road-with-3-turns-7 --faults
     """
-    from roadgpt.campaign.again import is_same, run_again
-    from roadgpt.campaign.faults.failed import drivers_of
+    from roadgpt.campaign.faults.failures import drivers_of
+    from roadgpt.campaign.rerun import is_same, run_again
     from roadgpt.drive.trust import expect
     from roadgpt.report import drawing
     from roadgpt.run import write_run
@@ -79,12 +79,12 @@ def _made(path: Path) -> Path:
     return path
 
 
-def _named(names: tuple[str, ...], choice: "Choice | None") -> "list[Place]":
+def _named(names: tuple[str, ...], choice: "Choice | None") -> "list[Selection]":
     """The tests that are meant: of the campaign that comes first, or each with its own."""
-    from roadgpt.campaign.naming import chosen, place_of
     from roadgpt.campaign.record import no_campaign
+    from roadgpt.campaign.selection import chosen, selection_of
 
-    first = place_of(names[0])
+    first = selection_of(names[0])
     if first is None or not first.is_campaign:
         raise no_campaign(Path(names[0]))
     if first.number is None and choice is None and len(names) == 1:
@@ -95,7 +95,9 @@ def _named(names: tuple[str, ...], choice: "Choice | None") -> "list[Place]":
     out = [] if first.number is None and choice is None else chosen(first, choice)
     for name in names[1:]:
         is_number = name.rpartition("/")[2].isdecimal()
-        place = (place_of(f"{first.folder}/{name}") or place_of(name)) if is_number or choice else None
+        place = (
+            (selection_of(f"{first.folder}/{name}") or selection_of(name)) if is_number or choice else None
+        )
         if place is None or not place.is_campaign or (place.number is None and choice is None):
             raise UsageError(f"'{one_line(name, 40)}' is no test; give its number, as 17 or c02/17")
         out += chosen(place, choice)

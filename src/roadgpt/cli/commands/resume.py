@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
-from roadgpt.cli.failing import asked, fault_options, look_into_failures
+from roadgpt.cli.failing import analyse_failures, asked, fault_options
 from roadgpt.cli.flags import CHAT
 from roadgpt.cli.junit import junit_option, write_folder
 from roadgpt.cli.options import driver_again_option, together
@@ -46,7 +46,7 @@ def command(
     \b
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2
     """
-    from roadgpt.campaign.launch import plan_of, work
+    from roadgpt.campaign.lifecycle import plan_of, work
     from roadgpt.campaign.record import Record
     from roadgpt.chat.config import name_server
     from roadgpt.drive.trust import expect
@@ -65,4 +65,4 @@ def command(
     if junit is not None:
         write_folder(junit, campaign)
     if look := asked(faults, minimise, repeat, workers, quiet, as_json):
-        look_into_failures(campaign, look)
+        analyse_failures(campaign, look)

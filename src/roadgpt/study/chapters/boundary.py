@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from roadgpt.campaign.boundary_pairs import BoundaryPair, pairs_of, weightiest
 from roadgpt.campaign.genome import genes_of
 from roadgpt.campaign.model import Result
-from roadgpt.campaign.pairs import Pair, pairs_of, weightiest
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
 from roadgpt.report.page import Block, Cell, Table, cell
@@ -31,7 +31,7 @@ class Side(NamedTuple):
     """A nearest pair of a cell, with the results of both roads."""
 
     cell: str
-    pair: Pair
+    pair: BoundaryPair
     kept: Result
     lost: Result
 
@@ -70,7 +70,7 @@ def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
     return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
 
 
-def _row(folder: Path, name: str, pair: Pair, kept: Result, lost: Result) -> list[Cell]:
+def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[Cell]:
     assert kept.design is not None
     assert lost.design is not None
     return [

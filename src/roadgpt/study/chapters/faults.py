@@ -5,10 +5,18 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.campaign.faults import Fault, Faults, Looked, Why, failed_run, looked_into, why
-from roadgpt.campaign.faults.book import FOLDER, TABLE
+from roadgpt.campaign.faults import (
+    FailureAnalysis,
+    FailureReason,
+    Fault,
+    Faults,
+    failed_run,
+    kept_analysis,
+    reason_of,
+)
 from roadgpt.campaign.faults.fault import DEFINED
-from roadgpt.campaign.names import Name
+from roadgpt.campaign.faults.fault_log import FOLDER, TABLE
+from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.errors import UsageError
 from roadgpt.report.page import Block, Card, Cards, Cell, Command, Details, Line, Section, Table, cell, linked
 from roadgpt.report.page.spot import spot, spot_of
@@ -29,9 +37,9 @@ class Told(NamedTuple):
     fault: Fault
     run: Run
     """Its typical failure."""
-    name: Name
-    looked: Looked | None
-    why: Why | None
+    name: NumberedTest
+    looked: FailureAnalysis | None
+    why: FailureReason | None
     """None where its drive is not known."""
 
     @property
@@ -50,14 +58,14 @@ def told_of(folder: Path, found: Faults) -> list[Told]:
 
 
 def _told(folder: Path, fault: Fault) -> Told:
-    looked = looked_into(folder, fault)
+    looked = kept_analysis(folder, fault)
     name = looked.name if looked else fault.names[0]
     run = _run_of(folder, name)
-    reason = looked.why if looked else why(run) if run.drive is not None else None
+    reason = looked.reason if looked else reason_of(run) if run.drive is not None else None
     return Told(fault, run, name, looked, reason)
 
 
-def _run_of(folder: Path, name: Name) -> Run:
+def _run_of(folder: Path, name: NumberedTest) -> Run:
     """With its drive, or without where the file of that cannot be read: a report tells what is known."""
     try:
         return failed_run(folder, name)

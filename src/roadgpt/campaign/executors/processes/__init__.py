@@ -8,22 +8,22 @@ processes dies, all that it was given is lost.
 import threading
 import time
 
-from roadgpt.campaign.executors import MOST_DEATHS, Doing, Staff
+from roadgpt.campaign.executors import MOST_DEATHS, RunningJob, WorkerConfig
 from roadgpt.campaign.executors.processes.worker import Worker
-from roadgpt.campaign.hands.desk import Desk
-from roadgpt.campaign.hands.inside import READY, Order
-from roadgpt.campaign.hands.log import shorten
-from roadgpt.campaign.hands.wire import frozen, thawed
+from roadgpt.campaign.workers.job_queue import JobQueue
+from roadgpt.campaign.workers.messages import pickled, unpickled
+from roadgpt.campaign.workers.process_loop import READY, JobMessage
+from roadgpt.campaign.workers.worker_log import shorten
 from roadgpt.errors import RoadGPTError
 
 SILENCE = 60.0  # s without a sign of life, after which a worker is given up; one comes every second
 ROUND = 0.5  # s between two looks at all workers
 
 
-class Processes(Desk):
+class Processes(JobQueue):
     """Workers that are processes of this machine."""
 
-    def __init__(self, staff: Staff) -> None:
+    def __init__(self, staff: WorkerConfig) -> None:
         """Starts them.
 
         Raises:
@@ -31,7 +31,7 @@ class Processes(Desk):
         """
         super().__init__(staff.workers)
         self._staff = staff
-        self._prepare = frozen(staff.prepare)
+        self._prepare = pickled(staff.prepare)
         self._in_vain = 0  # workers that ended before they were ready, since the last that was
         self._started = 0
         self._stops = threading.Event()
@@ -45,12 +45,12 @@ class Processes(Desk):
             raise
         threading.Thread(target=self._watch, name="roadgpt-watch", daemon=True).start()
 
-    def under_way(self) -> list[Doing]:
+    def under_way(self) -> list[RunningJob]:
         """What is being done now, by the workers' numbers."""
         now = time.monotonic()
         with self._changed:
             return [
-                Doing(worker.job.key, f"{worker.name} ({worker.pid})", now - worker.begun)
+                RunningJob(worker.job.key, f"{worker.name} ({worker.pid})", now - worker.begun)
                 for worker in self._workers
                 if worker.job is not None and worker.job.key is not None
             ]
@@ -89,7 +89,7 @@ class Processes(Desk):
                 self._end(worker.job, kind, what)
                 worker.job = None
             else:
-                self._broken = thawed(what)
+                self._broken = unpickled(what)
             if not self._broken:
                 self._next(worker)
             self._changed.notify_all()
@@ -105,7 +105,7 @@ class Processes(Desk):
             return
         work = queue.popleft()
         worker.job, worker.begun = work, time.monotonic()
-        worker.give(Order(work.call, *self._news(worker.has, [work])))
+        worker.give(JobMessage(work.call, *self._news(worker.has, [work])))
 
     def _bury(self, worker: Worker) -> None:
         """A worker is gone: its job is given to another, and another takes its place."""

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from roadgpt import children
-from roadgpt.campaign.hands.inside import ALIVE, Order
-from roadgpt.campaign.hands.wire import receive, send
+from roadgpt.campaign.workers.messages import receive, send
+from roadgpt.campaign.workers.process_loop import ALIVE, JobMessage
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 FAREWELL = 10.0  # s for a process that was killed to be gone
@@ -41,7 +41,7 @@ class Worker:
         # every worker has a core of its own, so that libraries need no threads in it
         alone = {name: "1" for name in ONE_THREAD if name not in os.environ}
         with log.open("ab") as file:
-            self._process = children.python("roadgpt.campaign.hands.inside", stderr=file, env=alone)
+            self._process = children.python("roadgpt.campaign.workers.process_loop", stderr=file, env=alone)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._down: IO[bytes] = self._process.stdin
@@ -60,7 +60,7 @@ class Worker:
         self._say([*sys.path])
         self._say(prepare)
 
-    def give(self, order: Order) -> None:
+    def give(self, order: JobMessage) -> None:
         """A job for it."""
         self._say(order)
 

@@ -1,0 +1,62 @@
+"""The purse: shares the limits of tokens and money among tests that are under way at once."""
+
+from roadgpt.campaign.single_test import Allowance
+from roadgpt.chat import ChatSettings, Spent
+
+
+class BudgetAllocator:
+    """No test gets more than what is left when all others spend what they were given."""
+
+    def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
+        """With what was spent before."""
+        self._limits = Allowance(chat.max_tokens, chat.max_cost) if chat else Allowance()
+        self._spent = [float(tokens), cost]
+        self._given: dict[int, Allowance] = {}
+
+    @property
+    def is_bounded(self) -> bool:
+        """Is there any limit?"""
+        return self._limits != Allowance()
+
+    def share(self, tests: int) -> Allowance:
+        """What each of some more tests may spend: together half of what is left, so that more can follow."""
+        tokens, cost = self._left()
+        return Allowance(
+            None if tokens is None else int(tokens / (2 * tests)),
+            None if cost is None else cost / (2 * tests),
+        )
+
+    def all(self) -> Allowance:
+        """Everything that is left."""
+        tokens, cost = self._left()
+        return Allowance(None if tokens is None else int(tokens), cost)
+
+    def give(self, key: int, allowance: Allowance) -> None:
+        """A test has been given this."""
+        if self.is_bounded:
+            self._given[key] = allowance
+
+    def back(self, key: int, spent: Spent | None) -> None:
+        """A test has ended, and has spent this."""
+        self._given.pop(key, None)
+        if spent is not None:
+            self._spent[0] += spent.usage.total
+            self._spent[1] += spent.cost or 0.0
+
+    def _left(self) -> tuple[float | None, float | None]:
+        tokens, cost = self._limits
+        if tokens is not None:
+            tokens -= int(self._spent[0] + sum(given.tokens or 0 for given in self._given.values()))
+        if cost is not None:
+            cost -= self._spent[1] + sum(given.cost or 0.0 for given in self._given.values())
+        return None if tokens is None else max(tokens, 0), None if cost is None else max(cost, 0.0)
+
+    def sentence(self, folder: object) -> str:
+        """Why nothing more can be asked."""
+        tokens, cost = self._limits
+        limit = f"{cost:g} USD" if tokens is None or (cost and self._left()[1] == 0) else f"{tokens:,} tokens"
+        so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"
+        return (
+            f"the limit of {limit} leaves no room for the next question ({so_far}); "
+            f"go on with: roadgpt resume {folder} and a higher --max-cost or --max-tokens"
+        )

@@ -1,0 +1,160 @@
+"""The failures of a folder, whoever made it: where each happened, and its Run. Nobody drives."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.campaign.faults.distinct import Surroundings, surroundings
+from roadgpt.campaign.faults.reason import Manner, manner_of
+from roadgpt.campaign.model import Cell, Result
+from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.record import STORE, Record
+from roadgpt.campaign.rerun import kept_run
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.road import Road, World, build
+from roadgpt.run import Run, Setup, read_run
+from roadgpt.run.campaign_runs import finished
+from roadgpt.run.card import CARD, read_card
+from roadgpt.run.folder import is_run, run_folder
+from roadgpt.verdict.verdict import Verdict
+
+AT_ONCE = 500  # tests that a store is asked for
+
+
+@dataclass(frozen=True, eq=False)
+class FailureSite:
+    """Where one failure happened."""
+
+    name: NumberedTest
+    around: Surroundings
+    manner: Manner
+    station: float
+    """Metres along the road."""
+    outside: float | None
+    """Largest share of the car outside its lane, 0 to 1."""
+    beyond: float | None
+    """Metres that its body reached beyond the marking, at most."""
+
+
+@dataclass(frozen=True)
+class Failures:
+    """The failures of a folder, all or an even sample."""
+
+    known: tuple[FailureSite, ...]
+    every: int
+    """How many there are, with those that are not in the sample or system road is not known."""
+
+
+def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failures:
+    """All failures of a run, of a folder of runs, or of a campaign, cell by cell.
+
+    Args:
+        folder: of any of these.
+        most: where there are more, so many of them, evenly spread; None: all.
+        cell: of a campaign, system failures are meant; empty: all cells.
+
+    Raises:
+        UsageError: nothing of the kind is there, or a file cannot be read.
+    """
+    if (folder / STORE).is_file():
+        with Record.opened(folder) as record:
+            names = record.query(
+                "SELECT cell, number FROM tests WHERE outcome = 'FAIL' AND (? = '' OR cell = ?) "
+                "ORDER BY cell, number",
+                (cell, cell),
+            )
+            some = [NumberedTest(*names[at]) for at in _spread(len(names), most)]
+            return Failures(tuple(_of_campaign(record, some)), len(names))
+    if not is_run(folder) and not finished(folder):
+        raise UsageError(f"there are no roads in {folder}; give the folder of a run or of a campaign")
+    runs = [run for run in _runs(folder) if run.outcome == "FAIL"]
+    some_runs = [runs[at] for at in _spread(len(runs), most)]
+    return Failures(tuple(map(_of_run, some_runs)), len(runs))
+
+
+def drivers_of(folder: Path) -> set[str]:
+    """Who drives in a run, a folder of runs or a campaign.
+
+    Raises:
+        UsageError: nothing of the kind is there, or a file cannot be read.
+    """
+    if is_run(folder):
+        return {read_run(folder).request.setup.driver}
+    if (folder / STORE).is_file() or not finished(folder):
+        with Record.opened(folder) as record:
+            return {cell.request.setup.driver for cell in record.cells()}
+    if (folder / CARD).is_file():
+        return {read_card(folder).request.setup.driver}
+    return {run.request.setup.driver for run in _runs(folder)}
+
+
+def _spread(count: int, most: int | None) -> Sequence[int]:
+    if most is None or count <= most:
+        return range(count)
+    return [int(at) for at in np.linspace(0, count - 1, most)]
+
+
+def _runs(folder: Path) -> Iterator[Run]:
+    for each in [folder] if is_run(folder) else [run_folder(folder, index) for index in finished(folder)]:
+        yield read_run(each)
+
+
+def _of_run(run: Run) -> FailureSite:
+    assert run.road is not None
+    assert run.verdict is not None
+    its = run.verdict
+    return _site_of(NumberedTest("", run.index), run.road, run.request.world, "", its)
+
+
+def _of_campaign(record: Record, some: Sequence[NumberedTest]) -> Iterator[FailureSite]:
+    cells: dict[str, Cell] = {cell.name: cell for cell in record.cells()}
+    wanted = {name: [each.number for each in some if each.cell == name] for name in cells}
+    for name, cell in cells.items():
+        if not wanted[name]:
+            continue
+        system = system_of(cell.request.world, cell.request.setup)
+        for start in range(0, len(wanted[name]), AT_ONCE):
+            numbers = wanted[name][start : start + AT_ONCE]
+            where = f"tests.number IN ({', '.join('?' * len(numbers))})"
+            for its in record.results(name, where, numbers):
+                if (found := _of_result(cell, its, system)) is not None:
+                    yield found
+
+
+def _of_result(cell: Cell, its: Result, system: str) -> FailureSite | None:
+    """None where its road is not known any more."""
+    if its.design is None:
+        return None
+    try:
+        road = build(its.design, cell.request.setup.geometry)
+    except RoadGPTError:  # of another version, which built it
+        return None
+    name = NumberedTest(cell.name, its.number)
+    return _site_of(name, road, cell.request.world, system, its)
+
+
+def system_of(world: World, setup: Setup) -> str:
+    """What a fault belongs to: cells of the same driver, simulator and world share their faults."""
+    return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
+
+
+def _site_of(
+    name: NumberedTest, road: Road, world: World, system: str, result: Verdict | Result
+) -> FailureSite:
+    station = result.at_s or 0.0
+    around = surroundings(road, world, station, f"{result.cause} {result.side} {system}")
+    manner = manner_of(road, world, station, result.cause, result.side)
+    return FailureSite(name, around, manner, station, result.max_oob, result.beyond)
+
+
+def failed_run(folder: Path, name: NumberedTest, has_drive: bool = True) -> Run:
+    """The Run of a failure, as it was kept; of a campaign without its drive, where that is not wanted.
+
+    Raises:
+        UsageError: a file cannot be read.
+    """
+    if name.cell:
+        return kept_run(folder, name.cell, name.number, has_drive)
+    return read_run(folder if is_run(folder) else run_folder(folder, name.number))

@@ -1,0 +1,240 @@
+"""The book of a folder's faults: of each its most typical failure, repeated and made simpler.
+
+DIR/faults/
+  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; where it is, that is done
+  c01/0017.png     what happened, from above
+  simplest/c01/    a folder of runs: the simplest roads that fail alike, under the numbers of the failures
+  faults.csv       one line per fault, the one with most failures first
+  failures.csv     one line per failure, and the fault that it belongs to
+
+Of a folder of runs without c01/.
+"""
+
+import csv
+import io
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
+
+from roadgpt.campaign.faults.failures import failed_run
+from roadgpt.campaign.faults.fault import Fault
+from roadgpt.campaign.faults.minimise import simplest
+from roadgpt.campaign.faults.reason import FailureReason, reason_of
+from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
+from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.reading import read_json, strictly
+from roadgpt.run import Run, write_run
+from roadgpt.run.atomic import json_text, refuse_links, write_whole
+from roadgpt.run.folder import is_run, run_folder
+
+FOLDER = "faults"
+SIMPLEST = "simplest"
+TABLE, FAILURES = "faults.csv", "failures.csv"
+HEAD = (
+    "fault", "failures", "test", "failed_again", "drives", "share", "way", "side", "radius_m",
+    "entered_kmh", "needed_g", "grade", "station_m", "reason", "simplest",
+)  # fmt: skip
+HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob", "beyond_m")
+
+
+class FailureDrawing(Protocol):
+    """Whoever draws a failure; the room ``report`` does."""
+
+    def __call__(self, run: Run, reason: FailureReason, more: str, path: Path) -> object:
+        """Write a picture."""
+        ...
+
+
+class AnalysisTask(NamedTuple):
+    """One fault that is to be looked into; goes to another process."""
+
+    folder: Path
+    fault: int
+    """Its number."""
+    names: tuple[NumberedTest, ...]
+    """Of its typical failures, the most typical first."""
+    times: int
+    """Disturbed drives."""
+    minimise: bool = False
+    draw: FailureDrawing | None = None
+
+
+@dataclass(frozen=True)
+class FailureAnalysis:
+    """One failure, looked into."""
+
+    name: NumberedTest
+    reason: FailureReason
+    stability: Stability
+    simplest: str = ""
+    """What is left of its road, in a sentence; empty where nobody has looked for that."""
+
+
+def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
+    """Why a fault's failure happens, how often, and what is left of its road; with the fault's number.
+
+    It is the most typical failure that fails every second time or oftener; where none of ``task.names`` does,
+    the one that fails most often. What stands in the book already, with as many drives of the same road, is
+    read and not driven again.
+
+    Raises:
+        UsageError: the run, or what stands in the book, cannot be read; a part is not installed.
+        RoadGPTError: a file cannot be written.
+    """
+    best: FailureAnalysis | None = None
+    for name in task.names:
+        found = _repeated(task, name)
+        if best is None or found.stability.share > best.stability.share:
+            best = found
+        if best.stability.is_stable:
+            break
+    assert best is not None, "every fault has a failure"
+    return task.fault, _least(task, best) if task.minimise else best
+
+
+def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
+    """One failure, driven again and drawn, where that has not been done."""
+    run, path = failed_run(task.folder, name), _page(task.folder, name)
+    there = _read(path, run, name, task.times)
+    found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
+    _made(path.parent)
+    picture = path.with_suffix(".png")
+    if task.draw is not None and (there is None or not picture.is_file()):
+        task.draw(run, found.reason, found.stability.sentence, picture)
+    if there is None:
+        write_whole(path, json_text(_written(run, found)))
+    return found
+
+
+def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
+    """The same with its simplest road, looked for where that has not been done."""
+    place = simplest_of(task.folder, found.name)
+    if found.simplest and is_run(place):
+        return found
+    run = failed_run(task.folder, found.name)
+    least = simplest(run)
+    write_run(least.run, _made(place.parent.parent))
+    found = replace(found, simplest=least.sentence)
+    write_whole(_page(task.folder, found.name), json_text(_written(run, found)))
+    return found
+
+
+def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
+    """What stands in the book of a fault, by the rule of ``look_into``; None: nobody has looked into it.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    pages = [name for name in fault.names if _page(folder, name).is_file()]
+    runs = [(name, failed_run(folder, name, has_drive=False)) for name in pages]
+    found = [its for name, run in runs if (its := _read(_page(folder, name), run, name))]
+    # of equals max takes the first, which is the most typical
+    return max(found, key=lambda its: its.stability.is_stable or its.stability.share, default=None)
+
+
+def simplest_of(folder: Path, name: NumberedTest) -> Path:
+    """The folder of the simplest road that fails as this one does."""
+    return run_folder(folder / FOLDER / SIMPLEST / name.cell, name.number)
+
+
+def _page(folder: Path, name: NumberedTest) -> Path:
+    return folder / FOLDER / name.cell / f"{name.number:04d}.json"
+
+
+def _made(place: Path) -> Path:
+    refuse_links(place, *(each for each in place.parents if FOLDER in (each.name, each.parent.name)))
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RoadGPTError(f"cannot make {place}: {error.strerror}; make room there") from error
+    return place
+
+
+def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis], folder: Path) -> Path:
+    """``faults.csv`` and ``failures.csv``; the same failures give the same bytes. Gives back the first.
+
+    Args:
+        faults: of the folder.
+        looked: into them, by their numbers.
+        folder: of the campaign, or of runs.
+
+    Raises:
+        RoadGPTError: a file cannot be written.
+    """
+    place = _made(folder / FOLDER)
+    members = [(each, fault.number) for fault in faults for each in fault.members]
+    of_failures = [
+        [
+            str(each.name), number, each.manner.way, each.manner.side or "", _decimal(each.manner.radius, 1),
+            f"{each.station:.1f}", _decimal(each.outside, 3), _decimal(each.beyond, 3),
+        ]
+        for each, number in sorted(members, key=lambda pair: pair[0].name)
+    ]  # fmt: skip
+    write_whole(place / FAILURES, _csv(HEAD_OF_FAILURES, of_failures))
+    write_whole(place / TABLE, _csv(HEAD, [_line(fault, looked[fault.number]) for fault in faults]))
+    return place / TABLE
+
+
+def _line(fault: Fault, looked: FailureAnalysis) -> list[Any]:
+    its, reason = looked.stability, looked.reason
+    return [
+        fault.number, len(fault.members), str(looked.name), its.failed, len(its.drives), f"{its.share:.3f}",
+        reason.way, reason.side or "", _decimal(reason.radius, 1), f"{reason.entered * 3.6:.1f}",
+        f"{reason.needed:.3f}", f"{reason.grade:.3f}", f"{reason.station:.1f}", reason.sentence,
+        looked.simplest,
+    ]  # fmt: skip
+
+
+def _decimal(value: float | None, digits: int) -> str:
+    return "" if value is None else f"{value:.{digits}f}"
+
+
+def _csv(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def _written(run: Run, found: FailureAnalysis) -> dict[str, Any]:
+    return {
+        "test": str(found.name),
+        "seed": run.seed,
+        "description": run.description,
+        "why": asdict(found.reason),
+        "stability": found.stability.sentence,
+        "drives": [_drive(drive) for drive in found.stability.drives],
+        "simplest": found.simplest,
+    }
+
+
+def _drive(drive: Repeated) -> dict[str, Any]:
+    # a driver that broke down has no margin, and JSON has no NaN
+    return {**asdict(drive), "margin": drive.margin if math.isfinite(drive.margin) else None}
+
+
+def _read(path: Path, run: Run, name: NumberedTest, times: int | None = None) -> FailureAnalysis | None:
+    """What was found before, where it is of this Run and, if that matters, of as many drives."""
+    try:
+        data = read_json(path)
+        if data["seed"] != run.seed or data["description"] != run.description:
+            return None
+        if not data["drives"] or len(data["drives"]) != (times or len(data["drives"])):
+            return None
+        stability = Stability(tuple(_drive_of(drive) for drive in data["drives"]))
+        return FailureAnalysis(
+            name, strictly(FailureReason, data["why"]), stability, str(data.get("simplest", ""))
+        )
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise UsageError(f"{path} cannot be read ({error}); remove it, and it is made again") from error
+
+
+def _drive_of(data: dict[str, Any]) -> Repeated:
+    margin = math.nan if data["margin"] is None else float(data["margin"])
+    return replace(strictly(Repeated, {**data, "margin": 0.0}), margin=margin)

@@ -1,0 +1,196 @@
+"""Why a car left its lane: the bend, the speed and the slope at the place, in one sentence.
+
+What a bend asks of the tyres is v^2 k over the part of gravity that presses the car onto the road there,
+which is g cos(grade) + v^2 c with c the vertical curvature (negative on a crest). R. Rajamani, Vehicle
+Dynamics and Control, 2nd ed., 2.6; k is that of the right lane's middle, not of the centre line.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.drive import Drive
+from roadgpt.errors import UsageError
+from roadgpt.road import Road, World
+from roadgpt.run import Run
+from roadgpt.verdict import Verdict
+from roadgpt.verdict.verdict import Cause
+
+Array = NDArray[np.float64]
+Way = Literal["wide", "inside", "off", "stopped", "late"]
+"""It ran wide of a bend, cut its inside, left a straight, came to a standstill, or ran out of time."""
+
+GRAVITY = 9.81  # m/s^2
+BEFORE, AFTER = 25.0, 5.0  # m, around the departure: where its bend is looked for
+STRAIGHT = 1 / 250  # 1/m; a lane that bends less is called straight
+ENTRY = 0.5  # share of a bend's curvature at which it is said to begin
+JUST_BEFORE = 25.0  # m, from a bend of the other side, so that the two are told together
+HILL = 0.02  # of gravity that a crest takes or a dip adds, before it is told
+SLOPE = 0.03  # of grade, likewise
+
+
+class Manner(NamedTuple):
+    """In which way a car failed, in brief."""
+
+    way: Way
+    side: Literal["left", "right"] | None
+    """Of the bend; None on a straight."""
+    radius: float | None
+    """Metres, of the centre line where it bends most."""
+
+
+@dataclass(frozen=True)
+class FailureReason:
+    """What happened at a failure; lengths in metres, speeds in m/s, angles in radians."""
+
+    way: Way
+    sentence: str
+    station: float
+    radius: float | None
+    """Of the centre line where it bends most; None on a straight."""
+    side: Literal["left", "right"] | None
+    """Of the bend."""
+    entered: float
+    """Speed where the bend begins, or where the car left its lane if that was earlier."""
+    needed: float
+    """Most friction that the lane's middle asks for at the speeds driven; 0.93 is 0.93 g on level ground."""
+    friction: float
+    """What the road has."""
+    grade: float
+    """Ratio, at the place."""
+    hill: float
+    """Share of gravity that a crest takes (negative) or a dip adds there, at the speed driven."""
+
+
+def reason_of(run: Run) -> FailureReason:
+    """Of a failed Run.
+
+    Raises:
+        UsageError: the Run did not fail, or was not driven.
+    """
+    if run.verdict is None or run.drive is None or run.road is None or run.verdict.kept:
+        raise UsageError(f"road {run.index} did not fail; only failures have a reason")
+    station = float(run.verdict.at_s or 0.0)
+    if run.verdict.cause in ("stuck", "timeout"):
+        return _standing(run.road, run.drive, run.world, station, run.verdict.cause == "stuck")
+    return _departed(run.road, run.drive, run.verdict, run.world, station)
+
+
+def lane_curvature(road: Road, world: World, stations: Array) -> Array:
+    """Curvature in 1/m of the right lane's middle beside these stations, shape as theirs."""
+    bend = road.curvature(stations)
+    return np.asarray(bend / np.maximum(1 + bend * world.lane_width / 2, 0.2))
+
+
+def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
+    """Stations around a departure, the tightest curvature of the lane among them, and where that is."""
+    near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
+    bends = lane_curvature(road, world, near)
+    tightest = int(np.argmax(np.abs(bends)))
+    return near, float(bends[tightest]), float(near[tightest])
+
+
+def manner_of(
+    road: Road, world: World, station: float, cause: Cause | None, left_to: Literal["left", "right"] | None
+) -> Manner:
+    """In which way a car failed, from the road and the place alone: no drive is needed.
+
+    Args:
+        road, world: where.
+        station: of the departure, metres.
+        cause: of the failure.
+        left_to: the side to which it left.
+    """
+    if cause in ("stuck", "timeout"):
+        return Manner("stopped" if cause == "stuck" else "late", None, None)
+    _, bend, place = _bend_at(road, world, station)
+    if abs(bend) < STRAIGHT:
+        return Manner("off", None, None)
+    side: Literal["left", "right"] = "left" if bend > 0 else "right"
+    return Manner("inside" if left_to == side else "wide", side, 1 / float(np.abs(road.curvature(place))))
+
+
+def _standing(road: Road, drive: Drive, world: World, station: float, is_stuck: bool) -> FailureReason:
+    grade = float(road.grade(station))
+    speed = float(drive["speed"][-1])
+    where = _slope_told(grade, 0.0)
+    what = "came to a standstill" if is_stuck else "was too slow to arrive in time"
+    sentence = f"{what} after {station:.0f} m{where}"
+    way: Way = "stopped" if is_stuck else "late"
+    return FailureReason(way, sentence, station, None, None, speed, 0.0, world.friction, grade, 0.0)
+
+
+def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station: float) -> FailureReason:
+    near, bend, place = _bend_at(road, world, station)
+    begin = _entry(road, world, place, bend)
+    entered = _speed_at(drive, min(begin, station))
+    speed = _speed_at(drive, min(place, station))
+    grade = float(road.grade(place))
+    hill = speed**2 * float(np.mean(road.vertical_curvature(near))) / GRAVITY
+    needed = _needed(road, drive, world, begin, station)
+    told = _slope_told(grade, hill)
+    how = manner_of(road, world, station, verdict.cause, verdict.side)
+    if how.side is None or how.radius is None:
+        sentence = (
+            f"left a straight to the {verdict.side} at {speed * 3.6:.0f} km/h after {station:.0f} m{told}"
+        )
+        return FailureReason(
+            "off", sentence, station, None, None, entered, needed, world.friction, grade, hill
+        )
+    before = _after(road, begin, bend)
+    did = "and ran wide" if how.way == "wide" else "and cut its inside"
+    sentence = (
+        f"entered an R {how.radius:.0f} m {how.side} at {entered * 3.6:.0f} km/h{before}{told} {did} after "
+        f"{station:.0f} m; the lane's middle needs {needed:.2f} g of {world.friction:.2f}"
+    )
+    return FailureReason(
+        how.way, sentence, station, how.radius, how.side, entered, needed, world.friction, grade, hill
+    )
+
+
+def _needed(road: Road, drive: Drive, world: World, begin: float, station: float) -> float:
+    """The most friction that the lane's middle asks for, at the speeds driven, up to the departure."""
+    on = (drive["s"] >= min(begin, station)) & (drive["s"] <= station)
+    if not on.any():
+        on[-1] = True
+    s, squared = drive["s"][on], drive["speed"][on] ** 2
+    pressed = np.cos(np.arctan(road.grade(s))) + squared * road.vertical_curvature(s) / GRAVITY
+    asked = squared * np.abs(lane_curvature(road, world, s)) / GRAVITY / np.maximum(pressed, 0.05)
+    return float(asked.max())
+
+
+def _entry(road: Road, world: World, place: float, bend: float) -> float:
+    """Station where the bend around a place begins: back to where it is half as tight."""
+    back = np.arange(place, max(0.0, place - 60.0) - 0.5, -0.5)
+    before = lane_curvature(road, world, np.maximum(back, 0.0)) * math.copysign(1.0, bend)
+    softer = np.flatnonzero(before < ENTRY * abs(bend))
+    return float(max(back[softer[0]] if len(softer) else back[-1], 0.0))
+
+
+def _after(road: Road, begin: float, bend: float) -> str:
+    """Which bend of the other side lies right before, if there is one."""
+    back = np.arange(max(0.0, begin - JUST_BEFORE), begin, 0.5)
+    if not len(back):
+        return ""
+    against = -road.curvature(back) * math.copysign(1.0, bend)
+    most = float(against.max())
+    if most < max(STRAIGHT, abs(bend) / 4):
+        return ""
+    return f" right after an R {1 / most:.0f} m {'right' if bend > 0 else 'left'}"
+
+
+def _slope_told(grade: float, hill: float) -> str:
+    if abs(hill) >= HILL:
+        return " on a crest" if hill < 0 else " in a dip"
+    if abs(grade) >= SLOPE:
+        return f" {'uphill' if grade > 0 else 'downhill'} at {abs(grade) * 100:.0f} %"
+    return ""
+
+
+def _speed_at(drive: Drive, station: float) -> float:
+    """m/s when the car first came to a station."""
+    reached = np.flatnonzero(drive["s"] >= station)
+    return float(drive["speed"][reached[0] if len(reached) else -1])

@@ -1,0 +1,233 @@
+"""Launching campaigns, and going on with them: one process that thinks and writes, and workers that drive.
+
+begin     a folder with a store in it: the plan, its cells with their Briefs, nothing done
+work      whatever the store lacks: resumed as often as it takes, it comes to the same table
+"""
+
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+
+from roadgpt import plugins
+from roadgpt.brief.model import Brief
+from roadgpt.campaign.executors import Executor, WorkerConfig
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.record import STORE, Record, no_campaign
+from roadgpt.campaign.scheduler import Progress, Scheduler
+from roadgpt.campaign.single_test import WorkerSetup
+from roadgpt.campaign.store import Store, refused
+from roadgpt.campaign.store_check import reading_store
+from roadgpt.campaign.table import CELLS, RESULTS, write_tables
+from roadgpt.campaign.traces import SUFFIX, TRACES
+from roadgpt.chat import Meter, Spent
+from roadgpt.chat.config import key_for
+from roadgpt.drive import refuse_ignored
+from roadgpt.drive.apart import driver_of
+from roadgpt.drive.trust import admit
+from roadgpt.errors import UsageError
+from roadgpt.run import Setup, brief_of
+from roadgpt.run.atomic import held, refuse_links, sweep
+from roadgpt.run.versions import versions_of
+
+LOCK = "campaign.lock"
+LOG = "workers.log"
+TOLD = {
+    "prompts": "descriptions",
+    "budget": "number of tests or seconds",
+    "drives": "choice whether to drive",
+}
+"""Fields of a Plan, where people call them something else."""
+
+
+def begin(plan: Plan, folder: Path) -> bool:
+    """Make a campaign's folder ready for its plan: a new one, or the one that lies there, to be gone on with.
+
+    Reads the descriptions. Gives back whether it was there before.
+
+    Raises:
+        UsageError: the plan cannot be carried out, or the folder holds something else.
+        DriverError: a driver hung while it was made.
+        BriefError: a description cannot be read.
+        ChatError: a language model that reads them could not be asked.
+    """
+    plan.check()
+    _admit(plan)
+    _is_free(folder)
+    with _lone(folder), _without_trace(folder):
+        if (folder / STORE).is_file():
+            _same(plan, folder)
+            return True
+        _drivers_come(plan)
+        briefs, spent = _briefs(plan)
+        cells = plan.cells(briefs)
+        for name in plan.generators:  # one that cannot use its settings says so now
+            plugins.find("generators", name)(next(cell for cell in cells if cell.generator == name))
+        versions = versions_of(cells[0].request.setup)
+        Store.new(folder, plan.model_dump_json(), cells, versions, spent).close()
+        return False
+
+
+def _is_free(folder: Path) -> None:
+    """A folder that holds something else is left alone."""
+    if not folder.is_dir() or (folder / STORE).is_file():
+        return
+    if any(path.name != LOCK and not path.name.startswith(STORE) for path in folder.iterdir()):
+        raise UsageError(f"{folder} is not empty and holds no campaign; name another folder")
+
+
+@contextmanager
+def _without_trace(folder: Path) -> Iterator[None]:
+    """Where nothing comes of it, leave no folder behind that holds nothing."""
+    try:
+        yield
+    except BaseException:
+        if [path.name for path in folder.iterdir()] == [LOCK]:
+            with suppress(OSError):  # Windows removes no file that is open
+                (folder / LOCK).unlink()
+                folder.rmdir()
+        raise
+
+
+def _admit(plan: Plan) -> None:
+    """Code and servers that came with files are asked about before anything is kept, paid for or begun.
+
+    Raises:
+        UsageError: a driver of the plan is code that the user does not name.
+        ChatError: a server of the plan is one that the user does not name, and they have a key.
+    """
+    if plan.drives:
+        for driver in plan.drivers:
+            admit(driver)
+    if plan.chat is not None and plan.chat.replay is None and plan.asks_a_model:
+        key_for(plan.chat.base_url)
+
+
+def _drivers_come(plan: Plan) -> None:
+    """A driver whose name is mistyped is told of before anything is kept or paid for; and so is a setting
+    that a simulator cannot heed."""
+    if plan.drives:
+        for simulator in plan.simulators:
+            refuse_ignored(plugins.find("simulators", simulator), plan.world)
+        for driver in dict.fromkeys(plan.drivers):
+            driver_of(driver)
+
+
+def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
+    """What is read out of each description, and what that has cost."""
+    request, _ = next(plan.requests())
+    meter = Meter.of(plan.chat)
+    words = dict.fromkeys(text for text in plan.prompts if text.strip())
+    return {text: brief_of(text, plan.world, request.setup, meter) for text in words}, meter.spent
+
+
+def _same(plan: Plan, folder: Path) -> None:
+    with Store.opened(folder) as store:
+        there = plan_of(store)
+        kept = there.essence()
+        other = [TOLD.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
+        if other:
+            raise UsageError(
+                f"{folder} holds another campaign (other {', '.join(other)}); name another folder, "
+                f"or go on with it as it is: roadgpt resume {folder}"
+            )
+        store.set_plan(plan.model_dump_json())
+
+
+def plan_of(record: Record) -> Plan:
+    """The plan that a store holds."""
+    with reading_store(record.path):
+        return Plan.model_validate_json(record.meta("plan")).came_with(record.path)
+
+
+@contextmanager
+def _lone(folder: Path) -> Iterator[None]:
+    """Be the only process at work in a folder, which is made where there is none."""
+    with ExitStack() as stack:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(held(folder / LOCK))
+        except BlockingIOError as error:
+            raise UsageError(
+                f"another process is at work in {folder}; wait for it or name another folder"
+            ) from error
+        except OSError as error:
+            raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder") from error
+        yield
+
+
+def work(
+    folder: Path, workers: int = 1, executor: str = "processes", address: str = "", plan: Plan | None = None
+) -> Iterator[Progress]:
+    """Do what the campaign in a folder still lacks; iterate over it to make it work.
+
+    Args:
+        folder: made by ``begin``.
+        workers: how many.
+        executor: name of a part on the shelf ``executors``.
+        address: where the workers are, for executors that ask.
+        plan: with other limits than the one in the store; None: that one.
+
+    Raises:
+        UsageError: there is no campaign, or another process is at work on it, or a part is not installed.
+        ChatError: a language model could not be asked, or a limit is reached; what is done is kept.
+        RoadGPTError: the system refuses to write, or there are no workers.
+    """
+    kind: type[Executor] = plugins.find("executors", executor)
+    if not (folder / STORE).is_file():
+        raise no_campaign(folder)
+    with _lone(folder), Store.opened(folder) as store:
+        if plan is not None:
+            store.set_plan(plan.model_dump_json())
+        else:
+            plan = plan_of(store)
+        if not store.meta("finished"):
+            _admit(plan)
+            try:
+                _sweep(folder, store)
+                staff = WorkerConfig(
+                    workers, WorkerSetup(_setups(plan)), plan.patience, folder / LOG, address
+                )
+                yield from _worked(kind, staff, plan, store)
+            except (OSError, sqlite3.Error) as error:
+                raise refused(folder, error) from error
+        if not store.meta("finished") or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
+            _conclude(folder, store)
+
+
+def _setups(plan: Plan) -> tuple[Setup, ...]:
+    return tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
+
+
+def _worked(kind: type[Executor], config: WorkerConfig, plan: Plan, store: Store) -> Iterator[Progress]:
+    scheduler = Scheduler(plan, store, config, kind)
+    try:
+        yield from scheduler.run()
+    except BaseException:
+        scheduler.leave()
+        raise
+    finally:
+        scheduler.executor.stop()
+
+
+def _conclude(folder: Path, store: Store) -> None:
+    try:
+        write_tables(store, folder)
+        store.finish()
+    except (OSError, sqlite3.Error) as error:
+        raise refused(folder, error) from error
+
+
+def _sweep(folder: Path, store: Store) -> None:
+    """Remove what a killed process left: files that are not whole, and drives whose results were not kept."""
+    refuse_links(folder / TRACES, folder / LOG, folder / RESULTS, folder / CELLS)
+    sweep(folder)
+    if (folder / TRACES).is_dir():
+        sweep(folder / TRACES)
+        known = {name for (name,) in store.query("SELECT file FROM traces")}
+        for path in (folder / TRACES).iterdir():
+            if path.name not in known and path.suffix == SUFFIX and path.stem.isdecimal():
+                path.unlink()
+
+
+__all__: Sequence[str] = ("LOCK", "LOG", "begin", "plan_of", "work")

@@ -1,0 +1,122 @@
+"""One test again: as the campaign kept it, or the whole Run anew, from its stored design and its seed."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from roadgpt.campaign.model import Cell, Proposal, Result
+from roadgpt.campaign.record import Record
+from roadgpt.campaign.single_test import run_of, seed_of_driver
+from roadgpt.campaign.store_check import reading_store
+from roadgpt.campaign.traces import TRACES, read_traces
+from roadgpt.check import inspect
+from roadgpt.drive import Drive
+from roadgpt.errors import UsageError
+from roadgpt.reading import json_of
+from roadgpt.road import Design, Road, build
+from roadgpt.run import Run
+from roadgpt.verdict import Verdict, judge
+
+
+def read_trace(folder: Path, cell: str, number: int) -> Drive:
+    """The drive of a test as the campaign kept it: every column at 50 Hz, to half a millimetre.
+
+    Raises:
+        UsageError: there is no campaign or no such test, or nobody drove it.
+    """
+    with Record.opened(folder) as record:
+        record.result(cell, number)
+        found = _kept_drive(record, cell, number)
+    if found is None:
+        raise UsageError(f"test {number} of {cell} in {folder} was not driven")
+    return found
+
+
+def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Run:
+    """The Run of a test as the campaign kept it: nobody drives, and no driver's file is read.
+
+    The road is built from the stored design, the drive is the kept one, to half a millimetre, and outcome,
+    margin and place are those of the campaign. Without ``has_drive``, drive and verdict are left out.
+
+    Raises:
+        UsageError: there is no campaign or no such test, it has no road, or its drive cannot be read.
+    """
+    with Record.opened(folder) as record:
+        return kept_in(record, record.cell(cell), record.result(cell, number), has_drive)
+
+
+def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) -> Run:
+    """The same, of a result that was read; see ``kept_run``."""
+    request, brief = cell.request, cell.brief
+    road = build(_design_of(record.folder, cell.name, result), request.setup.geometry)
+    drive = _kept_drive(record, cell.name, result.number) if has_drive else None
+    is_invalid = result.outcome == "INVALID"
+    with reading_store(record.path):
+        versions = {str(name): str(number) for name, number in json_of(record.meta("versions")).items()}
+    return Run(
+        request,
+        result.number,
+        seed_of_driver(result.number, result.proposal),
+        outcome=result.outcome,
+        description=result.description,
+        brief=brief,
+        design=result.design,
+        road=road,
+        findings=inspect(road, brief, request.world, request.setup.rules) if is_invalid else (),
+        drive=drive,
+        verdict=None if drive is None else _verdict_of(road, drive, cell, result),
+        versions=versions,
+    )
+
+
+def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict | None:
+    """What was judged then; only what the store does not hold is judged of the kept drive, whose half
+    millimetres may decide otherwise."""
+    if result.outcome not in ("PASS", "FAIL") or result.margin is None:
+        return None
+    step = len(drive) - 1
+    if result.at_s is not None and result.cause in ("out of lane", "fell"):
+        step = int(np.argmin(np.abs(drive["s"] - result.at_s)))
+    judged = judge(road, drive, cell.request.world, (step, result.cause))
+    kept: dict[str, Any] = {
+        "margin": result.margin,
+        "at_s": result.at_s,
+        "side": result.side,
+        "max_oob": result.max_oob,
+    }
+    kept |= {"outcome": result.outcome, "beyond": result.beyond}
+    return replace(judged, **{name: value for name, value in kept.items() if value is not None})
+
+
+def _design_of(folder: Path, cell: str, result: Result) -> Design:
+    if result.design is None:
+        raise UsageError(f"test {result.number} of {cell} in {folder} has no road: {result.description}")
+    return result.design
+
+
+def _kept_drive(record: Record, cell: str, number: int) -> Drive | None:
+    name = record.trace_file(cell, number)
+    return None if name is None else read_traces(record.folder / TRACES / name, cell, number)
+
+
+def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
+    """A test of a campaign, checked and driven again; and what came of it then.
+
+    The same design, seed and setup give the same Run, bit for bit, on one machine.
+
+    Raises:
+        UsageError: there is no campaign or no such test, or there is no road in it.
+    """
+    with Record.opened(folder) as record:
+        found, result = record.cell(cell), record.result(cell, number)
+    design = _design_of(folder, cell, result)
+    seed = seed_of_driver(number, result.proposal)
+    run = run_of(found, number, Proposal(design, seed, result.proposal.origin))
+    return replace(run, request=found.request), result
+
+
+def is_same(run: Run, result: Result) -> bool:
+    """Did a test come to the very same end again?"""
+    return run.outcome == result.outcome and (run.verdict and run.verdict.margin) == result.margin

@@ -1,0 +1,284 @@
+"""The office of a campaign: hands out tests, takes in results, keeps them in groups, asks for more."""
+
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from roadgpt.campaign.batch_scheduler import BatchScheduler
+from roadgpt.campaign.budget_allocator import BudgetAllocator
+from roadgpt.campaign.executors import Executor, FinishedJob, Job, RunningJob, WorkerConfig
+from roadgpt.campaign.model import Cell
+from roadgpt.campaign.plan import Plan
+from roadgpt.campaign.single_test import FinishedTest, OutOfAllowance, Task, execute, failed
+from roadgpt.campaign.store import Store
+from roadgpt.campaign.traces import Trace, write_traces
+from roadgpt.errors import BudgetError, RoadGPTError
+from roadgpt.run.lost_drives import LostDrives
+from roadgpt.stopping import look
+
+WAIT = 0.25  # s for results, before looking round
+GROUP_SECONDS = 1.0  # that a result waits to be kept: so much work is lost at most when the process is killed
+GROUP = 128  # results that are kept together, at most: 10 MB of drives
+PER_WORKER = 2  # tests under way or waiting, below which the next cell is begun
+
+
+@dataclass
+class Progress:
+    """How far a campaign is."""
+
+    total: int | None
+    """Tests; None where only time limits them."""
+    outcomes: Counter[str] = field(default_factory=Counter)
+    cells: int = 0
+    """That are done."""
+    of_cells: int = 0
+    under_way: int = 0
+
+    @property
+    def done(self) -> int:
+        """Tests that have ended."""
+        return self.outcomes.total()
+
+
+@dataclass(frozen=True)
+class _Out:
+    """A test that was handed out."""
+
+    schedule: BatchScheduler
+    task: Task
+
+
+class Scheduler:
+    """One sitting: the process that writes the store, with its workers."""
+
+    def __init__(self, plan: Plan, store: Store, staff: WorkerConfig, kind: type[Executor]) -> None:
+        self._store = store
+        self._staff = staff
+        self._names = [name for (name,) in store.query("SELECT name FROM cells ORDER BY name")]
+        self._allocator = BudgetAllocator(plan.chat, *store.spent())
+        self._chat = plan.chat
+        counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
+        total = plan.budget.tests and plan.budget.tests * len(self._names)
+        self.progress = Progress(total, Counter(dict(counts)), of_cells=len(self._names))
+        self._next = 0
+        self._schedules: list[BatchScheduler] = []
+        self._out: dict[int, _Out] = {}
+        self._keys = 0
+        self._underfunded: list[_Out] = []
+        self._shared: dict[str, set[int]] = {}
+        self._pending: list[tuple[str, FinishedTest]] = []
+        self._oldest = self._looked = time.monotonic()
+        self._losses: LostDrives[_Out] = LostDrives()
+        self._error: Exception | None = None
+        self._may_write = True
+        self._has_news = False
+        self.executor = kind(staff)
+
+    def run(self) -> Iterator[Progress]:
+        """Work until nothing is left to do; tells how far it is after every group of results."""
+        self._store.begin_sitting(self._staff.workers)
+        while self._error is None:
+            look()
+            self._fill()
+            if not self._out and not self._underfunded:
+                break
+            self._take(self.executor.done(WAIT))
+            if self._is_due():
+                self._keep()
+            if self._has_news:
+                self._has_news = False
+                yield self.progress
+        if self._error is not None:
+            raise self._error
+        self._keep()
+        yield self.progress
+
+    def leave(self) -> None:
+        """Keep what is done, when the work ends before its time."""
+        self.executor.stop()
+        if self._may_write and self._error is None:
+            try:
+                self._take(self.executor.done(0.0))
+            except RoadGPTError:
+                self._error = None  # it was told already
+        if self._may_write:
+            self._keep()
+            self._store.end_sitting()
+
+    # Handing out
+
+    def _fill(self) -> None:
+        if self._underfunded:
+            self._retry_underfunded()
+            return
+        while True:
+            schedule = next((schedule for schedule in self._schedules if schedule.may_ask), None)
+            if schedule is not None:
+                self._ask(schedule)
+            elif len(self._out) >= PER_WORKER * self._staff.workers or not self._open():
+                return
+
+    def _ask(self, schedule: BatchScheduler) -> None:
+        if self._pending:
+            self._keep()  # what the generator is told has to be in the store
+        if schedule.is_late:
+            schedule.close("its time was up")
+        else:
+            batch = len(schedule.batches)
+            tests = [Task(number, batch, proposal) for number, proposal in schedule.ask(self.executor)]
+            self._hand_out(schedule, tests)
+        self._drop_if_done(schedule)
+
+    def _open(self) -> bool:
+        """Begin the next cell that is not done; False where there is none."""
+        while self._next < len(self._names):
+            schedule = BatchScheduler(self._store.cell(self._names[self._next]), self._store)
+            self._next += 1
+            if schedule.is_done:
+                self.progress.cells += 1
+                continue
+            self._schedules.append(schedule)
+            name = schedule.cell.name
+            self.executor.share(name, self._with_chat(schedule.cell))
+            self._shared[name] = set()
+            waiting = self._store.waiting(name)
+            self._hand_out(schedule, [Task(number, batch, made) for number, batch, made in waiting])
+            return True
+        return False
+
+    def _with_chat(self, cell: Cell) -> Cell:
+        """With the language model's settings of this sitting, which may have other limits."""
+        if cell.request.setup.chat is None:
+            return cell
+        setup = cell.request.setup.model_copy(update={"chat": self._chat})
+        return replace(cell, request=cell.request.model_copy(update={"setup": setup}))
+
+    def _hand_out(self, schedule: BatchScheduler, tests: Sequence[Task]) -> None:
+        jobs = []
+        if self._allocator.is_bounded and tests:
+            share = self._allocator.share(len(tests))
+            tests = [Task(test.number, test.batch, test.proposal, share) for test in tests]
+        for test in tests:
+            self._keys += 1
+            self._out[self._keys] = _Out(schedule, test)
+            self._allocator.give(self._keys, test.allowance)
+            needs = (schedule.cell.name, *self._earlier(schedule, test))
+            jobs.append(Job(self._keys, execute, test, needs))
+        self.executor.submit(jobs)
+
+    def _earlier(self, schedule: BatchScheduler, test: Task) -> list[str]:
+        """Names of the blocks of designs that a draft is not to repeat; workers get those they have not."""
+        if test.proposal.design is not None:
+            return []
+        name = schedule.cell.name
+        wanted, shared = schedule.known(test.batch), self._shared[name]
+        for batch in wanted:
+            if batch not in shared:
+                self.executor.share(f"{name}/{batch}", schedule.designs(batch))
+                shared.add(batch)
+        # tests of the batch before may still wait for what this one needs no more
+        for batch in [batch for batch in shared if batch < schedule.known(max(test.batch - 1, 0)).start]:
+            self.executor.forget(f"{name}/{batch}")
+            shared.remove(batch)
+        return [f"{name}/{batch}" for batch in wanted]
+
+    def _retry_underfunded(self) -> None:
+        """Tests whose share of the money was too small get all that is left, one after another."""
+        if self._out:
+            return
+        one = self._underfunded.pop(0)
+        everything = self._allocator.all()
+        if one.task.allowance == everything:
+            self._error = BudgetError(self._allocator.sentence(self._store.folder))
+            return
+        task = Task(one.task.number, one.task.batch, one.task.proposal, everything)
+        self._keys += 1
+        self._out[self._keys] = _Out(one.schedule, task)
+        self._allocator.give(self._keys, everything)
+        needs = (one.schedule.cell.name, *self._earlier(one.schedule, task))
+        self.executor.submit([Job(self._keys, execute, task, needs)])
+
+    # Taking in
+
+    def _take(self, ended: Sequence[FinishedJob]) -> None:
+        for done in ended:
+            out = self._out.pop(done.key)
+            if done.error is not None:
+                self._error = self._error or done.error
+                continue
+            value: FinishedTest | OutOfAllowance = (
+                FinishedTest(failed(out.task, done.lost)) if done.lost else done.value
+            )
+            self._allocator.back(done.key, value.spent)
+            if isinstance(value, OutOfAllowance):
+                self._store.spend(value.spent)
+                self._underfunded.append(out)
+                continue
+            if not self._pending:
+                self._oldest = time.monotonic()
+            self._pending.append((out.schedule.cell.name, value))
+            self.progress.outcomes[value.result.outcome] += 1
+            out.schedule.ended(out.task.batch)
+            self._count_losses(out, value)
+
+    def _count_losses(self, out: _Out, ended: FinishedTest) -> None:
+        """Where the simulator is dead, end the work, and leave the tests that it lost to whoever goes on."""
+        if not self._losses.count(out, ended.is_lost) or self._error is not None:
+            return
+        folder = self._store.folder
+        self._keep()
+        for lost in self._losses.lost:
+            self._store.reopen(lost.schedule.cell.name, lost.task.number, lost.task.batch)
+        self.progress.outcomes["ERROR"] -= len(self._losses.lost)
+        said = ended.result.description
+        self._error = self._losses.given_up(said, f"see to it and go on with: roadgpt resume {folder}")
+
+    def _is_due(self) -> bool:
+        waited = time.monotonic() - (self._oldest if self._pending else self._looked)
+        return waited >= GROUP_SECONDS or len(self._pending) >= GROUP
+
+    def _keep(self) -> None:
+        """Write what has ended: its drives first, so that every result has its own."""
+        now = time.monotonic()
+        drives = [(cell, one.result.number, one.trace) for cell, one in self._pending if one.trace]
+        self._may_write = False  # until it went well
+        trace = self._kept_drives(drives) if drives else None
+        taken = {schedule.cell.name: now - self._looked for schedule in self._schedules}
+        self._store.keep(self._pending, trace, self._leases(), taken)
+        self._may_write = True
+        for schedule in self._schedules:
+            schedule.seconds += now - self._looked
+        self._looked = now
+        self._pending = []
+        self._has_news = True
+        self.progress.under_way = len(self._out)
+        for schedule in [*self._schedules]:
+            self._drop_if_done(schedule)
+
+    def _kept_drives(self, drives: Sequence[tuple[str, int, Trace]]) -> tuple[int, str]:
+        number = self._store.next_trace()
+        return number, write_traces(self._store.folder, number, drives)
+
+    def _leases(self) -> list[tuple[str, int, RunningJob, float]]:
+        now = time.time()
+        doing = [(self._out[one.key], one) for one in self.executor.under_way() if one.key in self._out]
+        return [
+            (out.schedule.cell.name, out.task.number, one, now - one.seconds + self._staff.patience)
+            for out, one in doing
+        ]
+
+    def _drop_if_done(self, schedule: BatchScheduler) -> None:
+        if not schedule.is_done or schedule not in self._schedules:
+            return
+        if any(out.schedule is schedule for out in self._underfunded) or self._has_pending(schedule):
+            return
+        self._schedules.remove(schedule)
+        self.progress.cells += 1
+        name = schedule.cell.name
+        for batch in self._shared.pop(name):
+            self.executor.forget(f"{name}/{batch}")
+        self.executor.forget(name)
+
+    def _has_pending(self, schedule: BatchScheduler) -> bool:
+        return any(cell == schedule.cell.name for cell, _ in self._pending)

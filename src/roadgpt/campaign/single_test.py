@@ -1,0 +1,158 @@
+"""What a worker does: one test of a cell, from a proposal to what came of it."""
+
+import traceback
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from roadgpt.campaign.behaviour import behaviour_of
+from roadgpt.campaign.model import Cell, Proposal, Result
+from roadgpt.campaign.traces import Trace, trace_of
+from roadgpt.chat import ChatError, Meter, ReplyError, Spent
+from roadgpt.errors import BudgetError, DesignError, PartError, RoadGPTError, UsageError
+from roadgpt.provenance import join, known
+from roadgpt.road import Design
+from roadgpt.run import Run, Seconds, Setup, check_parts, perform, prove, seed_of
+from roadgpt.run.execution import records_of
+from roadgpt.run.features import features_of
+from roadgpt.run.sbft_json import PER_POINT
+
+CONCERNS_ALL = (PartError, UsageError, ChatError)  # what one test cannot be blamed for
+
+
+class Allowance(NamedTuple):
+    """What one test may ask of a language model; None: as much as it likes."""
+
+    tokens: int | None = None
+    cost: float | None = None
+
+
+BOUNDLESS = Allowance()
+NO_TIME = Seconds()
+
+
+@dataclass(frozen=True)
+class Task:
+    """A test to be done."""
+
+    number: int
+    batch: int
+    proposal: Proposal
+    allowance: Allowance = BOUNDLESS
+
+
+@dataclass(frozen=True)
+class FinishedTest:
+    """What came of it: the result, and what another day would give otherwise."""
+
+    result: Result
+    trace: Trace | None = None
+    seconds: Seconds = NO_TIME
+    spent: Spent | None = None
+    error: str = ""
+    """Of a test that failed: where in which file."""
+    is_lost: bool = False
+    """Did the simulator itself fail?"""
+
+
+@dataclass(frozen=True)
+class OutOfAllowance:
+    """A test whose allowance was not enough; it has to be done again."""
+
+    spent: Spent
+    sentence: str
+
+
+class WorkerSetup:
+    """Prepares a worker for these setups: imports and compiles what they need."""
+
+    def __init__(self, setups: tuple[Setup, ...]) -> None:
+        self.setups = setups
+        self.known = known()
+
+    def __call__(self) -> None:
+        """Find all parts; what is not to be trusted is known here as well.
+
+        Raises:
+            UsageError: a part is not installed, or a driver's file makes no driver.
+        """
+        join(self.known)
+        for setup in self.setups:
+            check_parts(setup)
+
+
+def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest | OutOfAllowance:
+    """One test.
+
+    Args:
+        task: the test.
+        cell: what it shares with others.
+        earlier: designs that a draft is not to repeat, block by block.
+
+    Raises:
+        PartError, UsageError, ChatError: what no other test could do either.
+    """
+    meter = Meter(task.allowance.tokens, task.allowance.cost)
+    try:
+        run = run_of(cell, task.number, task.proposal, earlier, meter)
+        trace = trace_of(run.drive) if run.drive is not None else None
+        return FinishedTest(result_of(run, cell, task), trace, run.seconds, run.spent, run.trace, run.is_lost)
+    except (DesignError, ReplyError) as error:
+        return FinishedTest(failed(task, str(error)), spent=meter.spent if meter.spent.calls else None)
+    except BudgetError as error:
+        return OutOfAllowance(meter.spent, str(error))
+    except CONCERNS_ALL:
+        raise
+    except Exception as error:  # whatever a part raises costs this test, not the campaign
+        said = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
+        return FinishedTest(failed(task, said), error=traceback.format_exc())
+
+
+def failed(task: Task, sentence: str) -> Result:
+    """Of a test that came to nothing."""
+    return Result(task.number, task.batch, task.proposal, "ERROR", sentence, task.proposal.design)
+
+
+def run_of(
+    cell: Cell,
+    number: int,
+    proposal: Proposal,
+    earlier: tuple[tuple[Design, ...], ...] = (),
+    meter: Meter | None = None,
+) -> Run:
+    """The Run of a test; raises what ``run.perform`` and ``run.prove`` raise."""
+    request = cell.request
+    if proposal.design is not None:
+        return prove(proposal.design, proposal.seed, request.world, request.setup, number, cell.brief)
+    assert cell.brief is not None, "only a cell with words lets its tests be drafted"
+    known = [design for block in earlier for design in block]
+    return perform(cell.brief, proposal.seed, request.world, request.setup, number, known, meter)
+
+
+def seed_of_driver(number: int, proposal: Proposal) -> int:
+    """The seed that test ``number`` is driven with, and drafted with if it is."""
+    return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
+
+
+def result_of(run: Run, cell: Cell, task: Task) -> Result:
+    """What a campaign keeps of a Run."""
+    verdict = run.verdict
+    features: dict[str, float] = {}
+    if run.is_valid and run.road is not None:
+        records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
+        features = features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, cell.brief)
+    return Result(
+        number=task.number,
+        batch=task.batch,
+        proposal=task.proposal,
+        outcome=run.outcome,
+        description=run.description,
+        design=run.design,
+        length=run.length,
+        margin=verdict.margin if verdict else None,
+        max_oob=verdict.max_oob if verdict else None,
+        beyond=verdict.beyond if verdict else None,
+        at_s=verdict.at_s if verdict else None,
+        side=verdict.side if verdict else None,
+        cause=verdict.cause if verdict else None,
+        features=features,
+    )

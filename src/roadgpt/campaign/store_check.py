@@ -1,0 +1,117 @@
+"""Is a store what RoadGPT wrote? Tables, columns and values, looked at once before anything is made of them.
+
+A store that came from elsewhere, or lay on a bad disk, may hold anything: a text for a number, a number that
+is not finite, a cell that is called like a path. All of the narrow tables are looked at, a million tests in
+about a second; what stands in the wide one, designs and sentences, is looked at as it is read.
+"""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from roadgpt.errors import UsageError
+
+TEXT = "typeof({0}) = 'text'"
+WHOLE = "(typeof({0}) = 'integer' AND {0} BETWEEN 0 AND 9223372036854775807)"
+COUNT = "(typeof({0}) = 'integer' AND {0} BETWEEN 0 AND 10000000)"
+NUMBER = "(typeof({0}) IN ('integer', 'real') AND {0} BETWEEN -1e15 AND 1e15)"
+NAME = "(typeof({0}) = 'text' AND {0} GLOB 'c[0-9]*' AND {0} NOT GLOB '*[^c0-9]*')"
+FILE = "(typeof({0}) = 'text' AND {0} GLOB '[0-9]*.parquet' AND {0} NOT GLOB '*[^0-9parquet.]*')"
+OUTCOME = "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')"
+SIDE = "{0} IN ('left', 'right')"
+
+LATER = ("beyond",)
+"""Columns of ``tests`` that stores of older versions do not have; what they would hold is not known there."""
+NUMBERS = (
+    "length",
+    "margin",
+    "max_oob",
+    "beyond",
+    "at_s",
+    "ended",
+    "design_s",
+    "drive_s",
+    "tokens",
+    "cost",
+    "trace",
+)
+
+TABLES: dict[str, dict[str, str]] = {
+    "meta": {"name": TEXT, "value": TEXT},
+    "cells": {"name": NAME, "cell": TEXT, "seconds": NUMBER, "closed": f"({{0}} IS NULL OR {TEXT})"},
+    "batches": dict.fromkeys(("batch", "first", "n", "left"), COUNT) | {"cell": NAME},
+    "tests": {
+        "cell": NAME + " AND {0} IN (SELECT name FROM cells)",  # noqa: S608 - our own words
+        **dict.fromkeys(("number", "batch"), COUNT),
+        **dict.fromkeys(("seed", "given"), WHOLE),
+        "outcome": f"({{0}} IS NULL OR {OUTCOME})",
+        "cause": f"({{0}} IS NULL OR {TEXT})",
+        "side": f"({{0}} IS NULL OR {SIDE})",
+        **dict.fromkeys(NUMBERS, f"({{0}} IS NULL OR {NUMBER})"),
+    },
+    "details": dict.fromkeys(("cell", "number", "origin", "design", "description", "features", "error"), ""),
+    "traces": {"trace": WHOLE, "file": FILE},
+    "leases": {"cell": NAME, "number": COUNT, "worker": TEXT, "until": NUMBER},
+    "sittings": dict.fromkeys(("begun", "seen", "workers", "is_over", "tokens", "cost"), NUMBER),
+    "features": {"name": TEXT},
+}
+"""What each column may hold, in SQL; nothing: it is looked at when it is read."""
+META = ("finished", "plan", "versions")
+BUSY = {
+    sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
+    sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_PERM, sqlite3.SQLITE_INTERRUPT,
+}  # fmt: skip
+"""Errors of the moment, of which the store knows nothing."""
+
+_checked: set[tuple[str, int]] = set()
+
+
+def damaged(path: Path, why: object) -> UsageError:
+    """What to say of a store that is not as RoadGPT wrote it."""
+    said = " ".join(str(why).split())[:160]
+    return UsageError(f"{path} is damaged, or not as roadgpt wrote it ({said}); start the campaign anew")
+
+
+@contextmanager
+def reading_store(path: Path) -> Iterator[None]:
+    """Around whatever is made of what a store holds: what makes no sense there becomes a sentence."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        if getattr(error, "sqlite_errorcode", 0) & 0xFF in BUSY:
+            raise
+        raise damaged(path, error) from error
+    except (ValueError, TypeError, LookupError, AttributeError, OverflowError) as error:
+        raise damaged(path, f"{type(error).__name__}: {error}") from error
+
+
+def check_store(path: Path, db: sqlite3.Connection) -> None:
+    """Look at a store's tables, once in this process.
+
+    Raises:
+        UsageError: it lacks one, or holds what none of ours does.
+    """
+    key = (str(path.absolute()), path.stat().st_ino)
+    if key in _checked:
+        return
+    with reading_store(path):
+        for table, columns in TABLES.items():
+            there = {row[1] for row in db.execute(f"PRAGMA table_info({table})")}
+            columns = {name: rule for name, rule in columns.items() if name not in LATER or name in there}
+            db.execute(f"SELECT {', '.join(columns)} FROM {table} LIMIT 1").fetchone()  # noqa: S608 - our words
+            rules = {name: rule.format(name) for name, rule in columns.items() if rule}
+            if not rules:
+                continue
+            unlike = f"NOT coalesce({' AND '.join(rules.values())}, 0)"
+            if db.execute(f"SELECT 1 FROM {table} WHERE {unlike} LIMIT 1").fetchone():  # noqa: S608
+                named = (
+                    name
+                    for name, rule in rules.items()
+                    if db.execute(f"SELECT 1 FROM {table} WHERE NOT coalesce({rule}, 0) LIMIT 1").fetchone()  # noqa: S608
+                )
+                raise damaged(path, f"{table}.{next(named, '')} holds what it cannot")
+        there = {name for (name,) in db.execute("SELECT name FROM meta")}
+        if not there >= {*META} or not db.execute("SELECT 1 FROM cells").fetchone():
+            raise damaged(path, "it has no plan or no cells")
+    _checked.add(key)

@@ -1,0 +1,167 @@
+"""Variations: new roads made from tested ones, each proved before anyone drives it. Verb: ``varied``.
+
+    Task --change genes--> place on the map --> look (fast) --> build --> every rule --> Candidate, or nothing
+
+A Task says all that a worker needs, so ``pool.map(varied, tasks)`` does the work anywhere. A change may break
+what was asked for, or lead off the map: then it is drawn again. What comes back keeps every promise of the
+Brief and every rule, by ``check.inspect`` on the road that will be driven.
+"""
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from roadgpt import check
+from roadgpt.brief.model import Brief
+from roadgpt.campaign.behaviour import behaviour_of
+from roadgpt.campaign.genome import Genes, design_of, genes_of, spans_of
+from roadgpt.campaign.mutation import crossed_over, interpolated, mutated
+from roadgpt.campaign.surrogate_features import surrogate_features_of
+from roadgpt.design import draft
+from roadgpt.design.layout import Place, keeps_clear, place, walk
+from roadgpt.design.variety import Shape, shape_of
+from roadgpt.errors import DesignError, RoadGPTError
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Design, Road, World, build
+from roadgpt.run.features import features_of
+
+TRIES = 8  # changes that are drawn for one candidate
+BOLD = 3  # of these; then mostly numbers change, which breaks less of what was asked for
+ROUNDS = 3  # of changes that make a draft a wild one
+NUMERIC = (0.4, 0.9)  # chance that only numbers change: in bold tries, and in the others
+CHANGED_TOO = 0.5  # chance that a road that takes after two is changed besides
+NOBODY = Brief()
+
+Kind = Literal["draft", "wild", "vary", "cross", "between"]
+
+
+class VariationContext(NamedTuple):
+    """What all candidates of a cell share."""
+
+    brief: Brief | None
+    world: World
+    rules: Literal["strict", "sbft"] = "strict"
+    """"sbft": the competition's validator has to take the road as well."""
+
+
+class VariationTask(NamedTuple):
+    """One candidate that is to be made."""
+
+    kind: Kind
+    parents: tuple[Design, ...]
+    """None of a draft, one of a variation, two of a crossing; two, to stand between."""
+    origin: str
+    seed: tuple[int, ...]
+    setting: VariationContext
+    share: float = 0.5
+    """Of the way from one parent to the other, of a road between them."""
+
+
+class Candidate(NamedTuple):
+    """A road that keeps all that was asked for, and what can be seen of it."""
+
+    design: Design
+    origin: str
+    features: dict[str, float]
+    """Of the road: what no drive is needed for."""
+    surrogate_features: Array
+    shape: Shape
+
+
+def make_candidate(task: VariationTask) -> Candidate | None:
+    """The road that a task asks for; None where none was found that keeps the Brief and every rule."""
+    rng = np.random.default_rng(task.seed)
+    setting = task.setting
+    if task.kind == "between":
+        found = _between(task)
+    elif task.kind in ("draft", "wild"):
+        found = _drafted(setting, rng)
+        for _ in range(ROUNDS if found and task.kind == "wild" else 0):
+            found = found and (_changed((genes_of(found[0]),), setting, rng) or found)
+    else:
+        found = _changed([genes_of(design) for design in task.parents], setting, rng)
+    return described(*found, task.origin, setting) if found else None
+
+
+def _changed(
+    parents: Sequence[Genes], setting: VariationContext, rng: np.random.Generator
+) -> tuple[Design, Road] | None:
+    """A road like its parent, or one that takes after two."""
+    for attempt in range(TRIES):
+        genes = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
+        if len(parents) == 1 or rng.random() < CHANGED_TOO:
+            genes = mutated(genes, rng, setting.world, NUMERIC[attempt >= BOLD])
+        found = placed(genes, setting, rng)
+        if found:
+            return found
+    return None
+
+
+def _drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
+    """A planner's own draft."""
+    try:
+        design = draft(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))
+    except DesignError:
+        return None
+    return validated(design, setting)
+
+
+def _between(task: VariationTask) -> tuple[Design, Road] | None:
+    """A road between two, and where it lies between their places."""
+    one, other = task.parents
+    genes = interpolated(genes_of(one), genes_of(other), task.share)
+    if genes is None:
+        return None
+    return validated(
+        design_of(genes, _place_between(one, other, task.share), task.setting.world), task.setting
+    )
+
+
+def placed(genes: Genes, setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
+    """The road of genes, somewhere on the map; None where it breaks a promise or a rule."""
+    line = walk(spans_of(genes))
+    where = place(line, setting.world, rng)
+    if where is None or not keeps_clear(line, setting.world, with_verges=False):
+        return None
+    return validated(design_of(genes, where, setting.world), setting)
+
+
+def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:
+    """The design and its road, where no rule objects."""
+    try:
+        road = build(design)
+        if check.inspect(road, setting.brief, setting.world):
+            return None
+        if (
+            setting.rules == "sbft"
+            and not check.sbft_verdict(road.control_points(), setting.world.map_size)[0]
+        ):
+            return None
+    except (RoadGPTError, ValueError):  # a spline of this road cannot be laid: it is no candidate
+        return None
+    return design, road
+
+
+def described(design: Design, road: Road, origin: str, setting: VariationContext) -> Candidate:
+    """A road that passed, with all that can be seen of it."""
+    samples = road.sample()
+    features = features_of(samples.points) | behaviour_of(road, setting.brief)
+    shape = shape_of(samples.s, samples.x + 1j * samples.y)
+    return Candidate(design, origin, features, surrogate_features_of(road, setting.world), shape)
+
+
+def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
+    """What can be seen of a road that was driven before."""
+    design, setting = known
+    return described(design, build(design), "", setting)
+
+
+def _place_between(one: Design, other: Design, share: float) -> Place:
+    (x0, y0, _), (x1, y1, _) = one.starting_point, other.starting_point
+    turned = (other.theta - one.theta + 180) % 360 - 180
+    return Place(
+        round(x0 + share * (x1 - x0), 2),
+        round(y0 + share * (y1 - y0), 2),
+        round((one.theta + share * turned) % 360, 1) % 360,
+    )

@@ -1,0 +1,149 @@
+"""The desk of an executor: jobs that wait, jobs that have ended, and what is raised when nobody can work.
+
+An executor inherits it and says how a job that waits gets to a worker (``_hand_out``). Its threads hold
+``_changed`` while they touch anything here, and notify it when a job has ended.
+"""
+
+import threading
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from roadgpt.campaign.executors import MOST_DEATHS, FinishedJob, Job
+from roadgpt.campaign.workers.messages import pickled, unpickled
+from roadgpt.campaign.workers.process_loop import VALUE, apply_each
+from roadgpt.errors import RoadGPTError
+
+T = TypeVar("T")
+U = TypeVar("U")
+
+CHUNKS = 4  # per worker, that ``map`` makes of its items: few messages, and nobody waits long for the last
+
+
+@dataclass(eq=False)
+class QueuedJob:
+    """A job on its way."""
+
+    call: bytes
+    needs: tuple[str, ...]
+    key: int | None
+    """None for a part of a ``map``."""
+    deaths: int = 0
+    end: FinishedJob | None = None
+
+
+class JobQueue(ABC):
+    """What every executor keeps of its jobs."""
+
+    def __init__(self, workers: int) -> None:
+        """A desk for so many workers, with nothing on it."""
+        self._size = workers
+        self._changed = threading.Condition()
+        self._shared: dict[str, bytes] = {}
+        self._urgent: deque[QueuedJob] = deque()
+        self._waiting: deque[QueuedJob] = deque()
+        self._ended: deque[tuple[QueuedJob, int, bytes]] = deque()
+        self._lost: deque[FinishedJob] = deque()
+        self._broken: Exception | None = None
+
+    def share(self, name: str, value: Any) -> None:
+        """Keep a value for jobs that need it."""
+        self._shared[name] = pickled(value)
+
+    def forget(self, name: str) -> None:
+        """Let go of a shared value."""
+        with self._changed:
+            self._shared.pop(name, None)
+
+    def submit(self, jobs: Sequence[Job]) -> None:
+        """Have jobs done."""
+        works = [QueuedJob(pickled((job.function, job.item, job.needs)), job.needs, job.key) for job in jobs]
+        with self._changed:
+            self._waiting.extend(works)
+            self._hand_out()
+
+    def done(self, seconds: float) -> list[FinishedJob]:
+        """What has ended; none where nothing did in that time.
+
+        Raises:
+            RoadGPTError: no worker could be made ready, or whatever prevented that.
+        """
+        with self._changed:
+            self._changed.wait_for(lambda: self._ended or self._lost or self._broken, seconds)
+            ended, lost = [*self._ended], [*self._lost]
+            self._ended.clear()
+            self._lost.clear()
+            if self._broken is not None and not ended and not lost:
+                raise self._broken
+        return [_told(work, kind, what) for work, kind, what in ended] + lost
+
+    def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
+        """``function`` of every item, in their order; what it raises is raised here.
+
+        Raises:
+            RoadGPTError: it ended three workers.
+        """
+        size = max(1, -(-len(items) // (CHUNKS * self._size)))
+        parts = [items[first : first + size] for first in range(0, len(items), size)]
+        works = [QueuedJob(pickled((apply_each, (function, [*part]), ())), (), None) for part in parts]
+        with self._changed:
+            self._urgent.extend(works)
+            self._hand_out()
+            self._changed.wait_for(lambda: self._broken or all(work.end for work in works))
+            if self._broken is not None:
+                raise self._broken
+        found: list[U] = []
+        for work in works:
+            assert work.end is not None
+            if work.end.lost:
+                raise RoadGPTError(work.end.lost)
+            if work.end.error is not None:
+                raise work.end.error
+            found += work.end.value
+        return found
+
+    @abstractmethod
+    def _hand_out(self) -> None:
+        """Give jobs that wait to workers that are free; urgent ones first."""
+
+    def _news(self, has: set[str], works: Sequence[QueuedJob]) -> tuple[dict[str, bytes], tuple[str, ...]]:
+        """Shared values that a worker lacks for these jobs, and names that nobody needs any more; it ``has``
+        what it needs after that."""
+        old = tuple(name for name in has if name not in self._shared)
+        wanted = [name for work in works for name in work.needs]
+        new = {name: self._shared[name] for name in wanted if name not in has}
+        has.difference_update(old)
+        has.update(new)
+        return new, old
+
+    def _end(self, work: QueuedJob, kind: int, what: bytes) -> None:
+        if work.key is None:
+            work.end = _told(work, kind, what)
+        else:
+            self._ended.append((work, kind, what))
+
+    def _give_again(self, work: QueuedJob, how: str) -> None:
+        """A worker ended over a job: another gets it first of all, unless it has cost too many."""
+        work.deaths += 1
+        if work.deaths < MOST_DEATHS:
+            (self._waiting if work.key is not None else self._urgent).appendleft(work)
+            return
+        end = FinishedJob(
+            work.key or 0, lost=f"given up: {MOST_DEATHS} workers ended over it (the last one {how})"
+        )
+        if work.key is None:
+            work.end = end
+        else:
+            self._lost.append(end)
+
+
+def _told(work: QueuedJob, kind: int, what: bytes) -> FinishedJob:
+    try:
+        value = unpickled(what)
+    except Exception as error:  # of a class that cannot be made again
+        return FinishedJob(work.key or 0, error=RuntimeError(f"an answer cannot be read: {error}"))
+    return (
+        FinishedJob(work.key or 0, value=value) if kind == VALUE else FinishedJob(work.key or 0, error=value)
+    )

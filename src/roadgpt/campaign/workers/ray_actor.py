@@ -1,0 +1,57 @@
+"""A worker on a cluster: is made ready, and does the jobs of one message after another."""
+
+import faulthandler
+import os
+import socket
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from roadgpt.campaign.workers.messages import pickled, unpickled
+from roadgpt.campaign.workers.process_loop import ERROR, READY, JobMessage, answer, portable
+from roadgpt.errors import UsageError
+
+
+class RayActor:
+    """A worker, where it works."""
+
+    def __init__(self, patience: float) -> None:
+        """A worker that ends when one of several jobs takes longer than so many seconds."""
+        self._patience = patience
+        self._shared: dict[str, Any] = {}
+
+    def begin(self, version: str, prepare: bytes) -> tuple[int, bytes]:
+        """Become ready; tells the node and where that is, or what prevents it."""
+        import ray
+
+        from roadgpt import __version__
+
+        os.environ.setdefault("MPLBACKEND", "Agg")
+        os.environ.setdefault("NUMBA_NUM_THREADS", "1")  # it has one core
+        here = socket.gethostname()
+        try:
+            if __version__ != version:
+                raise UsageError(
+                    f"{here} has RoadGPT {__version__} and this machine {version}; install the same on all"
+                )
+            unpickled(prepare)()
+        except Exception as error:  # whatever it is, the campaign has to hear of it
+            return ERROR, portable(error)
+        return READY, pickled((ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}"))
+
+    def work(self, orders: Sequence[JobMessage]) -> list[tuple[int, bytes]]:
+        """Do jobs one after another.
+
+        One that is alone is timed by whoever sent it, who then knows which one hangs.
+        """
+        if len(orders) == 1:
+            return [answer(orders[0], self._shared)]
+        return [self._timed(order) for order in orders]
+
+    def _timed(self, order: JobMessage) -> tuple[int, bytes]:
+        # the timer is no Python code, so that it ends a worker that hangs in a library, too
+        faulthandler.dump_traceback_later(self._patience, exit=True, file=sys.__stderr__ or 2)
+        try:
+            return answer(order, self._shared)
+        finally:
+            faulthandler.cancel_dump_traceback_later()

@@ -1,0 +1,18 @@
+"""The outcome of a drive in one sentence, its end included where it went on after a departure."""
+
+from roadgpt.drive import Drive
+from roadgpt.verdict import Verdict
+
+WENT_ON = {
+    "goal": "then came to the goal",
+    "fell": "then fell",
+    "stuck": "then got stuck",
+    "timeout": "then ran out of time",
+}
+
+
+def outcome_sentence(verdict: Verdict, drive: Drive) -> str:
+    """The verdict's sentence; of a car that was told to keep driving, also how its drive ended."""
+    if verdict.cause != "out of lane" or drive.ended not in WENT_ON:
+        return verdict.description
+    return f"{verdict.description}, {WENT_ON[drive.ended]} after {drive['s'][-1]:.0f} m"
