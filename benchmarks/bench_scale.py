@@ -159,7 +159,7 @@ def workers() -> None:
             with Record.opened(folder) as record:
                 # from when all workers were warm to the last test
                 ended = sorted(when for (when,) in record.query("SELECT ended FROM tests"))
-            files = [path for path in folder.rglob("*") if path.suffix in (".sqlite", ".parquet")]
+            files = [path for path in folder.rglob("*") if path.suffix in (".sqlite", ".npz")]
             size = sum(path.stat().st_size for path in files) / tests
             first = next(at for at, when in enumerate(ended) if when > ended[0] + 2.0)
             rates.append((len(ended) - first) / (ended[-1] - ended[first - 1]))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from ribs.archives import CVTArchive, GridArchive
 
 from roadgpt.campaign.acquisition import (
     ANYWHERE,
@@ -18,8 +19,8 @@ from roadgpt.campaign.acquisition import (
     spread_out,
     stacked,
 )
-from roadgpt.campaign.archive import Archive
-from roadgpt.campaign.behaviour import cell_of
+from roadgpt.campaign.archive import SAMPLES, Archive
+from roadgpt.campaign.behaviour import bounds_of, cell_of
 from roadgpt.campaign.boundary_pairs import distance, paired
 from roadgpt.campaign.genome import Gene
 from roadgpt.campaign.variation import Candidate
@@ -62,27 +63,65 @@ def test_the_grid_keeps_the_best_of_every_cell(tests: list, cells: int) -> None:
         assert (same[i] == same[j]) == (cell_of(one, AXES, cells) == cell_of(other, AXES, cells))
 
 
-def test_niches_are_the_neighbourhoods_of_their_centres() -> None:
+def test_niches_are_the_neighbourhoods_of_their_centroids() -> None:
     archive = Archive((*AXES, "GRADE"), 40, "cvt")
-    centres = np.asarray(archive._map.centroids)
-    rng = np.random.default_rng(3)
+    centroids = CVTArchive(
+        solution_dim=1,
+        centroids=40,
+        ranges=[bounds_of(axis) for axis in archive.axes],
+        samples=SAMPLES,
+        seed=0,
+    ).centroids
     low, high = np.array([0.0, 0.0, 0.0]), np.array([0.07, 150.0, 15.0])
-    places = low + rng.random((60, 3)) * (high - low)
-    scaled = (places - low) / (high - low)
-    middle = (centres - low) / (high - low)
-    plain = ((centres - places[:, None]) ** 2).sum(axis=2).argmin(axis=1)
-    even = ((middle - scaled[:, None]) ** 2).sum(axis=2).argmin(axis=1)
+    places = low + np.random.default_rng(3).random((60, 3)) * (high - low)
     found = archive.cells(places)
-    assert np.array_equal(found, plain) or np.array_equal(found, even)
+    assert np.array_equal(found, ((centroids - places[:, None]) ** 2).sum(axis=2).argmin(axis=1))
     for number, place in enumerate(places, 1):
-        archive.add(number, dict(zip((*AXES, "GRADE"), place, strict=True)), -float(number), False)
+        archive.add(number, dict(zip(archive.axes, place, strict=True)), -float(number), False)
     firsts = {int(cell): number for number, cell in reversed([*enumerate(found, 1)])}
     assert archive.elites() == [firsts[cell] for cell in sorted(firsts)]
+
+
+MAPS = [
+    (("MAX_CURV", "STD_SA"), 25, "grid"),
+    (("MAX_CURV", "DIR_COV", "CLIMB"), 7, "grid"),
+    (("LEFT",), 3, "grid"),
+    (("RADIUS_2", "DEGREES_1", "LENGTH", "TURNED"), 5, "grid"),
+    (("MAX_CURV", "STD_SA"), 25, "cvt"),
+    (("MAX_CURV", "STD_SA", "GRADE"), 200, "cvt"),
+    (("RADIUS", "CLIMB", "TURNED", "LENGTH"), 600, "cvt"),
+]
+
+
+@pytest.mark.parametrize(("axes", "cells", "kind"), MAPS)
+def test_it_has_the_cells_and_the_elites_of_pyribs(axes: tuple[str, ...], cells: int, kind: str) -> None:
+    """Solutions at random, many of them beyond the map or on an edge of a cell, and many of equal quality."""
+    ranges = [bounds_of(axis) for axis in axes]
+    theirs = (
+        GridArchive(solution_dim=1, dims=[cells] * len(axes), ranges=ranges)
+        if kind == "grid"
+        else CVTArchive(solution_dim=1, centroids=cells, ranges=ranges, samples=SAMPLES, seed=0)
+    )
+    ours = Archive(axes, cells, kind)  # type: ignore[arg-type]
+    rng = np.random.default_rng(11)
+    low, high = np.array(ranges).T
+    places = low + rng.uniform(-0.2, 1.2, (3000, len(axes))) * (high - low)
+    edges = low + rng.integers(0, cells + 1, (500, len(axes))) / cells * (high - low)
+    places = np.concatenate([places, np.minimum(edges, high)])
+    assert np.array_equal(ours.cells(places), theirs.index_of(places))
+    quality = rng.integers(-6, 3, len(places)) / 2
+    for number, (place, one) in enumerate(zip(places, quality, strict=True)):
+        ours.add(number, dict(zip(axes, place, strict=True)), float(one), bool(one > 0))
+        theirs.add_single([float(number)], one, place)
+    kept = theirs.data(["index", "solution"], return_type="dict")
+    assert ours.elites() == [int(n) for n in kept["solution"][np.argsort(kept["index"]), 0]]
+    assert len(ours.elites()) > min(20, cells - 1)
 
 
 def test_what_has_no_place_is_left_out() -> None:
     archive = Archive(AXES, 5)
     archive.add(1, {"MAX_CURV": 0.01}, 0.0, True)
+    archive.add(2, {"MAX_CURV": 0.01, "STD_SA": math.nan}, 0.0, True)
     assert archive.elites() == []
     assert not archive.failures
 

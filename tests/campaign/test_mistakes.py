@@ -134,12 +134,12 @@ def test_files_of_other_people_beside_the_drives_are_left_alone(
 ) -> None:
     begin_quickly(tmp_path / "c", monkeypatch, plan(5))
     (tmp_path / "c" / "traces").mkdir()
-    for name in ("notes.txt", "mine.parquet", "0000009.parquet"):
+    for name in ("notes.txt", "mine.npz", "0000009.npz", "0000008.parquet"):
         (tmp_path / "c" / "traces" / name).write_text("x")
     (tmp_path / "c" / "traces" / "folder").mkdir()
     [*work(tmp_path / "c", 1, "inline")]
     left = sorted(path.name for path in (tmp_path / "c" / "traces").iterdir())
-    assert left == ["folder", "mine.parquet", "notes.txt"]
+    assert left == ["folder", "mine.npz", "notes.txt"]
 
 
 def test_what_reading_has_cost_counts_for_the_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,11 +1,14 @@
 """What goes into the store comes out as it was; what is damaged is told; drives keep their numbers."""
 
+import json
 import math
 import sqlite3
+import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,8 +27,10 @@ from roadgpt.campaign.table import write_tables
 from roadgpt.campaign.traces import STEPS, drive_of, read_traces, trace_of, write_traces
 from roadgpt.chat import Spent, Usage
 from roadgpt.cli.campaigns import outside_lines
-from roadgpt.drive import COLUMNS, Box, Columns, Drive
+from roadgpt.design import draft
+from roadgpt.drive import COLUMNS, Box, Columns, Drive, simulate
 from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.road import World, build
 
 BRIEFS = {"two hairpins": Brief(words="two hairpins")}
 numbers = st.floats(allow_nan=False, allow_infinity=True, width=64)
@@ -199,25 +204,112 @@ def test_a_drive_comes_back_to_half_a_step(tmp_path: Path) -> None:
             assert np.abs(found[column] - drive[column]).max() <= 0.5 * STEPS[column] * (1 + 1e-9)
     with pytest.raises(UsageError, match="holds no drive of test 4 of c01"):
         read_traces(tmp_path / "traces" / name, "c01", 4)
-    (tmp_path / "traces" / name).write_bytes(b"PAR1 not")
+    (tmp_path / "traces" / name).write_bytes(b"PK not")
     with pytest.raises(UsageError, match="drive it again"):
         read_traces(tmp_path / "traces" / name, "c01", 3)
 
 
-def test_other_tools_read_the_file_of_drives(tmp_path: Path) -> None:
-    import json
+def test_the_same_drives_give_the_same_bytes(tmp_path: Path) -> None:
+    drives = [("c01", number, trace_of(a_drive(80, np.random.default_rng(number)))) for number in (1, 2)]
+    one, other = ((tmp_path / "traces" / write_traces(tmp_path, n, drives)).read_bytes() for n in (1, 2))
+    assert one == other
 
+
+def test_a_drive_takes_little_room(tmp_path: Path) -> None:
+    """A real drive, which is smoother than noise, beside the Parquet files of earlier versions."""
+    drive = simulate(build(draft(Brief(), World(), seed=3)), World(), "beamng_like", 1)
+    name = write_traces(tmp_path, 1, [("c01", 1, trace_of(drive))])
+    assert (tmp_path / "traces" / name).stat().st_size < old_file(tmp_path, drive).stat().st_size
+
+
+def test_numpy_alone_reads_the_file_of_drives(tmp_path: Path) -> None:
+    """As docs/how-to/run-campaigns.md says."""
+    drive = a_drive(50, np.random.default_rng(2))
+    name = write_traces(tmp_path, 1, [("c01", 1, trace_of(drive))])
+    file = np.load(tmp_path / "traces" / name)
+    header = json.loads(str(file["header"]))
+    columns = file["c01/1"].cumsum(axis=1).cumsum(axis=1) * np.array(header["steps"])[:, None]
+    assert columns[header["columns"].index("x")] == pytest.approx(drive["x"], abs=6e-4)
+
+
+def old_file(folder: Path, drive: Drive) -> Path:
+    """A file of traces as earlier versions wrote it."""
+    import pyarrow as pa
     import pyarrow.parquet as pq
 
-    drive = a_drive(50, np.random.default_rng(2))
-    write_traces(tmp_path, 1, [("c01", 1, trace_of(drive))])
-    path = tmp_path / "traces" / "0000001.parquet"
-    told = json.loads(pq.read_metadata(path).metadata[b"roadgpt"])
-    assert pq.read_table(path)["x"].to_numpy() * told["steps"]["x"] == pytest.approx(drive["x"], abs=6e-4)
+    trace = trace_of(drive)
+    rows = {"cell": ["c01"] * len(drive), "number": np.full(len(drive), 3, np.int32), **trace.columns}
+    told = {"format": 1, "steps": STEPS, "drives": [{"cell": "c01", "number": 3, **trace.header}]}
+    path = folder / "0000001.parquet"
+    table = pa.table(rows)
+    with pq.ParquetWriter(
+        path,
+        table.schema,
+        compression="zstd",
+        use_dictionary=["cell"],
+        column_encoding=dict.fromkeys(("number", *COLUMNS), "DELTA_BINARY_PACKED"),
+        store_schema=False,
+    ) as writer:
+        writer.write_table(table)
+        writer.add_key_value_metadata({"roadgpt": json.dumps(told)})
+    return path
+
+
+def test_a_file_of_an_earlier_version_is_read_where_pyarrow_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drive = a_drive(60, np.random.default_rng(5))
+    path = old_file(tmp_path, drive)
+    found = read_traces(path, "c01", 3)
+    assert (found.driver, found.ended, found.car) == (drive.driver, drive.ended, drive.car)
+    for column in COLUMNS:
+        assert np.abs(found[column] - drive[column]).max() <= 0.5 * STEPS[column] * (1 + 1e-9)
+    with pytest.raises(UsageError, match="holds no drive of test 4 of c01"):
+        read_traces(path, "c01", 4)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    with pytest.raises(UsageError, match=r"needs pyarrow; say: pip install pyarrow$"):
+        read_traces(path, "c01", 3)
+
+
+def test_a_bomb_is_not_unpacked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name = write_traces(tmp_path, 1, [("c01", 1, trace_of(a_drive(5000, np.random.default_rng(2))))])
+    monkeypatch.setattr("roadgpt.campaign.traces.UNPACKED", 100_000)
+    with pytest.raises(UsageError, match=r"unpacks to more than 0\.1 MB"):
+        read_traces(tmp_path / "traces" / name, "c01", 1)
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda header, rows: (header | {"format": 3}, rows),
+        lambda header, rows: (header | {"columns": ["x"]}, rows),
+        lambda header, rows: (header | {"drives": []}, rows),
+        lambda header, rows: (header, rows.astype(float)),
+        lambda header, rows: (header, rows[1:]),
+        lambda header, rows: (header, rows[:, :0]),
+        lambda header, rows: (header, rows.astype(object)),
+    ],
+)
+def test_what_is_no_trace_is_refused_in_a_sentence(tmp_path: Path, spoil: Any) -> None:
+    path = (
+        tmp_path
+        / "traces"
+        / write_traces(tmp_path, 1, [("c01", 1, trace_of(a_drive(9, np.random.default_rng(1))))])
+    )
+    with np.load(path) as file:
+        header, rows = spoil(json.loads(str(file["header"])), file["c01/1"])
+    with path.open("wb") as out:
+        np.savez(out, **{"header": np.array(json.dumps(header)), "c01/1": rows})
+    with pytest.raises(UsageError, match=r"holds no drive of test 1 of c01 \(.+\); drive it again"):
+        read_traces(path, "c01", 1)
 
 
 def test_what_is_no_number_and_what_is_far_away_stay_so(tmp_path: Path) -> None:
     columns = {name: np.array([0.0, math.nan, 1e9, -math.inf]) for name in COLUMNS}
-    found = drive_of(trace_of(Drive("me", "mine", 7, Columns(columns), "fell", Box(4.5, 1.8))))
+    trace = trace_of(Drive("me", "mine", 7, Columns(columns), "fell", Box(4.5, 1.8)))
+    found = drive_of(trace)
+    kept = read_traces(tmp_path / "traces" / write_traces(tmp_path, 1, [("c01", 1, trace)]), "c01", 1)
+    assert all(np.array_equal(kept[name], found[name], equal_nan=True) for name in COLUMNS)
     assert np.isnan(found["x"]).tolist() == [False, True, False, False]
     assert found["x"][2] == -found["x"][3] == pytest.approx((2**31 - 1) / 1000)

@@ -139,14 +139,14 @@ def test_nothing_is_written_through_a_link_to_elsewhere(campaign: Path, tmp_path
     there = outside if "." not in name else outside / "precious.txt"
     outside.mkdir()
     (outside / "precious.txt").write_text("precious")
-    (outside / "0000001.parquet").write_text("precious")
+    (outside / "0000001.npz").write_text("precious")
     place = campaign / name
     shutil.rmtree(place) if place.is_dir() else place.unlink(missing_ok=True)
     place.symlink_to(there)
     result = invoke(*LINKS[name])
     assert result.exit_code == 2, result.output
     assert f"{name} is a link to somewhere else" in result.stderr
-    assert sorted(path.name for path in outside.iterdir()) == ["0000001.parquet", "precious.txt"]
+    assert sorted(path.name for path in outside.iterdir()) == ["0000001.npz", "precious.txt"]
     assert {path.read_text() for path in outside.iterdir()} == {"precious"}
 
 

@@ -1,12 +1,12 @@
-"""The room of campaigns: thousands of tests, searched for, shared among workers, and never lost.
+"""The room of campaigns: thousands of tests, made by test generators, run by workers, and never lost.
 
     Plan --cells--> Cell --ask--> Proposals --workers--> Results --tell--> the cell's generator
                                                             |
                                                         Store (one file)
 
-Two shelves. ``generators/`` think out tests; ``executors/`` are the workers that drive them. Verbs: ``begin``
-a campaign in a folder, and ``work`` on it as often as it takes; ``status_of`` says how far it is,
-``read_trace`` and ``run_again`` give one test of it.
+It has two kinds of plug-ins: ``generators/`` propose tests, and ``executors/`` provide the workers that run
+them. ``begin`` makes a campaign's folder, and ``work`` runs what is left to do, as often as it is called.
+``status_of`` counts what is done; ``read_trace``, ``kept_run`` and ``run_again`` return one test.
 """
 
 import sys
@@ -44,7 +44,8 @@ def __getattr__(name: str) -> Any:
 
 
 class _Room(ModuleType):
-    """This room, which bears the name of a verb that the package offers: called, it is that verb."""
+    """This package, which has the name of a function that ``roadgpt`` offers: a call of it calls that
+    function."""
 
     def __call__(self, *values: Any, **named: Any) -> Any:
         """``roadgpt.run.campaign``: once this room is imported, ``roadgpt.campaign`` names the room."""

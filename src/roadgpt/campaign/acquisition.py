@@ -1,8 +1,8 @@
-"""Which of many candidates are driven: each goal values them by what the surrogate's trees expect.
+"""The choice of candidates to drive: each goal values them by what the surrogate's trees predict.
 
-failures   a failure counts, and the first ones of a cell count most
-coverage   a test counts the less, the more tests its cell has
-hardest    the smallest margin that is still likely
+failures   a predicted failure counts, the first ones of a cell most
+coverage   a test counts less, the more tests its cell has
+hardest    the smallest margin that is still likely counts most
 """
 
 from collections import Counter
@@ -21,12 +21,12 @@ ANYWHERE = 0.05  # of a first failure in a cell: what one in a cell with many co
 
 
 class Predictions(NamedTuple):
-    """What trees expect of candidates; each ``(trees, n)``."""
+    """What each tree predicts of candidates; both arrays are ``(trees, n)``."""
 
     margins: Array
     """Metres."""
     cells: NDArray[np.intp]
-    """Of the map."""
+    """Cells of the map."""
 
 
 def select(
@@ -37,15 +37,15 @@ def select(
     counts: Counter[int],
     least: float,
 ) -> list[Candidate]:
-    """The candidates that are driven, the most valuable first, none like another.
+    """Returns the candidates to be driven, the most valuable first, with no two alike.
 
     Args:
-        goal: what is looked for.
-        n: how many, at most.
+        goal: what the search looks for.
+        n: number of candidates, at most.
         candidates: to choose from.
-        expected: of them.
-        counts: failures by cell so far; tests, where coverage is the goal.
-        least: metres RMS that chosen roads keep from each other.
+        expected: the predictions for them.
+        counts: failures by cell so far; for the goal "coverage", tests by cell.
+        least: metres RMS that the chosen roads keep from each other.
     """
     used, index = np.unique(expected.cells, return_inverse=True)
     cells = index.reshape(expected.cells.shape)
@@ -68,14 +68,14 @@ def select(
 
 
 def far_from(candidates: Sequence[Candidate], shape: Shape, least: float) -> NDArray[np.bool_]:
-    """Which candidates keep so many metres RMS from a shape."""
+    """Returns which candidates ``(n,)`` are at least so many metres RMS from a shape."""
     if not least or not candidates:
         return np.ones(len(candidates), bool)
     return np.asarray(apart(shape, stacked([one.shape for one in candidates])) >= least)
 
 
 def dissimilar(candidates: Sequence[Candidate], known: Sequence[Shape], least: float) -> list[Candidate]:
-    """Candidates that are like none of the known roads."""
+    """Returns the candidates that are at least so many metres RMS from every known road."""
     if not known or not least:
         return list(candidates)
     others = stacked(known)
@@ -83,17 +83,17 @@ def dissimilar(candidates: Sequence[Candidate], known: Sequence[Shape], least: f
 
 
 def stacked(shapes: Sequence[Shape]) -> Shape:
-    """Shapes as one of many."""
+    """Combines shapes into one Shape whose arrays have a first axis more."""
     return Shape._make(np.stack(columns) for columns in zip(*shapes, strict=True))
 
 
 def spread_out(candidates: Sequence[Candidate], n: int, hazard: Array) -> list[Candidate]:
-    """Where nothing is known yet: candidates far apart by their signs, among those that look hard.
+    """Chooses candidates before anything is known: far apart in their features, among those that look hard.
 
     Args:
         candidates: to choose from.
-        n: how many.
-        hazard: of each, the larger the harder it looks.
+        n: number of candidates.
+        hazard: of each candidate; the larger, the harder the road looks.
     """
     order = np.argsort(-hazard, kind="stable")[: max(n, (len(candidates) + 1) // 2)]
     signs = np.array([candidates[i].surrogate_features for i in order])

@@ -1,73 +1,132 @@
 """The archive of a search: a map of what roads can be like, with the best road so far in every cell.
 
-The best is the one that came nearest to failing. Cells are a grid along the chosen axes, or, where a grid of
-many axes would be mostly empty, the neighbourhoods of centres spread evenly (CVT-MAP-Elites, Vassiliades,
-Chatzilygeroudis, Mouret 2018). The maps are pyribs'; how many tests and failures fell into a cell is ours.
+The best road is the one that came nearest to failing. The cells are a grid along the chosen features
+(MAP-Elites, Mouret and Clune 2015) or, where a grid over many features would be mostly empty, the
+neighbourhoods of evenly spread centroids (CVT-MAP-Elites, Vassiliades, Chatzilygeroudis and Mouret 2018).
+Cells and centroids are those of pyribs' GridArchive and CVTArchive, which the tests hold them against.
 """
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from roadgpt.campaign.behaviour import bounds_of
 from roadgpt.geometry.curve import Array
 
-NICHES_SEED = 0  # of the centres: they belong to the map, not to a search
-SAMPLES = 20_000  # points from which centres are spread
-ONLY = 1  # a road is kept as its number
+NICHES_SEED = 0  # of the centroids: they belong to the map, not to a search
+SAMPLES = 20_000  # points, evenly spread over the map, whose clusters the centroids are
+MOST_ROUNDS = 300  # of k-means
+SETTLED = 1e-4  # of the samples' variance: k-means ends when all centroids together move by less, squared
+EDGE = 1e-6  # added to a feature times the number of cells, so that rounding puts no edge into the cell below
+
+Cells = NDArray[np.intp]
+
+
+class _Map(Protocol):
+    def cells(self, places: Array) -> Cells: ...
 
 
 class Archive:
-    """Elites of a search, by cell."""
+    """The best test of every cell, and how many tests and failures fell into each."""
 
     def __init__(self, axes: Sequence[str], cells: int, kind: Literal["grid", "cvt"] = "grid") -> None:
-        """An empty map.
+        """Makes an empty archive.
 
         Args:
-            axes: names of features.
-            cells: of a grid, along each axis; of niches, altogether.
-            kind: a grid, or niches.
+            axes: names of the features that span the map.
+            cells: number of cells along each axis of a grid, or number of centroids.
+            kind: "grid" or "cvt".
         """
-        from ribs.archives import CVTArchive, GridArchive
-
         self.axes = tuple(axes)
-        ranges = [bounds_of(axis) for axis in axes]
-        self._map: GridArchive | CVTArchive
-        if kind == "grid":
-            self._map = GridArchive(solution_dim=ONLY, dims=[cells] * len(ranges), ranges=ranges)
-        else:
-            self._map = CVTArchive(
-                solution_dim=ONLY, centroids=cells, ranges=ranges, samples=SAMPLES, seed=NICHES_SEED
-            )
+        bounds = np.array([bounds_of(axis) for axis in axes])
+        self._map: _Map = Grid(bounds, cells) if kind == "grid" else Niches(bounds, cells)
+        self._best: dict[int, tuple[float, int]] = {}
         self.tests: Counter[int] = Counter()
         self.failures: Counter[int] = Counter()
 
     def add(self, number: int, features: Mapping[str, float], quality: float, failed: bool) -> None:
-        """Takes in a test; one without all features of the map is left out.
+        """Adds a test, unless it lacks a feature of the map.
 
         Args:
             number: of the test.
-            features: of road and drive.
-            quality: the larger the better; of equals the first is kept.
-            failed: did the car leave its lane?
+            features: of its road and drive, by name.
+            quality: the larger the better; of equally good tests the first is kept.
+            failed: whether the car left its lane.
         """
-        if any(axis not in features for axis in self.axes):
+        place = np.array([features.get(axis, math.nan) for axis in self.axes])
+        if not np.isfinite(place).all():
             return
-        place = np.array([features[axis] for axis in self.axes])
-        cell = int(self._map.index_of_single(place))
+        cell = int(self._map.cells(place[None])[0])
         self.tests[cell] += 1
         self.failures[cell] += failed
-        self._map.add_single([float(number)], quality, place)
+        if cell not in self._best or quality > self._best[cell][0]:
+            self._best[cell] = (quality, number)
 
-    def cells(self, places: Array) -> NDArray[np.intp]:
-        """Cells ``(n,)`` of places ``(n, axes)``."""
-        return np.asarray(self._map.index_of(places), np.intp)
+    def cells(self, places: Array) -> Cells:
+        """Returns the cells ``(n,)`` of places ``(n, axes)``."""
+        return self._map.cells(places)
 
     def elites(self) -> list[int]:
-        """Numbers of the best tests of all cells, in order of cell."""
-        found = self._map.data(["index", "solution"], return_type="dict")
-        order = np.argsort(found["index"])
-        return [int(number) for number in found["solution"][order, 0]]
+        """Returns the numbers of the best tests of all cells, in order of cell."""
+        return [self._best[cell][1] for cell in sorted(self._best)]
+
+
+class Grid:
+    """Equally wide cells along each axis; what lies beyond the map is in the outermost cell."""
+
+    def __init__(self, bounds: Array, cells: int) -> None:
+        """Takes the ends ``(axes, 2)`` of the map, and the number of cells along each axis."""
+        self._low, self._width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
+        self._along = cells
+
+    def cells(self, places: Array) -> Cells:
+        """Returns the cells ``(n,)`` of places ``(n, axes)``, numbered along the last axis first."""
+        steps = (self._along * (places - self._low) + EDGE) / self._width
+        each = np.clip(steps, 0, self._along - 1).astype(np.intp)
+        return np.asarray(each @ self._along ** np.arange(each.shape[1])[::-1], np.intp)
+
+
+class Niches:
+    """The neighbourhoods of centroids that are spread evenly over the map."""
+
+    def __init__(self, bounds: Array, cells: int) -> None:
+        """Takes the ends ``(axes, 2)`` of the map, and the number of centroids."""
+        samples = np.random.default_rng(NICHES_SEED).uniform(
+            bounds[:, 0], bounds[:, 1], (SAMPLES, len(bounds))
+        )
+        self.centroids = centroids_of(samples, cells)
+        self._tree = KDTree(self.centroids)
+
+    def cells(self, places: Array) -> Cells:
+        """Returns the number ``(n,)`` of the centroid that is nearest to each of the places ``(n, axes)``."""
+        return np.asarray(self._tree.query(places)[1], np.intp)
+
+
+def centroids_of(samples: Array, count: int) -> Array:
+    """Returns the centroids ``(count, axes)`` of samples ``(n, axes)``, by k-means (Lloyd).
+
+    Draws, begins and ends as scikit-learn's ``k_means`` does with ``init="random"``, which pyribs uses, so
+    that a map has the same niches as the maps of earlier versions of RoadGPT.
+    """
+    middle = samples.mean(axis=0)
+    points = samples - middle
+    weights = np.full(len(points), 1.0) / len(points)
+    drawn = np.random.RandomState(NICHES_SEED).choice(len(points), count, replace=False, p=weights)
+    centroids, nearest = points[drawn], np.full(len(points), -1)
+    least = SETTLED * points.var(axis=0).mean()
+    for _ in range(MOST_ROUNDS):
+        before, nearest = nearest, np.asarray(KDTree(centroids).query(points)[1])
+        members = np.bincount(nearest, minlength=count)
+        sums = [np.bincount(nearest, column, count) for column in points.T]
+        moved = np.where(
+            members[:, None] > 0, np.stack(sums, -1) / np.maximum(members, 1)[:, None], centroids
+        )
+        shift, centroids = ((moved - centroids) ** 2).sum(), moved
+        if np.array_equal(nearest, before) or shift <= least:
+            break
+    return np.asarray(centroids + middle)

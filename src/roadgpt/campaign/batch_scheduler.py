@@ -1,4 +1,4 @@
-"""The course of one cell: which batch is asked for next, and what its generator has been told by then."""
+"""The batches of one cell: which is asked for next, and which results the cell's generator knows by then."""
 
 from bisect import bisect
 from collections.abc import Iterable
@@ -16,7 +16,10 @@ LAG = 2  # batches: number k knows results up to k - 2
 
 
 class BatchScheduler:
-    """A cell at work. Batch k is asked for when all of batch k - 2 have ended, and knows no later one."""
+    """Asks the generator of one cell for its batches.
+
+    Batch k is asked for when all tests of batch k - 2 have ended, and the generator knows no later result.
+    """
 
     def __init__(self, cell: Cell, store: Store) -> None:
         self.cell = cell
@@ -31,48 +34,51 @@ class BatchScheduler:
 
     @property
     def asked(self) -> int:
-        """Tests, so far."""
+        """Number of tests that were asked for so far."""
         return sum(batch.n for batch in self.batches[-1:]) + (
             self.batches[-1].first - 1 if self.batches else 0
         )
 
     @property
     def is_closed(self) -> bool:
-        """Is nothing more asked for?"""
+        """True if nothing more will be asked for."""
         return self.closed is not None or self.asked >= self.cell.budget.most
 
     @property
     def is_done(self) -> bool:
-        """Have all tests ended, and will there be no more?"""
+        """True if all tests have ended and there will be no more."""
         return self.is_closed and not any(batch.left for batch in self.batches[-LAG:])
 
     @property
     def may_ask(self) -> bool:
-        """Is it time for the next batch?"""
+        """True if the next batch may be asked for now."""
         return not self.is_closed and not any(batch.left for batch in self.batches[: 1 - LAG][-1:])
 
     @property
     def is_late(self) -> bool:
-        """Is the time up?"""
+        """True if the cell's time limit is reached."""
         limit = self.cell.budget.seconds
         return limit is not None and self.seconds >= limit
 
     def ended(self, batch: int) -> None:
-        """A test of a batch has ended."""
+        """Counts a test of a batch as ended."""
         self.batches[batch].left -= 1
 
     def close(self, why: str) -> None:
-        """Ask for nothing more."""
+        """Ends the cell for a reason: nothing more is asked for."""
         self._store.close_cell(self.cell.name, why)
         self.closed = why
 
     def ask(self, pool: Pool) -> list[tuple[int, Proposal]]:
-        """The next batch, with the numbers of its tests; it is in the store when this returns.
+        """Asks for the next batch and stores it; returns its tests with their numbers.
 
-        Empty where there is nothing left to ask for, or no road can be designed: then the course is closed.
+        Returns an empty list, and closes the cell, where the generator has nothing left to propose or no road
+        can
+        be designed.
 
         Raises:
-            RoadGPTError: the generator asks for what cannot be.
+            RoadGPTError: the generator proposes more tests than it was asked for, or drafts without a
+                description.
         """
         batch, first = len(self.batches), self.asked + 1
         generator = self._taught(batch - LAG)
@@ -98,7 +104,7 @@ class BatchScheduler:
         return [*enumerate(proposals, first)]
 
     def _taught(self, last: int) -> Generator:
-        """The generator, told of all batches up to this one."""
+        """Returns the generator after it was told of all batches up to this one."""
         if self._generator is None:
             self._generator = plugins.find("generators", self.cell.generator)(self.cell)
         generator: Generator = self._generator
@@ -115,7 +121,7 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Batches whose designs a draft of this batch is not to repeat."""
+        """Returns the batches whose designs a draft of this batch has to differ from."""
         last = batch - LAG
         if last < 0:
             return range(0)
@@ -125,10 +131,10 @@ class BatchScheduler:
         return range(begin, last + 1)
 
     def designs(self, batch: int) -> tuple[Design, ...]:
-        """Of a batch that has ended."""
+        """Returns the designs of a batch that has ended."""
         return tuple(designs_of(self._results(self.batches[batch])))
 
 
 def designs_of(results: Iterable[Result]) -> list[Design]:
-    """Designs of results, where there are any."""
+    """Returns the designs of those results that have one."""
     return [result.design for result in results if result.design is not None]

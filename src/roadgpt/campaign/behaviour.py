@@ -1,14 +1,14 @@
-"""What a test is like, in numbers: the axes along which a search looks for roads of every kind.
+"""Features of a test: the axes of the map on which a search looks for roads of every kind.
 
-The field's own five are ``run.features``: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP. Here are those of the
-road's geometry besides, all but the first from ``check.measures``:
+The field's own five features are in ``run.features``: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP. This module
+adds features of the road's geometry, all but the first from ``check.measures``:
 
     DIR_COV_360   share of 36 directions that occur, all round: what DIR_COV is meant to be
     RADIUS        m, at the tightest place; TURNED degrees altogether; TURNS how many; LEFT share of them
-    GRADE         percent, the steepest place; CLIMB m from start to end; LENGTH m
+    GRADE         percent, at the steepest place; CLIMB m from start to end; LENGTH m
 
-and, inside a Brief that says how many turns there are, RADIUS_1, DEGREES_1, RADIUS_2, ...: of every turn
-that was asked for, in order.
+Where a description says how many turns there are, each of them has features of its own, in order: RADIUS_1,
+DEGREES_1, RADIUS_2, ...
 """
 
 from collections.abc import Mapping, Sequence
@@ -41,17 +41,17 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "CLIMB": (-40.0, 40.0),  # m
     "LENGTH": (20.0, 620.0),  # m
 }
-"""Where the map of a search begins and ends along each axis; what lies beyond is in the outermost cell."""
+"""The ends of the map along each axis; values beyond them belong to the outermost cell."""
 
 DEGREES = (0.0, 180.0)
 
 
 def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
-    """Features of a road's geometry.
+    """Returns the features of a road's geometry, by name.
 
     Args:
         road: the road.
-        brief: what was asked for, if anything was.
+        brief: what was asked for; None: nothing was.
     """
     samples = road.sample()
     widest = outline(brief or Brief()).widest
@@ -59,7 +59,7 @@ def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
 
 
 def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) -> dict[str, float]:
-    """The same, of a road that was measured; ``heading`` in radians at equal stations."""
+    """Returns the same features of a road that was measured; ``heading`` is in radians at equal stations."""
     turns = found.turns
     out = {
         "DIR_COV_360": directions(heading),
@@ -78,19 +78,20 @@ def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) 
 
 
 def turns_asked(brief: Brief | None) -> int:
-    """How many turns of a Brief have features of their own: all, where their number was said."""
+    """Returns how many turns of a Brief have features of their own: all, where their number was given; else
+    0."""
     asked = outline(brief).turns if brief else None
     return int(asked.lo) if asked and 0 < asked.lo == asked.hi <= MOST_TURNS else 0
 
 
 def directions(heading: Array) -> float:
-    """Share of the directions, 10 degrees each, that occur among headings in radians."""
+    """Returns the share of the 36 directions, 10 degrees each, that occur among headings in radians."""
     number = np.floor(np.degrees(heading) % 360 / (360 / DIRECTIONS)).astype(int) % DIRECTIONS
     return len(np.unique(number)) / DIRECTIONS
 
 
 def bounds_of(axis: str) -> tuple[float, float]:
-    """Where the map begins and ends along an axis.
+    """Returns the ends of the map along an axis.
 
     Raises:
         KeyError: there is no feature of that name.
@@ -102,7 +103,7 @@ def bounds_of(axis: str) -> tuple[float, float]:
 
 
 def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> tuple[int, ...] | None:
-    """The cell of a map of so many cells along each axis; None where a feature is missing."""
+    """Returns the cell of a map with ``cells`` cells along each axis; None where a feature is missing."""
     if any(axis not in features for axis in axes):
         return None
     place = []

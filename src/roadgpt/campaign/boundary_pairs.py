@@ -1,7 +1,7 @@
-"""Pairs at the boundary: two roads that are nearly one, of which the car kept its lane on one only.
+"""Pairs at the boundary: two similar roads, of which the car kept its lane on one and failed on the other.
 
-Two roads correspond where they have the same row of left turns, right turns and straights; then each number
-of the one can be moved to that of the other, and a road half-way is driven next.
+Two roads correspond where they have the same sequence of left turns, right turns and straights. Then each
+number of one can be moved towards that of the other, and a road half-way between them can be driven next.
 """
 
 from collections.abc import Sequence
@@ -15,13 +15,13 @@ from roadgpt.campaign.model import Result
 
 
 class Measure(NamedTuple):
-    """A number of a gene, by which two of them differ."""
+    """A number of a gene, by which two genes are compared."""
 
     field: str
     called: str
     unit: str
     scale: float
-    """Which difference weighs 1."""
+    """The difference that counts as 1."""
 
 
 GRADE = Measure("incline", "grade", " %", 1.0)
@@ -36,18 +36,19 @@ OF_STRAIGHT = (GRADE, Measure("length", "length", " m", 10.0))
 
 @dataclass(frozen=True)
 class BoundaryPair:
-    """A road on which the car kept its lane, and its nearest relative on which it did not."""
+    """A road on which the car kept its lane, and the nearest corresponding road on which it failed."""
 
     kept: int
-    """Number of the test."""
+    """Number of the test that passed."""
     lost: int
     distance: float
-    """Root of the sum of squared differences of all turns and straights: 10 m of a straight, 2 m of a radius
-    or a clothoid, 10 degrees of a turn, 1 % of a slope are 1."""
+    """Root of the sum of squared differences of all turns and straights, where 10 m of a straight, 2 m of a
+    radius
+    or a clothoid, 10 degrees of a turn and 1 % of a slope count as 1."""
 
 
 def distance(one: Genes, other: Genes) -> float:
-    """How far corresponding roads are apart; infinite where they do not correspond."""
+    """Returns the distance between corresponding roads; infinite where they do not correspond."""
     if [np.sign(gene.turn) for gene in one] != [np.sign(gene.turn) for gene in other]:
         return np.inf
     total = 0.0
@@ -58,7 +59,8 @@ def distance(one: Genes, other: Genes) -> float:
 
 
 def weightiest(kept: Genes, lost: Genes) -> str:
-    """What weighs most between corresponding roads: 'turn 2: radius 15.4 m, then 14.9 m'; or nothing."""
+    """Names the largest difference between corresponding roads: 'turn 2: radius 15.4 m, then 14.9 m'; or
+    nothing."""
     most, found = 0.0, ""
     turns = straights = 0
     for a, b in zip(kept, lost, strict=True):
@@ -84,10 +86,9 @@ def _figure(gene: Gene, measure: Measure) -> str:
 
 
 def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
-    """For every failure its nearest relative that was kept, the nearest pairs first; each kept road once.
+    """Returns the pairs among the results of one cell, the nearest first.
 
-    Args:
-        results: of one cell.
+    Every failure is paired with its nearest relative that passed; each test is in one pair at most.
     """
     genes = {r.number: genes_of(r.design) for r in results if r.design and r.outcome in ("PASS", "FAIL")}
     kept = [r.number for r in results if r.outcome == "PASS" and r.number in genes]
@@ -96,7 +97,7 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
 
 def paired(genes: dict[int, Genes], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """The same, of roads by their numbers."""
+    """Returns the same pairs, for genes by the numbers of their tests."""
     rows: dict[tuple[float, ...], list[int]] = {}
     for number in kept:
         rows.setdefault(_row(genes[number]), []).append(number)

@@ -1,25 +1,28 @@
-"""The purse: shares the limits of tokens and money among tests that are under way at once."""
+"""Shares a campaign's limits of tokens and money among the tests that are running at once."""
 
 from roadgpt.campaign.single_test import Allowance
 from roadgpt.chat import ChatSettings, Spent
 
 
 class BudgetAllocator:
-    """No test gets more than what is left when all others spend what they were given."""
+    """Gives each test no more than what is left if all others spend their whole allowance."""
 
     def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
-        """With what was spent before."""
+        """Takes the limits, and the tokens and USD that were spent before."""
         self._limits = Allowance(chat.max_tokens, chat.max_cost) if chat else Allowance()
         self._spent = [float(tokens), cost]
         self._given: dict[int, Allowance] = {}
 
     @property
     def is_bounded(self) -> bool:
-        """Is there any limit?"""
+        """True if there is any limit."""
         return self._limits != Allowance()
 
     def share(self, tests: int) -> Allowance:
-        """What each of some more tests may spend: together half of what is left, so that more can follow."""
+        """Returns the allowance of each of some more tests.
+
+        Together they get half of what is left, so that more tests can follow.
+        """
         tokens, cost = self._left()
         return Allowance(
             None if tokens is None else int(tokens / (2 * tests)),
@@ -27,17 +30,17 @@ class BudgetAllocator:
         )
 
     def all(self) -> Allowance:
-        """Everything that is left."""
+        """Returns everything that is left."""
         tokens, cost = self._left()
         return Allowance(None if tokens is None else int(tokens), cost)
 
     def give(self, key: int, allowance: Allowance) -> None:
-        """A test has been given this."""
+        """Reserves the allowance of a test that begins."""
         if self.is_bounded:
             self._given[key] = allowance
 
     def back(self, key: int, spent: Spent | None) -> None:
-        """A test has ended, and has spent this."""
+        """Releases the allowance of a test that has ended, and counts what it spent."""
         self._given.pop(key, None)
         if spent is not None:
             self._spent[0] += spent.usage.total
@@ -52,7 +55,7 @@ class BudgetAllocator:
         return None if tokens is None else max(tokens, 0), None if cost is None else max(cost, 0.0)
 
     def sentence(self, folder: object) -> str:
-        """Why nothing more can be asked."""
+        """Says why nothing more can be asked, and how to continue."""
         tokens, cost = self._limits
         limit = f"{cost:g} USD" if tokens is None or (cost and self._left()[1] == 0) else f"{tokens:,} tokens"
         so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"

@@ -1,7 +1,8 @@
-"""A Design as a row of genes, one per turn and straight, which can be changed without knowing segments.
+"""Genes: a Design as a sequence of turns and straights, which can be changed without knowing segments.
 
-RoadGPT's format cuts turns beyond 70 degrees into segments; a gene is the whole turn. Cut again by
-``design_of``, a road that a planner drafted comes back as it was, to the last written digit.
+RoadGPT's format cuts turns of more than 70 degrees into segments; a gene is the whole turn. ``design_of``
+cuts
+it again, so that a road that the planner drafted comes back as it was, to the last written digit.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,11 +35,11 @@ class Gene(NamedTuple):
     turn: float = 0.0
     """Degrees, left positive."""
     length: float = 0.0
-    """Metres, of a straight; a turn's follows from its angle and radius."""
+    """Metres, of a straight; the length of a turn follows from its angle and radius."""
     radius: float = inf
     """Metres."""
     ramp: float = 0.0
-    """Metres, of the clothoid at either end of a turn."""
+    """Metres, of the clothoid at each end of a turn."""
     incline: float = 0.0
     """Percent."""
     vertical_radius: float = 0.0
@@ -56,7 +57,7 @@ Genes = tuple[Gene, ...]
 
 
 def genes_of(design: Design) -> Genes:
-    """The genes of a design, in driving order; neighbouring straights of one incline are one."""
+    """Returns the genes of a design in driving order; neighbouring straights of one incline become one."""
     out: list[Gene] = []
     for group in _groups(design.segments):
         for gene in _of_group(group):
@@ -69,7 +70,7 @@ def genes_of(design: Design) -> Genes:
 
 
 def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
-    """Segments that are one turn, or one straight each."""
+    """Yields the segments of each turn, and each straight by itself."""
     group = [segments[0]]
     for before, segment in pairwise(segments):
         if _goes_on(before, segment, group[0].radius):
@@ -81,7 +82,7 @@ def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
 
 
 def _goes_on(before: Segment, segment: Segment, radius: float | None) -> bool:
-    """Is a segment cut off the same turn as the one before?"""
+    """Checks whether a segment belongs to the same turn as the one before."""
     same = (before.turn_degrees, before.incline) == (segment.turn_degrees, segment.incline)
     return bool(segment.turn_degrees) and same and (segment.radius is None or segment.radius == radius)
 
@@ -107,14 +108,15 @@ def _of_group(group: Sequence[Segment]) -> Iterator[Gene]:
 
 
 def spans_of(genes: Genes) -> list[Span]:
-    """The spans of genes, as planners lay them out."""
+    """Returns the spans of genes, as planners lay them out."""
     return [gene.span for gene in genes]
 
 
 def segments_of(genes: Genes, world: World) -> tuple[Segment, ...]:
-    """RoadGPT's segments; no slope lies so near to where flat ends that rounding would decide what it is.
+    """Returns the segments of genes in RoadGPT's format.
 
-    Slopes that change too fast for the speed are moved towards each other.
+    Grades are rounded away from the limit at which a road counts as flat. Slopes that change too fast for the
+    speed limit are moved towards each other.
     """
     pace = Pace.along(spans_of(genes), world)
     segments = joined(_cut(genes, [gene.incline for gene in genes]), pace)
@@ -130,7 +132,7 @@ def segments_of(genes: Genes, world: World) -> tuple[Segment, ...]:
 
 
 def _cut(genes: Genes, grades: Sequence[float]) -> list[Segment]:
-    """The segments of genes with these inclines, percent."""
+    """Returns the segments of genes with these grades, in percent."""
     out: list[Segment] = []
     for gene, grade in zip(genes, grades, strict=True):
         span, incline = gene.span, float(rounded(np.array(grade))) + 0.0
@@ -139,7 +141,7 @@ def _cut(genes: Genes, grades: Sequence[float]) -> list[Segment]:
 
 
 def design_of(genes: Genes, place: Place, world: World) -> Design:
-    """The design that lies at a place of the map, its lowest point a little above the ground."""
+    """Returns the design that starts at a place of the map, its lowest point a little above the ground."""
     segments = segments_of(genes, world)
     profile = elevation_of(segments, 0.0)
     _, sag = lowest(profile, profile.stations[-1])

@@ -19,7 +19,7 @@ from roadgpt.campaign.single_test import WorkerSetup
 from roadgpt.campaign.store import Store, refused
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.campaign.table import CELLS, RESULTS, write_tables
-from roadgpt.campaign.traces import SUFFIX, TRACES
+from roadgpt.campaign.traces import OLD_SUFFIX, SUFFIX, TRACES
 from roadgpt.chat import Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.drive import refuse_ignored
@@ -226,7 +226,7 @@ def _sweep(folder: Path, store: Store) -> None:
         sweep(folder / TRACES)
         known = {name for (name,) in store.query("SELECT file FROM traces")}
         for path in (folder / TRACES).iterdir():
-            if path.name not in known and path.suffix == SUFFIX and path.stem.isdecimal():
+            if path.name not in known and path.suffix in (SUFFIX, OLD_SUFFIX) and path.stem.isdecimal():
                 path.unlink()
 
 

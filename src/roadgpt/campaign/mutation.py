@@ -1,6 +1,6 @@
-"""Changes of genes: longer, tighter, steeper, swapped, crossed; each pure, and drawn from a given source.
+"""Mutations of a road's genes: each is a pure function that draws from a given random generator.
 
-What a change does to what was asked for is not its business: ``vary`` proves every road afterwards.
+A mutation does not look at what was asked for: ``variation`` checks every road afterwards.
 """
 
 from collections.abc import Callable
@@ -29,22 +29,22 @@ Rng = np.random.Generator
 
 
 class Mutation(NamedTuple):
-    """A way to change genes, and how often it is drawn beside the others."""
+    """A kind of mutation, and how often it is drawn relative to the others."""
 
     make: Callable[[Genes, Rng, World], Genes]
     weight: float
     is_numeric: bool
-    """Does it leave the row of turns and straights as it is?"""
+    """True if it keeps the sequence of turns and straights and changes numbers only."""
 
 
 def mutated(genes: Genes, rng: Rng, world: World, numeric: float = 0.0) -> Genes:
-    """One to three changes, one after the other.
+    """Applies one to three mutations, one after the other.
 
     Args:
         genes: of a road.
-        rng: source of chance.
-        world: limits of radii and grades.
-        numeric: chance that only lengths, angles, radii and slopes change.
+        rng: the random generator.
+        world: gives the limits of radii and grades.
+        numeric: probability that only lengths, angles, radii and slopes change.
     """
     names = [name for name, change in MUTATIONS.items() if change.is_numeric]
     if rng.random() >= numeric:
@@ -56,13 +56,13 @@ def mutated(genes: Genes, rng: Rng, world: World, numeric: float = 0.0) -> Genes
 
 
 def crossed_over(one: Genes, other: Genes, rng: Rng) -> Genes:
-    """The start of one road, and the end of another."""
+    """Returns the start of one road followed by the end of another, each cut at a random gene."""
     first, last = int(rng.integers(1, len(one) + 1)), int(rng.integers(len(other)))
     return (one[:first] + other[last:])[:MOST_GENES]
 
 
 def interpolated(one: Genes, other: Genes, share: float) -> Genes | None:
-    """The road between two whose turns and straights correspond; None where they do not.
+    """Returns the road between two whose turns and straights correspond; None where they do not.
 
     Args:
         one: the road at share 0.
@@ -79,7 +79,7 @@ def interpolated(one: Genes, other: Genes, share: float) -> Genes | None:
 
 
 def mirrored(genes: Genes, rng: Rng, world: World) -> Genes:
-    """Every left turn to the right, every right one to the left."""
+    """Turns every left turn into a right one, and every right one into a left one."""
     del rng, world
     return tuple(gene._replace(turn=-gene.turn) if gene.turn else gene for gene in genes)
 
@@ -148,7 +148,7 @@ def _inserted(genes: Genes, rng: Rng, world: World) -> Genes:
 
 
 def _new(rng: Rng, world: World, incline: float) -> Genes:
-    """A turn and a straight behind it."""
+    """Draws a turn and a straight behind it."""
     least = world.min_radius * OVER_LEAST_RADIUS
     turn = float(rng.choice((-1, 1)) * rng.uniform(*NEW_TURN))
     radius = min(least * exp(float(rng.exponential(0.5))), WIDEST)
@@ -165,7 +165,7 @@ def _removed(genes: Genes, rng: Rng, world: World) -> Genes:
 
 
 def _backwards(genes: Genes, rng: Rng, world: World) -> Genes:
-    """Driven from its end: what turned left turns right, what climbed falls."""
+    """Reverses the direction of driving: left turns become right turns, and climbs become descents."""
     del rng, world
     radii = [0.0, *(gene.vertical_radius for gene in reversed(genes[1:]))]
     return tuple(
@@ -192,7 +192,7 @@ MUTATIONS: dict[str, Mutation] = {
 
 
 def _any(genes: Genes, rng: Rng, is_turn: bool) -> int | None:
-    """One of the turns, or of the straights; None where there is none."""
+    """Draws the index of a turn, or of a straight; None where there is none."""
     found = [index for index, gene in enumerate(genes) if bool(gene.turn) == is_turn]
     return found[int(rng.integers(len(found)))] if found else None
 

@@ -1,4 +1,4 @@
-"""One test again: as the campaign kept it, or the whole Run anew, from its stored design and its seed."""
+"""One test of a campaign: its drive and its Run as the store keeps them, or driven again."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,10 +21,10 @@ from roadgpt.verdict import Verdict, judge
 
 
 def read_trace(folder: Path, cell: str, number: int) -> Drive:
-    """The drive of a test as the campaign kept it: every column at 50 Hz, to half a millimetre.
+    """Returns the drive of a test as the store keeps it: every column at 50 Hz, to half a millimetre.
 
     Raises:
-        UsageError: there is no campaign or no such test, or nobody drove it.
+        UsageError: there is no campaign or no such test, or it was not driven.
     """
     with Record.opened(folder) as record:
         record.result(cell, number)
@@ -35,10 +35,17 @@ def read_trace(folder: Path, cell: str, number: int) -> Drive:
 
 
 def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Run:
-    """The Run of a test as the campaign kept it: nobody drives, and no driver's file is read.
+    """Returns the Run of a test as the store keeps it; nothing is driven, and no driver's file is read.
 
-    The road is built from the stored design, the drive is the kept one, to half a millimetre, and outcome,
-    margin and place are those of the campaign. Without ``has_drive``, drive and verdict are left out.
+    The road is built from the stored design. The drive is the stored one, to half a millimetre; outcome,
+    margin
+    and place are those of the campaign.
+
+    Args:
+        folder: of the campaign.
+        cell: name of the test's cell.
+        number: of the test.
+        has_drive: False leaves out drive and verdict.
 
     Raises:
         UsageError: there is no campaign or no such test, it has no road, or its drive cannot be read.
@@ -48,7 +55,7 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 
 
 def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) -> Run:
-    """The same, of a result that was read; see ``kept_run``."""
+    """Returns the Run of a result that was read from an open record; see ``kept_run``."""
     request, brief = cell.request, cell.brief
     road = build(_design_of(record.folder, cell.name, result), request.setup.geometry)
     drive = _kept_drive(record, cell.name, result.number) if has_drive else None
@@ -72,8 +79,9 @@ def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) 
 
 
 def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict | None:
-    """What was judged then; only what the store does not hold is judged of the kept drive, whose half
-    millimetres may decide otherwise."""
+    """Judges the stored drive, and puts the values that the campaign stored in place of those found now: half
+    a
+    millimetre may decide otherwise."""
     if result.outcome not in ("PASS", "FAIL") or result.margin is None:
         return None
     step = len(drive) - 1
@@ -102,12 +110,12 @@ def _kept_drive(record: Record, cell: str, number: int) -> Drive | None:
 
 
 def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
-    """A test of a campaign, checked and driven again; and what came of it then.
+    """Checks and drives a test of a campaign again; returns the new Run and the stored Result.
 
     The same design, seed and setup give the same Run, bit for bit, on one machine.
 
     Raises:
-        UsageError: there is no campaign or no such test, or there is no road in it.
+        UsageError: there is no campaign or no such test, or it has no road.
     """
     with Record.opened(folder) as record:
         found, result = record.cell(cell), record.result(cell, number)
@@ -118,5 +126,5 @@ def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
 
 
 def is_same(run: Run, result: Result) -> bool:
-    """Did a test come to the very same end again?"""
+    """Checks that a Run has the outcome and the very margin of a stored Result."""
     return run.outcome == result.outcome and (run.verdict and run.verdict.margin) == result.margin

@@ -1,9 +1,9 @@
-"""Signs: what can be seen of a road before anyone drives it, of how near a car will come to leaving its lane.
+"""Features of a road that predict how near a car will come to leaving its lane, before anyone drives.
 
-What predicts recorded outcomes best is the curvature of the right lane's middle, k / (1 + 2k), as it lasts
-for some metres, outside of the first 25 m and the last 8 m: the car starts from rest, and the test ends 8 m
-before the road. So: the largest of it to either hand over windows of several lengths, how fast it changes,
-what straight leads up to the tightest place, and slopes and crests there.
+The best predictor of recorded outcomes is the curvature of the right lane's middle, k / (1 + 2k), averaged
+over some metres, outside the first 25 m and the last 8 m: the car starts from rest, and the test ends 8 m
+before the road does. The features are the largest such curvature to either side over windows of several
+lengths, how fast it changes, the length of the straight before the tightest place, and slopes and crests.
 """
 
 from collections.abc import Sequence
@@ -40,7 +40,7 @@ NAMES = (
 
 
 def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
-    """Signs of a road, ``(len(NAMES),)``, all of the size of 1."""
+    """Returns the features of a road, ``(len(NAMES),)``, each scaled to about 1."""
     samples = road.sample()
     kept = (samples.s >= STARTING) & (samples.s <= road.length - ENDING)
     if np.count_nonzero(kept) < 2:
@@ -71,21 +71,22 @@ def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
-    """How hard roads look where nothing was learnt yet: the largest lane curvature over 13 m, ``(n,)``."""
+    """Returns how hard roads look before anything is learnt: the largest lane curvature over 13 m."""
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]
     return np.asarray(table[:, columns].max(axis=1))
 
 
 def _mean(values: Array, window: int) -> Array:
-    """Mean over so many neighbours, the ends held."""
+    """Returns the moving average over ``window`` values; the first and last values are repeated beyond the
+    ends."""
     half = window // 2
     total = np.concatenate([[0.0], np.cumsum(np.pad(values, half, mode="edge"))])
     return np.asarray((total[window:] - total[:-window]) / window)
 
 
 def _run_up(size: Array, tight: int) -> float:
-    """Metres of the last straight before the tightest place."""
+    """Returns the metres of the last straight before the tightest place."""
     bends = np.flatnonzero(size[: tight + 1] >= STRAIGHT)
     gaps = np.diff(bends, prepend=-1) - 1
     straights = gaps[gaps >= SHORTEST]

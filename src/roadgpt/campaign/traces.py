@@ -1,14 +1,19 @@
-"""Traces: whole drives in little room. Every column at 50 Hz, as whole numbers of small steps, in Parquet.
+"""Traces: the drives of a campaign, every column at 50 Hz, as whole numbers of small steps.
 
-A group of drives is one file under ``traces/``; its rows are steps of drives, one drive after another, told
-apart by ``cell`` and ``number``. A value times its step (``STEPS``, and in the file's own metadata) is the
-column of ``roadgpt.drive.COLUMNS``. Whole numbers that change little from row to row are stored by their
-differences, in as few bits as these need: 11 kB for a drive of 20 s, a twelfth of its ``drive.npz``.
+The drives of a group of tests are one file under ``traces/``, in the format of ``numpy.savez``. Its entry
+``header`` is a line of JSON: the ``columns`` in their order, their ``steps``, and whose ``drives`` the file
+holds. The drive of test 17 of cell c02 is the entry ``c02/17``, whole numbers ``(columns, n)``: the second
+differences of each column in steps, which are near 0 for a car's motion and take little room (10 kB for a
+drive of 30 s). Summed up twice along the rows and multiplied by its step, a row is the column of
+``roadgpt.drive.COLUMNS``, in its unit.
+
+Stores of earlier versions hold Apache Parquet files instead (``parquet_traces``).
 """
 
 import io
 import json
 import os
+import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,10 +23,13 @@ from numpy.typing import NDArray
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import UsageError
+from roadgpt.reading import check_unpacked, json_of, opened
 from roadgpt.run.atomic import write_whole
 
-TRACES, SUFFIX = "traces", ".parquet"
-FORMAT = 1
+TRACES, SUFFIX, OLD_SUFFIX = "traces", ".npz", ".parquet"
+FORMAT = 2  # of a file; 1 was Parquet
+LARGEST, UNPACKED = 500_000_000, 200_000_000  # bytes of a file, and of one drive in it: as drive.npz
+THOROUGH = 9  # of zlib's levels: half a millisecond more for each second of driving, and a tenth less room
 FINE, COARSE = 1e-4, 1e-2
 STEPS = {
     **dict.fromkeys(COLUMNS, 1e-3),  # s, m, m/s, shares: a millimetre is less than anything here decides on
@@ -34,14 +42,15 @@ Whole = NDArray[np.int32]
 
 
 class Trace(NamedTuple):
-    """A Drive on its way to a file."""
+    """A Drive in whole steps, as a file holds it."""
 
     header: dict[str, Any]
+    """Driver, simulator, seed, how the drive ended, and the car's sizes."""
     columns: dict[str, Whole]
 
 
 def trace_of(drive: Drive) -> Trace:
-    """A Drive in whole steps."""
+    """Returns a Drive in whole steps."""
     header = {
         "driver": drive.driver,
         "simulator": drive.simulator,
@@ -53,7 +62,7 @@ def trace_of(drive: Drive) -> Trace:
 
 
 def drive_of(trace: Trace) -> Drive:
-    """The Drive again, to half a step."""
+    """Returns the Drive again, to half a step."""
     header = dict(trace.header)
     columns = Columns({name: _number(trace.columns[name], STEPS[name]) for name in COLUMNS})
     return Drive(columns=columns, **{**header, "car": Box(**header["car"])})
@@ -71,38 +80,28 @@ def _number(steps: Whole, step: float) -> NDArray[np.float64]:
 
 
 def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Trace]]) -> str:
-    """Write a group of drives (cell, number of the test, drive) as one file; gives back its name.
+    """Writes a group of drives as one file, and returns the file's name; the same drives give the same bytes.
 
-    The file is whole and on the disk, not in some buffer, when this returns.
+    The file is whole and on the disk, not in a buffer of the system, when this returns.
+
+    Args:
+        folder: of the campaign.
+        number: of the file.
+        drives: cell, number of the test, and drive.
     """
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    lengths = [len(trace.columns["time"]) for _, _, trace in drives]
-    table = pa.table(
-        {
-            "cell": np.repeat([cell for cell, _, _ in drives], lengths),
-            "number": np.repeat(np.array([number for _, number, _ in drives], np.int32), lengths),
-            **{name: np.concatenate([trace.columns[name] for *_, trace in drives]) for name in COLUMNS},
-        }
-    )
-    told = {
+    header = {
         "format": FORMAT,
-        "steps": STEPS,
-        "drives": [{"cell": cell, "number": number, **trace.header} for cell, number, trace in drives],
+        "columns": [*COLUMNS],
+        "steps": [STEPS[name] for name in COLUMNS],
+        "drives": [{"cell": cell, "number": test, **trace.header} for cell, test, trace in drives],
     }
     data = io.BytesIO()
-    with pq.ParquetWriter(
-        data,
-        table.schema,
-        compression="zstd",
-        use_dictionary=["cell"],
-        column_encoding=dict.fromkeys(("number", *COLUMNS), "DELTA_BINARY_PACKED"),
-        write_statistics=["number"],
-        store_schema=False,
-    ) as writer:
-        writer.write_table(table)
-        writer.add_key_value_metadata({"roadgpt": json.dumps(told)})
+    with zipfile.ZipFile(data, "w") as archive:
+        _add(archive, "header", np.array(json.dumps(header)))
+        for cell, test, trace in drives:
+            rows = np.stack([trace.columns[name] for name in COLUMNS])
+            # in whole numbers that wrap round, so that sums give every value back, the largest ones too
+            _add(archive, f"{cell}/{test}", np.diff(rows, 2, prepend=np.zeros((len(rows), 2), np.int32)))
     name = f"{number:07d}{SUFFIX}"
     path = folder / TRACES / name
     path.parent.mkdir(exist_ok=True)
@@ -112,8 +111,16 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
     return name
 
 
+def _add(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
+    entry = io.BytesIO()
+    np.lib.format.write_array(entry, values, version=(1, 0), allow_pickle=False)
+    # with a fixed date, so that the bytes do not depend on the clock
+    info = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+    archive.writestr(info, entry.getvalue(), zipfile.ZIP_DEFLATED, THOROUGH)
+
+
 def _to_disk(path: Path) -> None:
-    """Wait until a file or the names in a folder are where a power cut does not reach them."""
+    """Waits until a file, or the names in a folder, are where a power cut does not reach them."""
     if path.is_dir() and os.name == "nt":  # Windows opens no folders
         return
     number = os.open(path, os.O_RDONLY if os.name != "nt" else os.O_RDWR)
@@ -124,21 +131,37 @@ def _to_disk(path: Path) -> None:
 
 
 def read_traces(path: Path, cell: str, number: int) -> Drive:
-    """One drive out of a file.
+    """Reads one drive out of a file of traces.
 
     Raises:
-        UsageError: the file is damaged or gone, or does not hold it.
+        UsageError: the file is damaged or missing, or does not hold the drive; or it is a Parquet file, and
+            pyarrow, which reads it, is not installed.
     """
-    import pyarrow.parquet as pq
-
     try:
-        told = json.loads(pq.read_metadata(path).metadata[b"roadgpt"])
-        (header,) = [dict(d) for d in told["drives"] if (d["cell"], d["number"]) == (cell, number)]
-        table = pq.read_table(path, filters=[("cell", "=", cell), ("number", "=", number)])
-        del header["cell"], header["number"]
-        columns = {name: table[name].to_numpy().astype(np.int32) for name in COLUMNS}
-        return drive_of(Trace(header, columns))
-    except Exception as error:  # of a broken file, pyarrow, json and numpy raise anything
+        if path.suffix == OLD_SUFFIX:
+            from roadgpt.campaign.parquet_traces import read_parquet
+
+            return drive_of(Trace(*read_parquet(path, cell, number)))
+        return drive_of(_trace_in(path, cell, number))
+    except UsageError:
+        raise
+    except Exception as error:  # zipfile, its decoders, numpy, json and pyarrow raise anything
         raise UsageError(
             f"{path} holds no drive of test {number} of {cell} ({error}); drive it again"
         ) from error
+
+
+def _trace_in(path: Path, cell: str, number: int) -> Trace:
+    with opened(path, LARGEST, "drives of a campaign") as file, np.load(file, allow_pickle=False) as archive:
+        entries = [archive.zip.getinfo(f"{name}.npy") for name in ("header", f"{cell}/{number}")]
+        check_unpacked(entries, UNPACKED)
+        told = json_of(str(archive["header"]))
+        rows = archive[f"{cell}/{number}"]
+    if told["format"] != FORMAT or told["columns"] != [*COLUMNS]:
+        raise ValueError("another version of roadgpt wrote it")
+    if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:
+        raise ValueError("a drive is a table of whole numbers")
+    (header,) = [dict(each) for each in told["drives"] if (each["cell"], each["number"]) == (cell, number)]
+    del header["cell"], header["number"]
+    steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
+    return Trace(header, dict(zip(COLUMNS, steps, strict=True)))

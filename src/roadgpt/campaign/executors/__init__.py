@@ -1,23 +1,24 @@
-"""Executors: the workers of a campaign, one way of having them per file.
+"""Executors: plug-ins that run the jobs of a campaign on workers, one kind of workers per file.
 
-An executor is a class, made with a WorkerConfig. It runs jobs and decides nothing: which tests there are, and what
-becomes of their results, is the business of the one process that made it, which alone writes the store. So a
-way of having workers needs six methods:
+An executor is a class that is made with a WorkerConfig. It runs jobs and decides nothing else: the one
+process that made it chooses the tests, receives their results, and alone writes the store. An executor has
+these methods:
 
-    share(name, value)      a value that jobs may need; sent to a worker at most once
-    forget(name)            no later job needs it
-    submit(jobs)            run these some time, in this order as far as it goes; returns at once
-    done(seconds) -> list   what has ended since the last call; waits so long for the first of them
-    map(function, items)    as ``campaign.model.Pool`` has it; goes before all jobs that have not begun
-    stop()                  end every worker now, whatever it does
+    share(name, value)      keeps a value that jobs may need; it is sent to each worker at most once
+    forget(name)            drops a shared value that no later job needs
+    submit(jobs)            queues jobs, which begin in about this order; returns at once
+    done(seconds) -> list   returns what has ended since the last call; waits up to ``seconds`` for the first
+    map(function, items)    is ``campaign.model.Pool.map``; goes before all jobs that have not begun
+    under_way() -> list     returns the jobs that are running, and the worker of each
+    stop()                  ends every worker at once
 
-and ``under_way()``, which tells who does what. A job runs ``function(item, *values)`` with the values that
-it needs; functions stand at the top of a module. It runs at least once: a worker that dies or hangs (no sign
-of life, or longer at one job than the Staff's patience) is replaced, and its job given to another, until it
-has cost ``MOST_DEATHS`` of them. A job ends with exactly one Done. Jobs of one campaign give the same values
-wherever and however often they run, so an executor needs no memory of its own.
+A job runs ``function(item, *values)`` with the shared values that it needs; the function has to stand at the
+top level of a module. A job may run more than once: a worker that dies or hangs (sends no sign of life, or
+takes longer for one job than ``WorkerConfig.patience``) is replaced, and its job is given to another worker,
+until ``MOST_DEATHS`` workers have died over it. Each job ends with exactly one FinishedJob. A job returns the
+same value wherever and however often it runs, so an executor needs no memory of its own.
 
-``prepare`` runs once in each worker, before its first job: it imports what takes seconds to import.
+``WorkerConfig.prepare`` runs once in each worker before its first job, to import what takes seconds.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,70 +34,71 @@ MOST_DEATHS = 3  # of workers, over one job; then it is the job that kills them
 
 @dataclass(frozen=True)
 class WorkerConfig:
-    """Whom a campaign works with."""
+    """The workers that a campaign asks an executor for."""
 
     workers: int
     prepare: Callable[[], object]
     patience: float
-    """Seconds for one job; who takes longer hangs."""
+    """Seconds for one job; a worker that takes longer is taken to hang."""
     log: Path
-    """Takes what workers print."""
+    """The file that receives what workers print."""
     address: str = ""
-    """Where the workers are, for executors that ask."""
+    """The address of the workers, for executors that connect to other machines."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """Something to be done by whichever worker is free."""
+    """A call that any free worker may run."""
 
     key: int
-    """Comes back with what became of it."""
+    """Identifies the job in its FinishedJob."""
     function: Callable[..., Any]
     item: Any
     needs: tuple[str, ...] = ()
-    """Names of shared values, which the function is given after the item."""
+    """Names of the shared values that the function receives after the item."""
 
 
 @dataclass(frozen=True)
 class FinishedJob:
-    """What became of a job: a value, an error that its function raised, or that it was given up."""
+    """The end of a job: the value that its function returned, the error that it raised, or why it was given
+    up."""
 
     key: int
     value: Any = None
     error: Exception | None = None
     lost: str = ""
-    """Why it was given up; empty for one that ended."""
+    """Why the job was given up; empty for a job that ended."""
 
 
 @dataclass(frozen=True)
 class RunningJob:
-    """Who does what."""
+    """A job that a worker is running."""
 
     key: int
     worker: str
     seconds: float
-    """Since it was begun."""
+    """Seconds since the job began."""
 
 
 class Executor(Protocol):
-    """Workers; see the head of this module."""
+    """The interface of executors; the docstring of this module describes each method."""
 
     def __init__(self, staff: WorkerConfig) -> None: ...
 
     def share(self, name: str, value: Any) -> None:
-        """Keep a value for jobs that need it."""
+        """Keeps a value for the jobs that need it."""
         ...
 
     def forget(self, name: str) -> None:
-        """Let go of a shared value."""
+        """Drops a shared value."""
         ...
 
     def submit(self, jobs: Sequence[Job]) -> None:
-        """Have jobs done."""
+        """Queues jobs and returns at once."""
         ...
 
     def done(self, seconds: float) -> list[FinishedJob]:
-        """What has ended; none where nothing did in that time.
+        """Returns the jobs that have ended since the last call, after at most ``seconds``.
 
         Raises:
             RoadGPTError: there are no workers, and there will be none.
@@ -104,15 +106,15 @@ class Executor(Protocol):
         ...
 
     def under_way(self) -> list[RunningJob]:
-        """What is being done now."""
+        """Returns the jobs that are running now."""
         ...
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """``function`` of every item, in their order."""
+        """Returns ``function`` of every item, in the order of the items."""
         ...
 
     def stop(self) -> None:
-        """End every worker."""
+        """Ends every worker."""
         ...
 
 

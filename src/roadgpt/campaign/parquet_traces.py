@@ -1,0 +1,36 @@
+"""Traces of stores that earlier versions of RoadGPT wrote: Apache Parquet files, which pyarrow reads.
+
+A row is one step of a drive, in whole steps as in ``traces``; ``cell`` and ``number`` say whose it is, and
+the metadata under ``roadgpt`` holds the drives' headers.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.drive import COLUMNS
+from roadgpt.errors import UsageError
+
+
+def read_parquet(path: Path, cell: str, number: int) -> tuple[dict[str, Any], dict[str, NDArray[np.int32]]]:
+    """Returns the header of one drive, and its columns in whole steps.
+
+    Raises:
+        UsageError: pyarrow is not installed.
+        Exception: whatever pyarrow, json and numpy raise where the file is broken or lacks the drive.
+    """
+    try:
+        import pyarrow.parquet as pq
+    except ImportError as error:
+        raise UsageError(
+            f"{path} was written by an earlier version of roadgpt, and reading its drives needs pyarrow; "
+            "say: pip install pyarrow"
+        ) from error
+    told = json.loads(pq.read_metadata(path).metadata[b"roadgpt"])
+    (header,) = [dict(each) for each in told["drives"] if (each["cell"], each["number"]) == (cell, number)]
+    table = pq.read_table(path, filters=[("cell", "=", cell), ("number", "=", number)])
+    del header["cell"], header["number"]
+    return header, {name: table[name].to_numpy().astype(np.int32) for name in COLUMNS}
