@@ -14,10 +14,10 @@ from roadgpt.errors import BriefError
         ("3 rught trns", "did you mean"),
         ("first half flat, second half uphill", "give each part a length"),
         ("ends where it starts", "ask for a U-turn instead"),
-        ("a flat road with a steep climb", "say it of each part"),
-        ("a mostly flat road with one steep climb", "say it of each part"),
-        ("a flat road with a steep climb at the end", "say it of each part"),
-        ("1000000 turns", "1,000,000 of one thing"),
+        ("a flat road with a steep climb", "say the slope of each part"),
+        ("a mostly flat road with one steep climb", "say the slope of each part"),
+        ("a flat road with a steep climb at the end", "say the slope of each part"),
+        ("1000000 turns", "1,000,000 of one kind"),
     ],
 )
 def test_refusals_say_what_to_do(words: str, advice: str) -> None:

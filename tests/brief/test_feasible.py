@@ -98,7 +98,7 @@ def test_a_larger_map_holds_more() -> None:
         ("60 hairpins", "no room"),
         ("an uphill road that goes downhill", "uphill and downhill"),
         ("a flat road with a crest", "flat"),
-        ("a 100 metre road with 20 turns", "cannot hold"),
+        ("a 100 metre road with 20 turns", "too short for all that"),
         ("a 360 degree turn", "cross itself"),
         ("a full circle", "cross itself"),
         ("a turn with a radius of 5 metres", "too tight"),

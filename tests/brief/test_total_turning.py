@@ -61,7 +61,7 @@ def test_both_embedded_readers_read_it() -> None:
 @pytest.mark.parametrize(
     ("plan", "reason"),
     [
-        ("hairpin x2 | turning=90", "turns 280 degrees or more"),
+        ("hairpin x2 | turning=90", "add up to 280 degrees or more"),
         ("turn x2 deg=45 | turning=400", "degrees at most"),
         ("straight | turning=90", "no turns"),
         ("turn x3.. | turning=5000", "no map"),

@@ -99,7 +99,7 @@ def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
 
 def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.brief.readers.grammar import MOST_CHARACTERS
-    from roadgpt.chat import bounded, fault, strict, talk
+    from roadgpt.chat import conversation, request_error, response_limits, strict_json
     from roadgpt.chat.providers.openai import MOST_REQUESTS
     from roadgpt.drive import seat
     from roadgpt.drive.drive import UNPACKED
@@ -117,11 +117,16 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     found = [row.replace(",", "") for row in re.findall(r"^\| [^|]+ \| ([\d,; ]+) \|$", text, re.MULTILINE)]
     seconds = [seat.BEFORE_START, seat.BEFORE_START, seat.ONE_ANSWER, seat.WHOLE_DRIVE]
     said = "; ".join(f"{limit:g}" for limit in seconds)
-    files = [LARGEST, MOST_POINTS, round(STEEPEST), UNPACKED // 1_000_000, bounded.OF_AN_ERROR]
+    files = [LARGEST, MOST_POINTS, round(STEEPEST), UNPACKED // 1_000_000, response_limits.OF_AN_ERROR]
     tries = [MAX_SEGMENTS, MOST_ROUNDS, GIVE_UP, MOST]
     counts = [MOST_CHARACTERS, *files, *tries, MOST_PAGES * PER_PAGE]
-    asked = [fault.PATIENCE, fault.LONGEST_WAIT, strict.MOST_CHARACTERS, strict.MOST_DEPTH, MOST_REQUESTS]
-    assert found == [*map(str, counts), said, *(f"{limit:.0f}" for limit in [*asked, talk.MOST_TURNS])]
+    waits = [request_error.PATIENCE, request_error.LONGEST_WAIT]
+    asked = [*waits, strict_json.MOST_CHARACTERS, strict_json.MOST_DEPTH, MOST_REQUESTS]
+    assert found == [
+        *map(str, counts),
+        said,
+        *(f"{limit:.0f}" for limit in [*asked, conversation.MOST_TURNS]),
+    ]
     guide = (ROOT / "docs" / "how-to" / "own-driver.md").read_text(encoding="utf-8")
     assert re.findall(r"\| (\d+) \|$", guide, re.MULTILINE) == said.split("; ")
     statuses = {int(status) for status in re.findall(r"^\| (\d+) \| [^\d]", text, re.MULTILINE)}

@@ -1,13 +1,13 @@
-"""The room of the Brief: words in, what was asked for out.
+"""Reads a description of a road and returns what it asks for, as a Brief.
 
-A reader is a part on the shelf ``readers``: an object, or a class that is made without arguments or with
-ChatSettings as ``settings``, with
+A reader is a plug-in registered under the entry point ``roadgpt.readers``: an object, or a class that is
+created without arguments or with ChatSettings as ``settings``, with one method
 
     read(words: str) -> Brief
 
-It raises BriefError, with one sentence of advice, where the words make no Brief: they are empty, not about
-a road, in contradiction with each other or ask for the impossible. It lists the words that it did not
-understand in ``Brief.unused``. What the words mean is one table for all readers: ``words.py``.
+``read`` raises BriefError, with one sentence that says what to change, if the description is empty, is not
+about a road, contradicts itself or asks for something impossible. It lists the words that it did not
+understand in ``Brief.unused``. All readers share one table of what the words mean: ``words.py``.
 """
 
 from functools import cache
@@ -70,19 +70,23 @@ __all__ = [
 
 
 class Reader(Protocol):
-    """A part that reads descriptions."""
+    """A plug-in that reads descriptions."""
 
     def read(self, words: str) -> Brief:
-        """The Brief of a description; BriefError where there is none."""
+        """Returns the Brief of a description.
+
+        Raises:
+            BriefError: the description does not ask for a road that can be built.
+        """
         ...
 
 
 @runtime_checkable
 class ReaderWithAlternatives(Protocol):
-    """A reader that knows more than one reading of vague words."""
+    """A reader that can offer several readings of a description with vague words."""
 
     def alternatives(self, words: str, number: int, temperature: float, seed: int) -> tuple[Brief, ...]:
-        """Different readings, the likeliest first."""
+        """Returns up to ``number`` different readings, the likeliest first."""
         ...
 
 
@@ -95,24 +99,28 @@ def read(
     chat: ChatSettings | None = None,
     road_width: float = ROAD_WIDTH,
 ) -> Brief:
-    """What a description asks for.
+    """Reads a description and returns what it asks for.
+
+    The Brief is also checked for contradictions and against the limits given here (see ``check``).
 
     Args:
-        words: up to 2,000 characters.
-        reader: name of a part on the shelf ``readers``.
-        map_size: metres along one side of the map on which the road shall fit; None: do not ask.
-        min_radius: metres, of the tightest turn that the world allows.
-        max_grade: ratio, of the steepest slope that it allows.
-        chat: the language model, for readers that ask one; None: what the user's settings say.
-        road_width: metres, of the carriageway.
+        words: the description, up to 2,000 characters.
+        reader: name of an installed reader, or 'model:FOLDER' for the model reader with other weights.
+        map_size: side of the square map that has to hold the road, in metres; None skips this check.
+        min_radius: radius of the tightest turn allowed, in metres.
+        max_grade: steepest slope allowed, as a ratio (0.15 is 15 %).
+        chat: which language model to ask, for readers that use one; None takes the user's settings.
+        road_width: width of the carriageway in metres.
 
     Raises:
-        NoRoomError: the map does not hold such a road; says what would fit, and on which map this one does.
-        BriefError: no road can be read out of the words; says what to change.
-        PartError: no such reader.
-        ChatError: a language model could not be asked.
+        NoRoomError: the map is too small for such a road; the message says what would fit on it, and which
+            size of map would hold this road.
+        BriefError: the description does not ask for a road that can be built; the message says what to
+            change.
+        PartError: no reader of that name is installed.
+        ChatError: the language model could not be asked.
     """
-    words = words.encode("utf-8", "replace").decode()  # half letters from a broken terminal fit into no file
+    words = words.encode("utf-8", "replace").decode()  # lone surrogates cannot be written to a file
     try:
         brief = reader_of(reader, chat).read(words)
     except TooMuchError as refusal:
@@ -135,13 +143,24 @@ def alternatives(
     min_radius: float = LEAST_RADIUS,
     max_grade: float = STEEPEST / 100,
 ) -> tuple[Brief, ...]:
-    """Up to ``number`` different readings of a description, the likeliest first.
+    """Returns up to ``number`` different readings of a description, the likeliest first.
 
-    Readers that know only one reading give that one. Readings that no road of this map can keep are left out.
+    A reader that has only one reading returns that one. Readings that no road on this map can satisfy are
+    left out.
+
+    Args:
+        words: the description, up to 2,000 characters.
+        number: the largest number of readings to return.
+        reader: name of an installed reader.
+        map_size: side of the square map in metres; None skips the check whether the road fits.
+        temperature: how freely the other readings are sampled; 1 is the model's own distribution.
+        seed: seed of the sampling; the same seed gives the same readings.
+        min_radius: radius of the tightest turn allowed, in metres.
+        max_grade: steepest slope allowed, as a ratio.
 
     Raises:
-        BriefError: as ``read``, of the likeliest one.
-        PartError: no such reader.
+        BriefError: as in ``read``, for the likeliest reading.
+        PartError: no reader of that name is installed.
     """
     first = read(words, reader, map_size, min_radius, max_grade)
     part = reader_of(reader)
@@ -149,7 +168,7 @@ def alternatives(
         return (first,)
     try:
         others = part.alternatives(first.words, number, temperature, seed)[1:]
-    except TooMuchError:  # it is read in one way, as an ordinary road with other numbers
+    except TooMuchError:  # such a description has only one reading
         return (first,)
     if first.motorway:
         others = tuple(brief.model_copy(update={"motorway": True}) for brief in others)
@@ -165,10 +184,14 @@ def _is_possible(brief: Brief, map_size: float | None, min_radius: float, max_gr
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:
-    """The reader of that name, made now or before; 'model:FOLDER' reads with weights of one's own.
+    """Returns the reader of that name; each reader is created once and then kept.
+
+    Args:
+        name: name of an installed reader; 'model:FOLDER' reads with the weights in that folder.
+        chat: which language model to ask, for readers that use one; None takes the user's settings.
 
     Raises:
-        PartError: no such reader, or no weights in the folder.
+        PartError: no such reader is installed, or the folder holds no weights.
     """
     part, _, folder = name.partition(":")
     return _made(part, settings_for(plugins.find("readers", part), chat), folder)
@@ -176,7 +199,7 @@ def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:
 
 @cache
 def _made(name: str, chat: ChatSettings | None, folder: str) -> Reader:
-    """The one reader of that name: a network is loaded once."""
+    """Creates a reader; the cache makes sure that a network is loaded only once."""
     part = plugins.find("readers", name)
     if not folder:
         return cast(Reader, instantiate(part, chat))

@@ -1,4 +1,4 @@
-"""Contradictions and impossible wishes: found before anybody designs, and said with a way out."""
+"""Finds contradictions and impossible requirements before any design starts, and says what to change."""
 
 from math import inf
 from typing import NamedTuple
@@ -22,8 +22,8 @@ from roadgpt.brief.words import (
 )
 from roadgpt.errors import BriefError
 
-LARGEST_ANGLE = 240.0  # degrees; a turn that goes on would cross its own beginning
-SMALLEST_ANGLE = 10.0  # degrees; less is measured as straight
+LARGEST_ANGLE = 240.0  # degrees; a longer turn would cross its own beginning
+SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight
 SHORTEST_ROAD = 20.0  # metres
 MOST_TURNS = 200.0
 MOST_TURNING = 3000.0  # degrees of all turns together
@@ -34,9 +34,9 @@ LEVEL = ("flat", "nearly_flat")
 
 class _Limits(NamedTuple):
     min_radius: float
-    """Metres."""
+    """In metres."""
     steepest: float
-    """Percent."""
+    """In percent."""
 
 
 def check(
@@ -46,18 +46,18 @@ def check(
     max_grade: float = STEEPEST / 100,
     road_width: float = ROAD_WIDTH,
 ) -> None:
-    """Passes a Brief that some road can keep, as far as numbers alone can tell.
+    """Checks that some road could satisfy a Brief, as far as its numbers alone can tell.
 
     Args:
-        brief: in any form.
-        map_size: metres along one side of the square map; None: do not ask whether it fits.
-        min_radius: metres, of the tightest turn that the world allows.
-        max_grade: ratio, of the steepest slope that it allows; no design has more than 15 %.
-        road_width: metres, of the carriageway.
+        brief: what was asked for, in normal form or not.
+        map_size: side of the square map in metres; None skips the check whether the road fits.
+        min_radius: radius of the tightest turn allowed, in metres.
+        max_grade: steepest slope allowed, as a ratio; no design is steeper than 15 %.
+        road_width: width of the carriageway in metres.
 
     Raises:
-        NoRoomError: the map does not hold it; a larger one may.
-        BriefError: one sentence on the first contradiction or impossible wish.
+        NoRoomError: the map is too small; a larger one may hold the road.
+        BriefError: the first contradiction or impossible requirement found, in one sentence.
     """
     for clause in brief.clauses:
         _counts(clause)
@@ -82,7 +82,7 @@ def _counts(clause: Clause) -> None:
         if number is not None and (number < 0 or number != int(number)):
             raise BriefError(f"a road cannot have {number:g} {_noun(clause)}s; ask for a whole number")
     if clause.count.hi == 0 or clause.count.lo == 0:
-        raise BriefError(f"{_noun(clause)}s with a number of 0 say nothing; leave them out")
+        raise BriefError(f"a clause cannot ask for 0 {_noun(clause)}s; leave it out")
 
 
 def _whole_counts(brief: Brief) -> None:
@@ -104,7 +104,7 @@ def _shape(clause: Clause, limits: _Limits) -> None:
     _incline(clause.slope, clause.incline, limits)
     if clause.length and clause.length.hi is not None and clause.length.hi < 1:
         raise BriefError(
-            f"a {noun} of {clause.length.hi:g} m is no {noun}; ask for {LEAST_STRAIGHT:g} m or more"
+            f"a {noun} of {clause.length.hi:g} m is too short; ask for {LEAST_STRAIGHT:g} m or more"
         )
 
 
@@ -116,7 +116,7 @@ def _angle(clause: Clause, noun: str) -> None:
         )
     if degrees.hi is not None and degrees.hi < SMALLEST_ANGLE:
         raise BriefError(
-            f"a turn of {degrees.hi:g} degrees is as good as straight; ask for {SMALLEST_ANGLE:g} or more"
+            f"a turn of {degrees.hi:g} degrees is practically straight; ask for {SMALLEST_ANGLE:g} or more"
         )
     own = KINDS[clause.kind].degrees
     bends_back = clause.kind in ("hairpin", "switchback", "u_turn")
@@ -153,7 +153,9 @@ def _incline(slope: str | None, incline: Amount | None, limits: _Limits) -> None
         return
     _not_too_steep(incline, limits)
     if slope in LEVEL and (incline.lo or 0) > (1 if slope == "flat" else 3.5):
-        raise BriefError(f"a level road has no slope of {incline.lo:g} percent; leave out one of the two")
+        raise BriefError(
+            f"a level road cannot have a slope of {incline.lo:g} percent; leave out one of the two"
+        )
 
 
 def _not_too_steep(incline: Amount, limits: _Limits) -> None:
@@ -167,29 +169,29 @@ def _number_of_turns(brief: Brief) -> None:
     said = total(brief.clauses)
     if any(clause.kind not in STRAIGHT for clause in brief.clauses) and brief.turns:
         if brief.turns.hi == 0:
-            raise BriefError(f"{_many(said, 'turn')} but no turns: leave out one of the two")
+            raise BriefError(f"{_many(said, 'turn')} and no turns are asked for: leave out one of the two")
         if not _meet(said, brief.turns):
             raise BriefError(
-                f"what is named has {_many(said, 'turn')}, but {_figure(brief.turns)} are asked for in all;"
+                f"the description names {_many(said, 'turn')}, but asks for {_figure(brief.turns)} in all;"
                 " make the numbers agree"
             )
     if brief.turns and brief.turns.hi == 0:
         ends = any(c and c.kind not in STRAIGHT for c in (brief.starts, brief.ends))
         sided = any(a and (a.lo or 0) > 0 for a in (brief.left, brief.right))
         if ends or sided or brief.alternating:
-            raise BriefError("turns are asked for, but also no turns: leave out one of the two")
+            raise BriefError("turns and no turns are asked for: leave out one of the two")
     if max(said.lo or 0, (brief.turns.lo or 0) if brief.turns else 0) > MOST_TURNS:
         raise BriefError(f"no map holds so many turns; ask for {MOST_TURNS:g} or fewer")
 
 
 def _turning(brief: Brief) -> None:
-    """All turns together turn no less than each, and no more than they can."""
+    """Checks the sum of all angles against the smallest and largest sum that the turns can have."""
     if brief.turning is None:
         return
     if brief.turning.lo is not None and brief.turning.lo > MOST_TURNING:
         raise BriefError(f"no map holds {brief.turning.lo:g} degrees of turning; ask for less")
     if brief.turns and brief.turns.hi == 0:
-        raise BriefError("turning is asked for, but also no turns: leave out one of the two")
+        raise BriefError("degrees of turning and no turns are asked for: leave out one of the two")
     turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
     if turning:
         spans = [(turns_of(clause), _degrees_of(clause, brief.degrees)) for clause in turning]
@@ -201,18 +203,18 @@ def _turning(brief: Brief) -> None:
         most = LARGEST_ANGLE * (inf if turns.hi is None else turns.hi)
     if brief.turning.hi is not None and brief.turning.hi * (1 + TURNING_SLACK) < least:
         raise BriefError(
-            f"what is named turns {least:g} degrees or more, but {brief.turning.hi:g} are asked for in all;"
+            f"the turns add up to {least:g} degrees or more, but {brief.turning.hi:g} are asked for;"
             " ask for fewer turns or for more degrees"
         )
     if brief.turning.lo is not None and brief.turning.lo * (1 - TURNING_SLACK) > most:
         raise BriefError(
-            f"what is named turns {most:g} degrees at most, but {brief.turning.lo:g} are asked for in all;"
+            f"the turns add up to {most:g} degrees at most, but {brief.turning.lo:g} are asked for;"
             " ask for more turns or for fewer degrees"
         )
 
 
 def _degrees_of(clause: Clause, each: Amount | None) -> Range:
-    """What one turn of a clause may turn, widely."""
+    """Returns the angles that one turn of a clause may have, with tolerance, in degrees."""
     said = clause.degrees or each
     own = KINDS[clause.kind].degrees or Range(SMALLEST_ANGLE, LARGEST_ANGLE)
     if said is None:
@@ -229,8 +231,8 @@ def _sides(brief: Brief) -> None:
         sure = _named(turning, side)
         if wished.hi is not None and sure > wished.hi:
             raise BriefError(
-                f"what is named has {_many(exactly(sure), f'{side} turn')}, but {_figure(wished)} are asked"
-                " for; make the numbers agree"
+                f"the description names {_many(exactly(sure), f'{side} turn')}, but asks for"
+                f" {_figure(wished)}; make the numbers agree"
             )
         most = total(brief.clauses) if turning else brief.turns
         if most and most.hi is not None and (wished.lo or 0) > most.hi:
@@ -249,7 +251,9 @@ def _both_sides(brief: Brief, turning: list[Clause]) -> None:
         and all(amount.hi == 0 for amount in both)
         and (turning or (turns and (turns.lo or 0) > 1))
     ):
-        raise BriefError("a turn goes left or right: allow one of the two")
+        raise BriefError(
+            "turns are asked for, but none to the left and none to the right: allow one of the two"
+        )
     if not turns:
         return
     least = sum(max(a.lo or 0 if a else 0, _named(turning, s)) for a, s in _sides_of(brief))
@@ -259,7 +263,7 @@ def _both_sides(brief: Brief, turning: list[Clause]) -> None:
         )
     most = sum(inf if amount.hi is None else amount.hi for amount in both)
     if len(both) == 2 and most < (turns.lo or 0):
-        raise BriefError(f"{most:g} left and right turns do not make {turns.lo:g} turns; ask for more")
+        raise BriefError(f"{most:g} left and right turns do not add up to {turns.lo:g} turns; ask for more")
 
 
 def _sides_of(brief: Brief) -> tuple[tuple[Amount | None, str], ...]:
@@ -271,7 +275,7 @@ def _named(turning: list[Clause], side: str) -> float:
 
 
 def _sure(clause: Clause, side: str) -> float:
-    """Turns of a clause that surely go to this side."""
+    """Returns how many turns of a clause must go to this side."""
     least, _ = turns_of(clause)
     if (KINDS[clause.kind].alternating and clause.kind != "switchback") or clause.alternating:
         return least // 2
@@ -291,22 +295,22 @@ def _slopes(brief: Brief, limits: _Limits) -> None:
     rises, falls = brief.slope in RISING, brief.slope in FALLING
     climb = brief.climb
     if climb and ((rises and climb.hi is not None and climb.hi < 0) or (falls and (climb.lo or 0) > 0)):
-        raise BriefError("the road goes one way and its end lies the other; make slope and height agree")
+        raise BriefError("the slope goes one way and the height of the end the other; make them agree")
     if (
         climb
         and brief.slope == "flat"
         and ((climb.lo or 0) > 10 or (climb.hi is not None and climb.hi < -10))
     ):
-        raise BriefError("a flat road gains or loses no such height; leave out one of the two")
+        raise BriefError("a flat road cannot gain or lose that much height; leave out one of the two")
     steepest, grade = brief.steepest, SLOPES[brief.slope].grade if brief.slope else None
     if steepest and grade and not brief.incline:
         least = 0.0 if grade.lo <= 0 <= grade.hi else min(abs(grade.lo), abs(grade.hi))
         if steepest.hi is not None and steepest.hi < least - 1:
             raise BriefError(
-                f"a road that steep climbs or falls {least:g} percent or more; allow it to be steeper"
+                f"such a slope is {least:g} percent or more; allow the steepest place to be that steep"
             )
         if (steepest.lo or 0) > 4 and brief.slope in LEVEL:
-            raise BriefError("a level road has no steep place; leave out one of the two")
+            raise BriefError("a level road cannot have a steep place; leave out one of the two")
 
 
 def _slope_within(brief: Brief, clause: Clause) -> None:
@@ -321,7 +325,8 @@ def _slope_within(brief: Brief, clause: Clause) -> None:
     up_and_down = (whole in RISING and slope in FALLING) or (whole in FALLING and slope in RISING)
     if up_and_down or (whole in LEVEL and slope in (*RISING, *FALLING)):
         raise BriefError(
-            f"the whole road is {_said(whole)}, but a {name} is {_said(slope)}; say it of each part instead"
+            f"the whole road is {_said(whole)}, but a {name} is {_said(slope)};"
+            " say the slope of each part instead"
         )
 
 
@@ -333,7 +338,9 @@ def _length(brief: Brief, limits: _Limits) -> None:
     if longest < SHORTEST_ROAD:
         raise BriefError(f"a road of {brief.length.hi:g} m is too short; ask for {SHORTEST_ROAD:g} m or more")
     if least > longest:
-        raise BriefError(f"{brief.length.hi:g} m cannot hold all that; ask for {least:.0f} m or fewer turns")
+        raise BriefError(
+            f"{brief.length.hi:g} m is too short for all that; ask for {least:.0f} m or for fewer turns"
+        )
     for way, height in _heights(brief.climb):
         if height > longest * limits.steepest / 100:
             raise BriefError(
@@ -342,7 +349,7 @@ def _length(brief: Brief, limits: _Limits) -> None:
 
 
 def _heights(climb: Amount | None) -> list[tuple[str, float]]:
-    """What a road surely climbs or falls, metres."""
+    """Returns the verb and the height in metres that a road must climb or fall at least."""
     if climb is None:
         return []
     return [("climb", climb.lo or 0.0), ("fall", -(climb.hi or 0.0))]

@@ -1,4 +1,4 @@
-"""Is there room for a Brief on the map, as far as numbers alone can tell, and for what there would be."""
+"""Checks whether a Brief can fit on the map, as far as its numbers can tell, and proposes what would."""
 
 from math import ceil, floor, sqrt
 
@@ -11,29 +11,38 @@ from roadgpt.errors import BriefError
 
 ROAD_WIDTH = 8.0  # metres: two lanes of 4 m
 EDGE = 0.3  # metres kept free between ribbon and border of the map, for rounding and the bulge of splines
-WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, verges, and the bow of the turn itself
-SIDES_OF_ROAD = 1.3  # sides of the map that a road with turns is sure to find room for
-BESIDE_TURNS = 0.6  # of the longest straight that are sure to fit on a road with turns
-ROUND_MAP = 50.0  # metres: sizes of maps are proposed in steps of so many
+WIDTH_OF_A_TURN = 40.0  # metres: lanes of 8 m, shoulders, and the width of the bend itself
+SIDES_OF_ROAD = 1.3  # a road with turns fits if it is this many sides of the map long
+BESIDE_TURNS = 0.6  # share of the longest straight that still fits on a road with turns
+ROUND_MAP = 50.0  # metres: map sizes are proposed in these steps
 LARGEST_MAP = 10_000.0  # metres
 
 
 def longest_straight(map_size: float, road_width: float = ROAD_WIDTH) -> float:
-    """Metres from corner to corner, so far from the border that carriageway and margins lie on the map."""
+    """Returns the longest straight that fits on the map, in metres.
+
+    It runs from corner to corner, far enough from the border that the whole carriageway lies on the map.
+    """
     return sqrt(2) * (map_size - road_width - 2 * EDGE)
 
 
 def map_for_straight(metres: float, road_width: float = ROAD_WIDTH) -> float:
-    """Side in metres, a round number, of the smallest map that holds such a straight."""
+    """Returns the side in metres of the smallest map that holds a straight, in steps of 50 m."""
     return ceil((metres / sqrt(2) + road_width + 2 * EDGE) / ROUND_MAP) * ROUND_MAP
 
 
 def check_room(brief: Brief, map_size: float, min_radius: float, road_width: float = ROAD_WIDTH) -> None:
-    """Passes a Brief, in normal form, that may fit on a map; designing finds out whether it does.
+    """Checks that a Brief may fit on a map; only the design itself can tell whether it does.
+
+    Args:
+        brief: what was asked for, in normal form.
+        map_size: side of the square map in metres.
+        min_radius: radius of the tightest turn allowed, in metres.
+        road_width: width of the carriageway in metres.
 
     Raises:
-        NoRoomError: it surely does not; says what would.
-        BriefError: a radius is wider than the map.
+        NoRoomError: it cannot fit; the message says what would.
+        BriefError: a radius is larger than the map.
     """
     _straights(brief, map_size, road_width)
     for clause in brief.clauses:
@@ -56,7 +65,7 @@ def check_room(brief: Brief, map_size: float, min_radius: float, road_width: flo
 
 
 def _straights(brief: Brief, map_size: float, road_width: float) -> None:
-    """Each straight must fit from corner to corner; of a road without turns, all of it."""
+    """Checks that each straight fits from corner to corner; if there are no turns, the whole road has to."""
     longest = longest_straight(map_size, road_width)
     lengths = [c.length.lo or 0.0 for c in brief.clauses if c.kind == "straight" and c.length]
     if lengths and max(lengths) * (1 - LENGTH_SLACK) > longest:

@@ -1,4 +1,4 @@
-"""How many metres of road a Brief needs at least."""
+"""Computes how many metres of road a Brief needs at least."""
 
 from math import radians
 
@@ -6,19 +6,24 @@ from roadgpt.brief.model import Brief, Clause
 from roadgpt.brief.normal import STRAIGHT, total, turns_of
 from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, SHARPNESS, SIZES
 
-WAY_OF_A_TURN = 30.0  # metres that a turn and the straight behind it take at least
-GAP = 16.0  # metres of straight between two turns of one hand
+WAY_OF_A_TURN = 30.0  # metres that a turn and the straight after it need at least
+GAP = 16.0  # metres of straight between two turns to the same side
 
 
 def least_length(brief: Brief, min_radius: float) -> float:
-    """Metres that the clauses and the number of turns need at least, if no turn may be tighter than this."""
+    """Returns the least length in metres for the clauses and the number of turns.
+
+    Args:
+        brief: what was asked for.
+        min_radius: radius of the tightest turn allowed, in metres.
+    """
     metres = sum(_way(clause, min_radius) for clause in brief.clauses)
     extra = (brief.turns.lo or 0) - (total(brief.clauses).lo or 0) if brief.turns else 0
     return metres + max(extra, 0) * WAY_OF_A_TURN
 
 
 def _way(clause: Clause, min_radius: float) -> float:
-    """Metres that a clause takes at least."""
+    """Returns the least length of a clause in metres."""
     if clause.kind in STRAIGHT:
         if clause.length and clause.length.lo is not None:
             return 0.85 * clause.length.lo

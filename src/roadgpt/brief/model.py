@@ -1,6 +1,6 @@
 """The Brief: what a description asks for, as data.
 
-A Brief stands at a door, so its numbers carry the units that people speak in: degrees, metres, percent.
+People write Briefs, so their numbers are in the units that people use: degrees, metres and percent.
 """
 
 from collections.abc import Iterator
@@ -30,12 +30,12 @@ Kind = Literal[
 
 
 class Frozen(BaseModel):
-    """A value: never changed, compared by content, read from and written to JSON."""
+    """Base of immutable values that are compared by content and read from and written to JSON."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """What was set to something else than usual; the rest would bury it."""
+        """Yields only the fields that differ from their defaults, so that a printed Brief stays readable."""
         for name, field in type(self).model_fields.items():
             value = getattr(self, name)
             if field.is_required() or value != field.get_default(call_default_factory=True):
@@ -43,7 +43,9 @@ class Frozen(BaseModel):
 
 
 class Amount(Frozen):
-    """A number as it was asked for: exactly (lo == hi), at least (no hi), at most (no lo), or between."""
+    """A number as it was asked for: exact (lo == hi), a lower bound (hi is None), an upper bound (lo is None)
+    or a range.
+    """
 
     lo: Annotated[float | None, Field(allow_inf_nan=False)] = None
     hi: Annotated[float | None, Field(allow_inf_nan=False)] = None
@@ -58,60 +60,60 @@ class Amount(Frozen):
 
     @property
     def exact(self) -> bool:
-        """Was one number asked for, rather than a bound or a range?"""
+        """True if a single number was asked for, rather than a bound or a range."""
         return self.lo == self.hi
 
 
 def exactly(number: float) -> Amount:
-    """Just this number."""
+    """Returns the Amount that allows only this number."""
     return Amount(lo=number, hi=number)
 
 
 def at_least(number: float) -> Amount:
-    """This number or more."""
+    """Returns the Amount that allows this number or more."""
     return Amount(lo=number)
 
 
 def at_most(number: float) -> Amount:
-    """This number or less."""
+    """Returns the Amount that allows this number or less."""
     return Amount(hi=number)
 
 
 def between(low: float, high: float) -> Amount:
-    """From one number to the other, both allowed."""
+    """Returns the Amount that allows every number from ``low`` to ``high``, both included."""
     return Amount(lo=low, hi=high)
 
 
 class Clause(Frozen):
-    """One thing along the road, or several of the same kind in a row."""
+    """One feature along the road, or several of the same kind in a row."""
 
     kind: Kind
     count: Amount = Amount(lo=1, hi=1)
-    """How many of this kind, one after another; of turns, where the kind is serpentine, zigzag,
-    slalom, winding or switchback and a number was given ("4 switchbacks"). s_bend and chicane count as one
-    thing each ("two S-bends" = 2)."""
+    """How many features of this kind follow one another. For serpentine, zigzag, slalom, winding and
+    switchback with a number ("4 switchbacks"), it is the number of turns. An s_bend or a chicane counts as
+    one feature ("two S-bends" is 2)."""
     side: Side | None = None
-    """Of every turn; of the first turn, where they alternate."""
+    """The side of every turn; if the turns alternate, the side of the first."""
     alternating: bool = False
     sharpness: Sharpness | None = None
     degrees: Amount | None = None
-    """Heading change of each turn, always positive."""
+    """The change of heading of each turn in degrees, always positive."""
     radius: Amount | None = None
-    """Metres, of each turn."""
+    """The radius of each turn in metres."""
     length: Amount | None = None
-    """Metres: of each straight; of each turn along its curve."""
+    """In metres: the length of each straight, or of each turn along its curve."""
     size: Size | None = None
-    """Of a straight without a number: 'a long straight'."""
+    """The size of a straight that was given in words: "a long straight"."""
     slope: Slope | None = None
     incline: Amount | None = None
-    """Percent, always positive; slope says whether up or down."""
+    """The grade in percent, always positive; ``slope`` says whether it is up or down."""
 
 
 class Brief(Frozen):
-    """The words, and the promises read out of them.
+    """A description and the requirements that were read from it.
 
-    ``clauses`` stand in driving order. Where any clause turns, the clauses name *all* turns of the road.
-    The other fields are wishes for the road as a whole, and hold besides the clauses.
+    ``clauses`` stand in driving order. If any clause is a turn, the clauses name *all* turns of the road. The
+    other fields are requirements for the road as a whole, which hold in addition to the clauses.
     """
 
     words: str = ""
@@ -121,33 +123,33 @@ class Brief(Frozen):
     right: Amount | None = None
     alternating: bool = False
     sharpness: Sharpness | None = None
-    """Of every turn."""
+    """The sharpness of every turn."""
     degrees: Amount | None = None
-    """Of every turn."""
+    """The change of heading of every turn in degrees."""
     radius: Amount | None = None
-    """Metres, of every turn."""
+    """The radius of every turn in metres."""
     turning: Amount | None = None
-    """Degrees, all turns together, whichever way."""
+    """The sum of the angles of all turns in degrees, left and right alike."""
     slope: Slope | None = None
-    """Of the whole road."""
+    """The slope of the whole road."""
     incline: Amount | None = None
-    """Percent, always positive, of the whole road; slope says whether up or down."""
+    """The grade of the whole road in percent, always positive; ``slope`` says whether it is up or down."""
     steepest: Amount | None = None
-    """Percent, always positive: the steepest place, whichever way."""
+    """The grade of the steepest place in percent, always positive, up or down."""
     climb: Amount | None = None
-    """Metres from start to end, negative for a fall."""
+    """The height of the end above the start in metres, negative if the road falls."""
     hills: Amount | None = None
     """How often the road changes between climbing and falling."""
     length: Amount | None = None
-    """Metres, of the whole road."""
+    """The length of the whole road in metres."""
     starts: Clause | None = None
-    """The first thing, where the clauses do not say it."""
+    """The first feature, if the clauses do not already name it."""
     ends: Clause | None = None
-    """The last thing, where the clauses do not say it."""
+    """The last feature, if the clauses do not already name it."""
     motorway: bool = False
-    """Was a motorway asked for? See ``brief.motorway``."""
+    """True if a motorway was asked for; see ``brief.motorway``."""
     hard: bool = False
-    """Hard for a lane keeper: tight, fast into bends, over crests."""
+    """True if the road shall be hard for a lane keeper: tight turns, fast approaches, crests."""
     unused: tuple[str, ...] = ()
-    """Words of the description that were not understood."""
+    """The words of the description that were not understood."""
     confidence: Annotated[float, Field(ge=0, le=1)] = 1.0

@@ -1,14 +1,14 @@
-"""Motorways, freeways, Autobahnen: what the word promises, and whether the map has room for that.
+"""Motorways, freeways, Autobahnen: what the word requires, and whether the map can hold such a road.
 
-The readers take the word for sweeping turns. A real one is wider still: on a map that has room for it every
-turn has a radius of 600 m or more, and no place is steeper than 5 percent. On a smaller map its turns are as
-wide as sweeping ones are there, and ``remarks`` says so. What is said of the turns themselves ("a motorway
-with a hairpin") wins over the word.
+The readers read the word as sweeping turns. An actual motorway is wider still: if the map can hold it, every
+turn has a radius of 600 m or more, and no place is steeper than 5 percent. On a smaller map its turns are
+only as wide as sweeping ones, and ``remarks`` says so. What the description says about the turns themselves
+("a motorway with a hairpin") takes precedence over the word.
 
-Sources: AASHTO, A Policy on Geometric Design of Highways and Streets (2018), for 70 mph: radii from 2,040 ft
-on (622 m) at 6 percent superelevation, 5 percent of grade in mountains, curves of 15 ft for each mph or more
-(1,050 ft, 320 m). RAA 2008, design classes EKA 1 A, 1 B, 2 and 3: radii from 900, 720, 470 and 280 m on,
-grades up to 4, 4.5, 4.5 and 6 percent.
+Sources: AASHTO, A Policy on Geometric Design of Highways and Streets (2018), for 70 mph: radii of 2,040 ft or
+more (622 m) at 6 percent superelevation, grades up to 5 percent in mountains, curves of at least 15 ft for
+each mph (1,050 ft, 320 m). RAA 2008, design classes EKA 1 A, 1 B, 2 and 3: radii of at least 900, 720, 470
+and 280 m, grades up to 4, 4.5, 4.5 and 6 percent.
 """
 
 import re
@@ -36,25 +36,25 @@ NOT_ONE = _bag(
     "no not without off from to towards toward near beside leaving leave join joining over under",
     "kein keine keiner ohne neben zur zum von pas sans vers quitter sin hacia junto senza verso accanto non",
 )
-"""Before the word, these speak of a road that is none, or only near one."""
-BACK = 3  # words before it that are looked at
+"""If one of these stands before the word, the road is not a motorway, or is only near one."""
+BACK = 3  # how many words before it are checked
 PARTS_OF_ONE = _bag(
     "exit exits ramp ramps slip interchange junction entrance bridge services ausfahrt auffahrt"
 )
-"""Behind the word, these make another road of it."""
+"""If one of these follows the word, it names another road that belongs to a motorway."""
 OPEN_KINDS = frozenset({"turn", "s_bend", "winding"})
-"""Turns whose radius is not part of what they are."""
+"""The kinds of turns whose radius is not fixed by their kind."""
 SHORTEST_CURVE = 320.0  # metres
 BETWEEN = 17.5  # metres from one turn to the next, at least
 LEADS = 33.0  # metres of straight before the first and after the last
-SIDES = 1.3  # of the map, which lies along a road that is nearly straight
-COMFORT = 1.5  # of the road that a motorway needs at least: the map that is proposed
-ROUND = 500.0  # metres, of that map
+SIDES = 1.3  # sides of the map that a nearly straight road may take up
+COMFORT = 1.5  # the proposed map is this many times the least length of the road
+ROUND = 500.0  # metres: the proposed map is rounded up to this
 STEEP = ("steeply_up", "steeply_down")
 
 
 def says_motorway(words: str) -> bool:
-    """Does a description, in any of the five languages, ask for a motorway?"""
+    """Returns True if a description, in any of the five languages, asks for a motorway."""
     plain = "".join(c for c in unicodedata.normalize("NFD", words.lower()) if not unicodedata.combining(c))
     said = re.findall(r"[^\W\d_]+", plain)
     for at, (word, after) in enumerate(zip(said, [*said[1:], ""], strict=True)):
@@ -67,12 +67,12 @@ def says_motorway(words: str) -> bool:
 
 
 def has_wide_turns(brief: Brief, map_size: float) -> bool:
-    """Is every turn to be as wide as a motorway's: is it one, and is there room for it?"""
+    """Returns True if a motorway is asked for and a map of this size in metres can hold its wide turns."""
     return brief.motorway and not _is_tighter(brief) and not _lack_of_room(brief, map_size)
 
 
 def has_low_grades(brief: Brief) -> bool:
-    """Is no place to be steeper than on a motorway?"""
+    """Returns True if the Brief asks for a motorway and for no grade that is steeper than a motorway's."""
     if not brief.motorway:
         return False
     things: list[Brief | Clause] = [brief, *_clauses(brief)]
@@ -82,14 +82,14 @@ def has_low_grades(brief: Brief) -> bool:
 
 
 def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
-    """What a word promises on this map, and what of it cannot be kept there: a sentence without full stop."""
+    """Returns sentences, without full stops, on what the word requires and whether this map can hold it."""
     if not brief.motorway:
         return ()
     wide, low = f"turns of {MOTORWAY_RADIUS:g} m radius or more", f"grades of {MOTORWAY_GRADE:g} % or less"
     if not has_low_grades(brief):
-        slopes = "it is steeper than a motorway, as was asked for"
+        slopes = "this one is steeper, as was asked for"
     else:
-        slopes = f"{low} are kept"
+        slopes = f"{low} are still met"
     if _needed(brief) == 0:
         return (f"a motorway has {low}" if has_low_grades(brief) else slopes,)
     lack = "but tighter ones are asked for" if _is_tighter(brief) else _lack_of_room(brief, map_size)
@@ -99,7 +99,7 @@ def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
 
 
 def _lack_of_room(brief: Brief, map_size: float) -> str:
-    """Why there is no room, and what to do; empty where there is."""
+    """Returns why the map cannot hold a motorway and what to do about it; empty if it can."""
     needed = _needed(brief)
     most = brief.length.hi * (1 + ROAD_LENGTH_SLACK) if brief.length and brief.length.hi else needed
     if needed > most:
@@ -114,7 +114,7 @@ def _lack_of_room(brief: Brief, map_size: float) -> str:
 
 
 def _needed(brief: Brief) -> float:
-    """Metres of road that a motorway with these turns has at least; 0 where it has none."""
+    """Returns the least length in metres of a motorway with these turns; 0 if it has no turns."""
     said = normal(brief)
     if said.turns and said.turns.hi == 0:
         return 0.0
@@ -130,14 +130,14 @@ def _needed(brief: Brief) -> float:
 
 
 def _curve(clause: Clause) -> float:
-    """Metres of one turn."""
+    """Returns the least length of one turn in metres."""
     degrees = (clause.degrees.lo or 0) if clause.degrees else 0.0
     radius = max(MOTORWAY_RADIUS, (clause.radius.lo or 0) if clause.radius else 0)
     return max(SHORTEST_CURVE, radius * radians(degrees))
 
 
 def _is_tighter(brief: Brief) -> bool:
-    """Is something asked of the turns that no motorway has?"""
+    """True if the Brief asks for a turn that no motorway has."""
     shapes: list[Brief | Clause] = [brief, *_clauses(brief)]
     return any(clause.kind not in OPEN_KINDS | STRAIGHT for clause in _clauses(brief)) or any(
         thing.sharpness == "sharp" or _below(thing) for thing in shapes

@@ -1,17 +1,21 @@
-"""The normal form of a Brief: two Briefs that mean the same road compare equal in it.
+"""The normal form of a Brief: two Briefs that ask for the same road have the same normal form.
 
-- ``words``, ``unused`` and ``confidence`` tell where the Brief came from, not what it means: they are empty.
-- A slope with a number is plain: 'steeply up' at 12 percent is up at 12 percent. A number alone is uphill.
-- Straights, crests and dips stand one by one; so do turns that alternate from a known side. Other neighbours
-  that are alike are counted together.
-- A serpentine 'of 4 turns or more' is a serpentine. Alternating is not said of what always alternates.
-- What holds for every turn (sharpness, degrees, radius) stands on the clauses where they name the turns.
-- Where everything that is named has one slope, the whole road has it.
-- What only repeats the clauses (number of turns, left or right, the slope, first and last thing) goes.
-- Of 5 turns of which 4 go left, 1 goes right; where none goes left, the turns go right.
-- 'N turns' and nothing more is one clause; 'N or more turns' and nothing more is a wish for the road.
-- Where nothing is said of turns, at least one is meant; where only straights are named, none;
-  there, and only there, '0 or more turns' is kept.
+- ``words``, ``unused`` and ``confidence`` say where a Brief came from, not what it asks for: they are
+  cleared.
+- A slope with a number has no adverb: 'steeply up' at 12 percent is up at 12 percent. A number alone is
+  uphill.
+- Straights, crests and dips stand one by one, and so do turns that alternate from a known side. Other equal
+  neighbours are merged into one clause with a count.
+- A serpentine 'of 4 turns or more' is a serpentine. ``alternating`` is not set for kinds that always
+  alternate.
+- A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
+- If all clauses have the same slope, it becomes the slope of the whole road.
+- Fields that only repeat the clauses (number of turns, left or right, slope, first and last feature) are
+  cleared.
+- If 4 of 5 turns go left, 1 goes right; if none goes left, all turns go right.
+- 'N turns' and nothing else is one clause; 'N or more turns' and nothing else is a requirement for the road.
+- If nothing is said about turns, at least one is meant; if only straights are named, none. In that case, and
+  only then, '0 or more turns' is kept.
 """
 
 from math import inf
@@ -23,9 +27,9 @@ from roadgpt.brief.words import KINDS
 STRAIGHT: frozenset[Kind] = frozenset({"straight", "crest", "dip"})
 SINGLE: frozenset[Kind] = frozenset({"turn", "hairpin", "switchback", "u_turn"})
 SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", "zigzag"})
-"""Kinds whose sharpness is open."""
+"""The kinds of turns whose sharpness is not fixed by their kind."""
 MOST_SINGLE = 60
-MOST_STEPS = 8  # one step may make room for another; contradictory Briefs take the most
+MOST_STEPS = 8  # one step may enable another; contradictory Briefs need the most steps
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 PLAIN: dict[Slope, Slope] = {
     "steeply_up": "up",
@@ -36,7 +40,7 @@ PLAIN: dict[Slope, Slope] = {
 
 
 def normal(brief: Brief) -> Brief:
-    """The Brief in normal form; that of a normal form is itself."""
+    """Returns the normal form of a Brief; the normal form of a normal form is itself."""
     before, after = brief, _simpler(brief)
     for _ in range(MOST_STEPS):
         if after == before:
@@ -66,7 +70,7 @@ def _simpler(brief: Brief) -> Brief:
 
 
 def clauses_turn(clauses: list[Clause] | tuple[Clause, ...]) -> bool:
-    """Does any clause turn?"""
+    """Returns True if any clause is a turn."""
     return any(clause.kind not in STRAIGHT for clause in clauses)
 
 
@@ -79,7 +83,7 @@ def _unsaid_turns(whole: Brief, clauses: list[Clause]) -> Amount | None:
 
 
 def _without_empty_bounds(brief: Brief) -> Brief:
-    """'0 to 4 turns' is at most 4; '0 or more' says nothing."""
+    """'0 to 4 turns' becomes at most 4; '0 or more' requires nothing and is removed."""
     update: dict[str, Amount | None] = {}
     for name in ("turns", "left", "right", "hills"):
         amount: Amount | None = getattr(brief, name)
@@ -91,7 +95,7 @@ def _without_empty_bounds(brief: Brief) -> Brief:
 
 
 def _only_straights(brief: Brief, amount: Amount) -> bool:
-    """Where mere straights are named, '0 or more turns' leaves open what would else be none."""
+    """True if only straights are named; '0 or more turns' then allows turns that are excluded otherwise."""
     turning = brief.left or brief.right or brief.hard or _turns(brief.starts) or _turns(brief.ends)
     return bool(brief.clauses) and amount.hi is None and not clauses_turn(brief.clauses) and not turning
 
@@ -101,7 +105,7 @@ def _turns(clause: Clause | None) -> bool:
 
 
 def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:
-    """How many turns the clauses have in all; 0 where none turns."""
+    """Returns how many turns the clauses have together; exactly 0 if none of them is a turn."""
     lo, hi = 0.0, 0.0
     for clause in clauses:
         if clause.kind not in STRAIGHT:
@@ -111,7 +115,7 @@ def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:
 
 
 def turns_of(clause: Clause) -> tuple[float, float]:
-    """Least and largest number of turns of a clause that turns; infinite where there is no upper bound."""
+    """Returns the least and largest number of turns of a turning clause; the largest may be ``inf``."""
     own = KINDS[clause.kind].turns
     least, most = (own.lo, own.hi) if own else (1.0, 1.0)
     lo, hi = clause.count.lo or 0.0, inf if clause.count.hi is None else clause.count.hi
@@ -157,7 +161,7 @@ def _plain_slope(brief: Brief) -> Brief:
 
 
 def _singles(clause: Clause) -> list[Clause]:
-    """Straights one by one, and turns that alternate from a known side."""
+    """Splits straights, and turns that alternate from a known side, into single clauses."""
     number = int(clause.count.lo or 1) if clause.count.exact or clause.kind in STRAIGHT else 0
     if clause.kind in STRAIGHT:
         return [clause.model_copy(update={"count": exactly(1)})] * min(max(number, 1), MOST_SINGLE)
@@ -170,7 +174,7 @@ def _singles(clause: Clause) -> list[Clause]:
 
 
 def _ends(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """First and last thing as clauses, where they can be."""
+    """Turns the first and last feature into clauses where possible."""
     starts, ends = (None if c is None else _plain(c) for c in (whole.starts, whole.ends))
     if not clauses and (whole.turns is None or whole.turns == at_least(1)):
         return whole.model_copy(update={"starts": starts, "ends": ends}), clauses
@@ -187,13 +191,13 @@ def _ends(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
 
 
 def _ends_of_a_straight(whole: Brief, things: list[Clause]) -> tuple[Brief, list[Clause]]:
-    if clauses_turn(things):  # a contradiction, and to be seen as such
+    if clauses_turn(things):  # a contradiction; ``check`` reports it
         return whole, []
     return whole.model_copy(update={"starts": None, "ends": None}), things
 
 
 def _folded(edge: list[Clause], thing: Clause) -> list[Clause] | None:
-    """The thing, and what is left of the clause at that edge; None where that cannot be said."""
+    """Returns the feature and what remains of the clause at that edge; None if that cannot be expressed."""
     if not edge or edge[0] == thing:
         return edge or None
     if thing.kind in STRAIGHT:
@@ -214,7 +218,7 @@ def _is_plain(clause: Clause) -> bool:
 
 
 def _turns_as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """'Exactly 3 turns' as a clause."""
+    """Turns 'exactly 3 turns' into a clause."""
     turns = whole.turns
     if clauses or not turns or not turns.exact or not turns.lo or whole.starts or whole.ends:
         return whole, clauses
@@ -222,7 +226,7 @@ def _turns_as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[C
 
 
 def _sided(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """Sides that numbers leave no choice about."""
+    """Fills in the sides of turns where the numbers leave no choice."""
     if not clauses_turn(clauses):
         return whole, clauses
     whole = with_other_side(whole, total(clauses))
@@ -237,7 +241,7 @@ def _sided(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
 
 
 def _turns_as_wish(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """'3 turns or more' as a wish."""
+    """Turns the clause '3 turns or more' into a requirement for the road."""
     if len(clauses) != 1 or not _is_plain(clauses[0]) or clauses[0].count.exact or whole.turns:
         return whole, clauses
     only = clauses[0]
@@ -247,7 +251,7 @@ def _turns_as_wish(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Cla
 
 
 def _pushed_down(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """What is said of every turn, said of the clauses that turn."""
+    """Moves requirements for every turn to the clauses that turn."""
     turning = [clause for clause in clauses if clause.kind not in STRAIGHT]
     if not turning:
         return whole, clauses
@@ -263,7 +267,7 @@ def _shaped(whole: Brief, clause: Clause) -> Clause:
     said = {
         name: getattr(clause, name) or getattr(whole, name) for name in ("sharpness", "degrees", "radius")
     }
-    if clause.radius or clause.sharpness:  # its own shape is not mixed with that of the road
+    if clause.radius or clause.sharpness:  # its own shape is not mixed with the shape asked of the whole road
         said["sharpness"], said["radius"] = clause.sharpness, clause.radius
     return clause.model_copy(update=said)
 
@@ -327,7 +331,7 @@ def _without_repeats(whole: Brief, clauses: list[Clause]) -> Brief:
 
 
 def _within(one: Amount, other: Amount) -> bool:
-    """Is every number of one allowed by the other?"""
+    """True if ``other`` allows every number that ``one`` allows."""
     low = other.lo is None or (one.lo is not None and one.lo >= other.lo)
     high = other.hi is None or (one.hi is not None and one.hi <= other.hi)
     return low and high

@@ -1,7 +1,8 @@
-"""What the final geometry must show: the Brief's words turned into ranges that can be measured.
+"""Turns a Brief into ranges that can be measured on the finished geometry.
 
-A designer aims inside an Outline, and a rule holds a finished road against it. All numbers are in the units
-of ``words.py`` (degrees, metres, percent uphill positive), measured as ``check.measures`` measures them.
+Designers aim inside an Outline, and the rule ``promises`` compares a finished road with it. All numbers are
+in the units of ``words.py`` (degrees, metres, percent with uphill positive), measured in the way that
+``check.measures`` measures them.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -28,22 +29,22 @@ from roadgpt.brief.words import (
     overlap,
 )
 
-SMALLEST_TURN = 12.0  # degrees; below 10 a bend is not measured as a turn
-SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have this share of it or more
-LARGEST_TURN = 270.0  # degrees, where only a lower bound was said
-USUALLY_WIDEST = 300.0  # metres: a bend of a larger radius is no turn, unless such turns are asked for
-WIDER = 1.5  # times the least radius asked for: a bend of a larger one is no turn
+SMALLEST_TURN = 12.0  # degrees; a bend of less than 10 is not measured as a turn
+SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have at least this share of it
+LARGEST_TURN = 270.0  # degrees, if only a lower bound was given
+USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns are asked for
+WIDER = 1.5  # times the least radius asked for: a wider bend is not a turn
 NO_LIMIT = Range()
 KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
 
 
 @dataclass(frozen=True, slots=True)
 class Feature:
-    """One turn or one straight; None promises nothing."""
+    """One turn or one straight that is required; a field that is None requires nothing."""
 
     kind: Literal["turn", "straight"]
     name: str
-    """What a person calls it: 'hairpin'."""
+    """The word for it in messages, such as 'hairpin'."""
     side: Side | None = None
     degrees: Range | None = None
     radius: Range | None = None
@@ -53,33 +54,34 @@ class Feature:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """``lo`` to ``hi`` features of one sort in a row; no upper limit where ``hi`` is None."""
+    """``lo`` to ``hi`` equal features in a row; if ``hi`` is None, there is no upper limit."""
 
     feature: Feature
     lo: int = 1
     hi: int | None = 1
     alternating: bool = False
-    """Sides alternate; ``feature.side`` is then that of the first."""
+    """True if the sides alternate; ``feature.side`` is then the side of the first."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """All promises of a Brief."""
+    """All requirements of a Brief as measurable ranges."""
 
     groups: tuple[Group, ...]
-    """In driving order; where any is a turn, these are all turns of the road."""
+    """The features in driving order; if any of them is a turn, they name all turns of the road."""
     turns: Range
     left: Range = NO_LIMIT
     right: Range = NO_LIMIT
     alternating: bool = False
     each_turn: Feature = Feature("turn", "turn")
-    """Limits of every turn, besides those of its group."""
+    """Limits for every turn, in addition to those of its group."""
     grade: Literal["up", "down", "flat"] | None = None
-    """Of the whole road: up or down all the way on 20 m windows, or within 1 %."""
+    """The slope of the whole road: 'up' or 'down' in every 20 m window, or 'flat', which is within 1 %."""
     grade_range: Range | None = None
-    """Percent: mean of the whole road, or every place of it where ``grade`` is None or flat."""
+    """In percent: the mean grade of the whole road if ``grade`` is 'up' or 'down', else the grade at
+    every place."""
     turning: Range | None = None
-    """Degrees, all turns together."""
+    """The sum of the angles of all turns in degrees."""
     steepest: Range | None = None
     climb: Range | None = None
     hills: Range | None = None
@@ -90,7 +92,7 @@ class Outline:
 
     @property
     def widest(self) -> float:
-        """Metres: the radius below which a bend of this road is a turn."""
+        """The radius in metres below which a bend of this road counts as a turn."""
         ends = (end for end in (self.starts, self.ends) if end)
         features = (self.each_turn, *(group.feature for group in self.groups), *ends)
         radii = (feature.radius.lo for feature in features if feature.radius)
@@ -98,22 +100,23 @@ class Outline:
 
     @property
     def names_all_turns(self) -> bool:
-        """Do the groups say every turn of the road, in order?"""
+        """True if the groups name every turn of the road in order."""
         return any(group.feature.kind == "turn" for group in self.groups) or self.turns.hi == 0
 
 
 def outline(brief: Brief, roomy: bool = True, map_size: float = inf) -> Outline:
-    """The Outline of a Brief.
+    """Returns the Outline of a Brief.
 
     Args:
         brief: what was asked for.
-        roomy: the map can hold sweeping turns of 60 m radius; else they are held to 40 m, as gentle ones.
-        map_size: metres along one side; a motorway has wide turns where there is room for them.
+        roomy: True if the map can hold sweeping turns of 60 m radius; otherwise sweeping turns only have to
+            meet the 40 m of gentle ones.
+        map_size: side of the map in metres; a motorway gets wide turns only if the map can hold them.
     """
     groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))
     grade, grade_range = _whole_grade(brief)
     steepest = _near(brief.steepest, _percent_slack)
-    if grade is None and grade_range:  # nearly flat: no place is steeper
+    if grade is None and grade_range:  # nearly flat: the limit holds at every place
         steepest = overlap(steepest, Range(0, max(abs(grade_range.lo), abs(grade_range.hi))))
     if has_low_grades(brief):
         steepest = overlap(steepest, Range(0, MOTORWAY_GRADE))
@@ -143,14 +146,14 @@ def outline(brief: Brief, roomy: bool = True, map_size: float = inf) -> Outline:
 
 
 def _widened(found: Outline) -> Outline:
-    """With turns as wide as those of a motorway."""
+    """Returns the Outline with the minimum radius of a motorway for every turn."""
     wide = Range(MOTORWAY_RADIUS)
     each = replace(found.each_turn, radius=overlap(found.each_turn.radius, wide))
     return replace(found, each_turn=each)
 
 
 def _groups(clause: Clause, roomy: bool) -> list[Group]:
-    """A clause as groups: crests and dips are two straights, straights one each, turns a group."""
+    """Returns the groups of a clause; a crest or a dip becomes two straights."""
     if clause.kind in ("crest", "dip"):
         slopes: tuple[Slope, Slope] = ("up", "down") if clause.kind == "crest" else ("down", "up")
         return [Group(_straight(clause.model_copy(update={"slope": slope}))) for slope in slopes]
@@ -163,7 +166,11 @@ def _groups(clause: Clause, roomy: bool) -> list[Group]:
 
 
 def _how_many(clause: Clause) -> tuple[int, int | None]:
-    """Turns of a clause: of S-bends and chicanes, those of each; of a serpentine with no number, its own."""
+    """Returns the least and largest number of turns of a clause.
+
+    For S-bends and chicanes it is the number of turns in all of them; for a serpentine and the like without a
+    number, it is the usual number of its kind.
+    """
     own, asked = KINDS[clause.kind].turns or Range(1, 1), clause.count
     lo, hi = asked.lo or 1, asked.hi
     if clause.kind in ("s_bend", "chicane"):
@@ -202,7 +209,7 @@ def _straight(clause: Clause) -> Feature:
 
 
 def _merged(groups: Iterable[Group]) -> list[Group]:
-    """Neighbouring straights that nobody could tell apart, made one as long as both."""
+    """Merges neighbouring straights of the same grade, since a measurement cannot tell them apart."""
     out: list[Group] = []
     for group in groups:
         last = out[-1].feature if out else None
@@ -219,13 +226,13 @@ def _sum(one: Range | None, other: Range | None) -> Range | None:
 
 
 def _last(clause: Clause, roomy: bool) -> Feature:
-    """The last feature of a clause; which way the last of alternating turns goes is open."""
+    """Returns the last feature of a clause; its side is open if the turns alternate."""
     group = _groups(clause, roomy)[-1]
     return replace(group.feature, side=None) if group.alternating else group.feature
 
 
 def _grade(slope: Slope | None, incline: Amount | None) -> Range | None:
-    """Percent; a number wins over 'steep', and takes its sign from the slope."""
+    """Returns a range in percent; a number takes precedence over 'steep' and gets its sign from the slope."""
     if incline is None:
         return SLOPES[slope].grade if slope else None
     size = _near(incline, _percent_slack) or NO_LIMIT
@@ -245,7 +252,11 @@ def _whole_grade(brief: Brief) -> tuple[Literal["up", "down", "flat"] | None, Ra
 
 
 def _turn_count(brief: Brief, groups: Sequence[Group]) -> Range:
-    """How many turns: those of the groups where any turns; else what was wished; none on mere straights."""
+    """Returns how many turns the road has.
+
+    These are the turns of the groups if any group turns, otherwise the number that was asked for; a road of
+    straights alone has none.
+    """
     turning = [group for group in groups if group.feature.kind == "turn"]
     wished = _count(brief.turns)
     if turning:
@@ -267,7 +278,7 @@ def _count(amount: Amount | None) -> Range:
 
 
 def _angle(amount: Amount) -> Range:
-    """Degrees of a turn; an open end still is a turn that can be seen and driven."""
+    """Returns the range of a turn's angle in degrees; an open end gets the limit of what can be driven."""
     near = _near(amount, degrees_slack) or NO_LIMIT
     low = near.lo if near.lo > -inf else max(SMALLEST_TURN, SMALLEST_OF_MOST * near.hi)
     return Range(low, near.hi if near.hi < inf else max(LARGEST_TURN, near.lo))
@@ -278,7 +289,7 @@ def _percent_slack(_: float) -> float:
 
 
 def _near(amount: Amount | None, slack: Callable[[float], float]) -> Range | None:
-    """An exact number with its slack; a bound or a range as it was said."""
+    """Returns an exact number with its tolerance, and a bound or a range unchanged."""
     if amount is None:
         return None
     if amount.exact and amount.lo is not None:

@@ -1,9 +1,9 @@
-"""A Brief on one short line, for people who label descriptions and for models that write them.
+"""Writes a Brief as one short line and reads it back, for people who label descriptions and for models.
 
     turn x3 left up; straight long down; hairpin right | len=300 hard
 
-Clauses stand in driving order, separated by ``;``; behind ``|`` stand the wishes for the whole road. A number
-is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief.
+The clauses stand in driving order, separated by ``;``. After ``|`` stand the requirements for the whole road.
+A number is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief.
 """
 
 import re
@@ -42,7 +42,7 @@ Model = TypeVar("Model", Brief, Clause)
 
 
 def plan(brief: Brief) -> str:
-    """The line of a Brief; its words, unused words and confidence are not part of it."""
+    """Returns the line of a Brief; the line leaves out the description, unused words and the confidence."""
     wishes = _mods(brief, ROAD_KEYS)
     for place in PLACES:
         clause = getattr(brief, place)
@@ -58,7 +58,7 @@ def _clause(clause: Clause) -> str:
 
 
 def _mods(thing: Clause | Brief, keys: dict[str, str]) -> list[str]:
-    """Words, flags and numbers of a clause or of the whole road, in one fixed order."""
+    """Returns the words, flags and numbers of a clause or of the whole road, in one fixed order."""
     fields = ("side", "sharpness", "size", "slope")
     out = [value for name in fields if (value := getattr(thing, name, None))]
     out += [flag for flag in FLAGS if getattr(thing, flag, False)]
@@ -75,10 +75,10 @@ def _amount(amount: Amount) -> str:
 
 
 def read_plan(line: str) -> Brief:
-    """The Brief of a line.
+    """Returns the Brief that a line describes.
 
     Raises:
-        BriefError: a word, key or number that is not part of the language, or a place that is taken twice.
+        BriefError: a word, key or number is not part of the language, or a field is given twice.
     """
     clauses, _, wishes = line.partition("|")
     fields: dict[str, object] = {
@@ -94,7 +94,9 @@ def read_plan(line: str) -> Brief:
 def _read_clause(text: str) -> Clause:
     kind, *words = text.split() or [""]
     if kind not in KINDS:
-        raise BriefError(f"a plan has no clause '{kind[:40]}'; clauses begin with {', '.join(sorted(KINDS))}")
+        raise BriefError(
+            f"a plan has no clause '{kind[:40]}'; a clause begins with one of {', '.join(sorted(KINDS))}"
+        )
     fields: dict[str, object] = {"kind": kind}
     for word in words:
         if word.startswith("x") and word[1:2] in "0123456789.":
@@ -113,24 +115,28 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
     elif word in WORDS:
         _set(fields, WORDS[word], word)
     else:
-        raise BriefError(f"a plan has no word '{word[:40]}' here; see the language in roadgpt.brief.plan")
+        raise BriefError(
+            f"a plan has no word '{word[:40]}' here; the language is described in roadgpt.brief.plan"
+        )
 
 
 def _set(fields: dict[str, object], name: str, value: object) -> None:
     if name in fields:
-        raise BriefError(f"a plan says its {name} twice: '{value}'; say it once")
+        raise BriefError(f"a plan gives {name} twice: '{value}'; give it once")
     fields[name] = value
 
 
 def _read_amount(text: str) -> Amount:
     match = AMOUNT.fullmatch(text)
     if not match or not (match[1] or match[3]) or (match[1] and match[3] and not match[2]):
-        raise BriefError(f"a plan has no number '{text[:40]}'; write 3, 3.., ..3 or 3..5")
+        raise BriefError(f"'{text[:40]}' is not a number in a plan; write 3, 3.., ..3 or 3..5")
     low, high = (float(bound) if bound else None for bound in (match[1], match[3]))
     try:
         return Amount(lo=low, hi=high if match[2] else low)
     except ValidationError as error:
-        raise BriefError(f"a plan has the range '{text[:40]}' the wrong way round") from error
+        raise BriefError(
+            f"the range '{text[:40]}' in a plan is reversed; write the smaller number first"
+        ) from error
 
 
 def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
@@ -142,5 +148,5 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
 
 
 def _number(value: float | None) -> str:
-    """Plain decimals, never an exponent; nothing for no bound."""
+    """Returns a number in plain decimals, never with an exponent; an empty string for None."""
     return "" if value is None else f"{value:.6f}".rstrip("0").rstrip(".")

@@ -1,14 +1,14 @@
-"""Refusals that depend on the map, with the Brief that is refused: on another map it may be built."""
+"""Errors that depend on the size of the map; they carry the Brief, since another map may hold the road."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.errors import BriefError
 
 
 class TooMuchError(BriefError):
-    """More is asked for than the usual map of 250 m is known to hold; another may hold it.
+    """Raised if more is asked for than the usual map of 250 m is known to hold; another map may hold it.
 
     Attributes:
-        brief: what is asked for; ``brief.read`` holds it against the real map.
+        brief: what is asked for; ``brief.read`` checks it against the actual map.
     """
 
     def __init__(self, sentence: str, brief: Brief) -> None:
@@ -17,7 +17,7 @@ class TooMuchError(BriefError):
 
 
 class NoRoomError(BriefError):
-    """The map has no room for what is asked for.
+    """Raised if the map is too small for what is asked for.
 
     Attributes:
         brief: what is asked for.

@@ -1,4 +1,4 @@
-"""Says a Brief as one plain English sentence, in words that the grammar reads back."""
+"""Writes a Brief as one plain English sentence, which the grammar reader reads back as the same Brief."""
 
 from collections.abc import Callable
 
@@ -20,7 +20,7 @@ WAVY = ("serpentine", "zigzag", "winding", "slalom")
 
 
 def sentence(brief: Brief) -> str:
-    """What was understood: 'An uphill road with 3 turns.'"""
+    """Returns what was understood as a sentence, such as 'An uphill road with 3 turns.'"""
     said = normal(brief)
     adjectives = [_exact_metres(said.length)]
     if said.slope and not said.incline:
@@ -101,7 +101,7 @@ def _minus(number: float | None) -> float | None:
 
 
 def clause_text(clause: Clause) -> str:
-    """One clause: 'a sharp left turn of 90 degrees uphill at 5 percent'."""
+    """Returns the text of one clause, such as 'a sharp left turn of 90 degrees uphill at 5 percent'."""
     counted = clause.kind not in WAVY
     count = clause.count if counted else exactly(1)
     noun = NOUNS.get(clause.kind, clause.kind)
@@ -116,7 +116,7 @@ def clause_text(clause: Clause) -> str:
 
 
 def clause_columns(clause: Clause) -> tuple[str, str]:
-    """The same in two columns of a table: '2 turns', 'sharp, uphill, left'."""
+    """Returns the text of one clause as two columns of a table: ('2 turns', 'sharp, uphill, left')."""
     noun = NOUNS.get(clause.kind, clause.kind)
     is_one = clause.kind in WAVY or clause.count == exactly(1)
     what = noun if is_one else f"{_count(clause.count)} {_plural(noun, clause.count)}"
@@ -129,7 +129,7 @@ def clause_columns(clause: Clause) -> tuple[str, str]:
 
 
 def road_words(brief: Brief) -> str:
-    """What is asked of the whole road: 'uphill, 3 turns, hard for a lane keeper'; empty where nothing is."""
+    """Returns what is asked of the whole road, such as 'uphill, 3 turns'; empty if nothing is."""
     slope = SLOPE_WORDS[brief.slope] if brief.slope and not brief.incline else ""
     turns = ""
     if not brief.clauses and brief.turns and brief.turns not in (at_least(1), exactly(0), at_least(0)):

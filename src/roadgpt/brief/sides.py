@@ -1,4 +1,4 @@
-"""How many turns go left and how many right: what the numbers leave no choice about is said outright.
+"""Derives the sides of turns where the numbers leave no choice.
 
 Of 5 turns of which 4 go left, 1 goes right; of 3 turns of which none goes left, all go right.
 """
@@ -10,7 +10,7 @@ NONE = exactly(0)
 
 
 def with_other_side(whole: Brief, turns: Amount) -> Brief:
-    """Where all turns and those to one side are counted, those to the other follow."""
+    """Fills in the number of turns to one side, if the total and the number to the other side are exact."""
     if not turns.exact or turns.lo is None:
         return whole
     for one, other in SIDES:
@@ -21,13 +21,13 @@ def with_other_side(whole: Brief, turns: Amount) -> Brief:
 
 
 def forced_side(whole: Brief) -> Side | None:
-    """The side to which all turns go, because none may go to the other."""
+    """Returns the side to which all turns go because none may go to the other; None if both may."""
     sides = [one for one, other in SIDES if getattr(whole, other) == NONE]
     return sides[0] if len(sides) == 1 else None
 
 
 def as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """'4 turns or more, none to the right' as a clause of turns to the left."""
+    """Turns '4 turns or more, none to the right' into a clause of turns to the left."""
     side, turns = forced_side(whole), whole.turns
     if clauses or not side or not turns or not turns.lo or whole.starts or whole.ends:
         return whole, clauses

@@ -1,8 +1,8 @@
-"""What words mean: the one table from which the readers, the outline and the docs take their numbers.
+"""The table of what words mean, from which the readers, the Outline and the documents take their numbers.
 
-Every number is in the unit in which people say it (degrees, metres, percent, uphill positive) and is
-measured on the final geometry: the angle and the tightest radius of a turn, the length of a straight, the
-mean slope of a feature. Designers aim well inside these ranges; a measured curvature is averaged over 5 m.
+Every number is in the unit that people use (degrees, metres, percent with uphill positive) and applies to a
+measurement on the finished geometry: the angle and the tightest radius of a turn, the length of a straight,
+the mean grade of a feature. Designers aim well inside these ranges; measured curvature is averaged over 5 m.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """From lo to hi, both allowed; either may be infinite."""
+    """A closed interval from ``lo`` to ``hi``; either end may be infinite."""
 
     lo: float = -inf
     hi: float = inf
@@ -35,7 +35,7 @@ class Range:
 
 
 def overlap(one: Range | None, other: Range | None) -> Range | None:
-    """Where two ranges overlap; None is no limit, and nothing in common has lo above hi."""
+    """Returns the intersection of two ranges (None is no limit); ``lo`` is above ``hi`` if it is empty."""
     if one is None or other is None:
         return one or other
     return Range(max(one.lo, other.lo), min(one.hi, other.hi))
@@ -43,28 +43,29 @@ def overlap(one: Range | None, other: Range | None) -> Range | None:
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What a word promises; None where it promises nothing."""
+    """What a word requires; a field that is None requires nothing."""
 
     said: tuple[str, ...]
-    """English words with this meaning; the first is the one that we say ourselves."""
+    """The English words with this meaning; RoadGPT itself uses the first one."""
     turns: Range | None = None
-    """How many turns one such thing has, where no number is said."""
+    """How many turns one such feature has, if no number is given."""
     alternating: bool = False
     degrees: Range | None = None
-    """Heading change of each turn; of a straight, all turning along it."""
+    """The change of heading of each turn in degrees; for a straight, the sum of all changes along it."""
     aim: Range | None = None
-    """Degrees from which designers draw, where the promise alone would be a poor example of the word."""
+    """The degrees that designers aim for, if the whole allowed range would include poor examples of the
+    word."""
     radius: Range | None = None
-    """Metres, at the tightest place of each turn."""
+    """The radius in metres at the tightest place of each turn."""
     length: Range | None = None
-    """Metres."""
+    """In metres."""
     grade: Range | None = None
-    """Percent, uphill positive, of the feature as a whole."""
+    """The mean grade of the feature in percent, uphill positive."""
 
 
 ONE = Range(1, 1)
-NO_TURN = Range(0, 5)  # degrees: what still counts as straight
-LEAST_STRAIGHT = 10.0  # metres: a shorter one is not seen between two turns
+NO_TURN = Range(0, 5)  # degrees: a straight turns no more than this
+LEAST_STRAIGHT = 10.0  # metres: a shorter straight cannot be seen between two turns
 
 KINDS: Mapping[Kind, Meaning] = {
     "straight": Meaning(("straight",), degrees=NO_TURN, length=Range(LEAST_STRAIGHT)),
@@ -78,11 +79,11 @@ KINDS: Mapping[Kind, Meaning] = {
     "chicane": Meaning(
         ("chicane",), Range(2, 4), alternating=True, degrees=Range(25, 120), radius=Range(0, 30)
     ),
-    # four, and tight: right for those who count a slalom with the chicanes and for those who do not
+    # four tight turns: both common meanings of the word, with and without chicanes, agree with that
     "slalom": Meaning(
         ("slalom",), Range(4, 4), alternating=True, degrees=Range(40, 120), radius=Range(0, 30)
     ),
-    # four turns of 40 degrees are hardly a serpentine: drawn from 65 on, they turn 260 degrees in all
+    # four turns of 40 degrees are hardly a serpentine; from 65 degrees on they turn 260 degrees in all
     "serpentine": Meaning(
         ("serpentine",), Range(4), alternating=True, degrees=Range(40, 210), aim=Range(65, 170)
     ),
@@ -99,7 +100,7 @@ SHARPNESS: Mapping[Sharpness, Meaning] = {
         ("sharp", "tight", "hard"), degrees=Range(30, 120), aim=Range(35, 115), radius=Range(0, 30)
     ),
 }
-"""Where the map cannot hold radii of 60 m, a sweeping turn may be as tight as a gentle one."""
+"""On a map that cannot hold radii of 60 m, a sweeping turn may be as tight as a gentle one."""
 
 SIZES: Mapping[Size, Meaning] = {
     "long": Meaning(("long",), length=Range(60)),
@@ -118,32 +119,32 @@ SLOPES: Mapping[Slope, Meaning] = {
 }
 
 MOUNTAIN = Range(4, 15)
-"""Percent: the steepest place of 'a mountain road', up or down."""
+"""The grade in percent of the steepest place of 'a mountain road', up or down."""
 HILLS = 3
-"""Changes between climbing and falling on 'a hilly road': up, down, up, down."""
+"""How often 'a hilly road' changes between climbing and falling at least: up, down, up, down."""
 ROAD_SIZES: Mapping[Size, Range] = {"long": Range(250), "short": Range(20, 150)}
-"""Metres: 'a long road', 'a short road'."""
+"""The length in metres of 'a long road' and 'a short road'."""
 
-MOTORWAY_RADIUS = 600.0  # metres, of every turn of 'a motorway', where the map has room: see brief.motorway
-MOTORWAY_GRADE = 5.0  # percent, up and down, of its steepest place
+MOTORWAY_RADIUS = 600.0  # metres, for every turn of 'a motorway' if the map can hold it: see brief.motorway
+MOTORWAY_GRADE = 5.0  # percent, up or down, at its steepest place
 
 LEAST_RADIUS = 14.326  # metres: 47 ft, the tightest turn of the SBFT competition
-USUAL_MAP = 250.0  # metres along one side, where nobody says another: RoadGPT's
-STEEPEST = 15.0  # percent, up and down: RoadGPT's system prompt
+USUAL_MAP = 250.0  # metres along one side, the default: the map of RoadGPT's thesis
+STEEPEST = 15.0  # percent, up or down: the system prompt of RoadGPT's thesis
 
-PERCENT_SLACK = 1.0  # percentage points, around a grade that was said as a number
+PERCENT_SLACK = 1.0  # percentage points, around a grade that was given as a number
 LENGTH_SLACK = 0.15  # ratio, around the length of a straight or the radius of a turn
 ROAD_LENGTH_SLACK = 0.10  # ratio, around the length of the whole road
 TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 
 def degrees_slack(degrees: float) -> float:
-    """How far a turn may be off the angle that was said: a tenth, at most 7 degrees, 10 from 90 on."""
+    """Returns the tolerance of an angle in degrees: 10 %, but at most 7, or at most 10 from 90 degrees on."""
     return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
 
 
 def table() -> str:
-    """The whole table as a Markdown page; ``docs/reference/words.md`` is this text."""
+    """Returns the whole table as a Markdown page; ``docs/reference/words.md`` is this text."""
     return "\n".join([*_top(), *_turns(), *_straights(), *_slopes(), *_numbers()]) + "\n"
 
 
@@ -166,7 +167,7 @@ OTHER_TURNS = (
     ("several, a series of", "3 or more", "-", "-"),
     ("many, lots of, numerous", "4 or more", "-", "-"),
 )
-"""Words of the grammar that stand for a turn with a number, or for a number."""
+"""Words of the grammar reader that stand for a turn with given numbers, or for a number."""
 
 
 def _turns() -> list[str]:

@@ -1,4 +1,4 @@
-"""Takes phrases one after another, and makes the Brief."""
+"""Builds the Brief from the phrases, one after another."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,10 +19,10 @@ SCOPED = ("with", "into", "enter", "for")
 
 
 def build_brief(found: Sequence[Phrase]) -> tuple[Brief, list[Term]]:
-    """The Brief that the phrases make, and the items that had no place in it.
+    """Returns the Brief that the phrases make, and the terms that had no place in it.
 
     Raises:
-        BriefError: a full circle, or more things than any map holds.
+        BriefError: a full circle is asked for, or more features than any map holds.
     """
     builder = _Builder(found)
     for at, phrase in enumerate(found):
@@ -54,7 +54,7 @@ class _Builder:
         self.before = phrase
 
     def _take(self, phrase: Phrase, after: Phrase | None) -> bool:
-        """Finds the phrase its place; False where it has none."""
+        """Finds the place of a phrase; returns False if it has none."""
         if phrase.exception or (phrase.relative and self.before and self.before.exception):
             return self._except(phrase)
         if phrase.negated:
@@ -133,7 +133,7 @@ class _Builder:
         climb, before = Amount(lo=ends[0], hi=ends[1]), self.order.wishes.climb
         if before and before.exact and climb.exact:  # 'gains 10 m, then loses 4 m'
             climb = exactly((before.lo or 0) + (climb.lo or 0))
-            if climb == exactly(0):  # of the two heights nothing is left to promise
+            if climb == exactly(0):  # the two heights cancel, so nothing is required
                 self.left_over += [item for said in self.found for item in said.items if item.name == "m"]
         self.order.wishes.climb = climb
 
@@ -150,7 +150,9 @@ class _Builder:
         return True
 
     def _more(self, side: str) -> None:
-        """'more left than right turns'; with the same number of both, it is half the number, or two."""
+        """Reads 'more left than right turns'; with the same number of both, it is half of the turns, or
+        two.
+        """
         wishes, last = self.order.wishes, self.order.last_turn
         if side == "same":
             half = exactly(max(how_many(last) // 2, 1) if last and plural(last) else 2)
@@ -161,14 +163,14 @@ class _Builder:
             setattr(wishes, "right" if side == "left" else "left", at_most(number - 1))
 
     def _mostly(self, phrase: Phrase) -> bool:
-        """'5 turns, mostly to the right'."""
+        """Reads '5 turns, mostly to the right'."""
         self.order.mostly = phrase.side
         if phrase.kind:
             self.order.add(replace(phrase, side=None), leading=False)
         return True
 
     def _road(self, phrase: Phrase, after: Phrase | None) -> bool:
-        """What was said of the road itself; True where it is also a thing, as 'a winding road' is."""
+        """Reads what was said about the road itself; True if it is also a feature, as 'a winding road' is."""
         self.road_said = True
         wishes = self.order.wishes
         leg = phrase.after_road and phrase.slope and not phrase.length_said  # 'goes up for 100 m'
@@ -230,7 +232,7 @@ class _Builder:
         self.order.add(phrase, leading=phrase.fresh and after is not None)
 
     def _fills_in(self, phrase: Phrase) -> bool:
-        """'turns: all left', 'number of turns: 5', 'then another': more about the thing before."""
+        """Reads 'turns: all left' and the like, which say more about the feature before."""
         last = self.order.last_turn
         if (
             phrase.kind is None
@@ -244,7 +246,7 @@ class _Builder:
         return False
 
     def _is_part(self, phrase: Phrase) -> bool:
-        """'5 turns, at least 3 to the left': of the five."""
+        """Reads '5 turns, at least 3 to the left' as part of the five."""
         last, count = self.order.last_turn, phrase.count
         if phrase.kind or not phrase.side or not count or count.exact or not last or last.side:
             return False
@@ -254,7 +256,7 @@ class _Builder:
         return True
 
     def _except(self, phrase: Phrase) -> bool:
-        """'5 turns, all left except the third'; False where nothing says what the exception is like."""
+        """Reads '5 turns, all left except the third'; False if nothing says what the exception is like."""
         before, turn = self.before, self.order.last_turn
         if not (phrase.exception and before and before.scope == "all" and before.side and turn):
             return False
@@ -307,7 +309,7 @@ class _Builder:
 
 
 def _is_pick(phrase: Phrase) -> bool:
-    """'the last turn', with nothing said about it yet."""
+    """True for 'the last turn' with nothing said about it yet."""
     said = (
         phrase.side,
         phrase.sharpness,
@@ -321,7 +323,7 @@ def _is_pick(phrase: Phrase) -> bool:
 
 
 def _open(thing: Phrase) -> bool:
-    """Was no number said?"""
+    """True if no number was said."""
     return not plural(thing) or (thing.count == at_least(2) and not thing.counted)
 
 
@@ -339,5 +341,7 @@ _UNCOUNTED = frozenset(
 
 
 def _changes(times: Amount | None) -> float:
-    """Changes of slope of a road that goes up and down so many times; of one that just does, the usual."""
+    """Returns the changes of slope of a road that goes up and down so many times; the usual number if
+    none is said.
+    """
     return max(2 * times.lo - 1, 1) if times and times.lo else HILLS

@@ -1,4 +1,4 @@
-"""Puts words together that belong together: one Phrase for each thing, slope or wish, in the order said."""
+"""Groups words that belong together: one Phrase for each feature, slope or requirement, in the order said."""
 
 from collections.abc import Sequence
 from math import radians, tan
@@ -32,11 +32,11 @@ JOINTS = {
     "start": 9,
     "end": 9,
 }
-"""How strongly things are joined; of two in a row ('and then') the stronger one holds."""
+"""How strongly a word joins things; of two in a row ('and then') the stronger one counts."""
 
 
 def chunk(items: Sequence[Term]) -> list[Phrase]:
-    """The phrases of a description."""
+    """Returns the phrases of a description."""
     chunker = _Chunker(items)
     for at, item in enumerate(items):
         chunker.take(at, item)
@@ -47,7 +47,7 @@ def chunk(items: Sequence[Term]) -> list[Phrase]:
 
 
 def _slope_in_degrees(phrase: Phrase) -> None:
-    """'climbs at 5 degrees' is a slope of 8.7 percent."""
+    """Converts 'climbs at 5 degrees' to a slope of 8.7 percent."""
     degrees = phrase.degrees
     sloped = phrase.slope in ("up", "down") or phrase.slope_noun
     if degrees and sloped and not phrase.turning and phrase.side is None and phrase.incline is None:
@@ -59,7 +59,7 @@ def _slope_in_degrees(phrase: Phrase) -> None:
 
 
 class _Chunker:
-    """Reads items one after another into the current phrase, and begins a new one where it must."""
+    """Reads terms one after another into the current phrase, and begins a new one where needed."""
 
     def __init__(self, items: Sequence[Term]) -> None:
         self.items = items
@@ -143,7 +143,7 @@ _TURNS = {name for name, (kind, _) in KINDS.items() if kind not in STRAIGHT} | {
 
 
 def _starts_anew(now: Phrase, item: Term, after: str) -> bool:
-    """Does this item belong to another thing than the current phrase?"""
+    """True if this term belongs to another feature than the current phrase."""
     name = item.name
     if now.joint == "after" and now.length and not _named(now) and name in _TURNS:
         return True  # 'after 50 m turn left'

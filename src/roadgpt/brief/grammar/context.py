@@ -1,4 +1,4 @@
-"""Settles words that mean one thing here and another there, by their neighbours."""
+"""Settles words with more than one meaning by their neighbours."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -46,7 +46,7 @@ BEFORE_A_VERB = frozenset({"", "that", "road", "and", "then", ",", "stop", "firs
 
 
 def settle(items: Sequence[Term]) -> list[Term]:
-    """The same items, each with one meaning left."""
+    """Returns the same terms, each with only one meaning."""
     out = list[Term]()
     at = 0
     while at < len(items):
@@ -103,7 +103,7 @@ def _settled(items: Sequence[Term], at: int, item: Term, before: str, after: str
 
 
 def _hill(items: Sequence[Term], at: int, before: str) -> str:
-    """'a steep hill' is a climb, 'up a hill' says no more than 'up', any other hill is a crest."""
+    """Decides a hill: 'a steep hill' is a climb, 'up a hill' only means 'up', any other hill is a crest."""
     if before in ("steep", "mild"):
         return "up~" if _name(items, at, -1, {"steep", "mild"}) not in SLOPING else "-"
     near = {before, _name(items, at, -1, {"steep", "mild", "gentle", "long"})}
@@ -111,7 +111,9 @@ def _hill(items: Sequence[Term], at: int, before: str) -> str:
 
 
 def _is_beyond(items: Sequence[Term], at: int, before: str, after: str) -> bool:
-    """What no Brief can hold: 'a left turn at 50 m', 'total turning of 300 degrees', '3 lanes'."""
+    """True for what no Brief can express: 'a left turn at 50 m', 'total turning of 300 degrees', '3
+    lanes'.
+    """
     item = items[at]
     match item.name:
         case "count":
@@ -136,7 +138,7 @@ def _gentle(items: Sequence[Term], at: int, item: Term, before: str, after: str)
 
 
 def _noun_or_verb(items: Sequence[Term], at: int, item: Term, before: str) -> str:
-    """'the road turns left' has one turn, 'a road with left turns' several."""
+    """Decides 'turns': 'the road turns left' has one turn, 'a road with left turns' several."""
     verb = item.name.removesuffix("+") + "~"
     if item.name == "crest+":
         return "crest" if before in BEFORE_A_VERB - {""} and item.text == "crests" else item.name
@@ -147,7 +149,7 @@ def _noun_or_verb(items: Sequence[Term], at: int, item: Term, before: str) -> st
 
 
 def _sides(items: Sequence[Term], at: int) -> tuple[int, str]:
-    """'left and right' as one meaning, where it is: 'left and right turns', 'alternating left and right'."""
+    """Reads 'left and right' as one meaning where it is one: 'left and right turns'."""
     if items[at].name not in SIDES:
         return 0, ""
     joint = at + 1
@@ -174,12 +176,12 @@ def _sides(items: Sequence[Term], at: int) -> tuple[int, str]:
 
 
 def _whole_of(items: Sequence[Term], at: int, joint: int) -> bool:
-    """'turns to both left and right'."""
+    """True for 'turns to both left and right'."""
     return at > 0 and items[at - 1].name == "both"
 
 
 def _at(items: Sequence[Term], at: int) -> int:
-    """Where the next item that is not skipped stands."""
+    """Returns the index of the next term that is not skipped."""
     at += 1
     while at < len(items) - 1 and items[at].name in SKIPPED:
         at += 1
@@ -187,7 +189,7 @@ def _at(items: Sequence[Term], at: int) -> int:
 
 
 def _name(items: Sequence[Term], at: int, step: int, also: Collection[str] = ()) -> str:
-    """The next name that is not skipped, '' at the ends."""
+    """Returns the next name that is not skipped; '' at the ends."""
     at += step
     while 0 <= at < len(items) and (items[at].name in SKIPPED or items[at].name in also):
         at += step

@@ -1,4 +1,4 @@
-"""Things along the road, put together from phrases: what belongs to what was said before."""
+"""Puts features in driving order from phrases: decides what belongs to what was said before."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -10,12 +10,12 @@ from roadgpt.brief.words import KINDS
 from roadgpt.errors import BriefError
 
 MOST = 200
-"""Of anything; a road with more fits on no map."""
+"""The largest number of anything; no map holds more."""
 
 
 @dataclass(slots=True)
 class RoadWishes:
-    """What was said of the road as a whole; the fields are those of a Brief."""
+    """What was said about the road as a whole; the fields are those of a Brief."""
 
     turns: Amount | None = None
     left: Amount | None = None
@@ -38,33 +38,34 @@ class RoadWishes:
 
 @dataclass(slots=True)
 class DrivingOrder:
-    """The things of a road in driving order; a slope alone ('uphill, then ...') is one without a kind."""
+    """The features of a road in driving order; a slope alone ('uphill, then ...') is one without a kind."""
 
     things: list[Phrase] = field(default_factory=list)
     wishes: RoadWishes = field(default_factory=RoadWishes)
     mostly: Side | None = None
-    """'mostly left turns': how many that are is known at the end."""
+    """The side of 'mostly left turns'; how many turns that means is known only at the end."""
     hills_are_counted: bool = False
-    """'at least 2 changes of slope', not just 'hilly'."""
+    """True for 'at least 2 changes of slope', rather than just 'hilly'."""
     lists: list[tuple[Phrase, int]] = field(default_factory=list)
-    """Things that are spelled out: 'three turns: left, right, left', and how many stood before that."""
+    """Features that are spelled out ('three turns: left, right, left'), each with how many stood before
+    the list."""
 
     @property
     def last(self) -> Phrase | None:
-        """What was said last."""
+        """The feature said last."""
         return self.things[-1] if self.things else None
 
     @property
     def last_turn(self) -> Phrase | None:
-        """The turn, or turns, said last."""
+        """The turn or group of turns said last."""
         return next((thing for thing in reversed(self.things) if turns(thing)), None)
 
     def add(self, thing: Phrase, leading: bool) -> None:
-        """Puts a thing in its place.
+        """Adds a feature in its place.
 
         Args:
-            thing: with its count filled in where one was said.
-            leading: 'after X, Y': X comes first, as it was said.
+            thing: the feature, with its count if one was said.
+            leading: True for 'after X, Y', where X is said first and also comes first.
         """
         if self._joins(thing):
             return
@@ -108,7 +109,9 @@ class DrivingOrder:
             self.things.append(thing)
 
     def _begin_sides(self, heading: Phrase, side: Phrase) -> None:
-        """'turns left, right' and 'turns: left, right' are two, and 'turns' is none besides."""
+        """Handles 'turns left, right' and 'turns: left, right', which are two; 'turns' itself is no
+        further one.
+        """
         if not heading.many or heading.counted:
             return
         if heading.side and side.joint == ",":
@@ -117,16 +120,16 @@ class DrivingOrder:
             self.things.pop()
 
     def _is_between(self, thing: Phrase, middle: Phrase) -> bool:
-        """'a hairpin between two bends'; but in 'two bends separated by a hairpin' there is one."""
+        """True for 'a hairpin between two bends'; but in 'two bends separated by a hairpin' there is one."""
         return middle.kind in STRAIGHT or (turns(middle) and not plural(middle) and how_many(thing) > 1)
 
     def _is_flanked(self, thing: Phrase) -> bool:
-        """'a hairpin between two straights'."""
+        """True for 'a hairpin between two straights'."""
         alone = len(self.things) == 1 and not plural(self.things[0])
         return alone and thing.kind in STRAIGHT and thing.count == exactly(2)
 
     def _refers(self, thing: Phrase) -> bool:
-        """'over a crest and down, with a left turn after the crest': the crest that was named."""
+        """True for 'with a left turn after the crest', if a crest was named before."""
         if thing.joint != "after" or thing.kind not in ("crest", "dip") or thing.article or thing.count:
             return False
         at = next((i for i, other in enumerate(self.things[:-1]) if other.kind == thing.kind), None)
@@ -135,7 +138,9 @@ class DrivingOrder:
         return at is not None
 
     def _joins(self, thing: Phrase) -> bool:
-        """Does it say more about the thing before, rather than name another: 'a serpentine with 6 turns'?"""
+        """True if it says more about the feature before rather than name another: 'a serpentine with 6
+        turns'.
+        """
         last = self.last
         if last is None or not turns(last) or not turns(thing):
             return False
@@ -165,7 +170,7 @@ class DrivingOrder:
             self.lists.append((last, len(self.things)))
 
     def _weave(self, thing: Phrase, chosen: Callable[[Phrase], bool]) -> None:
-        """Puts a thing between every two that are chosen."""
+        """Puts a feature between every two that are chosen."""
         self.expand()
         woven = list[Phrase]()
         for at, other in enumerate(self.things):
@@ -177,7 +182,7 @@ class DrivingOrder:
         self.things = woven
 
     def _surround(self, thing: Phrase) -> None:
-        """'a straight between two hairpins', and 'two straights joined by a hairpin'."""
+        """Handles 'a straight between two hairpins' and 'two straights joined by a hairpin'."""
         middle = self.things.pop()
         if plural(middle) and not plural(thing):
             self.things += [replace(middle, count=None), replace(thing, joint="then")]
@@ -191,7 +196,7 @@ class DrivingOrder:
             self.things.append(replace(thing, count=exactly(number - number // 2), joint="then"))
 
     def _in_the_straight(self, thing: Phrase) -> bool:
-        """'a straight with a chicane in the middle', 'a chicane in the middle of a straight'."""
+        """Handles 'a straight with a chicane in the middle' and 'a chicane in the middle of a straight'."""
         last = self.things[-1]
         middle, straight = (last, thing) if last.place == "middle" else (thing, last)
         if straight.kind != "straight" or not turns(middle) or len(self.things) > 1:
@@ -210,7 +215,9 @@ class DrivingOrder:
         return True
 
     def _insert_at_height(self, thing: Phrase) -> None:
-        """'up and down a hill, with a left turn at the top': behind the last thing that climbs."""
+        """Handles 'up and down a hill, with a left turn at the top': it follows the last feature that
+        climbs.
+        """
         slope = "up" if thing.place == "top" else "down"
         places = [at for at, other in enumerate(self.things) if other.slope == slope]
         at = places[-1] + 1 if places else len(self.things)
@@ -223,7 +230,7 @@ class DrivingOrder:
         self.things.insert(len(self.things) // 2, replace(thing, joint="then"))
 
     def expand(self) -> None:
-        """Things in a row become single things: 3 turns -> turn, turn, turn."""
+        """Splits features in a row into single ones: 3 turns -> turn, turn, turn."""
         out = list[Phrase]()
         for thing in self.things:
             if (
@@ -241,7 +248,9 @@ class DrivingOrder:
         self.things = out
 
     def _can_be_told_apart(self, thing: Phrase) -> bool:
-        """Turns that alternate can, where they are all the turns: then the whole road alternates."""
+        """True if its turns can be split; alternating ones can if they are all the turns: the road then
+        alternates.
+        """
         alternates = thing.alternating or (thing.kind is not None and KINDS[thing.kind].alternating)
         if thing.kind in ("s_bend", "chicane") or not alternates:
             return not thing.alternating
@@ -251,29 +260,29 @@ class DrivingOrder:
 
 
 def turns(thing: Phrase) -> bool:
-    """Is it a turn, or a side that stands for one: 'first left, then right'?"""
+    """Returns True if it is a turn, or a side that stands for one: 'first left, then right'."""
     return thing.turning or (thing.kind is None and thing.side is not None)
 
 
 def plural(thing: Phrase) -> bool:
-    """Is it more than one?"""
+    """Returns True if it is more than one."""
     return thing.count is not None and thing.count != exactly(1)
 
 
 def how_many(thing: Phrase) -> int:
-    """The least number of a thing; never more than MOST.
+    """Returns the least number of a feature, at most MOST.
 
     Raises:
         BriefError: more were asked for than any map holds.
     """
     number = thing.count.lo if thing.count and thing.count.lo is not None else 1
     if number > MOST:
-        raise BriefError(f"{number:,.0f} of one thing do not fit on any map; ask for {MOST} or fewer")
+        raise BriefError(f"{number:,.0f} of one kind do not fit on any map; ask for {MOST} or fewer")
     return max(int(number), 0)
 
 
 def default_count(thing: Phrase) -> None:
-    """Fills in the count that the form of the word says: 'turns' are two or more."""
+    """Fills in the count that the form of a word implies: 'turns' are two or more."""
     if thing.times and thing.times.lo and thing.times.exact:
         lo = how_many(thing) * thing.times.lo
         thing.count = exactly(lo)
@@ -286,7 +295,7 @@ def default_count(thing: Phrase) -> None:
 
 
 def overlay(under: Phrase, over: Phrase) -> None:
-    """Adds what ``over`` says where ``under`` says nothing."""
+    """Copies what ``over`` says to ``under`` where that says nothing."""
     for name in ("side", "sharpness", "size", "degrees", "radius", "length", "incline"):
         if getattr(under, name) is None:
             setattr(under, name, getattr(over, name))
@@ -300,7 +309,7 @@ def overlay(under: Phrase, over: Phrase) -> None:
 
 
 def _specify(wavy: Phrase, thing: Phrase) -> None:
-    """'a winding road with 5 hairpins': five hairpins; 'a serpentine with 6 turns': a serpentine of six."""
+    """Handles 'a winding road with 5 hairpins' (five hairpins) and 'a serpentine with 6 turns'."""
     own = KINDS[wavy.kind].turns if wavy.kind else None
     if thing.kind not in ("turn", None):
         wavy.alternating |= wavy.kind != "winding"
@@ -313,7 +322,7 @@ def _specify(wavy: Phrase, thing: Phrase) -> None:
 
 
 def _detail(compound: Phrase, thing: Phrase) -> None:
-    """'a chicane with 3 turns', 'an S-bend with sharp turns'."""
+    """Handles 'a chicane with 3 turns' and 'an S-bend with sharp turns'."""
     if thing.count and thing.counted and compound.count is None and (thing.count.lo or 0) > 2:
         compound.kind, compound.count, compound.alternating = "turn", thing.count, True
         compound.sharpness = compound.sharpness or "sharp"

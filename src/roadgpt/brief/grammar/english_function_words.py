@@ -1,6 +1,7 @@
-"""English vocabulary, second half: numbers, bounds, units, joints between things, scope, and mere scenery.
+"""English vocabulary, second part: numbers, bounds, units, conjunctions, scope, and words without effect.
 
-Written as ``english.py`` is; '-' are words that are understood and mean nothing for the shape of a road.
+The format is that of ``english.py``; '-' are words that are understood but do not affect the shape of the
+road.
 """
 
 FUNCTION_WORDS: dict[str, str] = {
@@ -94,7 +95,7 @@ FUNCTION_WORDS: dict[str, str] = {
     "lose": "lose | loses | losing",
     "across": "wide | high | deep | width | tall | broad | lane width | road width",
     "speed": "kmh | kph | mph | kilometres per hour | kilometers per hour | miles per hour",
-    # joints
+    # words that join things
     ",": ", | as it | while | whilst | as the road | when it | but | yet | while it",
     "/": "/",
     "stop": ". | ! | ? | ; | \n",
@@ -249,7 +250,7 @@ FUNCTION_WORDS: dict[str, str] = {
     " | trouble | struggle | struggles | worst case | edge case | provoke | provokes | confuse"
     " | out of the lane | leaves its lane | leaves the lane | depart | departure | departures"
     " | lose control",
-    # understood, and of no weight for the shape
+    # understood, but without effect on the shape
     "steep": "as steep as possible | as steep as it gets",
     "more_left": "more left turns than right turns | more left than right turns | more lefts than rights"
     " | more left than right",

@@ -1,4 +1,4 @@
-"""German vocabulary, written as ``english.py`` is; accents are left out ('hochstens')."""
+"""German vocabulary, in the format of ``english.py``; accents are left out ('hochstens')."""
 
 GERMAN: dict[str, str] = {
     "turn": "kurve | biegung | abbiegung",

@@ -1,4 +1,4 @@
-"""What each meaning does to the Phrase that it is read into."""
+"""Handlers: what each meaning does to the Phrase that it is read into."""
 
 from collections.abc import Callable
 from typing import TypeGuard
@@ -31,7 +31,9 @@ KINDS: dict[str, tuple[Kind, bool]] = {
 
 
 def handle_kind(now: Phrase, item: Term) -> None:
-    """A thing along the road; 'hairpin bend' and 'zig-zag switchbacks' are one thing each."""
+    """Applies a kind of feature to a phrase; 'hairpin bend' and 'zig-zag switchbacks' are one feature
+    each.
+    """
     kind, many = KINDS[item.name]
     if now.kind in WAVY and kind not in STRAIGHT and kind not in ("turn", now.kind):
         now.alternating = now.kind != "winding"
@@ -102,9 +104,9 @@ def _is_height(now: Phrase, item: Term, after: str) -> bool:
 
 
 MOST_RISE = 20.0
-"""Metres: 'a 10 m climb' is 10 m high, 'a 50 m climb' 50 m long."""
+"""In metres: 'a 10 m climb' is 10 m high, 'a 50 m climb' 50 m long."""
 MOST_HEIGHT = 30.0
-"""Metres: 'climbs 20 metres' is a height, 'climbs 100 metres' a way."""
+"""In metres: 'climbs 20 metres' is a height, 'climbs 100 metres' a distance."""
 
 
 def _take_percent(now: Phrase, item: Term, after: str) -> None:
@@ -119,7 +121,7 @@ def _take_percent(now: Phrase, item: Term, after: str) -> None:
 
 
 def _changes_sign(amount: Amount | None) -> bool:
-    """From below to above nought: no slope that has a name."""
+    """True if the amount reaches from below to above zero: no slope has a name for that."""
     return amount is not None and (amount.lo or 0) < 0 < (amount.hi or 0)
 
 
@@ -128,7 +130,7 @@ def _is_negative(amount: Amount | None) -> TypeGuard[Amount]:
 
 
 def _size(amount: Amount) -> Amount:
-    """Without its sign; a bound stays on the side that was said."""
+    """Returns the amount without its sign; a bound stays on the side that was said."""
     if amount.lo is None or amount.hi is None:
         return Amount(lo=amount.lo and abs(amount.lo), hi=amount.hi and abs(amount.hi))
     return Amount(lo=abs(amount.hi), hi=abs(amount.lo))

@@ -1,4 +1,4 @@
-"""Looks phrases up in the vocabularies: longest match first, and simple typing errors forgiven."""
+"""Looks up phrases in the vocabularies, the longest match first, and tolerates simple typing errors."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from roadgpt.brief.grammar.tokens import Token, tokens
 from roadgpt.brief.grammar.unsupported_words import UNSUPPORTED_WORDS
 
 ALIKE = 0.75
-"""Share of letters in common from which a word may be another one mistyped."""
-LEAST_LETTERS = 5  # of a word in which a typing error is forgiven; shorter ones are too alike
+"""The share of common letters from which a word may be another one mistyped."""
+LEAST_LETTERS = 5  # of a word in which a typing error is corrected; shorter ones are too similar
 MOST_LETTERS = 20
 UNKNOWN = "?"
 NEED_A_NUMBER_AFTER = frozenset({">", "<", "exact"})
@@ -25,7 +25,7 @@ Meanings = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Lexeme:
-    """A meaning and the tokens it was read from, ``start`` to ``stop``."""
+    """A meaning and the tokens from which it was read, ``start`` to ``stop`` (excluded)."""
 
     name: str
     start: int
@@ -36,15 +36,15 @@ class Lexeme:
 
 @dataclass(frozen=True, slots=True)
 class Lexicon:
-    """Phrases, as tuples of words, and their readings; and words with one letter missing."""
+    """Phrases, as tuples of words, and their meanings."""
 
     phrases: dict[tuple[str, ...], tuple[Meanings, ...]]
     longest: dict[str, int]
-    """Of the phrases that begin with a word, the number of words of the longest."""
+    """For each word, the number of words of the longest phrase that begins with it."""
 
     @classmethod
     def of(cls, vocabularies: Iterable[dict[str, str]]) -> "Lexicon":
-        """Compiles vocabularies; an earlier one wins over a later one."""
+        """Compiles vocabularies; an earlier one takes precedence over a later one."""
         phrases: dict[tuple[str, ...], tuple[Meanings, ...]] = {}
         longest: dict[str, int] = {}
         for vocabulary in vocabularies:
@@ -61,12 +61,12 @@ class Lexicon:
 
 @cache
 def lexicon() -> Lexicon:
-    """All vocabularies; what no Brief can hold first, then English."""
+    """Returns all vocabularies compiled: first what no Brief can express, then English, then the others."""
     return Lexicon.of((UNSUPPORTED_WORDS, ROAD_WORDS, FUNCTION_WORDS, GERMAN, ROMANCE))
 
 
 def lex(found: Sequence[Token]) -> list[Lexeme]:
-    """The meanings of a description, in order; words that mean nothing here become UNKNOWN."""
+    """Returns the meanings of a description in order; words without a meaning become UNKNOWN."""
     known, out, at = lexicon(), list[Lexeme](), 0
     while at < len(found):
         token = found[at]
@@ -101,7 +101,9 @@ def _longest(
 def _reading(
     readings: tuple[Meanings, ...], found: Sequence[Token], stop: int, before: Sequence[Lexeme]
 ) -> Meanings:
-    """The first reading; but 'over' is a bound where a number follows, 'or more' where one stands before."""
+    """Returns the first reading, except that 'over' needs a number after it to be a bound, and 'or more'
+    one before.
+    """
     number_near = any(lexeme.name.startswith("#") for lexeme in before[-2:])  # '3 turns or more'
     number_before = bool(before) and (before[-1].name.startswith("#") or before[-1].name in UNITS)
     number_after = stop < len(found) and _is_number(found[stop])
@@ -129,20 +131,22 @@ def _is_number(token: Token) -> bool:
 
 
 def similar(word: str) -> str | None:
-    """A word about roads that somebody may have meant: 'turns' for 'trns'; None where none is near."""
+    """Returns a word about roads that may have been meant, such as 'turns' for 'trns'; None if none is
+    near.
+    """
     known = {w for listed in ROAD_WORDS.values() for w in listed.split() if len(w) > 3 and w.isalpha()}
     near = get_close_matches(word, sorted(known), n=1, cutoff=ALIKE)
     return near[0] if near else None
 
 
 def is_strange(word: str) -> bool:
-    """Does no vocabulary have this word?"""
+    """Returns True if no vocabulary has this word."""
     return word not in lexicon().longest
 
 
 @cache
 def _with_a_letter_missing() -> dict[str, set[str]]:
-    """Words of the vocabularies by what is left of them when one letter, or none, is left out."""
+    """Indexes the words of the vocabularies by what remains when one letter, or none, is left out."""
     index: dict[str, set[str]] = {}
     for words in lexicon().phrases:
         if len(words) == 1 and len(words[0]) >= LEAST_LETTERS:
@@ -156,7 +160,7 @@ def _shorter(word: str) -> set[str]:
 
 
 def _forgiven(word: str) -> Meanings:
-    """The meaning of the one known word that is one slip away (letter more, less, other, or swapped)."""
+    """Returns the meaning of the only known word that differs by one letter more, less, other or swapped."""
     if not LEAST_LETTERS <= len(word) <= MOST_LETTERS:
         return ()
     index, phrases = _with_a_letter_missing(), lexicon().phrases

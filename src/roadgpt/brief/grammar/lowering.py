@@ -1,4 +1,4 @@
-"""The last steps from things along the road to a Brief."""
+"""The last stage: turns the features along the road into a Brief."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -20,14 +20,18 @@ from roadgpt.brief.words import KINDS, SIZES
 from roadgpt.errors import BriefError
 
 ROUND_BUT_TIGHT = between(25, 35)
-"""Metres: radius of 'a wide hairpin', which is still a hairpin."""
+"""The radius in metres of 'a wide hairpin', which is still a hairpin."""
 
 
 def lower(order: DrivingOrder, road_said: bool) -> Brief:
-    """The Brief of all things and wishes.
+    """Returns the Brief of all features and requirements.
+
+    Args:
+        order: the features in driving order, and what was said about the road as a whole.
+        road_said: True if the description names the road itself ('a road with ...').
 
     Raises:
-        BriefError: an S-bend whose turns go one way.
+        BriefError: all turns of an S-bend or a chicane are said to go to one side.
     """
     in_driving_order(order)
     _deal_out(order)
@@ -57,7 +61,7 @@ def lower(order: DrivingOrder, road_said: bool) -> Brief:
 
 
 def _deal_out(order: DrivingOrder) -> None:
-    """'two bends of 45 and 90 degrees': one number each."""
+    """Gives each turn its own number: 'two bends of 45 and 90 degrees'."""
     out = list[Phrase]()
     for thing in order.things:
         name, numbers = thing.series or ("", ())
@@ -72,7 +76,7 @@ def _deal_out(order: DrivingOrder) -> None:
 
 
 def _spell_out(order: DrivingOrder) -> None:
-    """'three turns: left, right, left' are three, not six."""
+    """Counts turns that are spelled out only once: 'three turns: left, right, left' are three, not six."""
     for whole, at in order.lists:
         places = [i for i, thing in enumerate(order.things) if thing is whole]
         if not places or places[0] + 1 > at:
@@ -100,7 +104,7 @@ def _turns_in(whole: Phrase) -> tuple[int, int]:
 
 
 def _spelled(things: list[Phrase], start: int, number: tuple[int, int]) -> int:
-    """Where the turns that spell out the number end; ``start`` where they do not."""
+    """Returns where the turns that spell out the number end; ``start`` if they do not."""
     total, best = 0, start
     for at in range(start, len(things)):
         if not turns(things[at]):
@@ -112,7 +116,7 @@ def _spelled(things: list[Phrase], start: int, number: tuple[int, int]) -> int:
 
 
 def _spelled_attribute(order: DrivingOrder, whole: Phrase, start: int) -> None:
-    """'two turns, left': not spelled out, but told more of."""
+    """Reads 'two turns, left' as more about the two turns, not as another one."""
     if start < len(order.things) and not _parts_of(order, whole, start):
         thing = order.things[start]
         if (
@@ -127,7 +131,7 @@ def _spelled_attribute(order: DrivingOrder, whole: Phrase, start: int) -> None:
 
 
 def _parts_of(order: DrivingOrder, whole: Phrase, start: int) -> bool:
-    """'5 turns, 3 to the left': three of the five."""
+    """Reads '5 turns, 3 to the left' as three of the five."""
     parts = [t for t in order.things[start:] if t.kind is None and t.side and t.count and t.joint != "then"]
     if parts != order.things[start:] or whole.side or not plural(whole):
         return False
@@ -156,7 +160,7 @@ def _sides_of(whole: Phrase, sides: list[Phrase]) -> None:
 
 
 def _name_sides(order: DrivingOrder) -> None:
-    """A side that stands for a turn takes the kind of the turn that it was said with."""
+    """Gives a side that stands for a turn the kind of the turn that it was said with."""
     things = order.things
     for at, thing in enumerate(things):
         if thing.kind is not None or thing.side is None:
@@ -187,7 +191,7 @@ def _place(order: DrivingOrder, thing: Phrase) -> int:
 
 
 def _part_of_the_number(order: DrivingOrder) -> None:
-    """'a road with 5 turns, ending in a hairpin': the hairpin is the fifth."""
+    """Counts a feature at an end as one of the turns: 'a road with 5 turns, ending in a hairpin' has five."""
     things = order.things
     if len(things) < 2 or any(thing.joint in ("then", "for", "after", "stop") for thing in things):
         return
@@ -212,7 +216,7 @@ def _part_of_the_number(order: DrivingOrder) -> None:
 
 
 def _fill_up(order: DrivingOrder) -> None:
-    """'two hairpins, 5 turns in total': three more turns."""
+    """Adds the missing turns: 'two hairpins, 5 turns in total' has three more."""
     wished = order.wishes.turns
     turning = [thing for thing in order.things if turns(thing)]
     if not wished or not wished.exact or not turning or any(t.kind in WAVY for t in turning):
@@ -266,7 +270,9 @@ def _clause(thing: Phrase, order: DrivingOrder) -> Clause:
 
 
 def _possible(clause: Clause) -> Clause:
-    """What the words mean together: a wide hairpin is a hairpin still, a gentle chicane an S-bend."""
+    """Combines words that exclude each other: a wide hairpin stays a hairpin, a gentle chicane is an
+    S-bend.
+    """
     if clause.sharpness in ("gentle", "sweeping"):
         if clause.kind == "hairpin":
             radius = clause.radius or ROUND_BUT_TIGHT

@@ -1,4 +1,4 @@
-"""Phrases that name no thing: they tell more about the one before, or about the road."""
+"""Applies phrases that name no feature: they say more about the one before, or about the road."""
 
 from dataclasses import replace
 
@@ -12,7 +12,11 @@ from roadgpt.errors import BriefError
 
 
 def modify(order: DrivingOrder, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
-    """A phrase that names no thing: it tells more about the one before, or about the road."""
+    """Applies a phrase that names no feature to the feature before it or to the road.
+
+    Returns:
+        True if something in the phrase was used.
+    """
     last, turn, wishes = order.last, order.last_turn, order.wishes
     used = (
         phrase.height is not None
@@ -102,16 +106,18 @@ def _incline(order: DrivingOrder, phrase: Phrase, before: Phrase | None) -> bool
 
 
 def _both(one: Amount, other: Amount) -> Amount:
-    """'more than five turns but fewer than nine'.
+    """Combines two bounds: 'more than five turns but fewer than nine'.
 
     Raises:
-        BriefError: no number is in both.
+        BriefError: no number satisfies both.
     """
     lows = [amount.lo for amount in (one, other) if amount.lo is not None]
     highs = [amount.hi for amount in (one, other) if amount.hi is not None]
     low, high = max(lows, default=None), min(highs, default=None)
     if low is not None and high is not None and low > high:
-        raise BriefError(f"no number is {low:g} or more and {high:g} or less; say one of the two")
+        raise BriefError(
+            f"no number is {low:g} or more and {high:g} or less; leave out one of the two bounds"
+        )
     return Amount(lo=low, hi=high)
 
 
@@ -119,7 +125,7 @@ def _repeat(order: DrivingOrder, phrase: Phrase) -> None:
     times = phrase.times or phrase.count or exactly(2)
     number = int(times.lo or times.hi or 2)
     if number * len(order.things) > 100:
-        raise BriefError("so many repetitions fit on no map; ask for fewer")
+        raise BriefError("no map has room for so many repetitions; ask for fewer")
     last = order.last
     if len(order.things) == 1 and last is not None and last.count is None and turns(last):
         last.count = exactly(number)
@@ -130,6 +136,6 @@ def _repeat(order: DrivingOrder, phrase: Phrase) -> None:
 
 
 def _has_a_length(thing: Phrase, phrase: Phrase) -> bool:
-    """Is it a straight, or a slope that is not that of the whole road?"""
+    """True if it is a straight, or a slope that is not the slope of the whole road."""
     of_the_road = thing.after_road and phrase.length_said
     return thing.kind in STRAIGHT or (thing.kind is None and thing.slope != "" and not of_the_road)

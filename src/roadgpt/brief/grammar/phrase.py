@@ -1,4 +1,4 @@
-"""A Phrase: all that was said about one thing, one slope or one wish."""
+"""A Phrase: everything that was said about one feature, one slope or one requirement."""
 
 from dataclasses import dataclass, field
 
@@ -7,28 +7,28 @@ from roadgpt.brief.model import Amount, Kind, Sharpness, Side, Size
 from roadgpt.brief.normal import STRAIGHT
 
 ROAD_LIKE: frozenset[Kind] = frozenset({"straight", "winding", "serpentine", "zigzag", "slalom"})
-"""Kinds that a whole road can be said to be: 'a winding road'."""
+"""Kinds that can describe a whole road: 'a winding road'."""
 WAVY: frozenset[Kind] = frozenset({"winding", "serpentine", "zigzag", "slalom"})
 
 
 @dataclass(slots=True)
 class Phrase:
-    """What was said about one thing; a field is empty where nothing was said."""
+    """What was said about one feature; a field is empty if nothing was said."""
 
     joint: str = ""
     fresh: bool = False
-    """Does a pause, or the beginning, stand before it?"""
+    """True if a pause, or the beginning, stands before it."""
     count: Amount | None = None
     counted: bool = True
-    """Was a number said, rather than 'several'?"""
+    """True if a number was said, rather than 'several'."""
     article: bool = False
     again: bool = False
     negated: bool = False
     only: bool = False
     scope: str = ""
-    """all, each, both or rest: of the things said before."""
+    """'all', 'each', 'both' or 'rest' of the features said before."""
     pick: tuple[int, int] | None = None
-    """First and number of the things said before; negative first counts from the last."""
+    """The first of the features said before, and how many; a negative first counts from the last."""
     kind: Kind | None = None
     many: bool = False
     verb: bool = False
@@ -42,21 +42,21 @@ class Phrase:
     slope: str = ""
     """up, down or flat."""
     climbs: bool = False
-    """Said as a verb: 'climbs', rather than 'uphill'."""
+    """True if the slope was said as a verb: 'climbs' rather than 'uphill'."""
     slope_noun: bool = False
     after_road: bool = False
-    """Was the slope said after the road: 'a road going uphill'?"""
+    """True if the slope was said after the road: 'a road going uphill'."""
     steep: bool = False
     mild: bool = False
     mostly: bool = False
     each_side: bool = False
     same_hand: bool = False
     series: tuple[str, tuple[float, ...]] | None = None
-    """'two bends of 45 and 90 degrees': of what, and the numbers."""
+    """For 'two bends of 45 and 90 degrees': the name of the field, and the numbers."""
     each: bool = False
-    """'of 40 m each': the number is that of every single one."""
+    """True for 'of 40 m each': the number applies to every single one."""
     half: int = 0
-    """1 or 2: the first or the second half of the road; 3: half of the things said before."""
+    """1 or 2: the first or the second half of the road; 3: half of the features said before."""
     nearly: bool = False
     degrees: Amount | None = None
     radius: Amount | None = None
@@ -66,7 +66,7 @@ class Phrase:
     height: Amount | None = None
     height_said: str = ""
     turned: Amount | None = None
-    """Degrees of all turns together."""
+    """The sum of all turning angles in degrees."""
     turned_said: bool = False
     incline: Amount | None = None
     highest: bool = False
@@ -81,15 +81,15 @@ class Phrase:
     place: str = ""
     hilly: bool = False
     more: str = ""
-    """left, right or same: of which side there are more turns."""
+    """'left', 'right' or 'same': to which side more turns go."""
     climbs_said: bool = False
-    """'with steep climbs': some, somewhere."""
+    """True for 'with steep climbs': there are some, somewhere."""
     changes: bool = False
-    """Does the count say how often the slope changes?"""
+    """True if the count says how often the slope changes."""
     relative: bool = False
-    """Does it begin with 'which': 'the last turn, which is downhill'?"""
+    """True if it begins with 'which': 'the last turn, which is downhill'."""
     slope_alone: bool = False
-    """Was it a slope and no more, and made a straight?"""
+    """True if only a slope was said, which then became a straight."""
     free_turns: bool = False
     hard: bool = False
     mountain: bool = False
@@ -97,15 +97,15 @@ class Phrase:
     loop: bool = False
     items: list[Term] = field(default_factory=list)
     exception: list[Term] = field(default_factory=list)
-    """The word 'except', where the phrase stands behind it."""
+    """The word 'except', if the phrase follows it."""
     ignored: list[Term] = field(default_factory=list)
 
     @property
     def turning(self) -> bool:
-        """Is it a thing that turns?"""
+        """True if it is a feature that turns."""
         return self.kind is not None and self.kind not in STRAIGHT
 
     @property
     def empty(self) -> bool:
-        """Is nothing said yet?"""
+        """True if nothing has been said yet."""
         return not self.items

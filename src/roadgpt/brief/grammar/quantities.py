@@ -1,4 +1,6 @@
-"""Numbers with their bounds and units: 'no more than 3', 'between 40 and 60 metres', '1:8', 'one in ten'."""
+"""Reads numbers with their bounds and units: 'no more than 3', 'between 40 and 60 metres', '1:8', 'one in
+ten'.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +19,7 @@ UNITS: dict[str, tuple[str, float]] = {
     "speed": ("speed", 1.0),
     "times": ("times", 1.0),
 }
-"""Our unit, and how many of it one of theirs is."""
+"""Maps a unit to our unit and its size in it."""
 BEFORE = frozenset({">=", "<=", ">", "<", "exact"})
 RANGE_WORDS = frozenset({"to", "bis", "a", "till", "until", "-"})
 LOOK_BACK = 3  # items between a bound and its number: 'a minimum radius of 20 m'
@@ -25,7 +27,7 @@ LOOK_BACK = 3  # items between a bound and its number: 'a minimum radius of 20 m
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A meaning; or a quantity: then ``amount`` is set, and ``name`` is 'count' or its unit."""
+    """A meaning; or a quantity, which has an ``amount`` and is named 'count' or after its unit."""
 
     name: str
     start: int
@@ -33,14 +35,14 @@ class Term:
     text: str = ""
     amount: Amount | None = None
     exact: bool = True
-    """Was a number said, rather than 'several'?"""
+    """True if a number was said, rather than 'several'."""
     series: tuple[float, ...] = ()
-    """All numbers of a list, '45, 60 and 90 degrees'; ``amount`` is the first."""
+    """All numbers of a list, such as '45, 60 and 90 degrees'; ``amount`` is the first."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Read:
-    """A number, or a range of numbers, up to the lexeme ``stop``."""
+    """A number or a range of numbers, which ends before the lexeme ``stop``."""
 
     lo: float | None
     hi: float | None
@@ -49,7 +51,7 @@ class _Read:
 
 
 def quantities(lexemes: Sequence[Lexeme]) -> list[Term]:
-    """The same description with its numbers put together."""
+    """Returns the terms of a description, with its numbers put together."""
     out, at = list[Term](), 0
     while at < len(lexemes):
         lexeme = lexemes[at]
@@ -89,7 +91,7 @@ def _quantity(lexemes: Sequence[Lexeme], at: int, out: list[Term]) -> int:
 
 
 def _series(lexemes: Sequence[Lexeme], at: int) -> tuple[Term, int] | None:
-    """A list of numbers with one unit behind the last: '45, 60 and 90 degrees'."""
+    """Reads a list of numbers with one unit after the last: '45, 60 and 90 degrees'."""
     numbers, stop, joint = list[float](), at, ""
     while stop < len(lexemes) and lexemes[stop].name.startswith("#"):
         read = _number(lexemes, stop)
@@ -118,7 +120,7 @@ def _amount(lo: float | None, hi: float | None) -> Amount:
 
 
 def _number(lexemes: Sequence[Lexeme], at: int) -> _Read:
-    """The number that begins here: digits, or words as in 'three hundred and fifty'."""
+    """Reads the number that begins here: digits, or words as in 'three hundred and fifty'."""
     name = lexemes[at].name
     if name == "#":
         return _Read(lexemes[at].value, lexemes[at].value, at + 1)
@@ -152,7 +154,7 @@ def _words(lexemes: Sequence[Lexeme], at: int) -> tuple[float, int]:
 
 
 def _one_in(lexemes: Sequence[Lexeme], read: _Read) -> tuple[float, int] | None:
-    """'one in ten' as percent."""
+    """Reads 'one in ten' as percent."""
     at = read.stop
     if read.lo != 1 or at + 1 >= len(lexemes) or lexemes[at].name != "in_ten":
         return None
@@ -172,7 +174,7 @@ def _unit(lexemes: Sequence[Lexeme], at: int) -> tuple[str, int]:
 
 
 def _second(lexemes: Sequence[Lexeme], at: int, first: _Read) -> _Read | None:
-    """The other end of a range: '3 to 5', '3-5', 'between 3 and 5', 'two or three'."""
+    """Reads the other end of a range: '3 to 5', '3-5', 'between 3 and 5', 'two or three'."""
     if at + 1 >= len(lexemes) or not first.exact or not lexemes[at + 1].name.startswith("#"):
         return None
     joint = lexemes[at]
@@ -188,7 +190,7 @@ def _second(lexemes: Sequence[Lexeme], at: int, first: _Read) -> _Read | None:
 
 
 def _bounded(items: list[Term]) -> list[Term]:
-    """Bounds put into the amounts beside them, and left out themselves."""
+    """Applies bounds to the amounts beside them and removes the bounds."""
     out = list[Term]()
     waiting: Term | None = None
     for at, item in enumerate(items):
@@ -216,7 +218,7 @@ def _bounded(items: list[Term]) -> list[Term]:
 
 
 def _passed(items: list[Term], at: int, out: list[Term]) -> bool:
-    """'climbs 10 m over 200 m', 'over three crests': a way, and no bound."""
+    """True for 'climbs 10 m over 200 m' and 'over three crests': a distance, not a bound."""
     if at + 1 < len(items) and items[at + 1].name in ("crest", "crest+", "hill", "hilly"):
         return True
     return any(item.amount is not None for item in out[-LOOK_BACK - 1 :])
@@ -229,7 +231,7 @@ def _without_between(out: list[Term], item: Term) -> Term:
 
 
 def _with_other_bound(out: list[Term], item: Term) -> Term:
-    """'at least 4 and at most 6 turns': one range, whose first bound is taken out."""
+    """Joins 'at least 4 and at most 6 turns' to one range, and removes its first bound."""
     first = out[-2] if len(out) > 1 and out[-1].name in ("and", ",") else None
     if first is None or first.amount is None or item.amount is None or first.name not in ("count", item.name):
         return item
@@ -241,7 +243,7 @@ def _with_other_bound(out: list[Term], item: Term) -> Term:
 
 
 def _bound_behind(out: list[Term], bound: Term) -> None:
-    """'3 turns minimum': the bound stands behind its number."""
+    """Reads '3 turns minimum': the bound follows its number."""
     for at in range(len(out) - 1, max(len(out) - 1 - LOOK_BACK, -1), -1):
         if out[at].amount is not None:
             out[at] = _with(out[at], bound.name)
@@ -249,7 +251,7 @@ def _bound_behind(out: list[Term], bound: Term) -> None:
 
 
 def _with(item: Term, bound: str) -> Term:
-    """The item with 'at least' and the like applied; whole numbers step over the number that was said."""
+    """Returns the term with a bound applied; 'more than 3 turns' is 4 or more, since counts are whole."""
     amount = item.amount
     number = amount.lo if amount and amount.lo is not None else amount.hi if amount else None
     if amount is None or number is None:

@@ -1,4 +1,6 @@
-"""What is said before the thing it is said of, or out of driving order; settled when all has been read."""
+"""Puts things into place that are said before what they refer to, or out of driving order; runs at the
+end.
+"""
 
 from dataclasses import replace
 
@@ -10,7 +12,7 @@ from roadgpt.brief.normal import STRAIGHT
 
 
 def in_driving_order(order: DrivingOrder) -> None:
-    """'finally a left turn, but first two right turns'."""
+    """Moves the beginning to the front: 'finally a left turn, but first two right turns'."""
     things = order.things
     ends = next((at for at, thing in enumerate(things) if thing.joint == "end"), len(things))
     start = next((at for at in range(ends + 1, len(things)) if things[at].joint == "start"), None)
@@ -19,7 +21,7 @@ def in_driving_order(order: DrivingOrder) -> None:
 
 
 def place_picks(order: DrivingOrder) -> None:
-    """'the last turn is sharp; four turns', 'a road whose second turn is a hairpin'."""
+    """Applies what is said about single turns: 'the last turn is sharp; four turns'."""
     picked = [thing for thing in order.things if thing.pick is not None and turns(thing)]
     others = [
         thing for thing in order.things if turns(thing) and thing.pick is None and thing.scope != "rest"
@@ -50,7 +52,7 @@ def _give_to(order: DrivingOrder, picked: list[Phrase], number: int) -> None:
 
 
 def _alone(order: DrivingOrder, picked: list[Phrase]) -> None:
-    """Nothing to pick from: turns in front of 'the second' are filled in, and 'the last' ends the road."""
+    """Fills in turns before 'the second' if there is nothing to pick from; 'the last' then ends the road."""
     before = 0
     for one in picked:
         first, many = one.pick or (0, 1)
@@ -63,7 +65,7 @@ def _alone(order: DrivingOrder, picked: list[Phrase]) -> None:
 
 
 def share_of_the_rest(order: DrivingOrder) -> None:
-    """'the first two turns are left, the others right; five turns in total'."""
+    """Counts the rest: 'the first two turns are left, the others right; five turns in total'."""
     rest = next((thing for thing in order.things if thing.scope == "rest"), None)
     if rest is None or rest.kind in WAVY:
         return
@@ -74,7 +76,7 @@ def share_of_the_rest(order: DrivingOrder) -> None:
 
 
 def most_to_one_side(order: DrivingOrder) -> None:
-    """'mostly left turns, 5 in total': more than half."""
+    """Turns 'mostly left turns, 5 in total' into more than half."""
     if order.mostly is None:
         return
     wished = order.wishes.turns
@@ -83,7 +85,7 @@ def most_to_one_side(order: DrivingOrder) -> None:
 
 
 def hills_of_a_list(order: DrivingOrder) -> None:
-    """'hilly road: up, down, up' has the two changes that are listed, and not the three of a hilly road."""
+    """Removes the three changes of 'hilly' if a list names fewer: 'hilly road: up, down, up' has two."""
     hills, changes, before = order.wishes.hills, 0, ""
     for thing in order.things:
         for slope in _SLOPES.get(thing.kind or "", (thing.slope,)):
@@ -99,7 +101,9 @@ _SLOPES = {"crest": ("up", "down"), "dip": ("down", "up")}
 
 
 def turns_left_open(order: DrivingOrder, road_said: bool) -> bool:
-    """'a road with a crest' may turn besides; 'a straight road' and 'up, down, up' may not."""
+    """Returns True if turns may be added: to 'a road with a crest', but not to 'a straight road' or 'up,
+    down, up'.
+    """
     things = order.things
     if order.wishes.turns is not None or not things or any(t.kind not in STRAIGHT for t in things):
         return False
@@ -111,7 +115,9 @@ def turns_left_open(order: DrivingOrder, road_said: bool) -> bool:
 
 
 def as_one_turn(order: DrivingOrder, phrase: Phrase) -> bool:
-    """'a long bend, followed by a short sharp one': the one is a bend too."""
+    """Adds the turn that 'one' stands for: 'a long bend, followed by a short sharp one'. False if there
+    is none.
+    """
     last = order.last_turn
     said = phrase.sharpness or phrase.size or phrase.side
     alone = phrase.joint in ("then", "and") or (last is not None and not plural(last))

@@ -1,4 +1,4 @@
-"""Words about things said before: 'both to the right', 'the last one sharp', 'two of them', 'no turns'."""
+"""Applies words about features said before: 'both to the right', 'the last one sharp', 'no turns'."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ ATTRIBUTES = ("side", "sharpness", "degrees", "radius", "incline")
 
 
 def select(order: DrivingOrder, phrase: Phrase, after: Phrase | None) -> bool:
-    """Gives what the phrase says to the things that it points to."""
+    """Applies a phrase to the features that it refers to; returns False if it was not used."""
     if phrase.pick is not None:
         return _pick(order, phrase)
     if (phrase.kind in STRAIGHT and phrase.scope == "each") or (
@@ -46,7 +46,9 @@ def select(order: DrivingOrder, phrase: Phrase, after: Phrase | None) -> bool:
 
 
 def _rest(order: DrivingOrder, phrase: Phrase) -> bool:
-    """'the first two turns are left, the others right', 'the first 100 m are flat, the rest is uphill'."""
+    """Reads 'the first two turns are left, the others right', 'the first 100 m are flat, the rest is
+    uphill'.
+    """
     if turns(phrase) or phrase.sharpness or phrase.degrees or phrase.radius:
         phrase.kind, phrase.count, phrase.joint = phrase.kind or "turn", None, "then"
         order.things.append(phrase)
@@ -76,7 +78,7 @@ def _targets(order: DrivingOrder, phrase: Phrase) -> list[Phrase]:
 
 
 def give(thing: Phrase, phrase: Phrase) -> None:
-    """Puts what a phrase says on a thing, over what was said of it before."""
+    """Applies what a phrase says to a feature, overriding what was said before."""
     if phrase.kind not in (None, "turn"):
         thing.kind = phrase.kind
     for name in ATTRIBUTES:
@@ -96,7 +98,7 @@ def give(thing: Phrase, phrase: Phrase) -> None:
 
 
 def _wish(order: DrivingOrder, phrase: Phrase) -> bool:
-    """'every bend is sharp', where no bend was named: a wish for the road."""
+    """Reads 'every bend is sharp', where no bend was named, as a requirement for the road."""
     wishes = order.wishes
     for name in ("sharpness", "degrees", "radius"):
         if getattr(phrase, name) is not None:
@@ -112,7 +114,9 @@ def _wish(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def _pick(order: DrivingOrder, phrase: Phrase) -> bool:
-    """'the first two uphill', 'the last is a hairpin'; with nothing to pick from, it is a thing itself."""
+    """Reads 'the first two uphill', 'the last is a hairpin'; with nothing to pick from, it is a new
+    feature.
+    """
     first, number = phrase.pick or (0, 1)
     order.expand()
     places = [at for at, thing in enumerate(order.things) if turns(thing) and thing.pick is None]
@@ -120,7 +124,7 @@ def _pick(order: DrivingOrder, phrase: Phrase) -> bool:
         places = [at for at, thing in enumerate(order.things) if thing.kind in STRAIGHT]
     picked = places[first : first + number] if first >= 0 else places[first:][:number]
     if any(plural(order.things[at]) for at in picked):
-        return False  # of turns that alternate among others, none can be told apart
+        return False  # single turns of an alternating group cannot be picked out
     if not picked:
         kind = phrase.kind or ("turn" if phrase.side or phrase.sharpness or phrase.degrees else None)
         if kind is None:
@@ -134,7 +138,7 @@ def _pick(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def halve(order: DrivingOrder, phrase: Phrase) -> bool:
-    """'the first half uphill': the slope goes to that half of the turns; False where none is named."""
+    """Reads 'the first half uphill' for that half of the turns; returns False if no turns are named."""
     order.expand()
     turning = [thing for thing in order.things if turns(thing)]
     if not turning:
@@ -146,7 +150,7 @@ def halve(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def take_some(order: DrivingOrder, phrase: Phrase) -> bool:
-    """'two of them to the left', 'one of which is a hairpin'."""
+    """Reads 'two of them to the left', 'one of which is a hairpin'; returns False if no turns are named."""
     whole = order.last_turn
     if whole is None:
         return False
@@ -173,7 +177,7 @@ def take_some(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def negate(order: DrivingOrder, phrase: Phrase) -> bool:
-    """'no left turns', 'not steep', 'without hairpins'; False where a Brief cannot say it."""
+    """Reads 'no left turns', 'not steep', 'without hairpins'; returns False if a Brief cannot express it."""
     wishes = order.wishes
     if phrase.hilly or phrase.slope_noun:
         wishes.slope = wishes.slope or "flat"
@@ -209,7 +213,7 @@ def _negate_shape(order: DrivingOrder, phrase: Phrase) -> None:
 
 
 def _other_side(amount: Amount) -> Amount:
-    """'no turn over 90 degrees' is 90 degrees at most."""
+    """Reads 'no turn over 90 degrees' as 90 degrees at most."""
     if amount.lo is None and amount.hi is not None:
         return at_least(amount.hi)
     return at_most(amount.lo if amount.lo is not None else 0)

@@ -1,4 +1,4 @@
-"""Slopes: which things a slope said alone belongs to, and which hold for the whole road."""
+"""Decides which features a slope that was said alone belongs to, and which slopes hold for the whole road."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ _WORDS: dict[tuple[str, str], Slope] = {
 
 
 def slope_of(phrase: Phrase) -> Slope | None:
-    """The slope of a phrase, as a Brief has it; a number says more than 'steeply'."""
+    """Returns the slope of a phrase as a Brief has it; a number replaces 'steeply' and 'gently'."""
     if not phrase.slope:
         return None
     if phrase.slope == "flat":
@@ -33,7 +33,7 @@ def slope_of(phrase: Phrase) -> Slope | None:
 
 
 def settle_slopes(order: DrivingOrder) -> None:
-    """Gives every slope that was said alone to its things, or to the road, or makes it a straight."""
+    """Assigns every slope that was said alone to its features or to the road, or makes it a straight."""
     alone = [thing for thing in order.things if _alone(thing)]
     if alone and not _shared_out(order, alone):
         only = len({_said(thing) for thing in order.things if thing.slope}) == 1 and not _rises_and_falls(
@@ -46,7 +46,7 @@ def settle_slopes(order: DrivingOrder) -> None:
 
 
 def _shared_out(order: DrivingOrder, alone: list[Phrase]) -> bool:
-    """'3 turns, first uphill, then downhill': each slope gets its share of the turns."""
+    """Shares out '3 turns, first uphill, then downhill': each slope gets its part of the turns."""
     things = [thing for thing in order.things if not _alone(thing)]
     if len(alone) < 2 or len(things) != 1 or not turns(things[0]) or things[0].slope:
         return False
@@ -80,7 +80,7 @@ def _rises_and_falls(order: DrivingOrder) -> bool:
 
 
 def _of_the_road(order: DrivingOrder, alone: list[Phrase]) -> bool:
-    """One slope only, and not as one leg of several: 'climbing, with 3 turns', '3 turns, uphill'."""
+    """True if there is only one slope and it is not one part of several: 'climbing, with 3 turns'."""
     slope, things = alone[0], order.things
     if len(alone) > 1 or slope.joint in ("start", "end") or slope.place:
         return False
@@ -123,10 +123,12 @@ def _wish(wishes: RoadWishes, slope: Phrase) -> None:
     if wishes.slope is None or (said and said.endswith(wishes.slope)):  # 'an uphill road that climbs steeply'
         wishes.slope, wishes.incline = said, slope.incline or wishes.incline
     elif said and {said.split("_")[-1], wishes.slope.split("_")[-1]} == {"up", "down"}:
-        raise BriefError("the road is said to go uphill and downhill; say the slope of each part instead")
+        raise BriefError(
+            "the road cannot go uphill and downhill as a whole; say the slope of each part instead"
+        )
     elif said and said != wishes.slope and ("flat" in said) != ("flat" in wishes.slope):
         raise BriefError(
-            "the road is said to be flat and to climb or fall; say it of each part, as in"
+            "the road cannot be flat and also climb or fall; say the slope of each part, as in"
             " 'a flat straight, then a steep climb, then a flat straight'"
         )
 
@@ -160,7 +162,7 @@ def _along_the_road(order: DrivingOrder, only: bool) -> None:
 
 
 def _carry(thing: Phrase, carried: Phrase | None) -> Phrase | None:
-    """'climbs through a left and a right turn': the second climbs too; a slope of its own ends that."""
+    """Passes a slope on: in 'climbs through a left and a right turn' the second climbs, too."""
     if carried is None or thing.kind in ("crest", "dip") or (thing.slope and not _alike(thing, carried)):
         return None
     if thing.slope == "":
@@ -181,7 +183,7 @@ def _give(thing: Phrase, slope: Phrase, with_number: bool) -> None:
 
 
 def _belongs(slope: Phrase, after: Phrase) -> bool:
-    """Is the next thing what the slope was said of: 'uphill for 3 turns', 'climbs, straight'?"""
+    """True if the slope was said of the next feature: 'uphill for 3 turns', 'climbs, straight'."""
     if _alone(after) or after.slope:
         return False
     if after.joint in SCOPED:
@@ -193,7 +195,7 @@ def _belongs(slope: Phrase, after: Phrase) -> bool:
 
 
 def _describes_the_one_before(slope: Phrase, after: Phrase | None, out: list[Phrase]) -> bool:
-    """'2 turns, uphill, then 2 turns, downhill'."""
+    """True for '2 turns, uphill, then 2 turns, downhill', where a slope describes the turns before it."""
     if not out or not turns(out[-1]) or out[-1].slope or slope.article or slope.joint not in (",", "(", ""):
         return False
     return not slope.climbs and (after is None or after.joint in ("then", "stop", "and", ")"))

@@ -51,13 +51,13 @@ _TOKEN = re.compile(
     re.VERBOSE,
 )
 _GROUPS = re.compile(r"[1-9]\d{0,2}(?P<mark>[.,])\d{3}(?P<more>(?:(?P=mark)\d{3})*)")
-LARGEST = 1e9  # numbers beyond are as impossible as this one
+LARGEST = 1e9  # larger numbers are just as impossible
 Sort = Literal["word", "number", "ratio", "sign"]
 
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A piece of the description: ``text`` to be looked up, ``raw`` just as it was written."""
+    """A piece of the description: ``text`` is looked up, ``raw`` is as it was written."""
 
     text: str
     raw: str
@@ -66,19 +66,21 @@ class Token:
 
 
 def plain(text: str) -> str:
-    """Lower case, one sort of quotes and dashes, no accents: 'Größe' -> 'grosse'."""
+    """Returns the text in lower case, with plain quotes and dashes and without accents: 'Größe' ->
+    'grosse'.
+    """
     return text.lower() if text.isascii() else "".join(map(_plain_letter, text))
 
 
 @cache
 def _plain_letter(letter: str) -> str:
-    """Of one letter: none, one or several."""
+    """Returns the plain form of one letter, which may have no letter, one or several."""
     folded = unicodedata.normalize("NFKC", letter).translate(_PLAIN).casefold()
     return "".join(c for c in unicodedata.normalize("NFKD", folded) if not unicodedata.combining(c))
 
 
 def tokens(text: str) -> list[Token]:
-    """The tokens of a description, in order; signs that mean nothing here are left out."""
+    """Returns the tokens of a description in order; signs without a meaning here are left out."""
     folded, places = plain(text), _places(text)
     found = [
         (match.lastgroup, match.group(), match.span())
@@ -93,7 +95,7 @@ def tokens(text: str) -> list[Token]:
 
 
 def _places(text: str) -> Sequence[int]:
-    """For every letter of the plain text, where it was written."""
+    """Returns, for every letter of the plain text, where it was written."""
     if text.isascii():
         return range(len(text))
     return [at for at, letter in enumerate(text) for _ in _plain_letter(letter)]
@@ -116,7 +118,7 @@ def _token(sort: str | None, said: str, raw: str, commas: bool) -> Token:
 
 
 def _has_decimal_commas(words: Sequence[str]) -> bool:
-    """Is it written in a language that says 12,5 for twelve and a half, and 1.250 for a thousand and more?"""
+    """True if the words are of a language that writes 12,5 for twelve and a half and 1.250 for 1250."""
     theirs, english = _vocabularies()
     abroad = sum(word in theirs and word not in english for word in words)
     return abroad > 0 and abroad >= sum(word in english and word not in theirs for word in words)
@@ -124,7 +126,7 @@ def _has_decimal_commas(words: Sequence[str]) -> bool:
 
 @cache
 def _vocabularies() -> tuple[frozenset[str], frozenset[str]]:
-    """Words of German, French, Spanish and Italian, and of English."""
+    """Returns the words of German, French, Spanish and Italian, and those of English."""
     both = ((GERMAN, ROMANCE), (ROAD_WORDS, FUNCTION_WORDS))
     theirs, english = (
         frozenset(word for listed in some for said in listed.values() for word in said.split())
@@ -134,7 +136,9 @@ def _vocabularies() -> tuple[frozenset[str], frozenset[str]]:
 
 
 def _number(said: str, commas: bool) -> float:
-    """What a number is worth: one group of three digits is a thousand where its mark is no decimal one."""
+    """Returns the value of a number; one group of three digits is a thousand if its mark is no decimal
+    mark.
+    """
     groups = _GROUPS.fullmatch(said.lstrip("-"))
     if groups and (groups["more"] or groups["mark"] == ("." if commas else ",")):
         value = float(said.replace(",", "").replace(".", ""))
@@ -144,6 +148,8 @@ def _number(said: str, commas: bool) -> float:
 
 
 def _ratio(said: str) -> float:
-    """Percent of a slope written as a ratio, '1:8' -> 12.5; a slope of 1:0 is as steep as a wall."""
+    """Returns the percent of a slope written as a ratio, '1:8' -> 12.5; 1:0 becomes an impossibly large
+    number.
+    """
     run = float(said.split(":")[1])
     return 100.0 / run if run else 1e6

@@ -1,6 +1,7 @@
-"""Words that would change the road and that no Brief can hold: they are listed as not understood.
+"""Words that would change the road but that a Brief cannot express; they are reported as not understood.
 
-Written as ``english.py`` is. '?' is a word that was not understood; what stands beside it is still read.
+The format is that of ``english.py``. '?' is a word that was not understood; the words beside it are still
+read.
 """
 
 UNSUPPORTED_WORDS: dict[str, str] = {

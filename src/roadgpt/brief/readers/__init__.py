@@ -1,1 +1,1 @@
-"""Readers: words in, a Brief out; one part per file, here with the pieces of the grammar."""
+"""Readers, which turn a description into a Brief; one plug-in per file."""

@@ -1,7 +1,7 @@
-"""The chat reader: a language model writes the plan of a description, which is then checked as any other.
+"""The chat reader: a language model writes the plan of a description, which is then checked like any other.
 
-The model answers in the plan language of ``roadgpt.brief.plan``, of which every word is looked up. What it
-writes is data; what is no plan goes back to it with the sentence that says why.
+The model answers in the plan language of ``roadgpt.brief.plan``; every word of it is looked up and nothing is
+executed. If the answer is not a valid plan, the model gets it back with a sentence that says why.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from roadgpt.brief.readers.grammar import EXAMPLE, MOST_CHARACTERS
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
 from roadgpt.errors import BriefError
 
-MOST_PLAN = 1000  # characters of a plan; the longest that makes sense has a few hundred
+MOST_PLAN = 1000  # characters of a plan; the longest useful ones have a few hundred
 MOST_UNUSED = 40  # words
 
 RULES = """\
@@ -43,7 +43,7 @@ A number is exact (3), at least (3..), at most (..3) or between (3..5); no units
 turns, all turns of the road must be named there. A number of turns without more stands under "road".
 """
 
-# As turns of the conversation: small models follow an example better than a rule.
+# Sent as turns of the conversation: small models follow examples better than rules.
 EXAMPLES = (
     ("an uphill road with 3 turns", '{"along": [], "road": "up turns=3", "unused": []}'),
     (
@@ -60,7 +60,7 @@ EXAMPLES = (
     ),
 )
 
-# What models write for words of the plan, however they are asked.
+# Words that models write instead of those of the plan language, in spite of the rules.
 SAID = {
     **dict.fromkeys(("uphill", "climbing", "ascending"), "up"),
     **dict.fromkeys(("downhill", "descending", "falling"), "down"),
@@ -89,11 +89,11 @@ class ChatReader:
         self._chat = chat or open_chat(self._settings)
 
     def read(self, words: str) -> Brief:
-        """The Brief of a description, in normal form.
+        """Returns the Brief of a description, in normal form.
 
         Raises:
-            BriefError: empty, too long, not about a road, or in contradiction with itself.
-            ChatError: the model could not be asked, or gave no plan.
+            BriefError: the description is empty, too long, not about a road, or contradicts itself.
+            ChatError: the model could not be asked, or gave no valid plan.
         """
         if not words.strip():
             raise BriefError(f"the description is empty; {EXAMPLE}")
@@ -120,7 +120,7 @@ class ChatReader:
 
 
 def _opening() -> list[Message]:
-    """The rules, and examples as if they had been asked before."""
+    """Returns the rules and the examples, the latter as earlier turns of the conversation."""
     turns = [Message(role="system", text=RULES)]
     for words, answer in EXAMPLES:
         turns += [Message(role="user", text=words), Message(role="assistant", text=answer)]
@@ -128,14 +128,18 @@ def _opening() -> list[Message]:
 
 
 def _brief(answer: PlanAnswer, words: str) -> Brief:
-    """The Brief of an answer, if it holds one."""
+    """Returns the Brief that an answer describes.
+
+    Raises:
+        BriefError: the answer is not a valid plan.
+    """
     things = "; ".join(_in_our_words(thing) for thing in answer.along if thing.strip())
     line = f"{things} | {_in_our_words(answer.road)}"
     if not line.strip("| ") or len(line) > MOST_PLAN:
         start = " ".join(words.split())[:40]
         raise BriefError(f"no road could be read out of '{start}'; {EXAMPLE}")
     brief = read_plan(line)
-    check(brief, map_size=None, min_radius=0.0)  # what a world allows is asked in brief.read
+    check(brief, map_size=None, min_radius=0.0)  # the limits of a World are checked in brief.read
     unused = _said(answer.unused, words)
     share = len(unused) / max(len(words.split()), 1)
     told = {"words": words, "unused": unused, "confidence": round(max(0.0, 1.0 - share), 3)}
@@ -143,13 +147,13 @@ def _brief(answer: PlanAnswer, words: str) -> Brief:
 
 
 def _in_our_words(text: str) -> str:
-    """One thing of a plan, its kind in front, in the words that plans have; what is strange stays."""
+    """Returns one feature of a plan with its kind first and common synonyms replaced; other words stay."""
     words = [SAID.get(word.lower(), word) for word in text.replace("|", " ").replace(",", " ").split()]
     kind = [word for word in words if word in KINDS and "(" not in text][:1]
     return " ".join([*kind, *(word for word in words if word not in kind)])
 
 
 def _said(unused: Sequence[str], words: str) -> tuple[str, ...]:
-    """Those of the words that do stand in the description; what else a model writes is left out."""
+    """Returns those of the words that occur in the description; any others were made up by the model."""
     there = words.lower()
     return tuple(word for word in unused[:MOST_UNUSED] if word.strip() and word.lower() in there)

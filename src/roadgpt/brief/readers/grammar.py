@@ -1,4 +1,4 @@
-"""The grammar reader: deterministic, instant, and plain about what it did not understand."""
+"""The grammar reader: rules that work without a model, and list every word that they did not understand."""
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.grammar.brief_builder import build_brief
@@ -25,23 +25,23 @@ SURE = TURNING | {
     "more_right",
     "same_sides",
 }
-"""Words that speak of roads and of little else."""
+"""Meanings that occur in descriptions of roads and hardly anywhere else."""
 LIKELY = frozenset(
     {"straight", "crest", "dip", "hill", "left", "right", "up", "down", "up~", "down~", "flat", "flat~"}
     | {"steep", "hard", "hard_road", "slope", "hills", "height", "radius", "%"}
 )
-LIKELY_SHARE = 0.2  # of words not understood, above which such words alone are taken for chance
-SURE_SHARE = 0.75  # above which even one word about roads is
+LIKELY_SHARE = 0.2  # share of unknown words above which such words alone do not make it a road
+SURE_SHARE = 0.75  # share of unknown words above which no word makes it a road
 
 
 class GrammarReader:
     """Reads descriptions by rules."""
 
     def read(self, words: str) -> Brief:
-        """The Brief of a description, in normal form.
+        """Returns the Brief of a description, in normal form.
 
         Raises:
-            BriefError: empty, too long, not about a road, or in contradiction with itself.
+            BriefError: the description is empty, too long, not about a road, or contradicts itself.
         """
         if not words.strip():
             raise BriefError(f"the description is empty; {EXAMPLE}")
@@ -56,22 +56,22 @@ class GrammarReader:
         unused = _unused(found, lexemes, items, left_over)
         share = len(unused) / max(sum(token.sort != "sign" for token in found), 1)
         _about_a_road(words, found, lexemes, share)
-        check(brief, map_size=None, min_radius=0.0)  # what a world allows is asked in brief.read
+        check(brief, map_size=None, min_radius=0.0)  # the limits of a World are checked in brief.read
         told = {"words": words, "unused": unused, "confidence": round(max(0.0, 1.0 - share), 3)}
         return normal(brief).model_copy(update=told)
 
 
 def _about_a_road(words: str, found: list[Token], lexemes: list[Lexeme], share: float) -> None:
-    """Passes words that speak of roads, and of which enough was understood.
+    """Checks that the words are about a road and that enough of them was understood.
 
     Args:
-        words: as they were written.
-        found: their tokens.
-        lexemes: their meanings.
-        share: of words that were not understood, whether they are known or not.
+        words: the description.
+        found: its tokens.
+        lexemes: the meanings of the tokens.
+        share: share of words that were not understood, whether or not a vocabulary has them.
 
     Raises:
-        BriefError: with the word that may have been meant, or what is wrong with those that are known.
+        BriefError: says which word may have been meant, or what to write instead.
     """
     names = {lexeme.name for lexeme in lexemes}
     said = [token.text for token in found if token.sort != "sign"]
@@ -83,7 +83,7 @@ def _about_a_road(words: str, found: list[Token], lexemes: list[Lexeme], share: 
     start = start if len(start) <= 40 else f"{start[:40].rstrip()} ..."
     if "half" in said or names & {"half1", "half2"}:
         raise BriefError(
-            f"'{start}' has halves, which are not understood; give each part a length, as in"
+            f"'{start}' speaks of halves, which are not understood; give each part a length, as in"
             " 'flat for 100 m, then uphill for 100 m'"
         )
     meant = [(word, near) for word in strange if (near := similar(word))]
@@ -95,7 +95,7 @@ def _about_a_road(words: str, found: list[Token], lexemes: list[Lexeme], share: 
 def _unused(
     found: list[Token], lexemes: list[Lexeme], items: list[Term], left_over: list[Term]
 ) -> tuple[str, ...]:
-    """The words that were not understood, as they were written and in order."""
+    """Returns the words that were not understood, as they were written and in order."""
     places = {at for lexeme in lexemes if lexeme.name == UNKNOWN for at in range(lexeme.start, lexeme.stop)}
     for item in [*left_over, *(item for item in items if item.name in ("speed", UNKNOWN))]:
         places |= set(range(item.start, item.stop))

@@ -1,7 +1,8 @@
-"""Reads descriptions with our own trained network: five languages, offline, in milliseconds.
+"""The model reader: reads descriptions in five languages with RoadGPT's own network, offline, in
+milliseconds.
 
-Numbers are taken out of the text by rules and put into the plan that the network writes; the network writes
-only plans that can be read. Weights and their card lie in ``weights/``.
+Rules take the numbers out of the text and put them into the plan that the network writes. The network can
+only write plans that can be read. The weights and their documentation are in ``weights/``.
 """
 
 from collections.abc import Sequence
@@ -34,31 +35,32 @@ from roadgpt.reading import read_json
 WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 MOST_LETTERS = 2000
-ALMOST = 2.0  # difference of worth
+ALMOST = 2.0  # difference of score
 NO_ROAD = "does not describe a road"
 ADVICE = {
-    "!nonsense": "this does not describe a road; say how it should be, such as 'uphill with three turns'",
-    "!contradiction": "these wishes contradict each other; leave one out, or say for which part each is",
-    "!impossible": "no such road can be built: no junctions, roundabouts or loops, no radius below 15 m and"
-    " no grade above 15 percent; ask for less",
+    "!nonsense": "this does not describe a road; say what it should be like: 'uphill with three turns'",
+    "!contradiction": "the description contradicts itself; leave something out, or say which part of"
+    " the road is meant",
+    "!impossible": "no such road can be built: junctions, roundabouts, loops, radii below 15 m and grades"
+    " above 15 percent are not possible; ask for less",
 }
 TOO_MUCH = (
-    "12 turns and 1500 m are the most that is sure to fit on a map of 250 m; ask for less or for a larger map"
+    "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or for a larger map"
 )
 
 
 class ModelReader:
-    """Our own trained network reads; it says how sure it is and which words it did not use."""
+    """Reads descriptions with a trained network; reports its confidence and the words that it did not use."""
 
     def __init__(self, folder: Path = WEIGHTS) -> None:
         self.folder = folder
 
     @classmethod
     def from_folder(cls, folder: str) -> Self:
-        """A reader with other weights, as ``roadgpt learn export`` writes them.
+        """Returns a reader with other weights, as ``roadgpt learn export`` writes them.
 
         Raises:
-            PartError: there are none in the folder.
+            PartError: a file is missing in the folder.
         """
         missing = next((name for name in FILES if not (Path(folder) / name).is_file()), None)
         if missing:
@@ -66,11 +68,12 @@ class ModelReader:
         return cls(Path(folder))
 
     def read(self, words: str) -> Brief:
-        """The Brief of a description.
+        """Returns the Brief of a description.
 
         Raises:
-            TooMuchError: they ask for more than the usual map holds; has the Brief with it.
-            BriefError: the words are empty, too many, no road, contradictory or ask for the impossible.
+            TooMuchError: more is asked for than the usual map holds; the error carries the Brief.
+            BriefError: the description is empty, too long, not about a road, contradicts itself, or asks for
+                something impossible.
         """
         _text(words)
         turned = total_turning(words)
@@ -91,10 +94,16 @@ class ModelReader:
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
     ) -> tuple[Brief, ...]:
-        """Up to ``number`` different readings, the likeliest first, others drawn by chance.
+        """Returns up to ``number`` different readings: the likeliest first, then others that were sampled.
+
+        Args:
+            words: the description.
+            number: the largest number of readings.
+            temperature: how freely the other readings are sampled; 1 is the network's own distribution.
+            seed: seed of the sampling.
 
         Raises:
-            BriefError: as ``read``.
+            BriefError: as in ``read``.
         """
         turned = total_turning(words)
         if turned:
@@ -121,7 +130,7 @@ class ModelReader:
         return self._as_brief(words, text, draft)
 
     def _refusal(self, words: str, text: SlottedText, why: str) -> BriefError:
-        """What the network has against the words; where it may be the usual map, with the Brief they make."""
+        """Returns the error for a refusal; if the size of the map may be the reason, it carries the Brief."""
         brief, reason = _by_rules(words) if why != "!nonsense" else (None, "")
         if why == "!impossible":
             brief = self._for_the_usual_map(words, text) or brief
@@ -130,7 +139,10 @@ class ModelReader:
         return BriefError(reason or ADVICE[why])
 
     def _for_the_usual_map(self, words: str, text: SlottedText) -> Brief | None:
-        """The Brief, read as if its numbers were ordinary; None where they are, or if it is refused then."""
+        """Returns the Brief that is read if large numbers are replaced by ordinary ones.
+
+        None if the numbers are ordinary already, or if the description is refused even so.
+        """
         as_usual = with_ordinary_numbers(text)
         if as_usual.text == text:
             return None
@@ -150,13 +162,13 @@ class ModelReader:
         try:
             brief = with_checked_counts(read_plan(draft.line), text)
         except BriefError as error:
-            raise BriefError("this could not be read as one road; say it in shorter sentences") from error
+            raise BriefError("this could not be read as one road; use shorter sentences") from error
         unused = self._coverage.unused(text, draft.tokens)
         sure = self._confidence(draft, len(unused))
         return brief.model_copy(update={"words": words, "unused": unused, "confidence": sure})
 
     def _confidence(self, draft: ScoredPlan, unused: int) -> float:
-        """How often a reading like this one was right on descriptions held back from training."""
+        """Returns how often readings like this one were right on held-back descriptions, from 0 to 1."""
         weights = self._settings["confidence"]
         features = {**draft.features, "unused": unused}
         score = weights["bias"] + sum(weights.get(name, 0.0) * value for name, value in features.items())
@@ -177,7 +189,7 @@ class ModelReader:
 
 
 def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
-    """The likeliest draft whose turns have the sides that the words list; None where they list none."""
+    """Returns the likeliest plan whose turns have the sides that the words list; None if they list none."""
     sides = listed_sides(text)
     if not sides or not found or found[0].is_refusal:
         return None
@@ -186,9 +198,9 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 
 
 def _consistent(found: Sequence[ScoredPlan]) -> ScoredPlan:
-    """The likeliest draft; or one almost as likely, where that contradicts itself and this one does not."""
+    """Returns the likeliest plan, or an almost as likely one if only the likeliest contradicts itself."""
     if not found:
-        raise BriefError("this could not be read as one road; say it in shorter sentences")
+        raise BriefError("this could not be read as one road; use shorter sentences")
     for draft in found:
         if draft.score < found[0].score - ALMOST:
             break
@@ -198,7 +210,7 @@ def _consistent(found: Sequence[ScoredPlan]) -> ScoredPlan:
 
 
 def _by_rules(words: str) -> tuple[Brief | None, str]:
-    """The Brief, where rules understand all of the words; and what they have against them on any map."""
+    """Returns the Brief if the rules understand all of the words, and what is wrong with them on any map."""
     try:
         brief = GrammarReader().read(words)
         if brief.unused:
@@ -212,14 +224,14 @@ def _by_rules(words: str) -> tuple[Brief | None, str]:
 def _can_be_kept(line: str) -> bool:
     try:
         brief = read_plan(line)
-        check(brief, map_size=None, min_radius=0.0)  # what a world allows is asked in brief.read
+        check(brief, map_size=None, min_radius=0.0)  # the limits of a World are checked in brief.read
     except BriefError:
         return False
     return _sides_add_up(normal(brief))
 
 
 def _sides_add_up(brief: Brief) -> bool:
-    """Can so many lefts and rights be so many turns?"""
+    """True if the numbers of left and right turns can add up to the number of turns."""
     turns = brief.turns or total(brief.clauses)
     sides = (brief.left, brief.right)
     least = sum(side.lo or 0 for side in sides if side)
@@ -231,13 +243,15 @@ def _sides_add_up(brief: Brief) -> bool:
 
 def _text(words: str) -> SlottedText:
     if not words.strip():
-        raise BriefError("the description is empty; say how it should be, such as 'two sharp turns'")
+        raise BriefError(
+            "the description is empty; say what the road should be like, such as 'two sharp turns'"
+        )
     if len(words) > MOST_LETTERS:
         raise BriefError(
-            f"the description has {len(words)} letters; {MOST_LETTERS} are the most, so say it shorter"
+            f"the description has {len(words)} letters; at most {MOST_LETTERS} are read, so shorten it"
         )
     text = slotted(words)
     below = negative_number(text)
     if below:
-        raise BriefError(f"no road has '{below}'; ask for a number above 0")
+        raise BriefError(f"a road cannot have '{below}'; ask for a number above 0")
     return text

@@ -1,7 +1,8 @@
-"""Bounds: "at least", "no more than" and their like, said right before a measure, stay what they say.
+"""Corrects the bounds of measures in a plan by the words next to the number, such as "at least".
 
-A small network sometimes takes "no larger than" for "at least", or leaves the bound out. Only phrases are
-judged of which the training pairs agree what they mean; "over 60 m" is as often a place, and stays.
+A small network sometimes reads "no larger than" as "at least", or drops the bound. Only phrases are corrected
+whose meaning is the same throughout the training pairs; "over 60 m" often means a distance, and is left
+alone.
 """
 
 from collections.abc import Sequence
@@ -12,9 +13,9 @@ from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
 from roadgpt.brief.readers.model.word_set import word_set
 
 Bound = Literal["lo", "hi", "none"]
-"""At least, at most, or none for sure: "60 m or so"."""
+"""At least, at most, or certainly no bound ("60 m or so")."""
 KEYS = frozenset(["deg=", "r=", "len=", "pct=", "steepest="])
-"""Whose bounds are judged; a climb's turns round where it falls."""
+"""Keys whose bounds are corrected; not the climb, whose bounds are reversed when the road falls."""
 SMALLER = word_set(
     "below under less smaller shorter fewer lower inside unter weniger kleiner kurzer geringer",
     "unterhalb moins inferieur inferieure inferieurs inferieures sous menos menor inferior inferiores",
@@ -27,11 +28,12 @@ LARGER = word_set(
     "maggiore superiore dessus encima oltre bigger",
 )
 BELOW = word_set("below under less unter inferieur inferieure inferior inferiore")
-"""What says the most by itself, where nothing is denied; others compare with what was said before."""
+"""Words that mean at most on their own, unless negated; other comparatives refer to something said
+earlier."""
 LEAST = word_set("least minimum min mindestens minimal wenigstens moins minimo minima menos meno almeno")
 MOST = word_set("most maximum max hochstens hoechstens maximal massimo maximo maxima massima")
 ALONE = word_set("min max minimum maximum mindestens wenigstens hochstens hoechstens maximal almeno")
-"""What says so without "at" before it."""
+"""Words that are bounds without "at" before them."""
 AT = word_set("at au al por lo du como come")
 NOT = word_set(
     "no not never none neither nor nowhere without t nothing cannot dont doesnt kein keine keinen",
@@ -48,11 +50,11 @@ STOPS = frozenset(",.;:()|-")
 SENTENCE_STOPS = frozenset(".;")
 MOST_FILLERS = 2
 REACH = 4
-"""Words before a comparison in which what denies it stands."""
+"""How many words before a comparative are searched for a negation."""
 
 
 def bounded(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]:
-    """The tokens of a plan, with the bounds of its measures as the words have them."""
+    """Returns the tokens of a plan with the bounds of its measures as the words have them."""
     words = [word.text for word in text.words]
     out: list[str] = []
     at = 0
@@ -65,7 +67,7 @@ def bounded(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]:
 
 
 def _size(tokens: Sequence[str], at: int) -> int:
-    """How many tokens the amount of this key has, where it is one slot, bound or not; else 0."""
+    """Returns how many tokens this key's amount has if it is one slot, with or without a bound; else 0."""
     if tokens[at] not in KEYS:
         return 0
     after = [*tokens[at + 1 : at + 4], "", "", ""]
@@ -90,7 +92,7 @@ def _with_bound(amount: Sequence[str], words: list[str]) -> list[str]:
 
 
 def bound_before(words: Sequence[str], at: int) -> Bound | None:
-    """What the words right before a number say of it; None where they say no bound, or none for sure."""
+    """Returns the bound that the words right before a number express; None if none is certain."""
     last = at - 1
     while last >= 0 and words[last] in FILLERS and at - 1 - last < MOST_FILLERS:
         last -= 1
@@ -114,7 +116,7 @@ def _sentence(words: Sequence[str], at: int) -> Sequence[str]:
 
 
 def bound_behind(words: Sequence[str], at: int) -> Bound | None:
-    """What the words right behind a number and its unit say of it: "40 m or more"."""
+    """Returns the bound that the words right after a number and its unit express: "40 m or more"."""
     after = [word for word in words[at + 1 : at + 5] if word not in UNITS and not word.startswith("[unused2")]
     if len(after) < 2 or after[0] not in OR:
         return None
@@ -124,7 +126,7 @@ def bound_behind(words: Sequence[str], at: int) -> Bound | None:
 
 
 def _since_stop(words: Sequence[str], last: int) -> list[str]:
-    """Up to REACH words before this place, the nearest first, back to a stop."""
+    """Returns up to REACH words before this place, the nearest first, back to a punctuation mark."""
     out: list[str] = []
     for place in range(last - 1, max(-1, last - 1 - REACH), -1):
         if words[place] in STOPS:

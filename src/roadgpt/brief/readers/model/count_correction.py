@@ -1,9 +1,9 @@
-"""Counts held against the numbers that were said: each is one of them, or follows from them by a sum.
+"""Corrects the counts of a plan: each is a number that was said, or follows from those by a sum.
 
 A small network copies numbers well and calculates badly: "seven turns, the first two uphill" became 2 and 4.
-Where exactly one count of a plan was not said, and exactly one number that was said is in no count, the sum
-decides. Where every count was said and yet a number of turns fits no sum of them, it stays in the Brief as
-the number of turns in all, so that the contradiction is seen.
+If exactly one count of a plan was not said, and exactly one number that was said is in no count, the sum
+decides. If every count was said, but a number of turns is no sum of them, it is kept in the Brief as the
+total number of turns, so that the contradiction is reported.
 """
 
 from collections.abc import Iterator
@@ -20,20 +20,20 @@ MULTIPLES = word_set(
     "gleiche halb deux fois moitie meme encore dos veces doble ambas misma mitad due volte doppio",
     "entrambe stessa meta alternating",
 )
-"""Words with which numbers are in the text that no digit shows."""
+"""Words that imply numbers which do not appear as digits."""
 ONE = word_set("one ein eine einen einer eins un une una uno single sole")
-"""What may be the number 1, and may be an article."""
+"""Words that may be the number 1 or an article."""
 MORE = word_set(
     "more further other others additional else otherwise weiteren weitere weiter anderen sonst autres",
     "autre plus davantage mas otras otra otros demas altre altra altri ulteriori",
 )
-"""With which turns are denied besides those that were named: "no further turns"."""
+"""Words that exclude turns other than the named ones: "no further turns"."""
 MOST_COUNTS = 8
-"""So many counts have 255 sums; who names more has added up nothing."""
+"""Eight counts have 255 sums; a description that names more is not checked."""
 
 
 def with_checked_counts(brief: Brief, text: SlottedText) -> Brief:
-    """The Brief with its counts made to follow from what was said."""
+    """Returns the Brief with its counts corrected to follow from the numbers in the text."""
     words = {word.text for word in text.words}
     said = [int(word.text) for word in text.words if word.text.isdecimal() and word.said]
     brief = _without_more(brief, words)
@@ -42,7 +42,7 @@ def with_checked_counts(brief: Brief, text: SlottedText) -> Brief:
 
 
 def _without_more(brief: Brief, words: set[str]) -> Brief:
-    """Turns were named, and then no others: that is no road without turns."""
+    """Removes 'no turns' if turns are named, since the words then only exclude further ones."""
     turning = any(clause.kind not in STRAIGHT for clause in brief.clauses)
     if turning and brief.turns and brief.turns.hi == 0 and words & MORE:
         return brief.model_copy(update={"turns": None})
@@ -50,7 +50,7 @@ def _without_more(brief: Brief, words: set[str]) -> Brief:
 
 
 def _sides_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
-    """Lefts and rights add up to the turns, where those are known."""
+    """Corrects the left and right turns to add up to the number of turns, if that is known."""
     turns = _total(brief)
     sides = (brief.left, brief.right)
     if turns is None or not any(sides) or not all(side is None or side.exact for side in sides):
@@ -69,7 +69,7 @@ def _sides_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
 def _trusted(
     left: int | None, right: int | None, said: list[int], words: set[str]
 ) -> tuple[int | None, str | None]:
-    """The number that was said, and its side; where only one side was named, it is that one's."""
+    """Returns the number that was said and its side; if only one side is named, the number belongs to it."""
     named_left, named_right = bool(words & LEFT), bool(words & RIGHT)
     numbers = [number for number in (left, right) if number is not None]
     heard = [number for number in numbers if number in said]
@@ -83,7 +83,7 @@ def _trusted(
 
 
 def _total(brief: Brief) -> int | None:
-    """How many turns there are, where one plain number says it."""
+    """Returns the number of turns if the Brief gives it as one exact number, else None."""
     if brief.turns and brief.turns.exact and not brief.clauses:
         return int(brief.turns.lo or 0)
     if len(brief.clauses) == 1 and brief.clauses[0].kind == "turn" and brief.clauses[0].count.exact:
@@ -92,7 +92,7 @@ def _total(brief: Brief) -> int | None:
 
 
 def _counts_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
-    """One count that nobody said, corrected by the one number that no count has."""
+    """Corrects the one count that was not said by the one number that no count has."""
     if words & MULTIPLES or brief.left or brief.right or brief.hills:
         return brief
     turning = [index for index, clause in enumerate(brief.clauses) if clause.kind not in STRAIGHT]
@@ -121,7 +121,7 @@ def _counts_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
 
 
 def _total_kept(brief: Brief, text: SlottedText, said: set[int]) -> Brief:
-    """A number of turns that is no sum of the counts, all of which were said."""
+    """Keeps a number of turns that is no sum of the counts, if all of those were said."""
     turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
     counts = [_exact(clause.count) for clause in turning]
     if brief.turns or not 2 <= len(counts) <= MOST_COUNTS or not said.issuperset(n or 0 for n in counts):
@@ -133,7 +133,7 @@ def _total_kept(brief: Brief, text: SlottedText, said: set[int]) -> Brief:
 
 
 def _before_turns(text: SlottedText) -> Iterator[int]:
-    """Numbers that stand right before a word for turns."""
+    """Yields the numbers that stand right before a word for turns."""
     for word, after in pairwise(text.words):
         if word.text.isdecimal() and word.said and after.text in TURNS:
             yield int(word.text)
@@ -144,7 +144,7 @@ def _subsets(numbers: list[float]) -> Iterator[tuple[float, ...]]:
 
 
 def _measured(brief: Brief) -> set[float | None]:
-    """Every number of the plan that is no count."""
+    """Returns every number of the plan that is not a count."""
     amounts = [brief.steepest, brief.climb]
     things: list[Brief | Clause] = [brief, *brief.clauses]
     for thing in things:

@@ -1,4 +1,4 @@
-"""Which words left no trace in the plan: numbers not copied, sides not said, words never learnt."""
+"""Finds the words that have no effect on the plan: numbers not copied, sides not used, words never learnt."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,23 +10,23 @@ from roadgpt.reading import read_text
 
 SIDES = frozenset({"left", "right"})
 TRACES = frozenset({"left", "right", "lefts=", "rights=", "alternating"})
-"""What a side leaves in a plan; "first left, then right" leaves only its first."""
-SHORTEST = 3  # letters; shorter words are joints of the sentence in all five languages
+"""The tokens that a side leaves in a plan; "first left, then right" leaves only the first."""
+SHORTEST = 3  # letters; shorter words are function words in all five languages
 
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """Words that were frequent in training: those that change plans, and those that are only joints."""
+    """The words that were frequent in training: those that change plans, and mere function words."""
 
     known: frozenset[str]
 
     @classmethod
     def read(cls, path: Path) -> "Coverage":
-        """The words of a file, one on each line."""
+        """Reads the words from a file with one word per line."""
         return cls(frozenset(read_text(path).split("\n")))
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
-        """Words, as they were said, that the plan does not show, each once and in order."""
+        """Returns the words that the plan does not reflect, as they were written, each once and in order."""
         out: list[str] = []
         slot = 0
         has_side = bool(TRACES & {*tokens})
@@ -40,5 +40,5 @@ class Coverage:
         return tuple(dict.fromkeys(out))
 
     def _is_strange(self, word: str) -> bool:
-        is_long = len(word) >= SHORTEST or not word.isascii()  # a letter of Chinese is a word
+        is_long = len(word) >= SHORTEST or not word.isascii()  # a single Chinese character is a word
         return word.isalpha() and is_long and word not in self.known

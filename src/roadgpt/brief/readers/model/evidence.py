@@ -1,7 +1,7 @@
-"""What must be in a description before a plan may have certain numbers; checked by rules.
+"""Checks by rules which numbers without a digit a plan may contain.
 
-Numbers that words carry without a digit ("right angle", "mountain road") are not written where no word of any
-of the five languages could mean them.
+Words can imply a number ("right angle", "mountain road"). A plan may contain such a number only if some word
+of the description, in any of the five languages, can mean it.
 """
 
 import re
@@ -22,7 +22,7 @@ HILLY = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """Which of these numbers a description could mean."""
+    """Which kinds of implied numbers a description can mean."""
 
     angles: bool = True
     mountains: bool = True
@@ -30,6 +30,6 @@ class Evidence:
 
     @classmethod
     def of(cls, text: str) -> "Evidence":
-        """Of the words of a description as the model sees them: lower case, no accents."""
+        """Returns the evidence in a description as the model sees it: lower case, without accents."""
         patterns = (ANGLE, MOUNTAIN, HILLY)
         return cls(*(pattern.search(text) is not None for pattern in patterns))

@@ -1,7 +1,7 @@
-"""Sides that are listed one after another, "left, right, right": what a plan's turns are held against.
+"""Finds sides that are listed one after another ("left, right, right"), to compare a plan's turns with them.
 
-A small network loses count of what repeats. Where every side that a description names stands in one list, the
-turns of its plan have these sides, and a draft that has them is believed before a likelier one that has not.
+A small network loses count of repetitions. If all sides that a description names stand in one list, a plan
+whose turns have these sides is preferred to a likelier one whose turns do not.
 """
 
 from roadgpt.brief.model import Brief
@@ -17,9 +17,10 @@ JOINTS = frozenset(
 
 
 def listed_sides(text: SlottedText) -> tuple[str, ...]:
-    """The sides of the one list that names them all; empty where there is none of FEWEST or more.
+    """Returns the sides of the only list that names any; empty if it has fewer than FEWEST sides.
 
-    Where a number is said that is not the list's length, or "twice", a side may stand for several turns.
+    Empty also if another number or a word like "twice" is said, since a side may then stand for several
+    turns.
     """
     lists: list[list[str]] = [[]]
     for word in text.words:
@@ -36,7 +37,7 @@ def listed_sides(text: SlottedText) -> tuple[str, ...]:
 
 
 def sides_of(brief: Brief) -> tuple[str | None, ...]:
-    """The side of every turn in order; empty where their number is open."""
+    """Returns the side of every turn in order; empty if the number of turns is open."""
     turning = [clause for clause in normal(brief).clauses if clause.kind not in STRAIGHT]
     if any(clause.kind not in SINGLE or not clause.count.exact for clause in turning):
         return ()

@@ -1,4 +1,4 @@
-"""Measures: numbers of a description with the units that are theirs, wherever these stand."""
+"""Assigns to each number of a description the unit that belongs to it, even if the unit stands elsewhere."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ SIDES = frozenset(["left", "right", "l", "r"])
 
 @dataclass(slots=True)
 class Number:
-    """A number, where it stands, and what it measures."""
+    """A number, its place in the text, and what it measures."""
 
     value: float
     first: int
@@ -22,11 +22,11 @@ class Number:
     is_bare: bool = True
     factor: float = 1.0
     spread: int = 0
-    """Of a count: how many more or fewer will do."""
+    """For a count: how many more or fewer are acceptable."""
 
 
 def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
-    """The unit that begins here: what it measures, its size, its number of words."""
+    """Returns the unit that begins at this token (measure, size, number of words); None if none does."""
     for size in (2, 1):
         found = UNITS.get(tuple(tokens[at : at + size]))
         if found:
@@ -44,7 +44,7 @@ def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
 
 
 def take_unit(number: Number, tokens: list[str]) -> None:
-    """Gives a number the unit that stands behind it."""
+    """Gives a number the unit that follows it, and converts its value to metres, percent or degrees."""
     if number.unit:
         return
     at = number.last + 1
@@ -61,7 +61,7 @@ def take_unit(number: Number, tokens: list[str]) -> None:
 
 
 def share_units(numbers: list[Number], tokens: list[str]) -> None:
-    """Gives "40" in "40 to 60 metres" its unit; from the back, so that lists pass it on."""
+    """Gives "40" in "40 to 60 metres" its unit; works backwards, so that a list passes the unit on."""
     for one, other in zip(numbers[-2::-1], numbers[:0:-1], strict=False):
         between = tokens[one.last + 1 : other.first]
         while between and between[-1] in ("about", "than", "de", "di", "maximal", "another"):
@@ -77,7 +77,7 @@ def share_units(numbers: list[Number], tokens: list[str]) -> None:
 
 
 def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
-    """Gives bare measures the unit that is said for all, as in "lengths in feet: 250 straight"."""
+    """Gives bare measures a unit that is announced for all of them, as in "lengths in feet: 250 straight"."""
     factors = {UNITS.get((unit,), ("", 0.0)) for word, unit in pairwise(tokens) if word in ("in", "en")}
     sizes = [factor for unit, factor in factors if unit == "metres" and factor < 1.0]
     if len(sizes) != 1 or any(number.unit == "metres" for number in numbers):
@@ -90,12 +90,12 @@ def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
 
 
 def is_count(tokens: Sequence[str], number: Number) -> bool:
-    """May it be how many there are of something?"""
+    """True if the number may be a count."""
     return (
         number.value <= LARGEST_SEEN and number.value == int(number.value) and not is_radius(tokens, number)
     )
 
 
 def is_radius(tokens: Sequence[str], number: Number) -> bool:
-    """R15: too large for a count, so it is a measure."""
+    """True if the number follows "R" and is too large for a count, as in R15."""
     return number.value >= 10 and number.first > 0 and tokens[number.first - 1] == "r"

@@ -1,4 +1,4 @@
-"""The same description seen in a mirror: left for right, in the text and in the plan."""
+"""Swaps left and right in a description and in its plan."""
 
 import re
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ PAIRED = (
     "izquierda/derecha izquierdas/derechas izquierdo/derecho sinistra/destra sinistro/destro "
     "sinistre/destre sinistri/destri "
 )
-"""Left and right in five languages."""
+"""The words for left and right in five languages."""
 OTHER = {a: b for pair in (words.split("/") for words in PAIRED.split()) for a, b in (pair, pair[::-1])}
 UNSAFE = re.compile(
     r"\bright(?: |-)(?:angle|away|after|now|at|in|before|on|from|there|then|up|down|into)|"
@@ -26,7 +26,7 @@ TOKENS = {"left": "right", "right": "left", "lefts=": "rights=", "rights=": "lef
 
 
 def mirrored(text: str, plan: str) -> tuple[str, str] | None:
-    """Text and plan with sides swapped; None where a word may not mean a side."""
+    """Returns text and plan with sides swapped; None if a word may not mean a side."""
     if not re.search(r"\b(?:left|right|lefts|rights)\b", plan):
         return None
     swapped = in_mirror(text)
@@ -36,13 +36,13 @@ def mirrored(text: str, plan: str) -> tuple[str, str] | None:
 
 
 def in_mirror(text: str) -> str | None:
-    """The text with sides swapped; None where it names none, or a word may not mean one."""
+    """Returns the text with sides swapped; None if it names no side, or a word may not mean one."""
     swapped = re.sub(r"[^\W\d_]+", lambda match: _other(match[0]), text)
     return None if swapped == text or UNSAFE.search(text) else swapped
 
 
 def in_mirror_tokens(tokens: Sequence[str]) -> tuple[str, ...]:
-    """The tokens of a plan with sides swapped."""
+    """Returns the tokens of a plan with sides swapped."""
     return tuple(TOKENS.get(token, token) for token in tokens)
 
 

@@ -1,7 +1,7 @@
-"""Numbers below nothing: "minus three turns", "a straight of -50 m". The network reads over the sign.
+"""Finds numbers that must not be negative: "minus three turns", "a straight of -50 m".
 
-A falling grade and a climb may be negative, and a dash may only be a dash: what is no length, radius or
-count for sure is left alone.
+The network ignores the sign. Grades and climbs may be negative, and a dash may be just a dash, so only
+what is certainly a length, a radius or a count is reported.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ BEFORE_DASH = word_set(
     "of with has have having exactly precisely is are = : radius length mit von hat avec de con tiene",
     "di r",
 )
-"""After these a dash right before a number is a sign."""
+"""After these words, a dash right before a number is a sign."""
 LENGTHS = word_set(
     "straight straights radius radii r length long lang gerade geraden lange kurvenradius longueur",
     "droite rayon recta longitud radio rettilineo lunghezza raggio tangent",
@@ -24,7 +24,7 @@ NEAR = 4
 
 
 def negative_number(text: SlottedText) -> str | None:
-    """What cannot be negative and is, such as "-3 turns"; None where there is nothing of the kind."""
+    """Returns the first such expression, for example "minus three turns"; None if there is none."""
     words = [word.text for word in text.words]
     for at, word in enumerate(words):
         if not _is_number(word) or not _is_below_nothing(words, at):

@@ -1,4 +1,4 @@
-"""The network behind the reader: two ONNX graphs, run by onnxruntime on one core."""
+"""The network behind the model reader: two ONNX graphs, run by onnxruntime on one core."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ START = NUMBER_OF["<start>"]
 MOST_TOKENS = 90
 WIDTH = 4
 FAVOUR = 0.3
-"""Exponent of the length by which log-chances are divided."""
+"""Log-probabilities are divided by the length to this power."""
 REFUSED = [NUMBER_OF[word] for word in REFUSALS]
 LAYERS, HEADS, SIZE = 3, 6, 64
 
@@ -32,18 +32,20 @@ class WrittenPlan:
 
     tokens: tuple[str, ...]
     log_chances: tuple[float, ...]
-    """Of each token, the end included, among all tokens that were allowed."""
+    """The log-probability of each token, including the end token, among the tokens that were allowed."""
     refusal: float
-    """The chance that the words make no road, before anything was written."""
+    """The probability of a refusal before the first token."""
 
     @property
     def score(self) -> float:
-        """Log-chance, a little in favour of long plans: each token costs something, however sure."""
+        """The log-probability, corrected for length: each further token costs something, however sure it
+        is.
+        """
         return sum(self.log_chances) / float(max(1, len(self.log_chances)) ** FAVOUR)
 
 
 class Network:
-    """Pieces in, plans out."""
+    """Turns word pieces into plans."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -58,7 +60,7 @@ class Network:
         return _session(self.folder / "decoder.onnx")
 
     def encode(self, text: SlottedText) -> Array:
-        """Keys and values of a description, (layers, 2, 1, heads, n, size)."""
+        """Returns the keys and values of a description, shape (layers, 2, 1, heads, n, size)."""
         numbers, _ = self.pieces.encode(word.text for word in text.words)
         out: Array = self._encoder.run(None, {"pieces": np.array([numbers], dtype=np.int64)})[0]
         return out
@@ -66,7 +68,7 @@ class Network:
     def write(
         self, across: Array, text: SlottedText, refuse_from: float = 0.5, width: int = WIDTH
     ) -> tuple[WrittenPlan, ...]:
-        """The likeliest plans for a description, best first, found by a beam of ``width`` drafts."""
+        """Returns the likeliest plans for a description, best first, from a beam search of this width."""
         drafts, done = [Draft.of(text)], list[Draft]()
         own, refusal = _nothing(), 0.0
         for place in range(MOST_TOKENS):
@@ -100,7 +102,7 @@ class Network:
     def drawn(
         self, across: Array, text: SlottedText, rng: np.random.Generator, temperature: float
     ) -> WrittenPlan:
-        """A plan drawn token by token; the higher the temperature, the more daring. It never refuses."""
+        """Returns a plan sampled token by token, more freely at a higher temperature. It never refuses."""
         draft, own = Draft.of(text), _nothing()
         for place in range(MOST_TOKENS):
             scores, own = self._step([draft], place, own, across)
@@ -137,17 +139,19 @@ class Draft:
 
     @classmethod
     def of(cls, text: SlottedText) -> "Draft":
-        """An empty plan for a description."""
+        """Returns an empty plan for a description."""
         said = frozenset(word.text for word in text.words)
         return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text)))
 
     @property
     def score(self) -> float:
-        """Log-chance, a little in favour of long plans: each token costs something, however sure."""
+        """The log-probability, corrected for length: each further token costs something, however sure it
+        is.
+        """
         return sum(self.chances) / float(max(1, len(self.chances)) ** FAVOUR)
 
     def longer(self, token: int, chance: float) -> "Draft":
-        """The plan with one token more."""
+        """Returns the plan with one more token."""
         if TOKENS[token] == END:
             return Draft(self.writer, self.tokens, (*self.chances, chance), token, True)
         writer = self.writer.copy()
@@ -155,7 +159,7 @@ class Draft:
         return Draft(writer, (*self.tokens, TOKENS[token]), (*self.chances, chance), token)
 
     def written(self, refusal: float) -> "WrittenPlan":
-        """The plan as it stands."""
+        """Returns the plan as it stands."""
         return WrittenPlan(self.tokens, self.chances, refusal)
 
 
@@ -164,7 +168,7 @@ def _nothing() -> Array:
 
 
 def _without(logs: Array, tokens: Sequence[int]) -> Array:
-    """Chances if some tokens were not allowed either."""
+    """Returns the log-probabilities that result if some tokens are excluded as well."""
     out = logs.copy()
     out[list(tokens)] = -np.inf
     top: Array = out - np.log(np.exp(out[np.isfinite(out)]).sum())

@@ -1,7 +1,8 @@
-"""Numbers as words in five languages: spelled out, and read back.
+"""Numbers as words in five languages: writes them and reads them back.
 
-``spell`` writes them; ``WORDS`` holds every spelling from 0 to 1500 as a tuple of plain words (lower case,
-no accents, no hyphens), so that reading is a look-up of the longest match.
+``spell`` writes a number; ``words`` maps the spellings of 0 to 1500 (above 200 only multiples of 5), as
+tuples of plain words (lower case, no accents, no hyphens), to the number, so that reading is a look-up of
+the longest match.
 """
 
 import unicodedata
@@ -10,7 +11,7 @@ from functools import cache
 
 LANGUAGES = ("en", "de", "fr", "es", "it")
 MOST = 1500
-"""The largest number that is read from words; no road is longer, in metres."""
+"""The largest number that is read from words; no road is longer than that in metres."""
 
 ENGLISH = [
     "zero",
@@ -185,7 +186,9 @@ ITALIAN_TENS = [
 
 
 def plain(text: str) -> str:
-    """Lower case without accents; every letter stays one letter, so that places in the text are kept."""
+    """Returns the text in lower case without accents; its length stays the same, so places in it stay
+    valid.
+    """
     return "".join(_plain_letter(letter) for letter in text)
 
 
@@ -196,7 +199,7 @@ def _plain_letter(letter: str) -> str:
 
 
 def spell(number: int, language: str) -> str:
-    """A whole number from 0 to 1999 in words."""
+    """Returns a whole number from 0 to 1999 in words."""
     return _SPELL[language](number)
 
 
@@ -289,9 +292,9 @@ def _spellings(number: int, language: str) -> Iterator[str]:
 
 @cache
 def words() -> dict[tuple[str, ...], dict[str, int]]:
-    """Every spelling, split into plain words, with the languages in which it is a number.
+    """Returns every spelling, split into plain words, with its value in each language that has it.
 
-    One is left out: as a word it mostly is an article or a pronoun ("un virage", "the last one").
+    The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
     """
     table: dict[tuple[str, ...], dict[str, int]] = {}
     for language in LANGUAGES:

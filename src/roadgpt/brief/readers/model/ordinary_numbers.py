@@ -1,9 +1,9 @@
-"""A description as it would be for the usual map: its numbers without the marks of their size.
+"""Replaces numbers that are unusually large or small, so that the network reads them as for the usual map.
 
-The network was trained for one map, of 250 m, and refuses what fits on no such map. Whether a road fits is
-not for it to say: where it calls one impossible it is shown the same words with ordinary numbers, and what it
-reads then has the numbers that were said. The checks hold that against the real map and the limits of the
-world. What is impossible on any map ("with a roundabout") it refuses again.
+The network was trained for one map of 250 m and refuses what does not fit there. But whether a road fits
+is not for the network to decide: if it calls a road impossible, it is given the same words with ordinary
+numbers, and the original numbers are put into what it reads. The checks then compare that with the actual
+map and its limits. The network still refuses what is impossible on any map ("with a roundabout").
 """
 
 from collections.abc import Sequence
@@ -13,28 +13,28 @@ from roadgpt.brief.readers.model.nouns import COUNTED
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name
 
 MARKS = frozenset({"[unused21]", "[unused22]", "[unused23]"})
-"""Behind a measure: too large, too small, rather small."""
+"""Marks after a measure: too large, too small, rather small."""
 MOST_TURNS = 12
-"""Of a road that the network was trained to write."""
+"""The largest number of turns that the network was trained to write."""
 STAND_INS = ("9", "11", "7", "10", "8", "12")
-"""Counts that the network takes for ordinary."""
+"""Counts that the network reads as ordinary ones."""
 BEFORE_NOUN = 3
-"""Words between a number and what it counts, at most: "40 very sharp turns"."""
+"""The largest number of words between a number and what it counts: "40 very sharp turns"."""
 
 
 class OrdinaryNumbers(NamedTuple):
-    """The words with ordinary numbers, and the count that each stand-in stands for."""
+    """The words with ordinary numbers, and the count that each stand-in replaces."""
 
     text: SlottedText
     counts: dict[str, str]
 
     def told(self, tokens: Sequence[str]) -> tuple[str, ...]:
-        """A plan with the counts that were said."""
+        """Returns a plan with the original counts in place of the stand-ins."""
         return tuple(self.counts.get(token, token) for token in tokens)
 
 
 def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
-    """The description for the usual map; the same where that is what it is."""
+    """Returns the description with ordinary numbers; unchanged if its numbers are ordinary already."""
     free = [number for number in STAND_INS if all(word.text != number for word in text.words)]
     counts: dict[str, str] = {}
     out: list[Word] = []
@@ -51,7 +51,7 @@ def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
 
 
 def _large_count(text: SlottedText, at: int) -> str:
-    """How many turns there are to be, where there are more than usual; empty for any other word."""
+    """Returns the number of turns as text if it is larger than usual; empty for any other word."""
     word = text.words[at].text
     values = {slot_name(i): slot.value for i, slot in enumerate(text.slots) if not slot.unit}
     value = float(word) if word.isdecimal() else values.get(word, 0.0)

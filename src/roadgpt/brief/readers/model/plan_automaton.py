@@ -1,7 +1,7 @@
-"""What may come next: the grammar of plans as an automaton, so that whatever the model writes is a Brief.
+"""Constrained decoding: the grammar of plans as an automaton, so that the model can only write valid plans.
 
-Mods stand in the one order in which ``brief.plan`` prints them. A measured number is one of the slots of the
-description, with a unit that fits, or one that a word carries without saying it ("right angle": 90).
+Modifiers stand in the fixed order in which ``brief.plan`` prints them. A measured number is one of the
+slots of the description, with a unit that fits, or a number that a word implies ("right angle": 90).
 """
 
 from collections.abc import Sequence
@@ -48,7 +48,7 @@ MOST_CLAUSES = 20
 
 
 class PlanAutomaton:
-    """Follows a plan token by token and knows what may come next."""
+    """Follows a plan token by token and knows which tokens may come next."""
 
     def __init__(
         self, slots: Sequence[NumberSlot], said: frozenset[str], evidence: Evidence | None = None
@@ -57,25 +57,25 @@ class PlanAutomaton:
         self.evidence = evidence or Evidence()
         self.place = "start"  # start, kind, clause, road, done
         self.kind = ""
-        self.rank = -1  # mods up to this rank of the order are behind us
+        self.rank = -1  # modifiers up to this rank have been passed
         self.road_rank = -1
         self.is_inside = False  # of starts( ) or ends( )
-        self.key = ""  # whose amount is being written
+        self.key = ""  # the key whose amount is being written
         self.amount: list[str] = []
         self.clauses = 0
 
     def copy(self) -> "PlanAutomaton":
-        """Another one at the same place."""
+        """Returns an independent copy in the same state."""
         other = copy(self)
         other.amount = list(self.amount)
         return other
 
     def allowed(self) -> list[int]:
-        """Numbers of all tokens that may come next."""
+        """Returns the numbers of all tokens that may come next."""
         return [NUMBER_OF[word] for word in dict.fromkeys(self._next())]
 
     def push(self, word: str) -> None:
-        """One word further."""
+        """Moves on by one token."""
         if self.key and (word in ("..", "-") or word in SLOT_TOKENS or word in COUNTS or word.isdigit()):
             self.amount.append(word)
             return
@@ -136,7 +136,7 @@ class PlanAutomaton:
         return word not in SIZES
 
     def _amounts(self) -> tuple[list[str], bool]:
-        """What may follow inside an amount, and whether it is whole already."""
+        """Returns what may follow inside an amount, and whether the amount is already complete."""
         numbers, written = self._numbers(self.key), self.amount
         if not written:
             return ["..", *numbers, *(["-"] if self.key == "climb=" else [])], False
@@ -151,7 +151,7 @@ class PlanAutomaton:
         return ([] if is_range else [".."]), True
 
     def _numbers(self, key: str) -> list[str]:
-        """The numbers that a key can have in this description; a key without any is not written."""
+        """Returns the numbers that a key can have in this description; a key without any is never written."""
         fitting = [
             SLOT_TOKENS[index]
             for index, slot in enumerate(self.slots)

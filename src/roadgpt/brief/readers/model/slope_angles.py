@@ -1,6 +1,6 @@
-"""Slopes in degrees: "a slope of 4 degrees" is one of 7 percent, and no turn.
+"""Converts slopes given in degrees: "a slope of 4 degrees" is 7 percent, not a turn.
 
-Only numbers right beside a word for a slope are taken for one; "climbs 30 degrees to the left" turns.
+Only numbers right next to a word for a slope are converted; "climbs 30 degrees to the left" is a turn.
 """
 
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from roadgpt.brief.readers.model.measures import Number
 from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
 from roadgpt.brief.readers.model.word_set import word_set
 
-STEEPEST = 45.0  # degrees: what is said to be steeper is a turn, or nonsense that the network sees for itself
+STEEPEST = 45.0  # degrees: anything steeper is a turn, or nonsense that the network refuses itself
 NOUNS = word_set(
     "slope slopes grade grades gradient gradients incline inclines inclination climb ascent ascents",
     "descent descents rise decline steigung gefalle anstieg neigung pente pentes montee descente",
@@ -26,11 +26,11 @@ BETWEEN = word_set(
 TURNING = COUNTED | ONE_TURN | LEFT | RIGHT | {"heading"}
 SKIPPED = frozenset(["-", "of", "to", "the", "nach", "a", "la", "vers"])
 REACH = 4
-"""Words of BETWEEN that may stand between the slope and its number."""
+"""How many words of BETWEEN may stand between the slope and its number."""
 
 
 def as_grade(number: Number, tokens: Sequence[str]) -> None:
-    """Turns a number of degrees that says how steep it is into percent."""
+    """Converts a number of degrees that says how steep something is to percent."""
     if number.unit == "degrees" and number.value <= STEEPEST and _is_tilt(number, tokens):
         number.value, number.unit = round(100 * tan(radians(number.value)), 1), "percent"
 

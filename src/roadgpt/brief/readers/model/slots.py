@@ -1,9 +1,10 @@
-"""Numbers found by rules, before the model reads: it copies them and never writes one of its own.
+"""Takes the numbers out of a description before the model reads it; the model copies them and writes none
+itself.
 
     "three bends in 300 ft at 1:8"  ->  3 bends in [1] metres at [2] percent        [1] = 91.4, [2] = 12.5
 
-Small bare numbers stay digits, because counts are reasoned about ("4 turns, the first two uphill").
-All others become slots: a token with the value kept outside, in metres, degrees or percent.
+Small bare numbers stay digits, because counts matter to the reading ("4 turns, the first two uphill"). Every
+other number becomes a slot: a token whose value is kept apart, in metres, degrees or percent.
 """
 
 import re
@@ -36,7 +37,7 @@ from roadgpt.brief.readers.model.units import (
 )
 
 SLOTS = 12
-"""Most numbers with a slot of their own in one description."""
+"""The largest number of slots in one description."""
 SYMBOLS = str.maketrans({
     "–": "-", "—": "-", "−": "-", "’": "'", "‘": "'", "“": '"', "”": '"', "×": "x",
     "→": " then ", "½": " 0.5 ",
@@ -50,7 +51,7 @@ THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of the description, as the model sees it, and as it was said."""
+    """A word of the description, as the model sees it (``text``) and as it was written (``said``)."""
 
     text: str
     said: str
@@ -58,7 +59,7 @@ class Word:
 
 @dataclass(frozen=True, slots=True)
 class NumberSlot:
-    """A number kept outside of the model: its value in the unit's base, rounded to one decimal."""
+    """A number kept apart from the text: its value in the base unit, rounded to one decimal."""
 
     value: float
     unit: Unit
@@ -66,14 +67,14 @@ class NumberSlot:
 
 @dataclass(frozen=True, slots=True)
 class SlottedText:
-    """A description with its numbers taken out."""
+    """A description whose numbers have been replaced by slots."""
 
     words: tuple[Word, ...]
     slots: tuple[NumberSlot, ...]
 
     @property
     def text(self) -> str:
-        """The words as the model sees them."""
+        """The words as the model sees them, joined by spaces."""
         return " ".join(word.text for word in self.words)
 
 
@@ -93,12 +94,12 @@ def slotted(text: str) -> SlottedText:
 
 
 def slot_name(index: int) -> str:
-    """The vocabulary's unused word that stands for a slot."""
+    """Returns the unused word of the vocabulary that stands for a slot."""
     return f"[unused{index + 1}]"
 
 
 def language_of(tokens: Sequence[str]) -> str:
-    """The language whose frequent words occur most; English if none does."""
+    """Returns the language whose frequent words occur most; English if there are none."""
     found = set(tokens)
     return max(FUNCTION_WORDS, key=lambda code: (len(found & FUNCTION_WORDS[code]), code == "en"))
 
@@ -120,7 +121,7 @@ def _numbers(tokens: list[str]) -> list[Number]:
 
 
 def _ratio(tokens: list[str], at: int) -> Number | None:
-    """One in ten, 1:8."""
+    """Reads "one in ten" and "1:8" as percent."""
     places = [place for place in range(at, min(at + 5, len(tokens))) if tokens[place] != "-"][:3]
     here = [tokens[place] for place in places]
     if len(here) < 3 or here[0] not in {"1", *ONES} - {"a", "an"} or here[1] not in RATIO:
@@ -133,7 +134,7 @@ def _ratio(tokens: list[str], at: int) -> Number | None:
 
 
 def _millions(tokens: list[str], at: int) -> Number | None:
-    """A million: more than anything on a road, however many there are."""
+    """Reads a million: more than anything on a road, however many there are."""
     if tokens[at] in MILLIONS:
         return Number(MILLION, at, at)
     many = tokens[at] in ONES or tokens[at].isdecimal() or (tokens[at],) in words()
@@ -166,7 +167,7 @@ def _digits(tokens: list[str], at: int) -> Number | None:
 
 
 def _point(tokens: list[str], at: int) -> Number | None:
-    """Point two."""
+    """Reads "point two" as 0.2."""
     if tokens[at] != "point" or at + 1 >= len(tokens):
         return None
     tenths = next(iter((words().get((tokens[at + 1],)) or {"": 0}).values()))
@@ -174,12 +175,12 @@ def _point(tokens: list[str], at: int) -> Number | None:
 
 
 def _is_fraction(tokens: list[str], at: int) -> bool:
-    """Two thirds, 1/2: shares of the road, which no plan can say."""
+    """True for "2 / 3" and "1/2": shares of the road, which a plan cannot express."""
     return tokens[at + 1] == "/" and tokens[at + 2] in ("2", "3", "4")
 
 
 def _set(tokens: list[str], at: int) -> Number | None:
-    """Half a dozen, hyphens inside or not."""
+    """Reads "half a dozen" and the like, with or without hyphens."""
     best: Number | None = None
     key: list[str] = []
     for place in range(at, min(at + 6, len(tokens))):
@@ -192,7 +193,7 @@ def _set(tokens: list[str], at: int) -> Number | None:
 
 
 def _part(tokens: list[str], at: int) -> Number | None:
-    """Half a mile, three quarters of a kilometre, a kilometre, one and a half miles: where a unit follows."""
+    """Reads "half a mile", "three quarters of a kilometre", "one and a half miles", if a unit follows."""
     if tokens[at] in AND_A_HALF:
         return Number(AND_A_HALF[tokens[at]], at, at, "", False)
     many = _digit_value(tokens[at]) or next(iter((words().get((tokens[at],)) or {"": 0}).values()))
@@ -215,7 +216,7 @@ def _part(tokens: list[str], at: int) -> Number | None:
 
 
 def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
-    """The longest number word here, hyphens inside or not."""
+    """Reads the longest number word at this place, with or without hyphens."""
     best: Number | None = None
     key: list[str] = []
     place = at
@@ -265,7 +266,7 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> Slot
 
 
 def _count(number: Number, spoken: str) -> list[Word]:
-    """A small bare number stays a digit; one with a tolerance becomes "3 to 5"."""
+    """Keeps a small bare number as a digit; with a tolerance it becomes "3 to 5"."""
     value, spread = int(number.value), number.spread
     if not spread:
         return [Word(str(value), spoken)]
@@ -281,7 +282,7 @@ def _is_ordinal(tokens: list[str], number: Number) -> bool:
 
 
 def _tail(number: Number) -> list[str]:
-    """The unit, and a mark where the size of a number matters to what the words mean."""
+    """Returns the unit, and a mark if the size of the number matters for what the words mean."""
     value, marks = number.value, {
         "percent": ((15.0, "[unused21]"),),
         "metres": ((1500.0, "[unused21]"),),

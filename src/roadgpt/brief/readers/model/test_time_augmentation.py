@@ -1,7 +1,9 @@
-"""Several looks at one description: as it is, in a mirror, with and without its full stop.
+"""Test-time augmentation: reads variants of a description and combines the plans that the network writes.
 
-A plan that the network writes at every look is right more often than one that it writes at the first alone;
-where the first look leaves no doubt the others would only cost time.
+The variants are the description itself, its mirror image (left and right swapped), and the description
+with or without its full stop. A plan that the network writes for every variant is right more often than
+one that it writes for the first alone. If the first variant leaves no doubt, the others are skipped to
+save time.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,56 +19,56 @@ from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
 from roadgpt.errors import BriefError
 
 UNSEEN = 1.5
-"""How much less than the least worth of a look a plan is worth there that was not among its drafts."""
+"""A plan missing from the results of a variant counts there as the lowest score less this."""
 ENDS = " .!"
 SURE = -0.1
-"""Log-chance of a whole plan from which one look is enough. Of 943 descriptions held back from training 781
-were that clear, and the other looks changed none of them."""
+"""Log-probability of a whole plan from which one variant is enough. Of 943 descriptions held back from
+training, 781 reached it, and the other variants changed none of them."""
 UNDECIDED = (0.03, 0.97)
-"""Chances of a refusal between which one look is not enough."""
+"""Probabilities of a refusal between which one variant is not enough."""
 
 
 @dataclass(frozen=True, slots=True)
 class ScoredPlan:
-    """A plan, and what all looks together hold of it."""
+    """A plan and its combined score over all variants."""
 
     tokens: tuple[str, ...]
     line: str
-    """The plan with its numbers; a refusal as it is."""
+    """The plan with its numbers filled in, or the name of a refusal."""
     score: float
-    """Mean over the looks of its log-chance, long plans favoured a little."""
+    """Mean log-probability over the variants, with a small bonus for long plans."""
     log_chances: tuple[float, ...]
-    """Of its tokens, at the look that thinks most of it."""
+    """Log-probabilities of its tokens, for the variant that scores it highest."""
     agreement: float
-    """Share of the looks that like it best."""
+    """Share of the variants that score it highest."""
 
     @property
     def is_refusal(self) -> bool:
-        """Does it say that the words make no road?"""
+        """True if it says that the words do not describe a road that can be built."""
         return self.tokens[0] in REFUSALS
 
     @property
     def features(self) -> dict[str, float]:
-        """What says how sure it is."""
+        """The inputs of the confidence model, by name."""
         return {"all": sum(self.log_chances), "worst": min(self.log_chances), "agreement": self.agreement}
 
 
 @dataclass(frozen=True, slots=True)
 class VariantPlans:
-    """What was written at one look: plans in normal form, the best first, with their worth."""
+    """The plans that the network wrote for one variant: in normal form, with their scores."""
 
     plans: dict[str, tuple[float, WrittenPlan]]
     refusal: float
-    """The chance that the words make no road."""
+    """The probability that the words do not describe a road that can be built."""
 
     @property
     def least(self) -> float:
-        """The worth of the worst."""
+        """The lowest score."""
         return min(score for score, _ in self.plans.values())
 
     @property
     def is_clear(self) -> bool:
-        """Is there no doubt, neither about the plan nor about whether there is a road at all?"""
+        """True if neither the plan nor the question whether there is a road at all is in doubt."""
         if not self.plans or UNDECIDED[0] < self.refusal < UNDECIDED[1]:
             return False
         _, best = max(self.plans.values(), key=lambda plan: plan[0])
@@ -79,13 +81,13 @@ def scored_plans(
     refuse_from: float,
     shown: Callable[[SlottedText], SlottedText] = lambda text: text,
 ) -> tuple[ScoredPlan, ...]:
-    """Plans for a description, the likeliest first.
+    """Returns plans for a description, the likeliest first.
 
     Args:
-        network: writes them.
+        network: writes the plans.
         words: the description.
-        refuse_from: mean chance of a refusal from which one is believed; above 1: never.
-        shown: what the network is shown of a text.
+        refuse_from: mean probability from which a refusal is accepted; above 1 it never is.
+        shown: maps the text to what the network is given.
     """
     text = shown(slotted(words))
     variants = [_plans_of_variant(network, text, refuse_from, False)]
@@ -98,14 +100,14 @@ def scored_plans(
 
 
 def refusal(network: Network, words: str) -> float:
-    """The mean chance of a refusal over all looks."""
+    """Returns the mean probability of a refusal over all variants."""
     chances = [_plans_of_variant(network, slotted(words), 2.0, False).refusal]
     chances += [_plans_of_variant(network, slotted(other), 2.0, way).refusal for other, way in _others(words)]
     return sum(chances) / len(chances)
 
 
 def _others(words: str) -> list[tuple[str, bool]]:
-    """The same description said otherwise, and whether left and right are swapped in it."""
+    """Returns the other variants of a description, each with whether left and right are swapped in it."""
     bare = words.rstrip(ENDS)
     out = [(bare if bare != words else f"{words}.", False)] if bare else []
     swapped = in_mirror(words)
@@ -128,7 +130,7 @@ def _plans_of_variant(
 
 
 def _key(tokens: Sequence[str], text: SlottedText) -> str:
-    """The plan in normal form; empty where it cannot be read."""
+    """Returns the plan in normal form; empty if it cannot be read."""
     if tokens[0] in REFUSALS:
         return tokens[0]
     try:

@@ -1,4 +1,6 @@
-"""Tolerances: "four turns, plus or minus one" is three to five; "60 m ± 5 m" is 60 m, since slack is ours."""
+"""Reads tolerances: "four turns, plus or minus one" is three to five; "60 m ± 5 m" is 60 m, which has our
+tolerance.
+"""
 
 from collections.abc import Sequence
 
@@ -18,11 +20,11 @@ SIGNS = frozenset(
 )
 OPENING = frozenset([",", "(", "-"])
 LONGEST = 4
-"""Words of the longest sign and a bracket before it."""
+"""The number of words of the longest sign, with a bracket before it."""
 
 
 def tolerances_first(said: Sequence[str]) -> list[str]:
-    """The words with "five turns, give or take one" as "five, give or take one turns"."""
+    """Returns the words with "five turns, give or take one" reordered to "five, give or take one turns"."""
     words = [*said]
     tokens = [plain(word) for word in words]
     for at in range(1, len(words) - 2):
@@ -42,7 +44,9 @@ def _is_count(tokens: Sequence[str], at: int) -> bool:
 
 
 def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
-    """The numbers without those that only say how far another may be off, which then ends behind them."""
+    """Returns the numbers without those that are tolerances; the number before one then includes its
+    words.
+    """
     out: list[Number] = []
     for number in numbers:
         if out and _is_tolerance(tokens[out[-1].last + 1 : number.first]) and number.value < out[-1].value:
@@ -55,7 +59,9 @@ def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Nu
 
 
 def _take_one(number: Number, tokens: Sequence[str]) -> None:
-    """Gives a count the tolerance of "one", which is no number elsewhere, since it mostly is an article."""
+    """Gives a count the tolerance "one", which is not read as a number elsewhere since it is mostly an
+    article.
+    """
     if not (number.is_bare and is_count(tokens, number)) or number.spread:
         return
     for place in range(number.last + 1, min(number.last + 2 + LONGEST, len(tokens))):

@@ -1,6 +1,7 @@
-"""Degrees of all turns together: "adding up to 270 degrees", "a total heading change of at least 300 deg".
+"""Reads the sum of all turning angles: "adding up to 270 degrees", "a total heading change of at least 300
+deg".
 
-The network has no word for this wish, so it is taken out of the description before the network reads on.
+The network has no word for it, so it is taken out of the description before the network reads the rest.
 """
 
 import re
@@ -39,19 +40,21 @@ WAYS = tuple(
 
 
 class TotalTurning(NamedTuple):
-    """Degrees of all turns together, and the description without them."""
+    """The sum of all turning angles in degrees, and the description without it."""
 
     degrees: Amount
     rest: str
 
     @property
     def is_more_said(self) -> bool:
-        """Is there anything else to read?"""
+        """True if the rest of the description says anything else."""
         return len(self.rest.split()) > 1
 
 
 def total_turning(words: str) -> TotalTurning | None:
-    """What a description says of the degrees of all turns together; None where it says nothing of them."""
+    """Returns what a description says about the sum of all turning angles; None if it says nothing about
+    it.
+    """
     text = slotted(words)
     line = " ".join(word.text for word in text.words)
     found = next((match for way in WAYS if (match := way.search(line))), None)

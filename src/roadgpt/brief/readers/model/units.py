@@ -1,4 +1,4 @@
-"""Units and other words that stand beside numbers, in five languages, as plain words."""
+"""Units, and other words that stand beside numbers, in five languages, as plain words."""
 
 from typing import Literal
 
@@ -7,7 +7,7 @@ from roadgpt.brief.readers.model.word_set import word_set
 Unit = Literal["metres", "percent", "degrees", "kmh", ""]
 
 UNITS: dict[tuple[str, ...], tuple[Unit, float]] = {}
-"""A unit's words -> what it measures, and how many metres, percent or degrees one of it is."""
+"""Maps the words of a unit to what it measures and to its size in metres, percent or degrees."""
 
 _SAID: tuple[tuple[str, Unit, float], ...] = (
     (
@@ -33,11 +33,11 @@ TIMES = frozenset(
     ["h", "hr", "hrs", "hour", "std", "stunde", "heure", "hora", "ora"]
     + ["s", "sec", "second", "sekunde", "seconde", "segundo", "secondo"]
 )
-"""What lengths are divided by where they make a speed."""
+"""What a length is divided by to become a speed."""
 
 
 def plain_unit(text: str) -> str:
-    """A unit's word without accents."""
+    """Returns the word of a unit without accents."""
     return text.translate(str.maketrans("èéí", "eei"))
 
 
@@ -58,15 +58,15 @@ SHARES: dict[str, float] = {
     }.items()
     for word in words.split()
 }
-"""Parts of a unit: "half a mile", "drei viertel Kilometer"."""
+"""Fractions of a unit: "half a mile", "drei viertel Kilometer"."""
 MILLIONS = word_set("million millions millionen millones millon milione milioni billion milliarde")
 AND_A_HALF: dict[str, float] = {"anderthalb": 1.5, "eineinhalb": 1.5, "zweieinhalb": 2.5}
 SHARE_FILLERS = frozenset(
     {"of", "a", "an", "de", "d", "'", "un", "di", "eines", "einem", "-", "full", "whole", "ganzer"}
 )
-"""Between a share and its unit."""
+"""Words between a fraction and its unit."""
 RATIO = frozenset({":", "in", "zu", "sur", "su", "en", "auf"})
-"""Between the two numbers of a ratio: "1:8", "one in eight", "1 zu 8"."""
+"""Words between the two numbers of a ratio: "1:8", "one in eight", "1 zu 8"."""
 JOINTS = frozenset(
     [
         "to",
@@ -94,7 +94,7 @@ JOINTS = frozenset(
         "..",
     ]
 )
-"""Between two numbers of which only the last has its unit: "40 to 60 metres"."""
+"""Words between two numbers of which only the last has its unit: "40 to 60 metres"."""
 SETS: dict[tuple[str, ...], int] = {
     tuple(key.split()): number
     for number, keys in {
@@ -128,7 +128,7 @@ FUNCTION_WORDS: dict[str, frozenset[str]] = {
         " dopo",
     }.items()
 }
-"""Frequent words by which a language is guessed; needed where a number word means something else."""
+"""Frequent words by which a language is guessed, since some words are numbers in one language only."""
 AMBIGUOUS = frozenset(
     [
         "once",
@@ -160,4 +160,4 @@ AMBIGUOUS = frozenset(
         "ochenta",
     ]
 )
-"""Number words that other languages use for something else ("once", "très", "due to")."""
+"""Number words that mean something else in another language ("once", "très", "due to")."""

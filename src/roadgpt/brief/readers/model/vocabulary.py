@@ -1,4 +1,4 @@
-"""The words in which the model writes: plans cut into tokens, with slots in the place of measured numbers.
+"""The tokens that the model writes: plans cut into words, with slots in place of measured numbers.
 
 turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1] | up
 """
@@ -10,7 +10,7 @@ from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot
 
 REFUSALS = ("!nonsense", "!contradiction", "!impossible")
-# The weights know these words by their places in the lists; so they stand here, and not in the Brief's order.
+# The weights know these words by their positions, so the order here is fixed and differs from the Brief's.
 KINDS = [
     "straight",
     "crest",
@@ -34,7 +34,7 @@ CLAUSE_KEYS = ["deg=", "r=", "len=", "pct="]
 ROAD_KEYS = ["turns=", "lefts=", "rights=", "steepest=", "climb=", "hills=", "deg=", "r=", "len=", "pct="]
 PLACES = ["starts(", "ends("]
 FIXED = ("15", "30", "45", "60", "90", "120", "180")
-"""Numbers that words carry without saying them: a kink, a dog-leg, a right angle."""
+"""Numbers that words imply without naming them: a kink, a dog-leg, a right angle."""
 NUMBERS = [*(str(number) for number in range(LARGEST_SEEN + 1)), *(n for n in FIXED if int(n) > LARGEST_SEEN)]
 SLOT_TOKENS = [f"[{index + 1}]" for index in range(SLOTS)]
 ENDS = ("<pad>", "<start>", "<end>")
@@ -56,7 +56,7 @@ UNIT_OF = {
 
 
 def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
-    """The tokens of a plan, its numbers looked up among the slots; None where a number is found nowhere."""
+    """Returns the tokens of a plan; None if one of its numbers is neither a slot nor a token."""
     out: list[str] = []
     key = ""
     taken: set[int] = set()
@@ -91,7 +91,7 @@ def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set
 
 
 def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
-    """The plan that tokens write, slots filled in."""
+    """Returns the plan that the tokens write, with the slots filled in."""
     out: list[str] = []
     for word in tokens:
         if word in SLOT_TOKENS:

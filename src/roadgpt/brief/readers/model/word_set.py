@@ -1,6 +1,6 @@
-"""Sets of words, written as people write words: one after another."""
+"""Sets of words that are written as strings with spaces."""
 
 
 def word_set(*lines: str) -> frozenset[str]:
-    """The words of some lines as a set."""
+    """Returns the words of some lines as a set."""
     return frozenset(word for line in lines for word in line.split())

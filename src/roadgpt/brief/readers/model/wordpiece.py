@@ -1,23 +1,25 @@
-"""The word pieces of BERT: greedy longest match, in a vocabulary of lower-case pieces."""
+"""BERT's word pieces: greedy longest match in a vocabulary of lower-case pieces."""
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 UNKNOWN = "[UNK]"
-LONGEST = 40  # letters; a longer word is no word
+LONGEST = 40  # letters; anything longer is not split
 WINDOW = 126
-"""Most pieces that are read, besides the two at the ends."""
+"""The largest number of pieces that are read, besides the two at the ends."""
 
 
 class WordPieces:
-    """Splits words into pieces of a vocabulary, given as a list of pieces in the order of their numbers."""
+    """Splits words into pieces of a vocabulary, which is a list of pieces in the order of their numbers."""
 
     def __init__(self, pieces: Sequence[str]) -> None:
         self.number = {piece: index for index, piece in enumerate(pieces)}
         self._split = lru_cache(maxsize=4096)(self._pieces)
 
     def encode(self, words: Iterable[str]) -> tuple[list[int], list[int]]:
-        """Numbers of all pieces with the two ends, and for each the index of its word (-1 at the ends)."""
+        """Returns the numbers of all pieces with the two end pieces, and for each the index of its word
+        (-1 at the ends).
+        """
         numbers, of_word = [self.number["[CLS]"]], [-1]
         for index, word in enumerate(words):
             for piece in self._split(word):
