@@ -1,5 +1,6 @@
 """Pages: one file that needs nothing else, the same tables in every form, charts that are to scale."""
 
+import base64
 import csv
 import io
 import re
@@ -9,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from matplotlib.image import imread
 
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.page import (
@@ -30,11 +30,12 @@ from roadgpt.report.page import (
     markdown_of,
     write,
 )
+from roadgpt.report.page.chart import palette
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.report.page.gallery import Small, gallery
-from roadgpt.report.page.heat import SHADES, Axis, heat, is_map
+from roadgpt.report.page.heat import AxisRange, heat, is_map
+from roadgpt.report.page.html import STYLE
 from roadgpt.report.page.lines import bars, lines
-from roadgpt.report.page.svg import ticks
 
 NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"
 TABLE = Table(
@@ -150,27 +151,62 @@ def all_of(svg: str, tag: str) -> list[ET.Element]:
     return parsed(svg).findall(f".//{{http://www.w3.org/2000/svg}}{tag}")
 
 
-@settings(max_examples=30)
-@given(low=st.floats(-1e5, 1e5), span=st.floats(1e-3, 1e5), most=st.integers(3, 10))
-def test_ticks_are_round_and_inside(low: float, span: float, most: int) -> None:
-    found = ticks(low, low + span, most)
-    assert 1 <= len(found) <= most + 1
-    assert all(low - 1e-6 * span <= tick <= low + span + 1e-6 * span for tick in found)
-    steps = np.diff(found)
-    if len(steps):
-        lead = steps[0] / 10 ** np.floor(np.log10(steps[0]) + 1e-9)
-        assert min(abs(lead - good) for good in (1, 2, 5, 10)) < 1e-6
+HREF = "{http://www.w3.org/1999/xlink}href"
+
+
+def styled(svg: str, tag: str, colour: str) -> list[ET.Element]:
+    """Elements of a colour of the page."""
+    return [each for each in all_of(svg, tag) if f"var(--{colour})" in each.get("style", "")]
+
+
+def corners(path: ET.Element) -> np.ndarray:
+    """The points of a path, px."""
+    return np.array(re.findall(r"[ML] (-?[\d.]+) (-?[\d.]+)", path.get("d", "")), float)
+
+
+def opacities(svg: str, number: int = 0) -> np.ndarray:
+    """Of the pixels of the first picture in a chart, row by row from its top; 0 is empty, 1 full."""
+    picture = all_of(svg, "image")[number]
+    _, _, data = picture.get(HREF, "").partition(",")
+    shades = imread(io.BytesIO(base64.b64decode(data)), format="png")[..., 3]
+    upright = float(picture.get("transform", "").split()[3]) > 0
+    return np.asarray(shades if upright else shades[::-1], float)
+
+
+def test_every_colour_of_a_chart_is_one_of_the_page_in_light_and_in_dark() -> None:
+    svg = lines([("a", [0, 1], [0, 1]), ("b", [0, 2], [0, 2])], "x", "y", "label")
+    assert not re.search("#[0-9a-f]{6}", svg)
+    assert {"ink", "soft", "line", "s0", "s1"} <= set(re.findall(r"var\(--(\w+)\)", svg))
+    text = STYLE.read_text(encoding="utf-8")
+    light, dark = (dict(re.findall(r"--(\w+): (#\w{6});", part)) for part in text.split("}")[:2])
+    assert palette() == light
+    for one in light:  # a chart's variable is found by its light colour alone
+        for other in light:
+            assert light[one] != light[other] or dark[one] == dark[other], (one, other)
+
+
+def test_charts_have_the_letters_of_the_page_and_harm_nothing_beside_them() -> None:
+    svg = bars([0, 1, 2], [1, 4], "x & y", "n", 'say "label"')
+    assert svg == bars([0, 1, 2], [1, 4], "x & y", "n", 'say "label"')
+    assert parsed(svg).get("aria-label") == 'say "label"'
+    assert "x & y" in [text.text for text in all_of(svg, "text")]
+    assert "font-family" not in svg
+    assert "<style" not in svg
+    assert "<metadata" not in svg
+    other = bars([0, 1, 2], [1, 4], "x & y", "n", "another")
+    named = [set(re.findall(r' id="([^"]*)"', each)) for each in (svg, other)]
+    assert not named[0] & named[1], "two charts of one page share no names"
 
 
 def test_what_is_counted_has_whole_numbers_at_its_axes() -> None:
     svgs = [
-        heat(np.ones((3, 3)), Axis("road", 0.5, 3.5, 1), Axis("road", 0.5, 3.5, 1), "n", "label"),
+        heat(np.ones((3, 3)), AxisRange("road", 0.5, 3.5, True), AxisRange("road", 0.5, 3.5, True), "n", "l"),
         lines([("a", [0, 1, 2], [0, 0, 1])], "tests", "failures", "label"),
         bars([0, 10, 20, 30], [1, 0, 2], "x", "tests", "label"),
     ]
-    for svg in svgs:
-        shown = [text.text or "" for text in all_of(svg, "text") if text.get("class") == "soft"]
-        assert {"1", "2"} <= set(shown)
+    for svg, least in zip(svgs, ({"1", "2", "3"}, {"0", "1", "2"}, {"0", "1", "2"}), strict=True):
+        shown = [text.text or "" for text in styled(svg, "text", "soft")]
+        assert least <= set(shown)
         assert [number for number in shown if "." in number] == []
 
 
@@ -182,37 +218,44 @@ def test_a_gallery_of_one_road_is_a_small_picture() -> None:
 
 def test_shares_lie_where_they_should() -> None:
     svg = forest([("a", [Share(0, 0.0, 0.0, 0.1, "0"), Share(1, 1.0, 0.9, 1.0, "1")])], ["x", "y"], "label")
-    first, second = (float(dot.get("cx", "nan")) for dot in all_of(svg, "circle"))
-    grid = [float(line.get("x1", "nan")) for line in all_of(svg, "line") if line.get("class") == "grid"]
-    assert (first, second) == (min(grid), max(grid))
+    dots = [each for hue in ("s0", "s1") for each in styled(svg, "use", hue)]
+    grid = [corners(path) for path in styled(svg, "path", "line")]
+    first, second = (float(dot.get("x", "nan")) for dot in dots)
+    assert (first, second) == (min(line[0, 0] for line in grid), max(line[0, 0] for line in grid))
+    (interval,) = [line for path in styled(svg, "path", "s0") if len(line := corners(path)) == 2]
+    assert np.ptp(interval[:, 0]) == pytest.approx(0.1 * (second - first))
     assert parsed(svg).get("aria-label") == "label"
 
 
 def test_heat_fills_each_cell_with_its_shade() -> None:
     values = np.array([[np.nan, 1.0, 2.0], [4.0, 0.0, 4.0]])
-    svg = heat(values, Axis("x", 0, 3), Axis("y", 0, 2), "n", "label")
-    cells = {float(path.get("fill-opacity", "nan")): path.get("d", "") for path in all_of(svg, "path")}
-    assert sorted(cells) == [pytest.approx(0.1 + 0.9 * share, abs=0.006) for share in (0.25, 0.5, 1.0)]
-    assert cells[1.0] == "M0 0h1v1h-1zM2 0h1v1h-1z"  # row 1 is on top
-    down = heat(values, Axis("x", 0, 3), Axis("y", 0, 2), "n", "label", downwards=True)
-    assert "M0 1h1v1h-1zM2 1h1v1h-1z" in down
-    assert SHADES >= 8
-    assert not all_of(heat(np.full((2, 2), np.nan), Axis("x", 0, 2), Axis("y", 0, 2), "n", "l"), "path")
+    shades = np.array([[1.0, 0.0, 1.0], [0.0, 0.1 + 0.9 / 4, 0.1 + 0.9 / 2]])  # row 1 is on top
+    x, y = AxisRange("x", 0, 3), AxisRange("y", 0, 2)
+    assert opacities(heat(values, x, y, "n", "label")) == pytest.approx(shades, abs=0.01)
+    down = heat(values, x, y, "n", "label", downwards=True)
+    assert opacities(down) == pytest.approx(shades[::-1], abs=0.01)
+    bar = opacities(down, 1)[:, 0]
+    assert (bar[0], bar[-1]) == pytest.approx((1.0, 0.1), abs=0.01), "strong is high"
+    assert {"0", "4"} <= {text.text for text in styled(down, "text", "soft")}
+    assert not opacities(heat(np.full((2, 2), np.nan), x, y, "n", "l")).any()
 
 
 def test_bars_are_as_high_as_their_counts() -> None:
     svg = bars([0, 1, 2, 3], [1, 0, 4], "x", "n", "label", mark=1.5)
-    high = [float(bar.get("height", "nan")) for bar in all_of(svg, "rect")]
+    high = [np.ptp(corners(bar)[:, 1]) for bar in styled(svg, "path", "s0")]
     assert high[1] == pytest.approx(4 * high[0], rel=0.01)
     assert len(high) == 2
+    (mark,) = [each for each in styled(svg, "path", "soft") if "dasharray" in each.get("style", "")]
+    axis = [corners(each) for each in styled(svg, "path", "soft") if np.ptp(corners(each)[:, 0]) > 100]
+    assert corners(mark)[0, 0] == pytest.approx(axis[0][:, 0].mean()), "halfway from 0 to 3"
 
 
 def test_a_curve_goes_up_where_it_rises() -> None:
     svg = lines([("a", [0, 1, 2], [0, 0, 5])], "x", "y", "label")
-    (points,) = (curve.get("points", "") for curve in all_of(svg, "polyline"))
-    heights = [float(point.split(",")[1]) for point in points.split()]
+    (curve,) = styled(svg, "path", "s0")
+    heights = corners(curve)[:, 1]
     assert heights[0] == heights[1] > heights[2]
-    assert not all_of(lines([("none", [], [])], "x", "y", "label"), "polyline")
+    assert not styled(lines([("none", [], [])], "x", "y", "label"), "path", "s0")
 
 
 def test_every_road_of_a_gallery_leads_somewhere() -> None:

@@ -1,16 +1,26 @@
-"""Shares with their intervals: groups below each other, in each a row for every series."""
+"""Forest plots: shares with their intervals, in groups below each other, a row for every series."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from roadgpt.report.page.svg import chart, colour, legend, line, tag, words
+from matplotlib.patches import Patch
 
-WIDTH, LEFT, RIGHT, TOP = 560.0, 16.0, 120.0, 34.0
-ROW, HEAD, GAP = 20.0, 22.0, 10.0
+from roadgpt.report.page.chart import (
+    LETTERS,
+    columns_of,
+    embedded,
+    in_page_style,
+    new_chart,
+    palette,
+    series_colour,
+)
+
+WIDTH, LEFT, RIGHT, TOP, BOTTOM = 560.0, 16.0, 120.0, 12.0, 26.0  # px
+ROW, HEAD, GAP = 20.0, 22.0, 10.0  # px
 
 
 class Share(NamedTuple):
-    """A share of 0 to 1 with its interval, and what it says in letters."""
+    """A share of 0 to 1 with its interval, and what stands beside it."""
 
     series: int
     value: float
@@ -19,48 +29,38 @@ class Share(NamedTuple):
     text: str
 
 
+@in_page_style
 def forest(groups: Sequence[tuple[str, Sequence[Share]]], series: Sequence[str], label: str) -> str:
-    """A chart of shares from 0 to 100 %: a dot for each and a line for its interval.
+    """Returns a chart of shares from 0 to 100 % as SVG: a dot for each and a line for its interval.
 
     Args:
         groups: name of each group and its shares, in the order in which they stand below each other.
         series: names of the series.
-        label: for those who cannot see it.
+        label: what the chart shows, for screen readers.
     """
-    told, below = legend(series, LEFT, 18.0, WIDTH - 2 * LEFT)
-    top = below + TOP - 18.0
-    high = top + sum(HEAD + ROW * len(shares) + GAP for _, shares in groups) + 26
-    right = WIDTH - RIGHT
-    out = [told]
-    for share in (0.0, 0.25, 0.5, 0.75, 1.0):
-        x = LEFT + share * (right - LEFT)
-        out += [
-            line(x, top, x, high - 24),
-            words(x, high - 8, f"{100 * share:.0f} %", 11.5, "middle", is_soft=True),
-        ]
-    y = top
+    columns = columns_of(list(series), WIDTH - 2 * LEFT)
+    top = TOP + ROW * -(-len(series) // columns)
+    high = sum(HEAD + ROW * len(shares) + GAP for _, shares in groups)
+    figure, axes = new_chart(WIDTH, high + top + BOTTOM, LEFT, RIGHT, BOTTOM, top)
+    axes.set(xlim=(0, 1), ylim=(high, 0), yticks=[])
+    axes.set_xticks([0, 0.25, 0.5, 0.75, 1], [f"{share} %" for share in (0, 25, 50, 75, 100)])
+    axes.tick_params(length=0)
+    axes.grid(axis="x")
+    axes.spines[:].set_visible(False)
+    y = 0.0
     for name, shares in groups:
         y += HEAD
-        out.append(_backed(LEFT + 4, y - 5, name))
+        axes.text(0.01, y - 5, name, weight="bold", bbox={"fc": palette()["paper"], "ec": "none", "pad": 1.5})
         for each in shares:
-            out.append(_row(each, y + ROW / 2, right))
+            hue, row = series_colour(each.series), y + ROW / 2
+            axes.plot([each.lo, each.hi], [row, row], color=hue, lw=3, alpha=0.55, solid_capstyle="butt")
+            axes.plot(each.value, row, "o", color=hue, ms=9, mew=0, clip_on=False)
+            axes.text(1.03, row, each.text, va="center_baseline")
             y += ROW
         y += GAP
-    return chart(WIDTH, high, "".join(out), label)
-
-
-def _backed(x: float, y: float, name: str) -> str:
-    """A group's name, over the grid."""
-    return words(x, y, name, 12.5, is_bold=True, has_halo=True)
-
-
-def _row(share: Share, y: float, right: float) -> str:
-    def at(value: float) -> float:
-        return LEFT + value * (right - LEFT)
-
-    hue = colour(share.series)
-    return (
-        tag("line", x1=at(share.lo), y1=y, x2=at(share.hi), y2=y, stroke=hue, stroke_width=3, opacity=0.55)
-        + tag("circle", cx=at(share.value), cy=y, r=4.5, fill=hue)
-        + words(right + 12, y + 4, share.text, 12)
-    )
+    patches = [Patch(fc=series_colour(number), label=name) for number, name in enumerate(series)]
+    figure.legend(
+        handles=patches, loc="upper left", bbox_to_anchor=(LEFT / WIDTH, 1), ncols=columns,
+        borderaxespad=LETTERS / 24,
+    )  # fmt: skip
+    return embedded(figure, label)

@@ -1,122 +1,88 @@
-"""A matrix or a map of cells: the stronger the colour the larger the number."""
+"""Pictures of a matrix or a map of cells: the stronger the colour, the larger the number."""
 
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from numpy.typing import NDArray
 
-from roadgpt.report.page.svg import chart, line, number, tag, tick_text, ticks, words
+from roadgpt.report.page.chart import (
+    embedded,
+    in_page_style,
+    new_chart,
+    palette,
+    round_ticks,
+    tick_text,
+)
 
-SHADES = 16
 FEW = 10  # cells, below which a map shows nothing where all hold the same number
-SIDE, LEFT, BOTTOM, TOP, BAR = 380.0, 74.0, 46.0, 12.0, 96.0
+SIDE, LEFT, BOTTOM, TOP, BAR = 380.0, 74.0, 46.0, 12.0, 96.0  # px
+BLUE = "#2b8ccc"  # stands out from light and from dark paper: how much of it there is says the number
+FAINTEST = 0.1  # opacity
 
 
-class Axis(NamedTuple):
-    """What an axis shows, from where to where, and how far apart its ticks are at least."""
+class AxisRange(NamedTuple):
+    """What an axis shows, from where to where, and whether it counts things."""
 
     name: str
     lo: float
     hi: float
-    apart: float = 0.0
+    is_count: bool = False
 
 
 def is_map(values: NDArray[np.float64]) -> bool:
-    """Do the numbers tell anything? Not where there is one at most, or a few that are all the same."""
+    """Returns whether a map of the numbers shows anything: several different ones, or many that are equal."""
     filled = values[np.isfinite(values) & (values > 0)]
     return len(np.unique(filled)) > 1 or len(filled) >= FEW
 
 
+@in_page_style
 def heat(
     values: NDArray[np.float64],
-    across: Axis,
-    upwards: Axis,
+    across: AxisRange,
+    upwards: AxisRange,
     meaning: str,
     label: str,
     downwards: bool = False,
 ) -> str:
-    """A picture of a matrix ``(rows, columns)``; what is NaN or 0 is left empty.
+    """Returns a picture of a matrix ``(rows, columns)`` as SVG; cells that are NaN or 0 are left empty.
 
     Args:
         values: row 0 is the lowest, or the topmost where ``downwards``.
-        across, upwards: the axes.
-        meaning: of the colour.
-        label: for those who cannot see it.
-        downwards: rows are counted from the top, as of a distance matrix.
+        across: the horizontal axis.
+        upwards: the vertical axis.
+        meaning: what the colour shows.
+        label: what the picture shows, for screen readers.
+        downwards: rows are counted from the top, as in a distance matrix.
     """
-    rows, columns = values.shape
-    known = values[np.isfinite(values)]
-    high = max(float(known.max(initial=0.0)), 1e-12)
-    with np.errstate(invalid="ignore"):
-        shade = np.ceil(np.where(np.isfinite(values) & (values > 0), values / high, 0) * SHADES).astype(int)
-    shown = shade if downwards else shade[::-1]
-    scale = f"translate({number(LEFT)} {number(TOP)}) scale({SIDE / columns:.6g} {SIDE / rows:.6g})"
-    cells = "".join(_cells(shown, level) for level in range(1, SHADES + 1))
-    out = [
-        tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE, fill="var(--wash)"),
-        tag("g", cells, transform=scale, fill="var(--heat)"),
-        _across(across),
-        _upwards(upwards, downwards),
-        _bar(0.0, high, meaning),
-    ]
-    return chart(LEFT + SIDE + BAR, TOP + SIDE + BOTTOM, "".join(out), label)
+    figure, axes = new_chart(LEFT + SIDE + BAR, TOP + SIDE + BOTTOM, LEFT, BAR, BOTTOM, TOP)
+    axes.set_facecolor(palette()["wash"])
+    high = max(float(values[np.isfinite(values)].max(initial=0.0)), 1e-12)
+    lo, hi = (upwards.hi, upwards.lo) if downwards else (upwards.lo, upwards.hi)
+    shown = np.ma.masked_where(~(values > 0), values)
+    _paint(axes, shown, high, (across.lo, across.hi, lo, hi), "upper" if downwards else "lower")
+    axes.set(xlabel=across.name, ylabel=upwards.name)
+    round_ticks(axes.xaxis, 6, across.is_count)
+    round_ticks(axes.yaxis, 6, upwards.is_count)
+    bar = axes.inset_axes((1 + 22 / SIDE, 1 - 200 / SIDE, 14 / SIDE, 180 / SIDE))
+    _paint(bar, np.linspace(0, 1, 64)[:, None] * high, high, (0, 1, 0, high), "lower")
+    bar.spines[:].set_visible(False)
+    bar.set_xticks([])
+    bar.yaxis.tick_right()
+    bar.set_yticks([0, high], ["0", tick_text(float(f"{high:.3g}"))])
+    bar.tick_params(length=0)
+    bar.set_title(meaning, size=12, loc="left", pad=8)
+    return embedded(figure, label)
 
 
-def _cells(shades: NDArray[np.intp], level: int) -> str:
-    """All cells of one shade as one path in units of cells; neighbours in a row are one piece."""
-    pieces = []
-    for row, line_ in enumerate(shades == level):
-        edges = np.flatnonzero(np.diff(np.r_[False, line_, False]))
-        for first, last in edges.reshape(-1, 2):
-            wide = last - first
-            pieces.append(f"M{first} {row}h{wide}v1h-{wide}z")
-    return tag("path", d="".join(pieces), fill_opacity=_opacity(level / SHADES)) if pieces else ""
-
-
-def _opacity(share: float) -> float:
-    return round(0.1 + 0.9 * share, 3)
-
-
-def _across(axis: Axis) -> str:
-    y = TOP + SIDE
-    out = [line(LEFT, y, LEFT + SIDE, y, "axis")]
-    for tick in ticks(axis.lo, axis.hi, least=axis.apart):
-        x = LEFT + SIDE * (tick - axis.lo) / max(axis.hi - axis.lo, 1e-12)
-        out += [line(x, y, x, y + 4, "axis"), words(x, y + 17, tick_text(tick), 11.5, "middle", is_soft=True)]
-    return "".join(out) + words(LEFT + SIDE / 2, y + 36, axis.name, 12, "middle")
-
-
-def _upwards(axis: Axis, downwards: bool) -> str:
-    out = [line(LEFT, TOP, LEFT, TOP + SIDE, "axis")]
-    for tick in ticks(axis.lo, axis.hi, least=axis.apart):
-        share = (tick - axis.lo) / max(axis.hi - axis.lo, 1e-12)
-        y = TOP + SIDE * (share if downwards else 1 - share)
-        out += [
-            line(LEFT - 4, y, LEFT, y, "axis"),
-            words(LEFT - 8, y + 4, tick_text(tick), 11.5, "end", is_soft=True),
-        ]
-    middle = TOP + SIDE / 2
-    name = words(18, middle, axis.name, 12, "middle")
-    return "".join(out) + tag("g", name, transform=f"rotate(-90 18 {number(middle)})")
-
-
-def _bar(low: float, high: float, meaning: str) -> str:
-    """What the colours mean."""
-    x, y, tall, steps = LEFT + SIDE + 22, TOP + 20, 180.0, 24
-    out = [words(x - 4, TOP + 8, meaning, 12)]
-    for step in range(steps):
-        share = 1 - (step + 0.5) / steps
-        out.append(
-            tag(
-                "rect",
-                x=x,
-                y=y + tall * step / steps,
-                width=14,
-                height=tall / steps + 0.2,
-                fill="var(--heat)",
-                fill_opacity=_opacity(share),
-            )
-        )
-    for share, value in ((0.0, high), (1.0, low)):
-        out.append(words(x + 20, y + tall * share + 4, tick_text(float(f"{value:.3g}")), 11.5, is_soft=True))
-    return "".join(out)
+def _paint(
+    axes: Axes, values: NDArray[np.float64], high: float, extent: tuple[float, ...], origin: str
+) -> None:
+    """One pixel per cell, of one colour and of an opacity that grows with the number."""
+    blue = to_rgb(BLUE)
+    shades = LinearSegmentedColormap.from_list("page", [(*blue, FAINTEST), (*blue, 1.0)])
+    axes.imshow(
+        values, cmap=shades, vmin=0, vmax=high, extent=extent, origin=origin, aspect="auto",
+        interpolation="none",
+    )  # fmt: skip

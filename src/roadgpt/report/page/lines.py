@@ -3,93 +3,73 @@
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from roadgpt.report.page.svg import chart, colour, legend, line, number, tag, tick_text, ticks, words
+from roadgpt.report.page.chart import (
+    columns_of,
+    embedded,
+    in_page_style,
+    new_chart,
+    palette,
+    round_ticks,
+    series_colour,
+)
 
-WIDTH, HEIGHT, LEFT, RIGHT, BOTTOM = 560.0, 260.0, 62.0, 18.0, 46.0
+WIDTH, HEIGHT, LEFT, RIGHT, BOTTOM, TOP, ROW = 560.0, 260.0, 62.0, 18.0, 46.0, 14.0, 19.0  # px
 MOST_POINTS = 400  # of a line; more cannot be seen
 
 
+@in_page_style
 def lines(curves: Sequence[tuple[str, ArrayLike, ArrayLike]], across: str, upwards: str, label: str) -> str:
-    """Curves (name, x, y) that rise or fall, over linear axes from 0 or below; both axes count things."""
-    names = [name for name, _, _ in curves]
-    told, below = legend(names, LEFT, 16.0, WIDTH - LEFT - RIGHT) if len(names) > 1 else ("", 0.0)
-    top = below + 14
-    every = [(np.asarray(x, float), np.asarray(y, float)) for _, x, y in curves]
-    x1 = max((float(x.max()) for x, _ in every if x.size), default=1.0) or 1.0
-    y1 = max((float(y.max()) for _, y in every if y.size), default=1.0) or 1.0
-    place = _Place((0.0, x1), (0.0, y1 * 1.05), top)
-    out = [told, place.axes(across, upwards, apart=1.0)]
-    for series, (x, y) in enumerate(every):
-        if not x.size:
-            continue
-        some = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_POINTS)).astype(int))
-        points = " ".join(
-            f"{number(place.x(a))},{number(place.y(b))}" for a, b in zip(x[some], y[some], strict=True)
-        )
-        out.append(tag("polyline", points=points, fill="none", stroke=colour(series), stroke_width=2))
-    return chart(WIDTH, HEIGHT, "".join(out), label)
+    """Returns curves (name, x, y) over axes from 0 as SVG; both axes count things."""
+    names = [name for name, _, _ in curves] if len(curves) > 1 else []
+    columns = columns_of(names, WIDTH - LEFT - RIGHT) if names else 1
+    figure, axes = _axes(across, upwards, ROW * -(-len(names) // columns), is_count=True)
+    for series, (name, x, y) in enumerate(curves):
+        at, high = np.asarray(x, float), np.asarray(y, float)
+        if at.size:
+            some = np.unique(np.linspace(0, len(at) - 1, min(len(at), MOST_POINTS)).astype(int))
+            axes.plot(at[some], high[some], color=series_colour(series), lw=2, label=name)
+    far = [np.asarray(curve, float).max(initial=0.0) for _, *both in curves for curve in both]
+    axes.set(xlim=(0, max(far[0::2], default=0) or 1), ylim=(0, 1.05 * (max(far[1::2], default=0) or 1)))
+    if names:
+        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=columns)
+    return embedded(figure, label)
 
 
+@in_page_style
 def bars(
     edges: ArrayLike, counts: ArrayLike, across: str, upwards: str, label: str, mark: float | None = None
 ) -> str:
-    """A histogram: counts ``(n,)`` between edges ``(n + 1,)``; ``mark`` draws a line at a value."""
+    """Returns a histogram as SVG.
+
+    Args:
+        edges: ``(n + 1,)``, ascending.
+        counts: ``(n,)``, how many lie between every two edges.
+        across: name of the horizontal axis.
+        upwards: name of the vertical axis, which counts things.
+        label: what the chart shows, for screen readers.
+        mark: a value at which a line is drawn; None draws none.
+    """
     at, many = np.asarray(edges, float), np.asarray(counts, float)
-    place = _Place((float(at[0]), float(at[-1])), (0.0, max(float(many.max(initial=0)), 1.0) * 1.05), 14.0)
-    out = [place.axes(across, upwards)]
-    for x0, x1, count in zip(at[:-1], at[1:], many, strict=True):
-        if count:
-            left, top = place.x(x0), place.y(count)
-            out.append(
-                tag(
-                    "rect",
-                    x=left + 0.5,
-                    y=top,
-                    width=max(place.x(x1) - left - 1, 0.5),
-                    height=place.y(0.0) - top,
-                    fill=colour(0),
-                )
-            )
+    figure, axes = _axes(across, upwards)
+    some = many > 0
+    axes.bar(at[:-1][some], many[some], np.diff(at)[some] * 0.92, align="edge", color=series_colour(0))
+    axes.set(xlim=(at[0], at[-1]), ylim=(0, 1.05 * max(float(many.max(initial=0)), 1.0)))
     if mark is not None and at[0] <= mark <= at[-1]:
-        x = place.x(mark)
-        out.append(line(x, 14, x, place.y(0.0), "axis", stroke_dasharray="4 3"))
-    return chart(WIDTH, HEIGHT, "".join(out), label)
+        axes.axvline(mark, color=palette()["soft"], lw=1, ls=(0, (4, 3)))
+    return embedded(figure, label)
 
 
-class _Place:
-    """Where values lie on the picture."""
-
-    def __init__(self, x: tuple[float, float], y: tuple[float, float], top: float) -> None:
-        self._x, self._y, self._top = x, y, top
-
-    def x(self, value: float) -> float:
-        low, high = self._x
-        return LEFT + (WIDTH - LEFT - RIGHT) * (value - low) / max(high - low, 1e-12)
-
-    def y(self, value: float) -> float:
-        low, high = self._y
-        foot = HEIGHT - BOTTOM
-        return foot - (foot - self._top) * (value - low) / max(high - low, 1e-12)
-
-    def axes(self, across: str, upwards: str, apart: float = 0.0) -> str:
-        """Both axes; upwards things are counted, and across ticks are at least so far apart."""
-        foot, out = HEIGHT - BOTTOM, []
-        for tick in ticks(*self._y, 5, least=1.0):
-            y = self.y(tick)
-            out += [
-                line(LEFT, y, WIDTH - RIGHT, y),
-                words(LEFT - 8, y + 4, tick_text(tick), 11.5, "end", is_soft=True),
-            ]
-        for tick in ticks(*self._x, 8, least=apart):
-            x = self.x(tick)
-            out += [
-                line(x, foot, x, foot + 4, "axis"),
-                words(x, foot + 17, tick_text(tick), 11.5, "middle", is_soft=True),
-            ]
-        out.append(line(LEFT, foot, WIDTH - RIGHT, foot, "axis"))
-        middle = (self._top + foot) / 2
-        name = words(15, middle, upwards, 12, "middle")
-        out.append(tag("g", name, transform=f"rotate(-90 15 {number(middle)})"))
-        return "".join(out) + words((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, across, 12, "middle")
+def _axes(across: str, upwards: str, more: float = 0.0, is_count: bool = False) -> tuple[Figure, Axes]:
+    """Axes with names, and ``more`` px of room above them."""
+    figure, axes = new_chart(WIDTH, HEIGHT + more, LEFT, RIGHT, BOTTOM, TOP + more)
+    axes.set(xlabel=across, ylabel=upwards)
+    axes.grid(axis="y")
+    axes.spines["left"].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    round_ticks(axes.xaxis, 8, is_count)
+    round_ticks(axes.yaxis, 5, is_count=True)
+    return figure, axes

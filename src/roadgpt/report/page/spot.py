@@ -85,7 +85,7 @@ def spot(of: Spot, label: str) -> str:
         tag(
             "rect", x=7, y=below - 16, width=bar + 10, height=21, rx=2, fill="var(--wash)", fill_opacity=0.85
         ),
-        line(12, below, 12 + bar, below, "axis"),
+        line(12, below, 12 + bar, below),
         words(12, below - 5, f"{SCALE:.0f} m", 10.5),
     ]
     return chart(SIDE, SIDE, "".join(out), label)

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from roadgpt.report.page import Block, Cell, Details, Figure, Section, Table, cell, linked
-from roadgpt.report.page.heat import Axis, heat, is_map
+from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.study.chapters.saying import decimal, plural
 from roadgpt.study.looking import Looked, LookedPart
 from roadgpt.study.similarity import Likeness, Spread, between, spread
@@ -125,7 +125,7 @@ def _matrix(part: LookedPart, roads: list[Looked], own: Spread) -> Figure | None
     lower = np.where(np.tri(len(roads), k=-1, dtype=bool), own.metres, np.nan)
     if not is_map(lower):
         return None
-    axis = Axis("road", 0.5, len(roads) + 0.5, 1.0)
+    axis = AxisRange("road", 0.5, len(roads) + 0.5, is_count=True)
     caption = (
         f"{part.part.designer}, “{part.part.prompt.prompt}”: distance between every two roads, metres; "
         "the fainter, the more alike."

@@ -11,7 +11,7 @@ from roadgpt.campaign.behaviour import BOUNDS
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
 from roadgpt.report.page import Block, Cell, Figure, Table, cell
-from roadgpt.report.page.heat import Axis, heat, is_map
+from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.report.page.lines import bars, lines
 from roadgpt.study.chapters.maps import CALLED
 from roadgpt.study.chapters.saying import decimal, percent
@@ -162,7 +162,7 @@ def coverage(record: Record, done: int) -> list[Block]:
         filled = int(np.count_nonzero(sums))
         part = f" of every {every:,}th test" if every > 1 else ""
         caption = f"Tests{part} by {across} and {upwards}: {filled} of {SIDE * SIDE} cells are filled."
-        axes = (Axis(CALLED[across], *BOUNDS[across]), Axis(CALLED[upwards], *BOUNDS[upwards]))
+        axes = (AxisRange(CALLED[across], *BOUNDS[across]), AxisRange(CALLED[upwards], *BOUNDS[upwards]))
         blocks.append(Figure(f"map-{across.lower()}", caption, heat(sums, *axes, "tests", caption)))
     return blocks
 

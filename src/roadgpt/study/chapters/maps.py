@@ -6,7 +6,7 @@ import numpy as np
 
 from roadgpt.report.page import Block, Figure, Section
 from roadgpt.report.page.gallery import Small, gallery
-from roadgpt.report.page.heat import Axis, heat, is_map
+from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.study.looking import Looked, LookedPart
 
 CELLS = 25  # along each side of a map
@@ -55,7 +55,7 @@ def _map(
         return None
     filled = int(np.count_nonzero(counts))
     caption = f"{designer}: {len(found)} roads in {filled} of {CELLS * CELLS} cells ({across}, {upwards})."
-    picture = heat(counts, Axis(across_name, x0, x1), Axis(upwards_name, y0, y1), "roads", caption)
+    picture = heat(counts, AxisRange(across_name, x0, x1), AxisRange(upwards_name, y0, y1), "roads", caption)
     return Figure(f"coverage-{across.lower()}", caption, picture)
 
 

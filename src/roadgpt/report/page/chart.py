@@ -1,0 +1,113 @@
+"""Charts drawn by matplotlib as SVG for a page: its letters in its font, its colours in light and dark."""
+
+import io
+import re
+from functools import cache
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from matplotlib import rc_context, rcParamsDefault
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+from roadgpt.report.canvas import UNDATED
+from roadgpt.report.lettering import POINTS, inches
+
+CSS = Path(__file__).parent / "style.css"
+SERIES = 6  # colours of the page that tell series apart
+LETTERS = 12.0  # px
+STEPS = (1, 2, 5, 10)  # of ticks
+# licence and type, a style that would hold for the whole page, names that nothing in the picture refers to,
+# rotations by nothing, and matplotlib's font: the page has its own
+NEEDLESS = (
+    r'<metadata>.*?</metadata>|<style .*?</style>| id="[a-z0-9.]+_\d+"| transform="rotate\(-?0 [^"]*"'
+    r"|font-family: [^;\"]*;? ?"
+)
+
+
+@cache
+def palette() -> dict[str, str]:
+    """Returns the colours of ``style.css`` on light paper, ``#rrggbb`` by the names of their variables."""
+    light, _, _ = CSS.read_text(encoding="utf-8").partition("}")
+    return dict(re.findall(r"--([a-z0-9]+): (#[0-9a-f]{6});", light))
+
+
+def series_colour(number: int) -> str:
+    """Returns the colour of the series of this number; colours repeat after ``SERIES``."""
+    return palette()[f"s{number % SERIES}"]
+
+
+def _style() -> dict[Any, Any]:
+    colours = palette()
+    plain = {name: value for name, value in rcParamsDefault.items() if name != "backend"}
+    return plain | {
+        "font.size": LETTERS, "text.color": colours["ink"], "text.parse_math": False,
+        "axes.edgecolor": colours["soft"], "axes.labelcolor": colours["ink"], "axes.linewidth": 1.0,
+        "axes.facecolor": "none", "axes.spines.top": False, "axes.spines.right": False,
+        "axes.axisbelow": True, "grid.color": colours["line"], "grid.linewidth": 1.0,
+        "xtick.color": colours["soft"], "ytick.color": colours["soft"],
+        "xtick.labelsize": LETTERS - 0.5, "ytick.labelsize": LETTERS - 0.5,
+        "figure.facecolor": "none", "legend.frameon": False, "legend.fontsize": LETTERS,
+        "legend.handlelength": 0.9, "legend.handleheight": 0.9, "legend.borderaxespad": 0.0,
+        "svg.fonttype": "none",
+    }  # fmt: skip
+
+
+in_page_style = rc_context(_style())
+
+
+def new_chart(
+    width: float, height: float, left: float, right: float, bottom: float, top: float
+) -> tuple[Figure, Axes]:
+    """Returns a figure of ``width`` by ``height`` px and its axes, so many px from the figure's borders."""
+    figure = Figure(figsize=(width / POINTS, height / POINTS), dpi=POINTS)
+    FigureCanvasSVG(figure)
+    box = (left / width, bottom / height, (width - left - right) / width, (height - bottom - top) / height)
+    axes: Axes = figure.add_axes(box)
+    return figure, axes
+
+
+def round_ticks(axis: Axis, most: int, is_count: bool = False) -> None:
+    """Puts at most ``most`` steps of round numbers at an axis; whole numbers where things are counted."""
+    axis.set_major_locator(MaxNLocator(most, steps=STEPS, integer=is_count, min_n_ticks=1))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: tick_text(value)))
+
+
+def tick_text(value: float) -> str:
+    """Returns a tick's number, short; thousands stand apart."""
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.6g}".replace("-", "\N{MINUS SIGN}")
+
+
+def columns_of(names: list[str], width: float) -> int:
+    """Returns how many names of a legend fit beside each other on ``width`` px, at least one."""
+    widest = max(inches(name, LETTERS) for name in names) * POINTS + 44
+    return max(1, min(len(names), int(width / widest)))
+
+
+def embedded(figure: Figure, label: str) -> str:
+    """Returns a figure as an ``svg`` element for a page; the same figure and label give the same text.
+
+    Colours of ``palette`` become the page's variables, and letters are in the page's font.
+
+    Args:
+        figure: made by ``new_chart`` in ``in_page_style``.
+        label: what the chart shows, for screen readers.
+    """
+    data = io.BytesIO()
+    with rc_context({"svg.hashsalt": label}):  # names within, which no two charts of a page may share
+        figure.savefig(data, format="svg", metadata=dict(UNDATED["svg"]))
+    _, _, inside = data.getvalue().decode().partition("<svg ")
+    head, _, content = inside.partition(">")
+    content = re.sub(f"(?s){NEEDLESS}", "", content)
+    for name, colour in palette().items():
+        content = content.replace(colour, f"var(--{name})")
+    wide, high = figure.get_size_inches() * POINTS
+    head = re.sub(r'(width|height)="[^"]*"', "", head)
+    return (
+        f'<svg {" ".join(head.split())} width="{wide:g}" height="{high:g}" class="chart" role="img" '
+        f'aria-label="{escape(label)}">{content.strip()}'
+    )
