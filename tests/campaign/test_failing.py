@@ -65,6 +65,24 @@ def test_a_campaign_looks_into_its_failures_when_it_is_done(looked: Path) -> Non
     assert found.failures == found.compared == 2
 
 
+def test_pictures_of_faults_are_written_in_every_format_asked_for(looked: Path, tmp_path: Path) -> None:
+    """What was driven again is not driven again for a picture, and the report links to what is there."""
+    folder = shutil.copytree(looked, tmp_path / "c")
+    there = {path.stem for path in (folder / "faults").rglob("*.png")}
+    assert there
+    pages = {path: path.stat().st_mtime_ns for path in (folder / "faults" / "c01").glob("*.json")}
+    done = roadgpt("faults", folder, "--repeat", 2, "--format", "svg,pdf")
+    assert {path.stem for path in (folder / "faults").rglob("*.svg")} == there
+    assert {path.stem for path in (folder / "faults").rglob("*.pdf")} == there
+    assert f"{folder / 'faults' / 'c01'}/*.pdf" in done.stdout
+    assert pages == {path: path.stat().st_mtime_ns for path in pages}
+    for path in (folder / "faults").rglob("*.png"):
+        path.unlink()
+    roadgpt("report", folder)
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert all(f'href="faults/c01/{name}.svg"' in page for name in there)
+
+
 def test_only_a_typical_failure_of_each_fault_is_driven_again(
     many: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

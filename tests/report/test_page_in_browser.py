@@ -11,7 +11,7 @@ from chromium import FOUND, Page, browser
 from roadgpt.report.page import Figure, Section, Table, cell, write
 from roadgpt.report.page import Page as Report
 from roadgpt.report.page.forest import Share, forest
-from roadgpt.report.page.heat import Axis, heat
+from roadgpt.report.page.heat import AxisRange, heat
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="there is no chromium")
 SIDES = ((1100, 800, False), (360, 740, True))
@@ -20,7 +20,7 @@ SIDES = ((1100, 800, False), (360, 740, True))
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     chart = forest([("a road", [Share(0, 0.5, 0.3, 0.7, "5 of 10")])], ["planner"], "x")
-    matrix = heat(np.eye(9) + 1, Axis("road", 0, 9), Axis("road", 0, 9), "m", "x")
+    matrix = heat(np.eye(9) + 1, AxisRange("road", 0, 9), AxisRange("road", 0, 9), "m", "x")
     rows = [[cell("a description of many words " * 4), *(cell(n) for n in range(9))]]
     table = Table("wide", "A wide table", ["prompt", *(f"number {n}" for n in range(9))], rows)
     sections = [Section("One", [table, Figure("f", "A figure.", chart), Figure("h", "Another.", matrix)])]
@@ -54,7 +54,7 @@ def test_it_fits_every_screen_in_both_schemes(report: Path) -> None:
                 assert page.run(f"JSON.stringify({sticks_out})") == json.dumps([])
         assert len(shades) == 2
         assert page.told == []
-        assert {url.split(":")[0] for url in page.asked} <= {"file", "about"}
+        assert {url.split(":")[0] for url in page.asked} <= {"file", "about", "data"}
 
 
 def test_it_prints(report: Path) -> None:

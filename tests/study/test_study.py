@@ -78,7 +78,7 @@ def test_the_page_tells_what_the_tables_tell(study: Path) -> None:
     assert "6 of 6 (100.0 %)" in page
     assert "roadgpt study thesis --roads 2 --seed 1 --no-drive --out study" in page
     assert re.search(r"encoder.onnx sha256 [0-9a-f]{16}", page)
-    for target in re.findall(r'href="([^"#]+)"', page):
+    for target in re.findall(r'<a href="([^"#]+)"', page):
         assert (study / target).is_file(), target
 
 
@@ -88,6 +88,27 @@ def test_the_report_is_written_again_from_the_folder_alone(study: Path) -> None:
     result = CliRunner().invoke(app, ["report", str(study)])
     assert result.exit_code == 0, result.output
     assert (study / "report.html").read_bytes() == before
+
+
+def test_pictures_of_a_study_are_of_the_format_that_is_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "p.jsonl").write_text('{"id": "1", "prompt": "a straight road of 40 m"}\n')
+    words = [
+        "study",
+        "alignment",
+        str(tmp_path / "p.jsonl"),
+        "-n",
+        "1",
+        "--reader",
+        "grammar",
+        "--workers",
+        "1",
+    ]
+    result = CliRunner().invoke(app, [*words, "--format", "svg", "--out", str(tmp_path / "s")])
+    assert result.exit_code == 0, result.output
+    assert not list(tmp_path.rglob("*.png"))
+    targets = re.findall(r'<a href="([^"#]+)"', (tmp_path / "s" / "report.html").read_text())
+    assert {Path(target).name for target in targets} >= {"overview.svg", "birds_eye.svg"}
+    assert all((tmp_path / "s" / target).is_file() for target in targets)
 
 
 def test_processes_and_a_pause_change_nothing(tmp_path: Path) -> None:
@@ -251,7 +272,7 @@ def test_a_campaign_of_run_has_a_report_too(tmp_path: Path) -> None:
     page = (place / "report.html").read_text()
     assert "two left turns" in page
     assert "roadgpt run &#x27;two left turns&#x27; -n 2 --seed 4 --reader grammar" in page
-    for target in re.findall(r'href="([^"#]+)"', page):
+    for target in re.findall(r'<a href="([^"#]+)"', page):
         assert (place / target).is_file(), target
 
 

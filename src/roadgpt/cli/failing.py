@@ -39,7 +39,8 @@ class Look(NamedTuple):
     repeat: int = REPEAT
     minimise: bool = False
     workers: int = 1
-    has_pictures: bool = True
+    formats: tuple[str, ...] = ("png",)
+    """Of the pictures; empty: none are drawn."""
     is_quiet: bool = False
     is_apart: bool = False
     """Standard output is for something else."""
@@ -50,7 +51,9 @@ class Look(NamedTuple):
         asked = [] if self.repeat == REPEAT else ["--repeat", str(self.repeat)]
         asked += ["--minimise"] if self.minimise else []
         asked += ["-j", str(self.workers)] if self.workers > 1 else []
-        return asked + ([] if self.has_pictures else ["--no-plot"])
+        if self.formats != ("png",):
+            asked += ["--format", ",".join(self.formats)] if self.formats else ["--no-plot"]
+        return asked
 
     def say(self, text: str, is_news: bool = False) -> None:
         """Tell, unless nothing is to be said; what is news on the way goes to standard error."""
@@ -87,9 +90,9 @@ def analyse_failures(place: Path, look: Look) -> None:
     for driver in sorted(drivers_of(place)):
         admit(driver)  # here, where the user can be asked, and not in each of the workers
     look.say(f"{found.sentence}; looking into a typical one of each fault", is_news=True)
-    draw = _draws(look.has_pictures)
+    draw = _draws(bool(look.formats))
     tasks = [
-        fault_log.AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw)
+        fault_log.AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
         for each in found.them
     ]
     steps = shared(analyse, tasks, look.workers)
@@ -102,8 +105,8 @@ def analyse_failures(place: Path, look: Look) -> None:
     table = write_tables(found.them, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
     look.say(f"tables: {table} and {table.with_name(fault_log.FAILURES)}")
-    if look.has_pictures:
-        look.say(f"pictures: {_pictures(place, found)}")
+    if look.formats:
+        look.say(f"pictures: {_pictures(place, found, look.formats)}")
 
 
 def _draws(has_pictures: bool) -> "FailureDrawing | None":
@@ -134,8 +137,8 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
         yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"
 
 
-def _pictures(place: Path, found: "Faults") -> str:
+def _pictures(place: Path, found: "Faults", formats: tuple[str, ...]) -> str:
     from roadgpt.campaign.faults.fault_log import FOLDER
 
     cells = sorted({fault.typical[0].name.cell for fault in found.them})
-    return ", ".join(f"{place / FOLDER / cell}/*.png" for cell in cells)
+    return ", ".join(f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in formats)

@@ -16,6 +16,7 @@ from roadgpt.cli.options import (
     chat_of,
     chat_options,
     folder,
+    format_option,
     setup_options,
     together,
     whole,
@@ -25,6 +26,7 @@ from roadgpt.cli.options import (
 from roadgpt.errors import ChatError
 
 if TYPE_CHECKING:
+    from roadgpt.report import Drawing
     from roadgpt.study.plan import Plan
     from roadgpt.study.prompts import Prompt
     from roadgpt.study.working import Problem
@@ -46,6 +48,7 @@ study_options = together(
     ),
     setup_options(*SHOWN),
     world_options(),
+    format_option,
     click.option("--no-plot", is_flag=True, help="Draw no pictures of single runs."),
     click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors, and where the report is."),
     chat_options,
@@ -108,7 +111,9 @@ def _study(
     from roadgpt.study.reporting import keep_problems, write_study
     from roadgpt.study.working import work
 
-    workers, quiet, no_plot = rest.pop("workers"), rest.pop("quiet"), rest.pop("no_plot")
+    workers, quiet = rest.pop("workers"), rest.pop("quiet")
+    given = rest.pop("picture_formats")
+    formats = () if rest.pop("no_plot") else given
     seed, out = rest.pop("seed"), rest.pop("out")
     place = out or Path("roadgpt-runs") / f"study-{kind}-{seed}"
     plan = _plan(kind, prompts, source, roads, seed, drives, rest)
@@ -125,7 +130,7 @@ def _study(
         )
     begun = time.perf_counter()
     try:
-        problems = work(plan, place, workers, None if no_plot else _drawing(), tell)
+        problems = work(plan, place, workers, _drawing(formats), tell)
     except KeyboardInterrupt:
         click.echo("\nroadgpt: stopped; what is finished is complete, and the same command goes on", err=True)
         raise
@@ -188,10 +193,12 @@ def _command(plan: "Plan", place: Path) -> str:
     return shlex.join([*words, "--out", str(place)])
 
 
-def _drawing() -> Any:
+def _drawing(formats: tuple[Any, ...]) -> "Drawing | None":
+    if not formats:
+        return None
     from roadgpt.report import drawing
 
-    return drawing()
+    return drawing(formats=formats)
 
 
 def _teller(total: int) -> Callable[[str, int], None]:

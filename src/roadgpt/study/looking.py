@@ -13,6 +13,7 @@ from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import promises_of
 from roadgpt.errors import RoadGPTError
 from roadgpt.reading import read_json
+from roadgpt.report.canvas import FORMATS
 from roadgpt.road import Road, World
 from roadgpt.run import Run, read_run
 from roadgpt.run.campaign_runs import finished
@@ -81,7 +82,8 @@ class LookedPart:
     """Its folder, relative to that of the report."""
     problem: str = ""
     """Why there are none, or not all."""
-    has_pictures: bool = False
+    picture_format: str = ""
+    """Of the pictures of its roads; empty where none are drawn."""
     wanted: int = 1
     """Roads that were asked for."""
 
@@ -91,12 +93,13 @@ class LookedPart:
 
     def href(self, road: Looked) -> str:
         """Where a reader sees the road: its bird's-eye view, or the run itself where none is drawn."""
-        return f"{road.folder}/{'birds_eye.png' if self.has_pictures and len(road.points) else 'run.json'}"
+        is_drawn = self.picture_format and len(road.points)
+        return f"{road.folder}/{f'birds_eye.{self.picture_format}' if is_drawn else 'run.json'}"
 
     @property
     def overview(self) -> str:
         """Where a reader sees all roads."""
-        name = "overview.png" if self.has_pictures else "generation_stats.csv"
+        name = f"overview.{self.picture_format}" if self.picture_format else "generation_stats.csv"
         return f"{self.home}/{name}".lstrip("/")
 
 
@@ -129,7 +132,8 @@ def _looked(place: Path, part: Part, home: str, problem: str, wanted: int = 1) -
     roads = tuple(
         look(read_run(run_folder(place, n)), part, home, _features(place / test_name(n))) for n in indices
     )
-    return LookedPart(part, roads, home, problem, (place / "overview.png").is_file(), wanted)
+    drawn = next((kind for kind in FORMATS if (place / f"overview.{kind}").is_file()), "")
+    return LookedPart(part, roads, home, problem, drawn, wanted)
 
 
 def look(run: Run, part: Part, home: str, features: Mapping[str, float]) -> Looked:

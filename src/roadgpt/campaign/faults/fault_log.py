@@ -2,7 +2,7 @@
 
 DIR/faults/
   c01/0017.json    why a failure happened, every disturbed drive, the simplest road; where it is, that is done
-  c01/0017.png     what happened, from above
+  c01/0017.png     what happened, from above; or .svg, .pdf
   simplest/c01/    a folder of runs: the simplest roads that fail alike, under the numbers of the failures
   faults.csv       one line per fault, the one with most failures first
   failures.csv     one line per failure, and the fault that it belongs to
@@ -44,7 +44,7 @@ class FailureDrawing(Protocol):
     """Whoever draws a failure; the room ``report`` does."""
 
     def __call__(self, run: Run, reason: FailureReason, more: str, path: Path) -> object:
-        """Write a picture."""
+        """Write a picture, in the format of the path's suffix."""
         ...
 
 
@@ -60,6 +60,8 @@ class AnalysisTask(NamedTuple):
     """Disturbed drives."""
     minimise: bool = False
     draw: FailureDrawing | None = None
+    formats: tuple[str, ...] = ("png",)
+    """Of the pictures."""
 
 
 @dataclass(frozen=True)
@@ -101,9 +103,9 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
     there = _read(path, run, name, task.times)
     found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
     _made(path.parent)
-    picture = path.with_suffix(".png")
-    if task.draw is not None and (there is None or not picture.is_file()):
-        task.draw(run, found.reason, found.stability.sentence, picture)
+    for picture in (path.with_suffix(f".{kind}") for kind in task.formats):
+        if task.draw is not None and (there is None or not picture.is_file()):
+            task.draw(run, found.reason, found.stability.sentence, picture)
     if there is None:
         write_whole(path, json_text(_written(run, found)))
     return found

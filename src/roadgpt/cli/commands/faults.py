@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from roadgpt.cli.failing import DRIVES, REPEAT, Look, analyse_failures
-from roadgpt.cli.options import driver_again_option, folder, whole
+from roadgpt.cli.options import driver_again_option, folder, format_option, whole
 
 
 @click.command()
@@ -18,6 +18,7 @@ from roadgpt.cli.options import driver_again_option, folder, whole
     "-j", "workers", type=whole(1, 256, "processes"), default=1, show_default=True, help="Faults at a time."
 )
 @driver_again_option
+@format_option
 @click.option("--no-plot", is_flag=True, help="Draw no pictures.")
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
 def command(
@@ -26,6 +27,7 @@ def command(
     minimise: bool,
     workers: int,
     driver: str | None,
+    picture_formats: tuple[str, ...],
     no_plot: bool,
     quiet: bool,
 ) -> None:
@@ -45,4 +47,4 @@ def command(
 
     if driver is not None:
         expect(driver, drivers_of(place), place)
-    analyse_failures(place, Look(repeat, minimise, workers, not no_plot, quiet))
+    analyse_failures(place, Look(repeat, minimise, workers, () if no_plot else picture_formats, quiet))

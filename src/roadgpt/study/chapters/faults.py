@@ -18,6 +18,7 @@ from roadgpt.campaign.faults.fault import DEFINED
 from roadgpt.campaign.faults.fault_log import FOLDER, TABLE
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.errors import UsageError
+from roadgpt.report.canvas import FORMATS
 from roadgpt.report.page import Block, Card, Cards, Cell, Command, Details, Line, Section, Table, cell, linked
 from roadgpt.report.page.spot import spot, spot_of
 from roadgpt.run import Run
@@ -143,8 +144,8 @@ def _stable(told: Told) -> str:
 
 def _picture(folder: Path, told: Told) -> str:
     """Address of the picture of a typical failure; empty where none was drawn."""
-    place = "/".join(part for part in (FOLDER, told.name.cell, f"{told.name.number:04d}.png") if part)
-    return place if (folder / place).is_file() else ""
+    place = "/".join(part for part in (FOLDER, told.name.cell, f"{told.name.number:04d}") if part)
+    return next((f"{place}.{kind}" for kind in FORMATS if (folder / f"{place}.{kind}").is_file()), "")
 
 
 def _all(folder: Path, found: Faults, told: Sequence[Told]) -> Block:
