@@ -1,6 +1,6 @@
 """Pictures of a matrix or a map of cells: the stronger the colour, the larger the number."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -77,7 +77,11 @@ def heat(
 
 
 def _paint(
-    axes: Axes, values: NDArray[np.float64], high: float, extent: tuple[float, ...], origin: str
+    axes: Axes,
+    values: NDArray[np.float64],
+    high: float,
+    extent: tuple[float, float, float, float],
+    origin: Literal["upper", "lower"],
 ) -> None:
     """One pixel per cell, of one colour and of an opacity that grows with the number."""
     blue = to_rgb(BLUE)
