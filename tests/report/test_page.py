@@ -14,13 +14,13 @@ from matplotlib.image import imread
 
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.page import (
-    Card,
     Cards,
-    Command,
     Details,
     Figure,
+    FigureCard,
     Page,
     Section,
+    ShellCommand,
     Table,
     cell,
     csv_of,
@@ -32,7 +32,7 @@ from roadgpt.report.page import (
 )
 from roadgpt.report.page.chart import palette
 from roadgpt.report.page.forest import Share, forest
-from roadgpt.report.page.gallery import Small, gallery
+from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.report.page.html import STYLE
 from roadgpt.report.page.lines import bars, lines
@@ -211,7 +211,7 @@ def test_what_is_counted_has_whole_numbers_at_its_axes() -> None:
 
 
 def test_a_gallery_of_one_road_is_a_small_picture() -> None:
-    road = [Small(1, "PASS", np.array([[0.0, 0.0], [125.0, 125.0]]))]
+    road = [Thumbnail(1, "PASS", np.array([[0.0, 0.0], [125.0, 125.0]]))]
     assert "narrow" in parsed(gallery(road, 250.0, "label")).get("class", "")
     assert "narrow" not in parsed(gallery(road * 20, 250.0, "label")).get("class", "")
 
@@ -261,7 +261,9 @@ def test_a_curve_goes_up_where_it_rises() -> None:
 def test_every_road_of_a_gallery_leads_somewhere() -> None:
     road = np.array([[0.0, 0.0], [125.0, 125.0], [250.0, 250.0]])
     small = [
-        Small(n, outcome, road if n else road[:0], (125.0, 125.0) if outcome == "FAIL" else None, f"r{n}.png")
+        Thumbnail(
+            n, outcome, road if n else road[:0], (125.0, 125.0) if outcome == "FAIL" else None, f"r{n}.png"
+        )
         for n, outcome in enumerate(("ERROR", "PASS", "FAIL", "INVALID", "VALID"))
     ]
     svg = gallery(small, 250.0, "label", columns=2)
@@ -272,7 +274,9 @@ def test_every_road_of_a_gallery_leads_somewhere() -> None:
 
 def test_cards_stand_beside_each_other_with_what_can_be_typed() -> None:
     """Pictures only in HTML; every word in both forms, nothing of it taken for markup."""
-    card = Card(["2 · ", linked("3 tests", "a b.png")], "<svg><rect/></svg>", [NASTY, [Command(NASTY)]])
+    card = FigureCard(
+        ["2 · ", linked("3 tests", "a b.png")], "<svg><rect/></svg>", [NASTY, [ShellCommand(NASTY)]]
+    )
     whole = page(Cards([card, card]))
     text = html_of(whole)
     assert text.count("<article><svg><rect/></svg><h3>2 · <a") == 2

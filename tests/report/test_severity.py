@@ -13,7 +13,7 @@ from roadgpt.drive import Columns
 from roadgpt.report import drawing
 from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
 from roadgpt.report.overview import _entry, overview
-from roadgpt.report.page.gallery import Small, gallery
+from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.places import places_of
 from roadgpt.report.rim import severities
 from roadgpt.report.view.scene import scene
@@ -98,7 +98,7 @@ def test_the_overview_tells_them_apart(runs: dict[str, Run], tmp_path: Path) -> 
 
 def test_the_gallery_of_a_page_tells_them_apart() -> None:
     line = np.array([[10.0, 10.0], [90.0, 90.0]])
-    small = [Small(n, "PASS", line, share=share) for n, share in enumerate((0.0, 0.3, 0.8))]
+    small = [Thumbnail(n, "PASS", line, share=share) for n, share in enumerate((0.0, 0.3, 0.8))]
     drawn = gallery(small, 100, "x")
     assert [drawn.count(f"var(--{name})") > 0 for name in ("pass", "partly", "mostly", "fail")] == [
         True,

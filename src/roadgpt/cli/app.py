@@ -28,7 +28,7 @@ COMMANDS = {
     "plot": "Draw roads that exist.",
     "faults": "Why roads failed, how often again, and how many faults they show.",
     "view": "Look at a road in 3-D and at its drive as a replay, in one page.",
-    "film": "Film drives: from behind the car, from its bonnet, two in a split screen.",
+    "film": "Film drives: from behind the car, from its hood camera, two in a split screen.",
     "export": "Write roads in the formats of other people's tools: OpenDRIVE and others.",
     "import": "Take a road out of an OpenDRIVE file.",
     "compare": "How alike two roads are, seen one above the other.",

@@ -1,11 +1,12 @@
-"""Reports: makes pictures of Runs and campaigns. Verb: ``draw``; the only room that imports matplotlib.
+"""Draws pictures of Runs and campaigns, and writes pages and films. Verb: ``draw``.
 
-birds_eye.png          the road from above, the driven path by speed, the place of a failure or objection
+birds_eye.png          the road from above, the driven path coloured by speed, the place of a failure
 height.png             distance against height
 curvature_grade.png    curvature, grade and speed along the road, with the limits of the rules
 overview.png           all roads of a campaign
 
-``view`` makes a page with the road in 3-D instead; its verb is ``view.write``.
+``view`` makes a page with the road in 3-D (``view.write``), ``film`` films of drives, and ``page`` reports on
+many roads.
 """
 
 from collections.abc import Sequence
@@ -37,13 +38,13 @@ __all__ = [
 
 @in_our_style
 def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[Format] = PNG) -> list[Path]:
-    """Draw all pictures of a Run into a folder that exists; none of a Run that has no road.
+    """Draws all pictures of a Run into an existing folder; returns their paths, none if there is no road.
 
     Args:
         run: driven or not, valid or not.
-        folder: where the pictures go; those of the same names are replaced.
-        axes: "equal" fits and shows metres as metres; "thesis" gives the two plots RoadGPT's fixed axes.
-        formats: of the files; each picture is written in every one of them.
+        folder: where the pictures go; files of the same names are replaced.
+        axes: "equal" fits the road and is to scale; "thesis" uses the fixed axes of RoadGPT's thesis.
+        formats: the file formats; each picture is written in all of them.
     """
     if run.road is None:
         return []
@@ -58,20 +59,20 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
 
 @dataclass(frozen=True)
 class Drawing:
-    """Draws for a campaign as it goes; hand it to ``run.campaign``."""
+    """Draws the pictures of a campaign while it runs; an argument of ``run.campaign``."""
 
     axes: Scale = "equal"
     formats: tuple[Format, ...] = PNG
 
     def of_run(self, run: Run, folder: Path) -> list[Path]:
-        """All pictures of a Run."""
+        """Draws all pictures of a Run, and returns their paths."""
         return draw(run, folder, self.axes, self.formats)
 
     def of_campaign(self, folder: Path) -> list[Path]:
-        """All roads of a campaign on one page, or on several."""
+        """Draws all roads of a campaign on one page or several, and returns their paths."""
         return overview(folder, self.formats)
 
 
 def drawing(axes: Scale = "equal", formats: Sequence[Format] = PNG) -> Drawing:
-    """Who draws a campaign's pictures, on axes to scale or on RoadGPT's, in these formats."""
+    """Returns a Drawing with these axes and formats, as ``draw`` takes them."""
     return Drawing(axes, tuple(formats))

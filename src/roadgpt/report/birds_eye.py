@@ -1,4 +1,4 @@
-"""The bird's-eye view: north is up, metres are metres."""
+"""The bird's-eye view of a road, north up and to scale."""
 
 from typing import Literal
 
@@ -15,13 +15,13 @@ from roadgpt.drive import Drive
 from roadgpt.report.border import name_border
 from roadgpt.report.canvas import HALO, INK, SOFT, Header, add_axes, new_figure
 from roadgpt.report.labels import Labels
-from roadgpt.report.places import Place, places_of
+from roadgpt.report.places import MarkedPlace, places_of
 from roadgpt.report.rim import OUTSIDE, draw_key, draw_rim, severities
 from roadgpt.report.scenery import GROUND, Array, Frame, draw_ends, draw_road, stations_of
 from roadgpt.run import Run
 
 Scale = Literal["equal", "thesis"]
-"""Axes that fit the road, or those of RoadGPT's plots: x and y from 0 to 220 m."""
+"""Axes that fit the road ("equal"), or x and y from 0 to 220 m as in RoadGPT's thesis ("thesis")."""
 
 THESIS = Frame(0.0, 220.0, 0.0, 220.0)
 SIDE = 6.6  # inches, the longer side of what shows the road
@@ -34,9 +34,12 @@ SPEEDS = LinearSegmentedColormap.from_list("speeds", colormaps["plasma"](np.lins
 
 
 def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> Figure:
-    """The road from above, the driven path coloured by speed, and the place of a departure or a finding.
+    """Returns the road from above, the driven path coloured by speed, the place of a failure or finding.
 
-    ``frame`` is what is shown where that is not the whole road.
+    Args:
+        run: a Run that has a road.
+        scale: the axes.
+        frame: the part of the map to show, in metres; None shows the whole road.
     """
     road, world = run.road, run.world
     assert road is not None
@@ -116,8 +119,8 @@ def _path(figure: Figure, axes: Axes, run: Run) -> None:
 
 
 def driven_path(axes: Axes, drive: Drive) -> LineCollection:
-    """Draw the way of the car's centre of gravity, coloured by its speed in km/h; a rim tells where the car
-    was outside its lane."""
+    """Draws the path of the car's centre of gravity, coloured by speed in km/h; a rim marks where the car was
+    outside its lane."""
     track = np.stack([drive["x"], drive["y"]], axis=-1)
     speed = drive["speed"] * 3.6
     every = max(1, len(track) // 600)
@@ -133,8 +136,8 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
     return line
 
 
-def mark(axes: Axes, run: Run, place: Place) -> None:
-    """A sign on the place, and the car's outline as it stood there."""
+def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
+    """Draws a marker at a place, and the car's outline where it stood there."""
     if place.step is not None and run.drive is not None:
         car = Polygon(
             run.drive.corners(place.step), closed=True, fc="none", ec=place.letters, lw=1.6, zorder=9

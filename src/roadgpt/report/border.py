@@ -1,4 +1,4 @@
-"""The name of the map's border: where it is in view, and the road does not run over it."""
+"""Labels the map's border where it is in view and the road does not cover the label."""
 
 from collections.abc import Iterator
 
@@ -17,13 +17,14 @@ CLEAR = 12.0  # m from the centre line: carriageway, verge, and a little more
 
 
 def name_border(axes: Axes, frame: Frame, size: float, centre: Array, per_inch: float) -> Box | None:
-    """Write it outside a border that is in view; gives back where, or None where there is no room.
+    """Writes the label beside a border that is in view; returns its box, or None where there is no room.
 
     Args:
-        axes, frame: what is drawn on, and what it shows.
-        size: of the map, metres.
-        centre: points of the road ``(n, 2)``.
-        per_inch: metres.
+        axes: the axes to write on.
+        frame: what the axes show, in metres.
+        size: side of the map, metres.
+        centre: points on the centre line of the road, ``(n, 2)``, metres.
+        per_inch: metres per inch of the picture.
     """
     offers = list(
         _offers(frame, size, (inches(BORDER, SIZE) + 0.1) * per_inch, HIGH * per_inch, GAP * per_inch)

@@ -1,4 +1,4 @@
-"""What all pictures share: colours, the header, and files whose bytes depend on nothing but the picture."""
+"""Colours, header and files of all pictures; the same picture gives the same bytes."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -19,26 +19,26 @@ from roadgpt.run.atomic import write_whole
 from roadgpt.verdict import Severity, graded
 
 Format = Literal["png", "svg", "pdf"]
-"""Of a picture: pixels, or lines and letters that papers can scale."""
+"""File format of a picture: PNG in pixels; SVG and PDF can be scaled."""
 FORMATS: tuple[Format, ...] = get_args(Format)
 PNG: tuple[Format, ...] = ("png",)
 
 DPI = 110
-# What a file would otherwise tell of the day and of matplotlib's version.
+# Metadata that would hold the date and matplotlib's version, and so differ from day to day.
 UNDATED: Mapping[str, Mapping[str, None]] = {
     "png": {"Software": None},
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
-# Names inside an SVG are otherwise drawn by lot; PDF of Type 42 is what publishers take.
+# Without a salt the ids in an SVG are random; publishers want fonts of Type 42 in a PDF.
 SAVING: dict[Any, Any] = {"svg.hashsalt": "roadgpt", "svg.fonttype": "path", "pdf.fonttype": 42}
 INK, SOFT, FAINT = "#1b1e23", "#5f6670", "#d9dce1"
 
-# Okabe and Ito's colours, which colour-blind people tell apart; every use has a word or a symbol beside it.
+# Okabe and Ito's colours, which colour-blind people can distinguish; a word or a symbol always stands beside.
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
 YELLOW = "#d0bf00"
 SEVERE: dict[Severity, str] = {"inside": GREEN, "partly outside": YELLOW, "mostly outside": ORANGE}
-"""How far outside its lane the car was."""
+"""Colours of how far outside its lane the car was."""
 OUTCOMES = {
     "PASS": GREEN,
     **{f"PASS ({name})": colour for name, colour in SEVERE.items() if name != "inside"},
@@ -48,9 +48,9 @@ OUTCOMES = {
     "VALID": BLUE,
 }
 LETTERS = {YELLOW: INK, ORANGE: INK}
-"""Of letters on a light colour; white ones stand on all others."""
+"""Colour of text on a light colour; on all others text is white."""
 DARKER = {YELLOW: "#7d7100", ORANGE: "#9a6400"}
-"""Of letters in a light colour on white."""
+"""Darker variants of light colours, for text on white."""
 
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 MARGIN = 0.3  # inches, left and right of the header
@@ -58,7 +58,7 @@ LINE = 0.19  # inches
 TITLE, TEXT, SMALL = 11, 10, 8.5  # points
 BADGE = 9  # points
 MOST_LINES = 2  # of the description
-MOST_SAID = 8  # of the outcome, which nothing may cut but an error that goes on and on
+MOST_SAID = 8  # lines of the outcome; only a very long error message is cut
 
 
 # A user's matplotlibrc would otherwise change our pictures.
@@ -66,14 +66,14 @@ in_our_style = rc_context({name: value for name, value in rcParamsDefault.items(
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty white figure, inches."""
+    """Returns an empty white figure, ``width`` by ``height`` inches."""
     figure = Figure(figsize=(width, height), dpi=DPI, facecolor="white")
     FigureCanvasAgg(figure)
     return figure
 
 
 def add_axes(figure: Figure, left: float, bottom: float, right: float, top: float) -> Axes:
-    """Axes whose borders lie so many inches from the figure's borders, below the header."""
+    """Adds axes whose borders lie so many inches from the figure's borders."""
     wide, high = figure.get_size_inches()
     box = (
         left / wide,
@@ -86,7 +86,7 @@ def add_axes(figure: Figure, left: float, bottom: float, right: float, top: floa
 
 
 def dress(axes: Axes) -> Axes:
-    """Quiet frame and ticks."""
+    """Gives axes the grey frame and ticks of all pictures, and returns them."""
     for side in axes.spines.values():
         side.set_color("#9aa1ab")
         side.set_linewidth(0.8)
@@ -98,24 +98,24 @@ def dress(axes: Axes) -> Axes:
 
 @dataclass(frozen=True)
 class Header:
-    """The description, the outcome in a sentence, the seed and what made the road; over every picture."""
+    """The header of a picture: description, outcome in a sentence, seed, length and driver."""
 
     run: Run
     width: float
-    """Inches."""
+    """Width of the picture, inches."""
     title: str
     said: str
 
     @classmethod
     def of(cls, run: Run, width: float) -> "Header":
-        """The header of a picture so many inches wide."""
+        """Returns the header of a picture of a width in inches, its text broken to fit."""
         room = width - 2 * MARGIN
         title = fitted(run.words or run.source or "a road that was given", room, TITLE, True, MOST_LINES)
         return cls(run, width, title, fitted(run.description, room - _badge(run), TEXT, lines=MOST_SAID))
 
     @property
     def height(self) -> float:
-        """Inches, down to the picture."""
+        """Height of the header, inches."""
         return self._below_title + LINE * (self.said.count("\n") + 1) + 0.42
 
     @property
@@ -123,7 +123,7 @@ class Header:
         return 0.19 + LINE * (self.title.count("\n") + 1)
 
     def write(self, figure: Figure) -> None:
-        """Put it at the top of a figure."""
+        """Writes the header at the top of a figure."""
         high, run = figure.get_figheight(), self.run
 
         def say(x: float, below: float, text: str, **style: Any) -> None:
@@ -140,7 +140,7 @@ class Header:
 
 
 def outcome_of(run: Run) -> str:
-    """The outcome, and of a PASS whether the car was outside its lane: a name in OUTCOMES."""
+    """Returns the outcome of a Run as a key of OUTCOMES; a PASS says how far the car was outside its lane."""
     return graded(run.outcome, run.verdict.max_oob if run.verdict else None)
 
 
@@ -150,7 +150,7 @@ def _badge(run: Run) -> float:
 
 
 def origin(run: Run) -> str:
-    """Seed and number of the road, where it was drawn; its length; who drove it."""
+    """Returns a line with seed and number of the road, its length, driver and simulator."""
     seed = f"seed {run.request.seed}"
     said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []
     said.append(f"{run.length:.0f} m")
@@ -160,7 +160,7 @@ def origin(run: Run) -> str:
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Write a picture whole, in the format of the path's suffix; the same figure gives the same bytes.
+    """Writes a picture in the format of the path's suffix; the same figure gives the same bytes.
 
     Raises:
         UsageError: the suffix is none of .png, .svg and .pdf.
@@ -170,12 +170,12 @@ def save(figure: Figure, path: Path) -> Path:
 
 
 def save_all(figure: Figure, path: Path, formats: Sequence[Format] = PNG) -> list[Path]:
-    """Write a picture in each format; ``path`` is its name, whose suffix is that of the format."""
+    """Writes a picture in each format, replacing the suffix of ``path``, and returns the paths."""
     return [save(figure, path.with_suffix(f".{name}")) for name in formats]
 
 
 def format_of(path: Path) -> Format:
-    """The format that a picture's name asks for.
+    """Returns the format that the suffix of a picture's path stands for.
 
     Raises:
         UsageError: the suffix is none of .png, .svg and .pdf.
@@ -187,7 +187,7 @@ def format_of(path: Path) -> Format:
 
 
 def encoded(figure: Figure, name: Format) -> bytes:
-    """The bytes of a picture's file, which depend on nothing but the figure."""
+    """Returns the bytes of a figure's file; the same figure gives the same bytes."""
     data = io.BytesIO()
     with rc_context(SAVING):
         figure.savefig(data, format=name, dpi=DPI, metadata=dict(UNDATED[name]))

@@ -1,4 +1,4 @@
-"""The picture of one failure: the road around the place where the car left its lane, and why it did."""
+"""The picture of one failure: the road around the place where the car left its lane, and the cause."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -17,12 +17,12 @@ LEAST = 45.0  # m across
 
 
 def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
-    """From above, closer than ``birds_eye``; the reason stands where else the outcome does.
+    """Returns a bird's-eye view of the place of a failure, with the cause in its header.
 
     Args:
-        run: a failed one.
-        reason: of it.
-        more: a sentence that follows, such as how often it failed again.
+        run: a Run that failed.
+        reason: why it failed.
+        more: a sentence that follows the reason, such as how often it failed again.
     """
     assert run.road is not None
     s = run.road.sample(1.0)
@@ -34,5 +34,5 @@ def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
 
 @in_our_style
 def draw_fault(run: Run, reason: FailureReason, more: str, path: Path) -> Path:
-    """Write the picture of a failure; see ``fault_picture``."""
+    """Writes the picture of a failure in the format of the path's suffix; see ``fault_picture``."""
     return save(fault_picture(run, reason, more), path)

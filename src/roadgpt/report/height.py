@@ -1,4 +1,4 @@
-"""Distance against height: to scale, or on the axes of RoadGPT's plots."""
+"""Height over distance along the road, to scale or on the axes of RoadGPT's thesis."""
 
 from itertools import pairwise
 
@@ -23,18 +23,18 @@ from roadgpt.run import Run
 
 WIDTH = 9.6  # inches
 LEFT, BOTTOM, RIGHT = 0.78, 0.62, 0.3  # inches
-LOWEST = 1.45  # inches, of the axes, however flat the road
+LOWEST = 1.45  # inches, least height of the axes
 THESIS_HEIGHT = 3.6  # inches
 THESIS_X, THESIS_Z = 200.0, 20.0  # m
 SAME_GRADE = 0.004  # slopes within this are one stretch
 SHORTEST = 0.55  # inches, of a stretch that is worth a label, and between labels
-LEAST = 0.005  # ratio: what rises or falls less neither climbs nor falls
+LEAST = 0.005  # ratio: a grade below this counts as level
 OVER_THE_FRAME = 3  # pixels by which a line on the border of the axes may reach over it
 EARTH, SURFACE = "#dcd9c3", "#4b5563"
 
 
 def height_profile(run: Run, scale: Scale = "equal") -> Figure:
-    """Heights over the distance along the road, with the slope of every longer stretch."""
+    """Returns the height over the distance along the road, with the grade of longer stretches."""
     assert run.road is not None
     s = stations_of(run.road)
     z = run.road.at(s)[:, 2]

@@ -1,11 +1,11 @@
-"""Tests as JUnit XML, the form in which continuous integration reads them.
+"""Writes tests as JUnit XML, which continuous integration reads.
 
     PASS, VALID    a test that passed
     FAIL           <failure>: the car failed on a road that the rules allow
-    INVALID        <skipped>: the rules object to the road; nobody drove, and nothing is said of the driver
-    ERROR          <error>: a driver or a simulator broke down, or no road came of the words
+    INVALID        <skipped>: a rule objects to the road, so nobody drove it
+    ERROR          <error>: a driver or simulator failed, or no road could be designed
 
-There is no standard; this is what Jenkins, GitLab, GitHub's actions, Azure and CircleCI read: suites with
+There is no standard; this is the part that Jenkins, GitLab, GitHub, Azure and CircleCI read: suites with
 counts, cases with ``name``, ``classname``, ``time`` and ``file``, and properties of suites and cases. Source:
 the documentation of the common format, https://github.com/testmoapp/junitxml.
 """
@@ -27,16 +27,16 @@ MARKS = {"FAIL": "failure", "INVALID": "skipped", "ERROR": "error"}
 
 @dataclass(frozen=True)
 class Case:
-    """One test: a road, and what came of it."""
+    """One test: a road and its outcome."""
 
     name: str
     outcome: str
     says: str
     """The outcome in a sentence."""
     kind: str = ""
-    """Of a failure or an error: 'out of lane', 'fell' and so on."""
+    """Kind of failure or error: 'out of lane', 'fell' and so on."""
     seconds: float = 0.0
-    """On the clock."""
+    """Wall time of the test."""
     file: str = ""
     trace: str = ""
     properties: Properties = field(default_factory=dict)
@@ -49,7 +49,7 @@ class Suite:
     name: str
     properties: Properties
     cases: Callable[[], Iterable[Case]]
-    """Gives all of them, as often as it is called: they are counted before they are written."""
+    """Returns all cases each time it is called; it is called twice, to count the cases and to write them."""
 
 
 class _Counts(NamedTuple):
@@ -75,10 +75,10 @@ class _Counts(NamedTuple):
 
 
 def write_junit(path: Path, suites: Iterable[Suite], name: str = "roadgpt") -> Path:
-    """Write the suites into one file, whole or not at all.
+    """Writes the suites into one file and returns its path; a file is written completely or not at all.
 
     Raises:
-        RoadGPTError: it cannot be written.
+        RoadGPTError: the file cannot be written.
     """
     listed = [(suite, _counted(suite)) for suite in suites]
     every = _Counts()

@@ -1,4 +1,4 @@
-"""Where to put a label so that it covers neither the road nor another label."""
+"""Places labels so that they cover neither the road nor each other."""
 
 from dataclasses import dataclass, field
 
@@ -21,12 +21,12 @@ WAYS = 16
 
 @dataclass
 class Labels:
-    """Labels that keep clear of points and of each other."""
+    """Places labels on axes so that they cover neither given points nor each other."""
 
     axes: Axes
     frame: Frame
     per_inch: float
-    """Metres."""
+    """Metres per inch of the picture."""
     clear_of: Array
     """Points ``(n, 2)`` that no label should cover."""
     radius: float
@@ -36,13 +36,20 @@ class Labels:
     """Points on the lines from labels to their places, each ``(n, 2)``."""
 
     def keep_clear_of(self, box: Box) -> None:
-        """Something is written there already."""
+        """Marks a box as taken; later labels avoid it."""
         self._boxes.append(box)
 
     def put(
         self, place: tuple[float, float], text: str, colour: str = INK, away: Array | None = None
     ) -> None:
-        """Label a place, metres; ``away`` is a direction ``(2,)`` to prefer."""
+        """Labels a place.
+
+        Args:
+            place: x and y, metres; a place outside the frame gets no label.
+            text: the label, of one line or several.
+            colour: of the text.
+            away: preferred direction ``(2,)`` from the place to the label, of length 1.
+        """
         if not self.frame.holds(*place):
             return
         rows = text.split("\n")

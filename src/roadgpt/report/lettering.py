@@ -1,4 +1,4 @@
-"""How wide letters are, so that text can be broken where it must be and labels know their size."""
+"""Widths of text, for breaking lines and placing labels."""
 
 from functools import cache
 
@@ -10,17 +10,17 @@ ELLIPSIS = " …"
 
 
 def plain(text: str) -> str:
-    """Text on one line, of letters that the font has; matplotlib would warn of each of the others."""
+    """Returns text on one line, with a box for each letter that the font lacks."""
     return "".join(letter if _advance(letter, False) else UNKNOWN for letter in " ".join(text.split()))
 
 
 def inches(text: str, size: float, bold: bool = False) -> float:
-    """Width of the longest line at a size in points."""
+    """Returns the width of the longest line in inches; ``size`` is in points."""
     return max(sum(_advance(letter, bold) for letter in row) for row in text.split("\n")) * size / POINTS
 
 
 def fitted(text: str, width: float, size: float, bold: bool = False, lines: int = 1) -> str:
-    """Text in at most so many lines of a width in inches; what does not fit gives way to an ellipsis."""
+    """Returns text in at most ``lines`` lines of ``width`` inches; an ellipsis stands for the rest."""
     words = plain(text).split(" ")
     rows: list[str] = []
     while words and len(rows) < lines:

@@ -1,4 +1,4 @@
-"""Pictures of values in notebooks; the package registers them, so that no room knows how it is drawn."""
+"""Pictures of values in notebooks; ``roadgpt`` registers them with IPython."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ SIDE = 5.0  # inches
 
 @in_our_style
 def png_of(value: Any) -> bytes | None:
-    """The picture that stands for a value, as a PNG file; None where there is nothing to show.
+    """Returns the picture of a value as the bytes of a PNG file; None where there is nothing to show.
 
     Args:
         value: a Road, a Design, a Run, or the Campaign of a folder, of which the first page is shown.

@@ -1,4 +1,4 @@
-"""All roads of a campaign on one page: small multiples of the map, told apart by outcome."""
+"""All roads of a campaign on one page: small maps, coloured by outcome."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -46,7 +46,7 @@ STYLES = {"INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
 
 @dataclass(frozen=True)
 class Entry:
-    """What the page shows of one road."""
+    """One road on the page."""
 
     number: int
     outcome: str
@@ -57,16 +57,17 @@ class Entry:
 
     @property
     def graded(self) -> str:
-        """The outcome, and of a PASS whether the car was outside."""
+        """The outcome; a PASS says how far the car was outside its lane."""
         return graded(self.outcome, self.share)
 
 
 @in_our_style
 def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
-    """Draw ``overview.png`` of a campaign's folder (and ``overview-2.png`` and so on beyond 100 roads; the
-    first 1,000 are drawn).
+    """Draws ``overview.png`` into a folder of runs, and returns the paths.
 
-    Reads the folder's ``test.NNNN.json``, so folders of the SBFT competition's own tools can be drawn too.
+    More than 100 roads go on in ``overview-2.png`` and so on; only the first 1,000 are drawn.
+
+    It reads the folder's ``test.NNNN.json``, so folders of the SBFT competition's own tools can be drawn too.
 
     Raises:
         UsageError: there is no test in the folder, or one cannot be read.
@@ -79,7 +80,7 @@ def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
 
 
 def pages(folder: Path | str) -> Iterator[Figure]:
-    """The pages of ``overview``, one by one.
+    """Yields the pages of ``overview`` as figures.
 
     Raises:
         UsageError: there is no test in the folder, or one cannot be read.
@@ -143,7 +144,14 @@ def _loaded(path: Path) -> Any:
 
 
 def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float) -> Figure:
-    """One page of maps, row by row."""
+    """Returns one page of maps, row by row.
+
+    Args:
+        entries: the roads.
+        about: description and seed, for the header.
+        part: which page of how many, for the header; empty if there is one page.
+        size: side of the map, metres.
+    """
     columns = _columns(len(entries))
     rows = -(-len(entries) // columns)
     cell = min(LARGEST, (WIDEST - 2 * MARGIN) / columns - GAP)

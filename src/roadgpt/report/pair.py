@@ -1,4 +1,4 @@
-"""Two roads one above the other, as the thesis showed them to people: bird's-eye view and heights of each."""
+"""Compares two roads, one above the other: bird's-eye view and heights of each, as in the thesis' survey."""
 
 import textwrap
 
@@ -23,11 +23,12 @@ LOWEST = 6.0  # m that the heights span at least
 
 @in_our_style
 def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
-    """Both roads on the same scales, so that nothing but the roads makes them look alike or different.
+    """Returns a figure of two roads on the same scales, one above the other.
 
     Args:
-        one, other: with a road each; the first stands above.
-        scale: "equal" fits both; "thesis" has the fixed axes of RoadGPT's plots.
+        one: a Run that has a road; it stands above.
+        other: a Run that has a road; it stands below.
+        scale: "equal" fits both roads; "thesis" uses the fixed axes of RoadGPT's thesis.
     """
     runs = (one, other)
     row = SIDE + BOTTOM + TOP

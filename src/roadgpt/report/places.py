@@ -1,5 +1,4 @@
-"""The places of a Run that a picture marks: where the car left its lane, was farthest outside, or what a rule
-objects to."""
+"""The places of a Run that pictures mark: failures, where the car was farthest outside, findings of rules."""
 
 import textwrap
 from collections.abc import Sequence
@@ -34,52 +33,55 @@ RULES = {
 
 
 @dataclass(frozen=True)
-class Place:
-    """A place on the plane and along the road, metres, and what is wrong there."""
+class MarkedPlace:
+    """A place on a road, in metres on the plane and along the road, with a label."""
 
     x: float
     y: float
     s: float
     text: str
     step: int | None = None
-    """Of the drive."""
+    """Index of the drive's step at which the car was there; None if no drive is involved."""
     colour: str = VERMILLION
 
     @property
     def sign(self) -> str:
-        """A cross where something is wrong; a diamond where the car was outside and passed."""
+        """Matplotlib's marker: a cross for a failure or finding, a diamond for a car that passed outside."""
         return "X" if self.colour == VERMILLION else "d"
 
     @property
     def letters(self) -> str:
-        """Colour of its text on a light ground."""
+        """Colour of the label on a light ground."""
         return DARKER.get(self.colour, self.colour)
 
 
-def places_of(run: Run) -> list[Place]:
-    """Of a failed drive one place; of one that passed the place where the car was farthest outside its lane,
-    if it was; of an invalid road its findings that have one."""
+def places_of(run: Run) -> list[MarkedPlace]:
+    """Returns the places to mark.
+
+    A failed drive has one; a drive that passed has the place where the car was farthest outside its lane, if
+    it was outside; an invalid road has those of its findings, three at most.
+    """
     verdict = run.verdict
     if verdict is not None and verdict.cause is not None and verdict.at_xy is not None:
         side = f"\nto the {verdict.side}" if verdict.side else ""
         text = f"{WORDS.get(verdict.cause, verdict.cause)}{side}"
-        return [Place(*verdict.at_xy, verdict.at_s or 0.0, text, _step(run))]
+        return [MarkedPlace(*verdict.at_xy, verdict.at_s or 0.0, text, _step(run))]
     if verdict is not None and verdict.kept and verdict.max_oob and run.drive is not None:
         return [_farthest(run.drive, verdict)]
     places = []
     for finding in run.findings:
         where = _where(run, finding.s, finding.x, finding.y)
         if where is not None:
-            places.append(Place(*where, _said(finding)))
+            places.append(MarkedPlace(*where, _said(finding)))
     return places[:MOST]
 
 
-def _farthest(drive: Drive, verdict: Verdict) -> Place:
+def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
     """Where most of the car was outside."""
     step = int(drive["outside"][: drive.lane_steps].argmax())
     x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
     beyond = f",\n{verdict.beyond:.2f} m beyond the marking" if verdict.beyond else ""
-    return Place(x, y, s, f"{percent(verdict.max_oob)} outside{beyond}", step, SEVERE[verdict.severity])
+    return MarkedPlace(x, y, s, f"{percent(verdict.max_oob)} outside{beyond}", step, SEVERE[verdict.severity])
 
 
 def _said(finding: Finding) -> str:
@@ -89,9 +91,15 @@ def _said(finding: Finding) -> str:
     return RULES.get(finding.rule, finding.rule.replace("_", " "))
 
 
-def name_places(axes: Axes, places: Sequence[Place], length: float, at_top: bool = False) -> None:
-    """Name places beside their stations at the foot, or at the top, of axes whose x is the distance along
-    the road."""
+def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top: bool = False) -> None:
+    """Writes the labels of places beside their stations, on axes whose x is the distance along the road.
+
+    Args:
+        axes: the axes.
+        places: of a road, whose labels stand below each other.
+        length: of the road, metres.
+        at_top: labels stand at the top of the axes instead of the foot.
+    """
     figure = axes.get_figure(root=True)
     assert figure is not None
     shape = axes.get_position()

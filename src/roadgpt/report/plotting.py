@@ -1,4 +1,4 @@
-"""One road on axes of the user's own: ``roadgpt.plot``."""
+"""Draws one road on axes of the user: ``roadgpt.plot``."""
 
 from typing import Any
 
@@ -16,18 +16,18 @@ MARGIN = 0.05  # of the road's extent, left free around it
 
 
 def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None = None) -> Axes:
-    """Draw a road from above, metres as metres, on matplotlib's axes; gives back the axes.
+    """Draws a road from above, to scale, on matplotlib's axes, and returns the axes.
 
     A Run shows its drive, coloured by speed, and the places where the car failed or a rule objects. Several
-    roads may be drawn on the same axes; style, title and size of the figure are the user's own.
+    roads may be drawn on the same axes. Style, title and size of the figure are left to the caller.
 
     Args:
         what: a Road, a Design, or a Run that has a road.
-        ax: the axes to draw on; None takes matplotlib's current ones.
-        world: width of lanes and shoulders; None takes the Run's own, or the usual ones.
+        ax: the axes to draw on; None uses matplotlib's current axes.
+        world: width of lanes and shoulders; None uses the Run's own, or the default.
 
     Raises:
-        UsageError: there is no road in it.
+        UsageError: ``what`` is none of these, or is a Run without a road.
     """
     road, world = _road_of(what, world)
     if ax is None:

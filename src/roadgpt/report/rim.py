@@ -1,4 +1,4 @@
-"""A rim around the driven path where the car was outside its lane, in the colours of how far, and its key."""
+"""A rim around the driven path where the car was outside its lane, coloured by how far, and its key."""
 
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -18,12 +18,12 @@ OUTSIDE: tuple[Severity, ...] = SEVERITIES[1:]
 
 
 def severities(drive: Drive | None) -> list[Severity]:
-    """How far outside its lane the car was, at each step that counts for the lane."""
+    """Returns how far outside its lane the car was at each step that counts; empty without a drive."""
     return [] if drive is None else [severity(share) for share in drive["outside"][: drive.lane_steps]]
 
 
 def draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
-    """Around pieces ``(n, 2, 2)`` of a path, one for each step or one more."""
+    """Draws the rim around pieces ``(n, 2, 2)`` of a path; ``found`` is the severity of each."""
     for name in OUTSIDE:
         some = [piece for piece, where in zip(pieces, found, strict=False) if where == name]
         if not some:
@@ -33,7 +33,7 @@ def draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
 
 
 def draw_key(figure: Figure, left: float, found: list[Severity]) -> None:
-    """What the rims mean, at the foot of a picture, from so many inches on."""
+    """Writes what the colours of the rim mean at the foot of a figure, from ``left`` inches on."""
     wide, high = figure.get_size_inches()
     for name in OUTSIDE:
         if name not in found:

@@ -1,4 +1,4 @@
-"""The road seen from above, to scale: verge, carriageway, edge lines, centre dashes."""
+"""Draws the road from above, to scale: shoulders, carriageway, edge lines and centre dashes."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from roadgpt.road import Road, World
 Array = NDArray[np.float64]
 
 GROUND, VERGE, ASPHALT, PAINT = "#eef1ea", "#dcd9c3", "#b9bdc3", "#ffffff"
-BEYOND = 12.0  # m, of what lies outside the map
+BEYOND = 12.0  # m that are shown outside the map
 NARROWEST, WIDEST = 0.72, 2.0  # width over height of a frame
 MOST_STATIONS = 1500
 FINEST = 0.5  # m
@@ -24,7 +24,7 @@ DASH, GAP = 3.0, 6.0  # m, of the centre line
 
 @dataclass(frozen=True)
 class Frame:
-    """What a picture shows of the plane, metres."""
+    """The part of the plane that a picture shows, in metres."""
 
     x0: float
     x1: float
@@ -33,7 +33,14 @@ class Frame:
 
     @classmethod
     def around(cls, points: Array, margin: float, least: float, size: float) -> "Frame":
-        """The smallest frame around points ``(n, 2)`` and a margin; no strip, and on the map if it can be."""
+        """Returns the smallest frame around points and a margin, not too narrow and on the map if possible.
+
+        Args:
+            points: what the frame has to show, ``(n, 2)``, metres.
+            margin: around the points, metres.
+            least: least width and height, metres.
+            size: side of the map, metres.
+        """
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         width, height = np.maximum(high - low, least)
         shape = np.array([max(width, height * NARROWEST), max(height, width / WIDEST)])
@@ -43,28 +50,28 @@ class Frame:
         return cls(corner[0], corner[0] + shape[0], corner[1], corner[1] + shape[1])
 
     def holds(self, x: float, y: float) -> bool:
-        """Does it show this point?"""
+        """Returns whether the frame shows a point."""
         return self.x0 <= x <= self.x1 and self.y0 <= y <= self.y1
 
     @property
     def width(self) -> float:
-        """Metres."""
+        """Width, metres."""
         return self.x1 - self.x0
 
     @property
     def height(self) -> float:
-        """Metres."""
+        """Height, metres."""
         return self.y1 - self.y0
 
 
 def stations_of(road: Road) -> Array:
-    """Stations close enough for smooth edges, both ends included."""
+    """Returns stations ``(n,)`` close enough for smooth edges, both ends of the road included."""
     count = int(np.clip(road.length / FINEST, 2, MOST_STATIONS))
     return np.linspace(0.0, road.length, count + 1)
 
 
 def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
-    """Verge, carriageway and, where a lane is wide enough to see it, paint; ``per_inch`` in metres."""
+    """Draws shoulders, carriageway and, where lanes are wide enough, markings; ``per_inch`` is in metres."""
     s = stations_of(road)
     half = world.lane_width
     if world.verge:
@@ -89,7 +96,7 @@ def _ribbon(axes: Axes, road: Road, s: Array, half: float, colour: str, layer: i
 
 
 def draw_ends(axes: Axes, road: Road, world: World) -> None:
-    """A green bar where the road starts and a chequered one where it ends."""
+    """Draws a black bar where the road starts and a chequered one where it ends."""
     half = world.lane_width
     for s, colours in ((0.0, ("#1b1e23",)), (road.length, ("#1b1e23", "white"))):
         across = road.at(np.full(9, s), np.linspace(-half, half, 9))[:, :2]

@@ -1,4 +1,4 @@
-"""Curvature, grade and, of a driven road, speed over the distance, with the limits of the rules."""
+"""Curvature and grade over the distance, and speed if the road was driven, with the limits of the rules."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -30,7 +30,7 @@ RADII = (15, 20, 30, 60)  # m, named on the right
 
 
 def strip(run: Run) -> Figure:
-    """Panels one above the other over the same distance."""
+    """Returns the figure: one panel for each quantity, above each other, over the same distance."""
     assert run.road is not None
     panels = [_curvature, _grade] + ([_speed] if run.drive is not None else [])
     header = Header.of(run, WIDTH)

@@ -8,7 +8,7 @@ from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
-from roadgpt.report.page import Block, Cell, Figure, Page, Section, Table, cell, linked, write
+from roadgpt.report.page import Block, Figure, Page, Section, Table, TableCell, cell, linked, write
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
 from roadgpt.study.chapters.faults import faults, headline, told_of
@@ -121,7 +121,7 @@ def _failing(of: CellStatus) -> float:
 def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[Block]:
     seconds = dict(record.query("SELECT name, seconds FROM cells"))
     differing, note = _what_differs(status.cells)
-    rows: list[list[Cell]] = []
+    rows: list[list[TableCell]] = []
     for each in status.cells:
         failed = each.outcomes.get("FAIL", 0)
         driven = failed + each.outcomes.get("PASS", 0)
@@ -175,8 +175,8 @@ def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:
     return differing, whose + ", ".join(same) + "." if same else ""
 
 
-def _listed(links: Sequence[Cell]) -> list[str | Cell]:
-    out: list[str | Cell] = []
+def _listed(links: Sequence[TableCell]) -> list[str | TableCell]:
+    out: list[str | TableCell] = []
     for number, link in enumerate(links):
         out += [" and ", link] if number else [link]
     return out

@@ -1,4 +1,4 @@
-"""``roadgpt film``: drives as films, from behind the car, from its bonnet, or two in one picture."""
+"""``roadgpt film``: drives as films, from behind the car, from a hood camera, or two in one picture."""
 
 import sys
 from collections.abc import Iterator
@@ -50,7 +50,11 @@ def _seconds(value: str) -> tuple[float, float | None]:
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="RUN [RUN]")
 @click.option(
-    "--view", type=click.Choice(VIEWS), default="chase", show_default=True, help="Where the camera is."
+    "--view",
+    type=click.Choice(VIEWS),
+    default="chase",
+    show_default=True,
+    help="The camera: behind the car (chase), on its hood (bonnet), or both.",
 )
 @click.option(
     "--out",
@@ -92,12 +96,12 @@ def command(
     quiet: bool,
     **rest: Any,
 ) -> None:  # fmt: skip
-    """Film a drive as an MP4: from behind the car, from its bonnet, or both; two drives in a split screen.
+    """Film a drive as an MP4: from behind the car, from its hood camera, or both; two in a split screen.
 
-    RUN is the folder of a run, DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, as
-    CAMPAIGN/c01/17; along the road of a file that nobody drove the camera rides alone. Over the picture
-    stand the description, the speed, the place on the road and the margin; at the end the outcome. Needs
-    PyAV: python -m pip install 'roadgpt[film]'.
+    RUN is the folder of a run, DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, such as
+    CAMPAIGN/c01/17. On a road that nobody drove, the camera moves along alone. The picture shows the
+    description, the speed, the place on the road and the margin (the distance to out of bounds), and at the
+    end the outcome. Needs PyAV: python -m pip install 'roadgpt[film]'.
 
     \b
     roadgpt film roadgpt-runs/hairpins-7/runs/0001 --view both

@@ -1,4 +1,4 @@
-"""Films of drives: from behind the car, from its bonnet, or two roads in one picture. Verb: ``film_of``.
+"""Films of drives from behind the car or from a hood camera, of one road or two. Verb: ``film_of``.
 
 The frames depend on nothing but the Run and the settings; threads draw them, and PyAV encodes them.
 """
@@ -27,7 +27,7 @@ __all__ = ["Film", "Settings", "View", "film_of", "split_film"]
 
 View = Literal["chase", "bonnet", "both"]
 Watch = Callable[[Iterator[Frame], int], Iterator[Frame]]
-"""Is handed all frames and how many there will be, and hands them on."""
+"""Takes all frames and their number, and yields the frames; used to show progress."""
 
 MOST = 2  # roads in one film
 HOLD = 2.0  # s that the last picture stays, with the outcome
@@ -38,20 +38,20 @@ SMALLEST, LARGEST = 64, 3840  # pixels, a side of a picture
 
 @dataclass(frozen=True)
 class Settings:
-    """How a film is made.
+    """Settings of a film.
 
     Raises:
-        UsageError: a number that no film can have.
+        UsageError: a number is out of range.
     """
 
     width: int = 640
-    """Pixels, of each picture in it."""
+    """Width of each picture in the film, pixels."""
     height: int = 360
     fps: int = 25
     begin: float = 0.0
     """Seconds of the drive at which it begins."""
     seconds: float | None = None
-    """Of the drive that are shown at most; None: all of it."""
+    """Seconds of the drive that are shown at most; None shows all of it."""
 
     def __post_init__(self) -> None:
         sides = (self.width, self.height)
@@ -68,7 +68,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """Its pictures side by side, roads in columns and views in rows."""
+    """A film of one road or two: its pictures in rows and columns, and the times of its frames in seconds."""
 
     rows: tuple[tuple[Pane, ...], ...]
     settings: Settings
@@ -76,11 +76,11 @@ class Film:
 
     @classmethod
     def of(cls, runs: Sequence[Run], view: View = "chase", settings: Settings | None = None) -> "Film":
-        """A film of one or two Runs.
+        """Returns a film of one or two Runs.
 
         Raises:
-            UsageError: there is no Run or more than two, an unknown view, a Run without a road, or a film
-                that would begin after its end.
+            UsageError: there is no Run or more than two, the view is unknown, a Run has no road, or the film
+                would begin after the end of the drive.
         """
         if not 1 <= len(runs) <= MOST:
             raise UsageError(f"a film shows one road or two side by side; {len(runs)} are given")
@@ -105,13 +105,13 @@ class Film:
         return len(self.times)
 
     def frame(self, n: int) -> Frame:
-        """Frame n, whole."""
+        """Returns frame n, ``(height, width, 3)``, bytes."""
         time = self.times[n]
         strips = [_beside([pane.draw(time) for pane in row], axis=1) for row in self.rows]
         return _beside(strips, axis=0)
 
     def frames(self, threads: int | None = None) -> Generator[Frame]:
-        """All frames in order, drawn by several threads a little ahead."""
+        """Yields all frames in order; threads draw a few of them ahead."""
         count = threads or os.cpu_count() or 1
         numbers = iter(range(len(self)))
         with ThreadPoolExecutor(count) as pool:
@@ -129,16 +129,16 @@ class Film:
 
 
 def film_of(run: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None) -> Path:
-    """Film one drive into an MP4 file.
+    """Films one drive into an MP4 file, and returns the path.
 
     Args:
-        run: driven; along a road that nobody drove the camera rides alone.
-        path: the file; one of that name is replaced.
-        view: from behind ("chase"), from the bonnet, or both side by side.
-        settings: size, frames per second, which seconds.
+        run: the drive; if nobody drove, the camera moves along the road at a calm speed.
+        path: the file, which is replaced if it exists.
+        view: from behind ("chase"), from the hood camera ("bonnet"), or both side by side ("both").
+        settings: size, frames per second, and which seconds of the drive.
 
     Raises:
-        UsageError: there is nothing to film, a setting cannot be, or PyAV is missing.
+        UsageError: there is nothing to film, a setting is out of range, or PyAV is missing.
         RoadGPTError: the file cannot be written.
     """
     return write([run], path, view, settings)
@@ -147,7 +147,7 @@ def film_of(run: Run, path: Path | str, view: View | str = "chase", settings: Se
 def split_film(
     run_a: Run, run_b: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None
 ) -> Path:
-    """Film two drives at once, side by side under one clock; otherwise as ``film_of``."""
+    """Films two drives side by side, at the same time of each drive; otherwise like ``film_of``."""
     return write([run_a, run_b], path, view, settings)
 
 
@@ -155,7 +155,7 @@ def write(
     runs: Sequence[Run], path: Path | str, view: View | str = "chase", settings: Settings | None = None,
     watch: Watch | None = None,
 ) -> Path:  # fmt: skip
-    """Film one Run or two; ``watch`` is told of each frame."""
+    """Films one Run or two, and returns the path; ``watch`` gets each frame before it is written."""
     encoder()  # before anything is drawn
     film = Film.of(runs, view, settings)  # type: ignore[arg-type]
     title = " and ".join(dict.fromkeys(run.words or run.source or "a road that was given" for run in runs))

@@ -1,4 +1,4 @@
-"""Frames as an MP4 file, H.264, by PyAV."""
+"""Writes frames as an MP4 file (H.264) through PyAV."""
 
 import os
 from collections.abc import Iterable
@@ -16,10 +16,10 @@ QUALITY, PRESET = 20, "veryfast"  # x264's scale, on which less is better
 
 
 def encoder() -> Any:
-    """The library, which has the encoder.
+    """Returns the library PyAV.
 
     Raises:
-        UsageError: it is not installed, or was built without the encoder.
+        UsageError: PyAV is not installed, or was built without the encoder.
     """
     try:
         import av
@@ -34,10 +34,16 @@ def encoder() -> Any:
 
 
 def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -> None:
-    """Write frames of one even size into a file, which is there whole or not at all.
+    """Writes frames into a file, completely or not at all.
+
+    Args:
+        frames: of one size, whose sides are even numbers of pixels.
+        path: the file, which is replaced if it exists.
+        fps: frames per second.
+        about: title in the file's metadata.
 
     Raises:
-        UsageError: as for `encoder`.
+        UsageError: as for ``encoder``.
         RoadGPTError: the file cannot be written.
     """
     av = encoder()

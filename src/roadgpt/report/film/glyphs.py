@@ -1,4 +1,4 @@
-"""Letters as pictures, made once: a frame is lettered at once, in the lettering of all our pictures."""
+"""Writes text into frames; each letter is rasterised once and kept."""
 
 from functools import cache
 from typing import Literal, NamedTuple
@@ -17,7 +17,7 @@ class Glyph(NamedTuple):
     """One letter at one size."""
 
     cover: NDArray[np.uint8]
-    """(height, width), 0 to 255."""
+    """Coverage of each pixel, ``(height, width)``, 0 to 255."""
     top: int
     """Pixels from the baseline up to its first row."""
     left: int
@@ -28,7 +28,7 @@ class Glyph(NamedTuple):
 
 @cache
 def glyph(letter: str, size: int, weight: Weight) -> Glyph:
-    """A letter of a size in pixels."""
+    """Returns a letter of a size in pixels."""
     font = get_font(findfont(FontProperties(family="DejaVu Sans", weight=weight)))
     font.set_size(float(size), POINTS)
     advance = float(font.load_char(ord(letter)).linearHoriAdvance) / 65536
@@ -41,7 +41,7 @@ def glyph(letter: str, size: int, weight: Weight) -> Glyph:
 
 
 def width_of(text: str, size: int, weight: Weight = "normal") -> int:
-    """Pixels."""
+    """Returns the width of a line of text in pixels."""
     return int(np.ceil(sum(glyph(letter, size, weight).advance for letter in text)))
 
 
@@ -49,7 +49,7 @@ def write(
     frame: Frame, x: float, y: float, text: str, size: int, colour: tuple[int, int, int] = (255, 255, 255),
     weight: Weight = "normal",
 ) -> None:  # fmt: skip
-    """Write one line of text into a frame; its baseline begins at (x, y); what lies outside is left out."""
+    """Writes one line of text into a frame; its baseline begins at (x, y). The frame cuts it off."""
     for letter in text:
         shape = glyph(letter, size, weight)
         _blend(frame, round(x) + shape.left, round(y) - shape.top, shape.cover, colour)
@@ -68,11 +68,11 @@ def _blend(frame: Frame, x: int, y: int, cover: NDArray[np.uint8], colour: tuple
 
 
 def shade(frame: Frame, x0: float, y0: float, x1: float, y1: float, left: int = 110) -> None:
-    """Darken a rectangle, so that letters can be read on it; ``left`` of 256 is left of its light."""
+    """Darkens a rectangle of a frame so that text can be read on it, to ``left`` / 256 of its brightness."""
     part = frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)]
     part[:] = (part.astype(np.uint16) * left) >> 8
 
 
 def fill(frame: Frame, x0: float, y0: float, x1: float, y1: float, colour: tuple[int, int, int]) -> None:
-    """Fill a rectangle."""
+    """Fills a rectangle of a frame with a colour."""
     frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)] = colour

@@ -1,4 +1,4 @@
-"""What is written over the pictures: the description, speed, place, how far from failing, the outcome."""
+"""The text over the pictures of a film: description, speed, place, margin and outcome."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from matplotlib.colors import to_rgb
 
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, outcome_of
 from roadgpt.report.film.glyphs import Frame, fill, shade, width_of, write
-from roadgpt.report.film.trip import Told
+from roadgpt.report.film.trip import Readout
 from roadgpt.report.lettering import POINTS, fitted
 from roadgpt.run import Run
 from roadgpt.verdict import percent, severity
@@ -26,7 +26,7 @@ def _rgb(colour: str) -> tuple[int, int, int]:
 
 @dataclass(frozen=True)
 class Overlay:
-    """Of one Run, on pictures of one size."""
+    """Writes the text of one Run into pictures of one size."""
 
     run: Run
     width: int
@@ -34,16 +34,16 @@ class Overlay:
 
     @property
     def scale(self) -> float:
-        """Pixels to one of a picture 640 by 360."""
+        """Scale of all sizes against a picture of 640 by 360 pixels."""
         return max(LEAST, min(self.height / 360, self.width / 440))
 
     def _size(self, pixels: int) -> int:
         return max(7, round(pixels * self.scale))
 
-    def lay(self, frame: Frame, told: Told, is_over: bool) -> None:
-        """Write into a frame; ``is_over``: the drive has ended, and the outcome is told."""
+    def lay(self, frame: Frame, readout: Readout, is_over: bool) -> None:
+        """Writes into a frame; ``is_over`` says that the drive has ended, and adds the outcome."""
         self._title(frame)
-        self._numbers(frame, told)
+        self._numbers(frame, readout)
         if is_over:
             self._outcome(frame)
 
@@ -59,27 +59,27 @@ class Overlay:
         for k, row in enumerate(rows):
             write(frame, EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
 
-    def _numbers(self, frame: Frame, told: Told) -> None:
+    def _numbers(self, frame: Frame, readout: Readout) -> None:
         """Speed, station and margin, below on the left."""
         u, edge = self.scale, EDGE * self.scale
         large, text, small = self._size(LARGE), self._size(TEXT), self._size(SMALL)
-        wide, high = 148 * u, (78 if told.margin is not None else 52) * u
+        wide, high = 148 * u, (78 if readout.margin is not None else 52) * u
         x, y = edge, self.height - edge - high
         shade(frame, x, y, x + wide, y + high)
-        write(frame, x + 8 * u, y + 45 * u, f"at {told.s:.0f} of {self.run.length:.0f} m", text, PALE)
-        if told.margin is None:  # the camera's speed says nothing
+        write(frame, x + 8 * u, y + 45 * u, f"at {readout.s:.0f} of {self.run.length:.0f} m", text, PALE)
+        if readout.margin is None:  # the camera's speed says nothing
             write(frame, x + 8 * u, y + 24 * u, "not driven", self._size(TITLE), WHITE, "bold")
             return
-        speed = f"{told.speed * 3.6:.0f}"
+        speed = f"{readout.speed * 3.6:.0f}"
         right = x + 62 * u
         write(frame, right - width_of(speed, large, "bold"), y + 29 * u, speed, large, WHITE, "bold")
         write(frame, right + 6 * u, y + 29 * u, "km/h", text, PALE)
-        colour = _rgb(SEVERE[severity(told.outside)] if told.margin > 0 else VERMILLION)
-        said = f"margin {told.margin:.1f} m" if told.margin > 0 else "out of its lane"
-        if told.outside > 0 and told.margin > 0:
-            said += f", {percent(told.outside)} out"
-        write(frame, x + 8 * u, y + 61 * u, said, small if told.outside > 0 else text, WHITE)
-        share = float(np.clip(told.margin / WHOLE, 0.0, 1.0)) if told.margin > 0 else 1.0
+        colour = _rgb(SEVERE[severity(readout.outside)] if readout.margin > 0 else VERMILLION)
+        said = f"margin {readout.margin:.1f} m" if readout.margin > 0 else "out of its lane"
+        if readout.outside > 0 and readout.margin > 0:
+            said += f", {percent(readout.outside)} out"
+        write(frame, x + 8 * u, y + 61 * u, said, small if readout.outside > 0 else text, WHITE)
+        share = float(np.clip(readout.margin / WHOLE, 0.0, 1.0)) if readout.margin > 0 else 1.0
         left, wide = x + 8 * u, wide - 16 * u
         fill(frame, left, y + 67 * u, left + wide, y + 71 * u, (70, 76, 82))
         fill(frame, left, y + 67 * u, left + wide * share, y + 71 * u, colour)

@@ -1,4 +1,4 @@
-"""One picture of a film: a Run, seen from one camera."""
+"""One picture of a film: a Run seen from one camera."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ FIELDS: dict[str, float] = {"chase": math.radians(62), "bonnet": math.radians(72
 
 @dataclass(frozen=True, eq=False)
 class Pane:
-    """Draws itself at any time, from any thread."""
+    """Renders a Run from one camera at any time; may be used by several threads."""
 
     scene: Scene
     trip: Trip
@@ -24,15 +24,15 @@ class Pane:
 
     @classmethod
     def of(cls, run: Run, scene: Scene, trip: Trip, mount: Mount, width: int, height: int) -> "Pane":
-        """A Run from one of FIELDS."""
+        """Returns the pane of a Run for one mount of the camera, with the field of view in FIELDS."""
         camera = Camera(width, height, FIELDS[mount], mount)
         return cls(scene, trip, camera, Overlay(run, width, height), run.drive is not None)
 
     def draw(self, time: float) -> Frame:
-        """The picture (height, width, 3) at a time; from the trip's end on, its last one with the outcome."""
+        """Returns the picture ``(height, width, 3)`` at a time in seconds; after the drive the last one."""
         now = min(time, self.trip.duration)
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car
         frame = self.scene.render(self.camera, pose, car=car if self.has_car else None)
-        self.overlay.lay(frame, self.trip.told(now), time >= self.trip.duration)
+        self.overlay.lay(frame, self.trip.readout(now), time >= self.trip.duration)
         return frame

@@ -1,4 +1,4 @@
-"""What a film shows of one Run at any time: where the car is, where the camera follows, what is told."""
+"""What a film shows of one Run at any time: poses of car and camera, and the numbers in the picture."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -21,22 +21,22 @@ STEEPEST = 0.35  # rad; a camera behind a car that tumbles does not tumble
 LONGEST = 3600.0  # s
 
 
-class Told(NamedTuple):
-    """What stands in the picture at one time."""
+class Readout(NamedTuple):
+    """The numbers in the picture at one time."""
 
     speed: float
-    """m/s."""
+    """Speed, m/s."""
     s: float
-    """m along the road."""
+    """Distance along the road, m."""
     margin: float | None
-    """m from failing, as the verdict has it; None where nobody drove."""
+    """Distance to out of bounds as the verdict defines it, m; None where nobody drove."""
     outside: float = 0.0
     """Share of the car outside its lane."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trip:
-    """Columns ``(n,)`` over rising times."""
+    """The motion of car and camera: columns ``(n,)`` over ascending times in seconds."""
 
     time: Array
     columns: dict[str, Array]
@@ -50,10 +50,10 @@ class Trip:
 
     @classmethod
     def of(cls, run: Run) -> "Trip":
-        """The drive of a Run, or a calm ride along a road that nobody drove.
+        """Returns the drive of a Run, or a calm ride along a road that nobody drove.
 
         Raises:
-            UsageError: the Run has no road, or its drive no motion to be shown.
+            UsageError: the Run has no road, or its drive has no finite motion.
         """
         if run.road is None:
             raise UsageError(f"there is no road to film: {run.description}")
@@ -81,24 +81,24 @@ class Trip:
 
     @property
     def duration(self) -> float:
-        """Seconds."""
+        """Duration, seconds."""
         return float(self.time[-1])
 
     def car(self, time: float) -> Pose:
-        """The car, between two steps of its drive."""
+        """Returns the pose of the car at a time in seconds, interpolated between two steps of its drive."""
         return Pose(**{name: float(np.interp(time, self.time, c)) for name, c in self.columns.items()})
 
     def follower(self, time: float) -> Pose:
-        """Where the car would be for the camera behind it: that turns and tilts a little later."""
+        """Returns the pose that the camera behind the car follows: it turns and tilts later than the car."""
         late = {name: float(np.interp(time, self.time, c)) for name, c in self.followed.items()}
         return self.car(time)._replace(**late, roll=0.0)
 
-    def told(self, time: float) -> Told:
-        """The numbers at a time."""
+    def readout(self, time: float) -> Readout:
+        """Returns the numbers at a time in seconds."""
         at = int(np.clip(np.searchsorted(self.time, time + 1e-6) - 1, 0, len(self.time) - 1))
         margin = None if self.margin is None else float(self.margin[at])
         outside = 0.0 if self.outside is None else float(self.outside[at])
-        return Told(float(self.columns["speed"][at]), float(self.s[at]), margin, outside)
+        return Readout(float(self.columns["speed"][at]), float(self.s[at]), margin, outside)
 
 
 def _lagging(values: Array, share: float) -> Array:

@@ -1,30 +1,30 @@
-"""Pages that tell of many roads: one self-contained HTML file, and Markdown, CSV and LaTeX beside it.
+"""Reports on many roads: one self-contained HTML file, and Markdown, CSV and LaTeX beside it.
 
-A Page is a value: what a reader wants to know in a few lines, sections of text, tables and figures, and a
-card that says how it was made. ``write`` puts it into a folder:
+A Page is a value: a summary of a few lines, sections of text, tables and figures, and how it was made.
+``write`` writes it into a folder:
 
-    report.html            the page: no script, no network, printable, on any screen, light and dark
-    report.md              the same words and tables
+    report.html            the page: no script, no network, printable, for any screen, light and dark
+    report.md              the same text and tables
     tables/NAME.csv .tex   every table, with plain numbers and for LaTeX (booktabs)
 
-Figures are SVG that takes its colours from the page; the modules here draw them: ``forest`` (shares with
-their intervals), ``heat`` (a matrix, or a map of cells), ``lines``, ``bars``, ``gallery`` (roads by the
-hundred, each a link) and ``spot`` (the place of a failure).
+Figures are SVG in the colours of the page. matplotlib draws ``forest`` (shares with intervals), ``heat`` (a
+matrix, or a map of cells), ``lines`` and ``bars``; ``gallery`` (small maps of roads, each a link) and
+``spot`` (the place of a failure) write SVG themselves.
 """
 
 from roadgpt.report.page.html import html_of
 from roadgpt.report.page.model import (
     Block,
-    Card,
     Cards,
-    Cell,
-    Command,
     Details,
     Figure,
+    FigureCard,
     Line,
     Page,
     Section,
+    ShellCommand,
     Table,
+    TableCell,
     cell,
     linked,
 )
@@ -33,16 +33,16 @@ from roadgpt.report.page.writing import write
 
 __all__ = [
     "Block",
-    "Card",
     "Cards",
-    "Cell",
-    "Command",
     "Details",
     "Figure",
+    "FigureCard",
     "Line",
     "Page",
     "Section",
+    "ShellCommand",
     "Table",
+    "TableCell",
     "cell",
     "csv_of",
     "html_of",

@@ -1,4 +1,4 @@
-"""Roads by the hundred: each a small map in the colour of its outcome, and a link to its run."""
+"""Galleries of roads: each a small map in the colour of its outcome, and a link to its run."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,13 +12,13 @@ from roadgpt.verdict import graded, percent, severity
 Array = NDArray[np.float64]
 
 CELL, GAP, TITLE, COLUMNS = 48.0, 8.0, 14.0, 10
-POINTS = 36  # of a drawn road
+POINTS = 36  # of the line of a road
 STYLES = {"INVALID": "4 2", "ERROR": "1.5 2"}
 
 
 @dataclass(frozen=True)
-class Small:
-    """One road: its number, outcome, centre line ``(n, 2)`` in metres, where it failed, and its address."""
+class Thumbnail:
+    """One road: number, outcome, centre line ``(n, 2)`` in metres, place of the failure, link to its run."""
 
     number: int
     outcome: str
@@ -29,8 +29,15 @@ class Small:
     """Largest share of the car outside its lane; None where nobody drove."""
 
 
-def gallery(roads: Sequence[Small], size: float, label: str, columns: int = COLUMNS) -> str:
-    """Maps of ``size`` metres, row by row; a dot where a road starts, a cross where a car left it."""
+def gallery(roads: Sequence[Thumbnail], size: float, label: str, columns: int = COLUMNS) -> str:
+    """Returns maps of roads as SVG, row by row; a dot marks the start, a cross the place of a failure.
+
+    Args:
+        roads: what is shown.
+        size: side of the map, metres.
+        label: what the picture shows, for screen readers.
+        columns: most maps in a row.
+    """
     columns = min(columns, max(len(roads), 1))
     rows = -(-len(roads) // columns)
     out = []
@@ -43,7 +50,7 @@ def gallery(roads: Sequence[Small], size: float, label: str, columns: int = COLU
     return chart(wide, high, "".join(out), label)
 
 
-def _cell(road: Small, x: float, y: float, size: float) -> str:
+def _cell(road: Thumbnail, x: float, y: float, size: float) -> str:
     top = y + TITLE
     told = graded(road.outcome, road.share)
     hue, mark = f"var(--{road.outcome.lower()})", road.outcome.lower()

@@ -1,4 +1,4 @@
-"""A Page as one HTML file that needs nothing else."""
+"""Writes a Page as one HTML file that needs no other file."""
 
 from functools import cache
 from html import escape
@@ -6,29 +6,29 @@ from pathlib import Path
 
 from roadgpt.report.page.model import (
     Block,
-    Card,
     Cards,
-    Cell,
-    Command,
     Details,
     Figure,
+    FigureCard,
     Line,
     Page,
     Section,
+    ShellCommand,
     Table,
+    TableCell,
     pieces_of,
 )
 
 STYLE = Path(__file__).parent / "style.css"
-SHORT = 24  # letters of a cell that is not broken into lines
-MANY = 9  # columns, beyond which they move closer together
+SHORT = 24  # letters; a shorter cell is not broken into lines
+MANY = 9  # columns; more of them stand closer together
 TOTAL = ' class="total"'
-# The page forbids itself to run or to fetch anything.
+# The content security policy: the page runs no script and fetches nothing.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 
 def html_of(page: Page) -> str:
-    """The whole page, to be written as UTF-8; the same Page gives the same text."""
+    """Returns the whole page, to be written as UTF-8; the same Page gives the same text."""
     lead = f'<p class="lead">{escape(page.lead)}</p>' if page.lead else ""
     summary = "".join(f"<li>{_line(line)}</li>" for line in page.summary)
     nav = "".join(f'<a href="#{_anchor(n)}">{escape(s.title)}</a>' for n, s in enumerate(page.sections))
@@ -76,7 +76,7 @@ def _block(block: Block) -> str:
     return f"<p>{_line(block)}</p>"
 
 
-def _carded(card: Card) -> str:
+def _carded(card: FigureCard) -> str:
     lines = "".join(f"<p>{_line(line)}</p>" for line in card.lines)
     return f"<article>{card.svg}<h3>{_line(card.title)}</h3>{lines}</article>"
 
@@ -85,13 +85,13 @@ def _line(line: Line) -> str:
     return "".join(map(_piece, pieces_of(line)))
 
 
-def _piece(piece: str | Cell) -> str:
-    if isinstance(piece, Command):
+def _piece(piece: str | TableCell) -> str:
+    if isinstance(piece, ShellCommand):
         return f"<code>{escape(piece)}</code>"
     return escape(piece) if isinstance(piece, str) else _anchored(piece)
 
 
-def _anchored(cell: Cell) -> str:
+def _anchored(cell: TableCell) -> str:
     text = escape(cell.text)
     return f'<a href="{escape(cell.href)}">{text}</a>' if cell.href else text
 

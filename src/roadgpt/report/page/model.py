@@ -1,4 +1,4 @@
-"""The values of a page."""
+"""The values that make up a Page."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -7,47 +7,47 @@ from typing import NamedTuple
 Raw = str | int | float | None
 
 
-class Cell(NamedTuple):
-    """One cell of a table, or one piece of a line."""
+class TableCell(NamedTuple):
+    """One cell of a table, or one piece of a line of text."""
 
     value: Raw
-    """As CSV has it."""
+    """The value in a CSV file."""
     text: str
-    """As people read it."""
+    """The text that people read."""
     href: str = ""
-    """Relative address of what is behind it; empty: nothing."""
+    """Relative address that it links to; empty for no link."""
 
 
-def cell(value: Raw, text: str | None = None, href: str = "") -> Cell:
-    """A cell; a number without a text is shown as it is, None as a dash."""
+def cell(value: Raw, text: str | None = None, href: str = "") -> TableCell:
+    """Returns a cell; without a text, a number is shown as it is and None as a dash."""
     if text is None:
         text = "–" if value is None else f"{value:,}" if isinstance(value, int) else str(value)
-    return Cell(value, text, href)
+    return TableCell(value, text, href)
 
 
-def linked(text: str, href: str) -> Cell:
-    """Words that lead somewhere."""
-    return Cell(text, text, href)
+def linked(text: str, href: str) -> TableCell:
+    """Returns text that links to an address."""
+    return TableCell(text, text, href)
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells under their heads."""
+    """A table."""
 
     name: str
-    """Of its files: letters, digits and '-'."""
+    """Name of its files: letters, digits and '-'."""
     caption: str
     heads: Sequence[str]
-    rows: Sequence[Sequence[Cell]]
+    rows: Sequence[Sequence[TableCell]]
     note: str = ""
-    """Below it, small."""
+    """Small text below the table."""
     has_total: bool = False
-    """Is the last row a sum?"""
+    """Whether the last row is a sum."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture as SVG, with what it shows in a sentence or two."""
+    """A picture as SVG, with a caption of a sentence or two."""
 
     name: str
     caption: str
@@ -56,24 +56,24 @@ class Figure:
 
 @dataclass(frozen=True)
 class Details:
-    """What only some readers open."""
+    """Blocks that are folded until the reader opens them."""
 
     title: str
     blocks: Sequence["Block"]
 
 
-class Command(str):
-    """What can be typed, among the words of a line."""
+class ShellCommand(str):
+    """A shell command within a line of text."""
 
     __slots__ = ()
 
 
-Line = str | Sequence[str | Cell]
-"""A paragraph: words, or words with links and commands among them."""
+Line = str | Sequence[str | TableCell]
+"""A paragraph: text, or pieces of text with links and commands among them."""
 
 
-class Card(NamedTuple):
-    """One of many pictures with what has to be said of it."""
+class FigureCard(NamedTuple):
+    """One of several pictures, with a title and lines of text."""
 
     title: Line
     svg: str
@@ -82,9 +82,9 @@ class Card(NamedTuple):
 
 @dataclass(frozen=True)
 class Cards:
-    """Pictures side by side, as many in a row as there is room for."""
+    """Pictures with text side by side, as many in a row as fit."""
 
-    cards: Sequence[Card]
+    cards: Sequence[FigureCard]
 
 
 Block = Line | Table | Figure | Details | Cards
@@ -92,7 +92,7 @@ Block = Line | Table | Figure | Details | Cards
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what stands under it."""
+    """A heading and the blocks under it."""
 
     title: str
     blocks: Sequence[Block]
@@ -100,19 +100,19 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """All of a page."""
+    """A report."""
 
     title: str
     summary: Sequence[Line]
-    """What a reader wants to know, about five lines."""
+    """The main results in about five lines."""
     sections: Sequence[Section]
     card: Mapping[str, str] = field(default_factory=dict)
-    """How it was made: seeds, versions, the command that makes it again."""
+    """How the page was made: seeds, versions, and the command that makes it again."""
     lead: str = ""
     """One line under the title."""
 
     def tables(self) -> list[Table]:
-        """All tables, those in details included, in their order."""
+        """Returns all tables in their order, those in details included."""
         return _tables([block for section in self.sections for block in section.blocks])
 
 
@@ -126,6 +126,6 @@ def _tables(blocks: Sequence[Block]) -> list[Table]:
     return found
 
 
-def pieces_of(line: Line) -> Sequence[str | Cell]:
-    """The words and links of a line."""
+def pieces_of(line: Line) -> Sequence[str | TableCell]:
+    """Returns the pieces of a line, of which there is one if the line is a string."""
     return (line,) if isinstance(line, str) else line

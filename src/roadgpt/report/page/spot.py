@@ -1,4 +1,4 @@
-"""The place of one failure from above: road, lane, the way that the car took, and the car where it failed."""
+"""The place of one failure from above: road, lane, driven path, and the car where it failed."""
 
 from dataclasses import dataclass
 
@@ -13,31 +13,31 @@ Array = NDArray[np.float64]
 
 SIDE = 240.0  # px
 ACROSS = 52.0  # m that are shown
-BEHIND = 8.0  # m by which the middle of the picture lies before the failure: what led to it matters more
+BEHIND = 8.0  # m by which the middle of the picture lies before the failure, to show what led to it
 REACH = 60.0  # m of road that are drawn, before and after
 SCALE = 10.0  # m, of the bar
 
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """What is drawn, in metres ``(n, 2)``."""
+    """The lines of the picture, points ``(n, 2)`` in metres."""
 
     left: Array
     """Left edge of the road."""
     middle: Array
     right: Array
     path: Array
-    """Of the middle of the car, up to the failure; empty where no drive is known."""
+    """Path of the car's middle up to the failure; empty if there is no drive."""
     car: Array | None
-    """Its four corners at the failure."""
+    """Four corners of the car at the failure."""
     at: Array
-    """``(2,)``: the place on the road."""
+    """The place of the failure, ``(2,)``: the middle of the right lane."""
     heading: float
-    """Radians: which way is up, that of the road on the way there."""
+    """Heading of the road before the failure, radians; up in the picture."""
 
 
 def spot_of(road: Road, world: World, drive: Drive | None, station: float) -> Spot:
-    """The place of a failure ``station`` metres along a road."""
+    """Returns the place of a failure ``station`` metres along a road."""
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
     w = world.lane_width
     left, middle, right = (road.at(s, np.full(len(s), t))[:, :2] for t in (w, 0.0, -w))
@@ -58,7 +58,7 @@ def _step(drive: Drive, station: float) -> int:
 
 
 def spot(of: Spot, label: str) -> str:
-    """The picture; up is the way that the road led to the failure."""
+    """Returns the picture as SVG; the road leads upwards to the failure."""
     turned = np.pi / 2 - of.heading
     turn = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
     size = SIDE / ACROSS

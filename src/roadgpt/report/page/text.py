@@ -1,4 +1,4 @@
-"""A Page as Markdown, and its tables as CSV and LaTeX."""
+"""Writes a Page as Markdown, and its tables as CSV and LaTeX."""
 
 import csv
 import io
@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from roadgpt.report.page.model import (
     Block,
     Cards,
-    Cell,
-    Command,
     Details,
     Figure,
     Line,
     Page,
     Raw,
+    ShellCommand,
     Table,
+    TableCell,
     pieces_of,
 )
 
@@ -39,12 +39,12 @@ LATEX = {
     "×": r"$\times$",
 }
 
-FORMULA = ("=", "+", "-", "@", "\t")  # with what a spreadsheet takes a cell for a formula
-HTML = str.maketrans({"<": "&lt;", "&": "&amp;"})  # readers of Markdown let tags through
+FORMULA = ("=", "+", "-", "@", "\t")  # a spreadsheet takes a cell that begins with one for a formula
+HTML = str.maketrans({"<": "&lt;", "&": "&amp;"})  # Markdown passes HTML tags through
 
 
 def markdown_of(page: Page) -> str:
-    """The words and tables of a page; figures as their captions."""
+    """Returns text and tables of a page as Markdown; of figures only the captions."""
     parts = [f"# {_told(page.title)}", *([_told(page.lead)] if page.lead else [])]
     parts.append("\n".join(f"- {_line(line)}" for line in page.summary))
     for section in page.sections:
@@ -83,13 +83,13 @@ def _line(line: Line) -> str:
     return "".join(map(_piece, pieces_of(line)))
 
 
-def _piece(piece: str | Cell) -> str:
-    if isinstance(piece, Command):
+def _piece(piece: str | TableCell) -> str:
+    if isinstance(piece, ShellCommand):
         return f"`{piece}`"
     return _told(piece) if isinstance(piece, str) else _linked(piece)
 
 
-def _linked(cell: Cell) -> str:
+def _linked(cell: TableCell) -> str:
     text = _told(cell.text).replace("|", "\\|")
     return f"[{text}]({cell.href.replace(' ', '%20')})" if cell.href else text
 
@@ -103,7 +103,7 @@ def _table(table: Table) -> str:
 
 
 def csv_of(table: Table) -> str:
-    """Heads and raw values; what is not there is empty, and words are no formulas."""
+    """Returns a table as CSV with raw values; None is empty, and text is never a formula."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.heads)
@@ -113,7 +113,7 @@ def csv_of(table: Table) -> str:
 
 
 def unformulated(value: Raw) -> Raw:
-    """What no spreadsheet takes for a formula: such words begin with an apostrophe, numbers stay numbers."""
+    """Returns a value that no spreadsheet takes for a formula: such text gets an apostrophe, numbers stay."""
     if not isinstance(value, str):
         return value
     words = value.replace("\r\n", "\n").replace("\r", "\n")  # csv would end the row there
@@ -121,7 +121,7 @@ def unformulated(value: Raw) -> Raw:
 
 
 def latex_of(table: Table) -> str:
-    """A floating table in booktabs' style; numbers stand right."""
+    """Returns a floating LaTeX table in the style of booktabs; columns with numbers are right-aligned."""
     places = "".join(
         "r" if any(isinstance(row[n].value, (int, float)) for row in table.rows) else "l"
         for n in range(len(table.heads))

@@ -1,4 +1,4 @@
-"""Puts a Page into a folder."""
+"""Writes a Page into a folder."""
 
 from pathlib import Path
 
@@ -12,10 +12,10 @@ PAGE, TABLES = "report", "tables"
 
 
 def write(page: Page, folder: Path | str) -> Path:
-    """Write ``report.html``, ``report.md`` and ``tables/`` into a folder; files of these names are replaced.
+    """Writes ``report.html``, ``report.md`` and ``tables/`` into a folder; files of these names are replaced.
 
     Returns:
-        Where the HTML page lies.
+        The path of the HTML page.
 
     Raises:
         RoadGPTError: a file cannot be written.

@@ -1,8 +1,8 @@
 """One HTML page of one or two Runs: the road in 3-D and the drive as a replay. Verb: ``write``.
 
-The page needs no server and no network: scripts, styles and data stand in it, and it forbids itself to fetch
-anything. Parts of the page lie in ``page/`` and are put together in the order of SCRIPTS; three.js lies in
-``three/``, with its licence.
+The page needs no server and no network: scripts, styles and data stand in it, and its content security policy
+forbids it to fetch anything. Parts of the page lie in ``page/`` and are joined in the order of SCRIPTS;
+three.js lies in ``three/``, with its licence.
 """
 
 import html
@@ -41,7 +41,7 @@ SCRIPTS = (
 
 
 def page(runs: Sequence[Run]) -> str:
-    """The whole page, to be written as UTF-8; the same Runs give the same text.
+    """Returns the whole page, to be written as UTF-8; the same Runs give the same text.
 
     Raises:
         UsageError: there is no Run or more than two, one has no road, or a number of it is not finite.
@@ -52,7 +52,7 @@ def page(runs: Sequence[Run]) -> str:
 
 
 def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
-    """The page of one or two scenes, as ``scene`` makes them; what is empty in them is not shown.
+    """Returns the page of one or two scenes as ``scene`` makes them; empty parts of a scene are not shown.
 
     Raises:
         UsageError: a number is not finite.
@@ -71,7 +71,7 @@ def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
 
 
 def write(runs: Sequence[Run], path: Path | str) -> Path:
-    """Write the page whole into a file, which is replaced if it is there.
+    """Writes the page into a file, which is replaced if it exists, and returns the path.
 
     Raises:
         UsageError: as for ``page``.
@@ -90,7 +90,7 @@ def write(runs: Sequence[Run], path: Path | str) -> Path:
 
 
 def embedded(data: object) -> str:
-    """JSON that may stand inside a script element: no ``<``, ``>`` or ``&``, and ASCII only.
+    """Returns JSON that may stand inside a script element: ASCII without ``<``, ``>`` and ``&``.
 
     Raises:
         UsageError: a number is not finite.

@@ -1,4 +1,4 @@
-"""What the page shows of one Run, as plain data: the road, its world, the drive, the places of a failure."""
+"""The data of the page: a Run's road, world, drive and places of failures, as plain values."""
 
 from typing import Any
 
@@ -39,11 +39,11 @@ WORLD = {"map_size", "lane_width", "verge", "speed_limit", "oob_tolerance", "fri
 
 
 SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]], "failed": VERMILLION}
-"""How far outside its lane the car is, and the colours of it."""
+"""Thresholds and colours of how far outside its lane the car is."""
 
 
 def scene(run: Run) -> dict[str, Any]:
-    """All that the page shows of a Run. Metres, seconds and radians; every list of the road has one length.
+    """Returns all that the page shows of a Run, in metres, seconds and radians.
 
     Raises:
         UsageError: the Run has no road, or a number of it is not finite.

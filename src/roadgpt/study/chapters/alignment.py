@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from roadgpt.report.page import Block, Cell, Details, Figure, Section, Table, cell, linked
+from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.chapters.saying import interval_cell, percent, plural
 from roadgpt.study.criteria import ASKED, CRITERIA, Criterion
@@ -65,7 +65,7 @@ def _by_criterion(parts: Sequence[LookedPart], designers: Sequence[str]) -> Figu
 
 
 def _pooled(parts: Sequence[LookedPart], designers: Sequence[str]) -> Table:
-    rows: list[list[Cell]] = []
+    rows: list[list[TableCell]] = []
     for designer in designers:
         for criterion in CRITERIA:
             asking = [p for p in parts if p.part.designer == designer and kept(p, criterion)]

@@ -10,7 +10,7 @@ from roadgpt.campaign.genome import genes_of
 from roadgpt.campaign.model import Result
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
-from roadgpt.report.page import Block, Cell, Table, cell
+from roadgpt.report.page import Block, Table, TableCell, cell
 from roadgpt.study.chapters.many import again
 from roadgpt.study.chapters.saying import decimal
 
@@ -70,7 +70,7 @@ def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
     return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
 
 
-def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[Cell]:
+def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[TableCell]:
     assert kept.design is not None
     assert lost.design is not None
     return [

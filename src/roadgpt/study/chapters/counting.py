@@ -4,7 +4,7 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from roadgpt.report.page import Block, Cell, Details, Figure, Section, Table, cell, linked
+from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.baseline import NAME, ROADS, THESIS
 from roadgpt.study.chapters.outside import outside_table, passed_roads
@@ -175,7 +175,7 @@ def _short(prompt: str) -> str:
 
 
 def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:
-    rows: list[list[Cell]] = []
+    rows: list[list[TableCell]] = []
     for source in every:
         for count in source.counts:
             rows.append(

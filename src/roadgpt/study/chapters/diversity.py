@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
-from roadgpt.report.page import Block, Cell, Details, Figure, Section, Table, cell, linked
+from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.study.chapters.saying import decimal, plural
 from roadgpt.study.looking import Looked, LookedPart
@@ -83,7 +83,7 @@ def _some(part: LookedPart) -> list[Likeness]:
 
 def _between(parts: Sequence[LookedPart]) -> Table:
     """Pairs of prompts of one designer; few enough to be read."""
-    rows: list[list[Cell]] = []
+    rows: list[list[TableCell]] = []
     for designer in dict.fromkeys(part.part.designer for part in parts):
         own = [part for part in parts if part.part.designer == designer and part.roads][:6]
         for one, other in combinations(own, 2):

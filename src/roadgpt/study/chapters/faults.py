@@ -19,7 +19,19 @@ from roadgpt.campaign.faults.fault_log import FOLDER, TABLE
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.errors import UsageError
 from roadgpt.report.canvas import FORMATS
-from roadgpt.report.page import Block, Card, Cards, Cell, Command, Details, Line, Section, Table, cell, linked
+from roadgpt.report.page import (
+    Block,
+    Cards,
+    Details,
+    FigureCard,
+    Line,
+    Section,
+    ShellCommand,
+    Table,
+    TableCell,
+    cell,
+    linked,
+)
 from roadgpt.report.page.spot import spot, spot_of
 from roadgpt.run import Run
 from roadgpt.study.chapters.saying import percent, plural
@@ -95,7 +107,7 @@ def faults(folder: Path, found: Faults, told: Sequence[Told]) -> Section | None:
         blocks.append(
             [
                 f"How often they fail again {what}: ",
-                Command(shlex.join(["roadgpt", "faults", str(folder), "--minimise"])),
+                ShellCommand(shlex.join(["roadgpt", "faults", str(folder), "--minimise"])),
                 " drives a typical failure of each fault again and again, with friction, start and sensors "
                 "off a little, and looks for the simplest road that fails alike.",
             ]
@@ -105,12 +117,12 @@ def faults(folder: Path, found: Faults, told: Sequence[Told]) -> Section | None:
     return Section("Distinct faults", blocks)
 
 
-def _card(folder: Path, told: Told, found: Faults) -> Card:
+def _card(folder: Path, told: Told, found: Faults) -> FigureCard:
     count = len(told.fault.members)
     share = f" ({percent(count / found.compared, 0)} of failures)" if found.compared else ""
     title: Line = [
         f"{told.fault.number} · ",
-        Cell(count, plural(count, "test"), _picture(folder, told)),
+        TableCell(count, plural(count, "test"), _picture(folder, told)),
         share,
     ]
     reason = f"{told.reason[:1].upper()}{told.reason[1:]}."
@@ -118,11 +130,11 @@ def _card(folder: Path, told: Told, found: Faults) -> Card:
     lines += _farthest(told.fault)
     if told.looked and told.looked.simplest:
         lines.append(f"Simplest road that fails alike: {told.looked.simplest}.")
-    lines.append([Command(shlex.join(["roadgpt", "view", f"{folder}/{told.name}"]))])
+    lines.append([ShellCommand(shlex.join(["roadgpt", "view", f"{folder}/{told.name}"]))])
     assert told.run.road is not None
     station = told.why.station if told.why else told.fault.typical[0].station
     picture = spot(spot_of(told.run.road, told.run.world, told.run.drive, station), reason)
-    return Card(title, picture, lines)
+    return FigureCard(title, picture, lines)
 
 
 def _farthest(fault: Fault) -> list[Line]:

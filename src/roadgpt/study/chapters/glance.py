@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from roadgpt.report.page import Card, Cards, Cell, Line, Section, Table, cell
+from roadgpt.report.page import Cards, FigureCard, Line, Section, Table, TableCell, cell
 from roadgpt.report.page.gallery import gallery
 from roadgpt.study.chapters.alignment import kept
 from roadgpt.study.chapters.maps import small
@@ -33,7 +33,7 @@ def glance(parts: Sequence[LookedPart], found: Sequence[Found], size: float) -> 
     return Section("At a glance", [Cards(cards), _table(made)])
 
 
-def _card(part: LookedPart, size: float) -> Card:
+def _card(part: LookedPart, size: float) -> FigureCard:
     """Some roads of a description: all that the car left, as far as there is room, then the first ones."""
     first = sorted(part.roads, key=lambda road: (not road.has_left, road.index))[: SIDE * SIDE]
     chosen = sorted(first, key=lambda road: road.index)
@@ -44,7 +44,7 @@ def _card(part: LookedPart, size: float) -> Card:
     driven = part.count("is_driven")
     said = f"The car left its lane on {left} of {driven}." if driven else "Nobody drove them."
     lines: list[Line] = [f"{plural(len(part.roads), 'road')} by {part.part.designer}. {said}"]
-    return Card(words, picture, lines)
+    return FigureCard(words, picture, lines)
 
 
 def _table(made: Sequence[tuple[LookedPart, Found]]) -> Table:
@@ -60,7 +60,7 @@ def _table(made: Sequence[tuple[LookedPart, Found]]) -> Table:
     return Table("glance", "Roads by description", heads, rows, note)
 
 
-def _row(part: LookedPart, found: Found) -> list[Cell]:
+def _row(part: LookedPart, found: Found) -> list[TableCell]:
     roads, spread = found
     good = kept(part, "general")
     driven = part.count("is_driven")

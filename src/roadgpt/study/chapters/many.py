@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from roadgpt.campaign.behaviour import BOUNDS
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
-from roadgpt.report.page import Block, Cell, Figure, Table, cell
+from roadgpt.report.page import Block, Figure, Table, TableCell, cell
 from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.report.page.lines import bars, lines
 from roadgpt.study.chapters.maps import CALLED
@@ -103,7 +103,7 @@ def _far_heads(drives_on: bool) -> list[str]:
     return ["outside at most", *(["farthest out, m"] if drives_on else [])]
 
 
-def _how_far(margin: float | None, outside: float | None, drives_on: bool) -> list[Cell]:
+def _how_far(margin: float | None, outside: float | None, drives_on: bool) -> list[TableCell]:
     """What ``_far_heads`` names: the largest share of the car outside its lane, and, where it drove on, how
     many metres beyond what is allowed; a drive that ends there ends within centimetres of it."""
     share = cell(None) if outside is None else cell(round(outside, 4), percent(outside, 0))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from roadgpt.report.page import Block, Figure, Section
-from roadgpt.report.page.gallery import Small, gallery
+from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.study.looking import Looked, LookedPart
 
@@ -59,10 +59,10 @@ def _map(
     return Figure(f"coverage-{across.lower()}", caption, picture)
 
 
-def small(part: LookedPart, road: Looked) -> Small:
+def small(part: LookedPart, road: Looked) -> Thumbnail:
     """A road as a small map that leads to its run."""
     failed_at = road.failed_at if road.has_left else None
-    return Small(road.index, road.outcome, road.points, failed_at, part.href(road), road.max_oob)
+    return Thumbnail(road.index, road.outcome, road.points, failed_at, part.href(road), road.max_oob)
 
 
 def roads(parts: Sequence[LookedPart], size: float) -> Section:

@@ -2,7 +2,7 @@
 
 import math
 
-from roadgpt.report.page import Cell, cell
+from roadgpt.report.page import TableCell, cell
 from roadgpt.study.statistics import Interval, clopper_pearson, wilson
 
 
@@ -28,7 +28,7 @@ def share_of(k: int, n: int) -> str:
     return f"{k} of {n}" + (f" ({percent(k / n)})" if n else "")
 
 
-def decimal(value: float | None, digits: int = 2, href: str = "") -> Cell:
+def decimal(value: float | None, digits: int = 2, href: str = "") -> TableCell:
     """A cell with a rounded number; a dash where there is none."""
     if value is None or not math.isfinite(value):
         return cell(None)
@@ -58,7 +58,7 @@ def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) 
     return out
 
 
-def share_cells(k: int, n: int, href: str = "") -> list[Cell]:
+def share_cells(k: int, n: int, href: str = "") -> list[TableCell]:
     """k, n, share, Clopper and Pearson's interval, Wilson's."""
     if not n:
         return [cell(k, href=href), cell(n), cell(None), cell(None), cell(None)]
@@ -72,7 +72,7 @@ def share_cells(k: int, n: int, href: str = "") -> list[Cell]:
     ]
 
 
-def interval_cell(interval: Interval) -> Cell:
+def interval_cell(interval: Interval) -> TableCell:
     """From and to, as shares in CSV and in percent for people."""
     return cell(f"{interval.lo:.4f} to {interval.hi:.4f}", between(interval))
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from roadgpt.report.page import Block, Cell, Table, cell
+from roadgpt.report.page import Block, Table, TableCell, cell
 from roadgpt.study.chapters.saying import decimal, p_value
 from roadgpt.study.statistics import ChiSquared, chi_squared, exact, trend
 
@@ -56,7 +56,7 @@ def worked_out(source: Source, hit: str, miss: str, name: str) -> list[Block]:
 def _table(source: Source, found: ChiSquared, hit: str, miss: str, name: str) -> Table:
     heads = ["prompt", hit, miss, "total"]
     heads += [f"expected {each}" for each in (hit, miss)] + [f"(o − e)²/e {each}" for each in (hit, miss)]
-    rows: list[Sequence[Cell]] = []
+    rows: list[Sequence[TableCell]] = []
     for n, count in enumerate(source.counts):
         rows.append(
             [

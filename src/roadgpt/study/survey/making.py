@@ -26,7 +26,7 @@ from roadgpt.study.survey.views import write_view
 
 Tell = Callable[[str], None]
 PLACES = ("top", "bottom")
-CAMERAS = {"chase": "film from behind the car", "bonnet": "film over the bonnet"}
+CAMERAS = {"chase": "film from behind the car", "bonnet": "film from the hood camera"}
 
 
 def make(plan: Plan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from roadgpt.report.page import Block, Cell, Details, Figure, Table, cell
+from roadgpt.report.page import Block, Details, Figure, Table, TableCell, cell
 from roadgpt.study.statistics import conover, friedman, spearman, wilcoxon
 from roadgpt.study.survey.answers import Answers
 from roadgpt.study.survey.bars import Drawn
@@ -47,7 +47,12 @@ class Told:
         return Figure(drawn.name, self._marked(caption), drawn.svg)
 
     def table(
-        self, name: str, caption: str, heads: Sequence[str], rows: Sequence[Sequence[Cell]], note: str = ""
+        self,
+        name: str,
+        caption: str,
+        heads: Sequence[str],
+        rows: Sequence[Sequence[TableCell]],
+        note: str = "",
     ) -> Table:
         """A table with its caption."""
         name = f"synthetic-{name}" if self.is_synthetic else name
@@ -106,7 +111,7 @@ class Told:
         scale = "; ".join(f"{number}: {answer}" for number, answer in enumerate(answers, 1))
         return self.table(f"{found.part}-ratings", f"Ratings: {NAMES[found.part]}", heads, rows, scale)
 
-    def _rating(self, unit: Unit, is_first: bool) -> list[Cell]:
+    def _rating(self, unit: Unit, is_first: bool) -> list[TableCell]:
         """A row; the description is told once for each item."""
         low, middle, high = unit.quartiles
         count, interval = unit.favourable
@@ -179,7 +184,7 @@ class Told:
             "tentative conclusions.",
         )
 
-    def _agreed(self, found: Tally, criterion: str, units: Sequence[Unit]) -> list[Cell]:
+    def _agreed(self, found: Tally, criterion: str, units: Sequence[Unit]) -> list[TableCell]:
         alpha = agreement(units)
         return [
             cell(NAMES[found.part]),

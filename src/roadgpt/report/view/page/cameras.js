@@ -1,8 +1,8 @@
-// Cameras: behind the car, over its bonnet, and free. The first two depend on the time alone, so that the slider
+// Cameras: behind the car, over its hood, and free. The first two depend on the time alone, so that the slider
 // may jump.
 
 const BEHIND = 8.6, ABOVE = 3.1, AHEAD = 7; // m
-const EYE = { x: 0.98, z: 1.24 }; // m before the middle of the car and over the ground: over the bonnet
+const EYE = { x: 0.98, z: 1.24 }; // m before the middle of the car and over the ground: over the hood
 const FILLED = 0.84; // of the picture, by the road seen as a whole
 const LAG = 0.5; // s by which the camera behind the car turns later than the car
 
