@@ -3,8 +3,8 @@
 The drives of a group of tests are one file under ``traces/``, in the format of ``numpy.savez``. Its entry
 ``header`` is a line of JSON: the ``columns`` in their order, their ``steps``, and whose ``drives`` the file
 holds. The drive of test 17 of cell c02 is the entry ``c02/17``, whole numbers ``(columns, n)``: the second
-differences of each column in steps, which are near 0 for a car's motion and take little room (10 kB for a
-drive of 30 s). Summed up twice along the rows and multiplied by its step, a row is the column of
+differences of each column in steps, which are near 0 for a car's motion and take little room (12 kB for a
+drive of 28 s). Summed up twice along the rows and multiplied by its step, a row is the column of
 ``roadgpt.drive.COLUMNS``, in its unit.
 
 Stores of earlier versions hold Apache Parquet files instead (``parquet_traces``).
@@ -29,7 +29,7 @@ from roadgpt.run.atomic import write_whole
 TRACES, SUFFIX, OLD_SUFFIX = "traces", ".npz", ".parquet"
 FORMAT = 2  # of a file; 1 was Parquet
 LARGEST, UNPACKED = 500_000_000, 200_000_000  # bytes of a file, and of one drive in it: as drive.npz
-THOROUGH = 9  # of zlib's levels: half a millisecond more for each second of driving, and a tenth less room
+LEVEL = 4  # of zlib: 1 ms and 12 kB for a drive of 28 s; level 9 takes 40 ms for 10 kB
 FINE, COARSE = 1e-4, 1e-2
 STEPS = {
     **dict.fromkeys(COLUMNS, 1e-3),  # s, m, m/s, shares: a millimetre is less than anything here decides on
@@ -116,7 +116,7 @@ def _add(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
     np.lib.format.write_array(entry, values, version=(1, 0), allow_pickle=False)
     # with a fixed date, so that the bytes do not depend on the clock
     info = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-    archive.writestr(info, entry.getvalue(), zipfile.ZIP_DEFLATED, THOROUGH)
+    archive.writestr(info, entry.getvalue(), zipfile.ZIP_DEFLATED, LEVEL)
 
 
 def _to_disk(path: Path) -> None:
