@@ -124,7 +124,7 @@ def test_messages_and_quirks(points: list[list[float]], message: str) -> None:
 
 
 def test_points_that_coincide_or_are_no_numbers_are_refused_with_advice() -> None:
-    with pytest.raises(UsageError, match="remove the double one"):
+    with pytest.raises(UsageError, match="remove the duplicate"):
         sbft_verdict([[10, 10], [10, 10], [50, 50]], 200)
     with pytest.raises(UsageError, match="not finite"):
         sbft_verdict([[10, 10], [np.nan, 20], [50, 50]], 200)

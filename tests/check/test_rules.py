@@ -136,7 +136,7 @@ class TestInsideMap:
         runs_over = [n for n in lengths if len(np.arange(0, 1 + 1 / n, 1 / n)) > n + 1]
         keeps = next(n for n in lengths if n not in runs_over)
         over, just = (straight(n, x=249.5 - n) for n in (runs_over[0], keeps))
-        assert "as SBFT lays its spline, leaves the map" in the_finding("inside_map", over).sentence
+        assert "with SBFT's spline the road leaves the map" in the_finding("inside_map", over).sentence
         assert "near (250, 50)" in the_finding("inside_map", over).sentence
         assert not findings("inside_map", just)
         assert findings("sbft", over)
@@ -318,7 +318,7 @@ class TestNoOverlap:
         assert not findings("no_overlap", road)
 
     def test_fails_where_legs_are_closer_than_the_road_is_wide(self) -> None:
-        assert "lies over its own stretch" in the_finding("no_overlap", two_legs(7.95)).sentence
+        assert "overlaps itself at s =" in the_finding("no_overlap", two_legs(7.95)).sentence
 
     def test_says_both_places_of_a_crossing(self) -> None:
         # 60 m, three quarters of a circle to the left, and straight across the first leg at right angles

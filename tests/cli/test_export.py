@@ -147,5 +147,5 @@ def test_an_opendrive_file_that_cannot_be_read_is_one_sentence(here: Path) -> No
     Path("bad.xodr").write_text("<OpenDRIVE><road")
     result = said("import", "bad.xodr")
     assert result.exit_code == 2
-    assert result.stderr.startswith("roadgpt: bad.xodr: it is no well-formed XML")
+    assert result.stderr.startswith("roadgpt: bad.xodr: it is not well-formed XML")
     assert result.stderr.count("\n") == 1

@@ -110,7 +110,7 @@ HOOK = element(0, 0, 0, 60) + element(60, 0, 0, math.pi * 6, f'<arc curvature="{
 
 @pytest.mark.parametrize(
     ("line", "finding"),
-    [(LOOP, "lies over its own stretch"), (HOOK, "tighter than"), (element(0, 0, 0, 12), "longer than 20 m")],
+    [(LOOP, "overlaps itself at s ="), (HOOK, "tighter than"), (element(0, 0, 0, 12), "longer than 20 m")],
     ids=["loop", "hook", "short"],
 )
 def test_what_the_rules_say_stands_beside_the_verdict(tmp_path: Path, line: str, finding: str) -> None:

@@ -55,14 +55,14 @@ def test_a_gap_in_the_numbers_is_remarked_on() -> None:
     data["road_segment7"] = data.pop("road_segment3")
     design, remarks = read_design(data)
     assert [s.distance for s in design.segments] == [50, 40, 30]
-    assert remarks[0].startswith("segments are numbered 1, 2, 7 and not 1, 2, 3")
+    assert remarks[0].startswith("segments are numbered 1, 2, 7 instead of 1, 2, 3")
 
 
 def test_a_radius_that_cannot_be_is_remarked_on() -> None:
     data = good()
     data["road_segment1"] = {**SEGMENT, "distance": 20, "turn_degrees": 60, "radius": 30}  # needs 31.4 m
     remarks = read_design(data)[1]
-    assert "60 degrees at a radius of 30 m do not fit into 20 m; the distance wins" in remarks[0]
+    assert "60 degrees at a radius of 30 m do not fit into 20 m; the distance is kept" in remarks[0]
     data["road_segment1"] = {**SEGMENT, "distance": 40, "turn_degrees": 60, "radius": 30}
     assert not any("radius" in remark for remark in read_design(data)[1])
 
@@ -73,7 +73,7 @@ SEGMENT = {"distance": 50, "direction": "left", "incline": 5, "turn_degrees": 40
 @pytest.mark.parametrize(
     ("change", "hint"),
     [
-        ({"theta": None}, "theta: is no number; give one"),
+        ({"theta": None}, "theta: is not a number; give one"),
         ({"theta": "north"}, "theta"),
         ({"theta": float("nan")}, "theta"),
         ({"starting_point": [1, 2]}, "starting_point"),
@@ -88,9 +88,9 @@ SEGMENT = {"distance": 50, "direction": "left", "incline": 5, "turn_degrees": 40
         ({"road_segment1": {**SEGMENT, "distance": "far"}}, "distance"),
         ({"road_segment1": {**SEGMENT, "direction": "up"}}, "direction: is unknown; give 'left', 'right' or"),
         ({"road_segment1": {**SEGMENT, "incline": float("nan")}}, "incline"),
-        ({"road_segment1": {**SEGMENT, "colour": "red"}}, "colour: is no field of a design; remove it"),
+        ({"road_segment1": {**SEGMENT, "colour": "red"}}, "colour: is not a field of a design; remove it"),
         ({"road_segment1": [1, 2, 3]}, "segment 1"),
-        ({"segment1": SEGMENT}, "nobody knows"),
+        ({"segment1": SEGMENT}, "that is unknown"),
     ],
 )
 def test_bad_fields_get_one_sentence_that_names_them(change: dict[str, object], hint: str) -> None:

@@ -49,13 +49,13 @@ HILLY_FILES: dict[str, Any] = {
 }
 UNREADABLE = {
     "many.json": ([{"road_points": PLAN}, {"road_points": PLAN}], "holds 2 roads"),
-    "network.json": ({"network": {"nodes": {}}}, "there is no road in it"),
+    "network.json": ({"network": {"nodes": {}}}, "it holds no road"),
     "earth.csv": ("lat,lon\n48.1,11.5\n48.2,11.6\n", "in metres"),
     "names.csv": ("a,b\n1,2\n3,4\n", "there are: a, b"),
     "words.csv": ("x,y\n1,2\n3,four\n5,6\n", "row 3 .*'four'"),
     "short.csv": ("x,y\n1,2\n3\n", "row 3"),
     "infinite.csv": ("x,y\n1,2\n3,inf\n", "'inf'"),
-    "columns.csv": ("1,2,3,4,5\n1,2,3,4,5\n", "5 columns and no head"),
+    "columns.csv": ("1,2,3,4,5\n1,2,3,4,5\n", "5 columns and no header"),
     "empty.csv": ("\n\n", "is empty"),
     "lonely.csv": ("x,y\n1,2\n", "two points"),
     "binary.csv": ("\x00\x01,\x02", "table"),

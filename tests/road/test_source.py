@@ -49,7 +49,7 @@ def test_points_that_were_edited_win_over_those_interpolated_from_others(tmp_pat
     road, remarks = read_blueprint(path)
     assert isinstance(road, Road)
     assert road.at(road.length) == pytest.approx([150, 60, 0], abs=1e-6)
-    assert "road_points win" in remarks[0]
+    assert "road_points are used" in remarks[0]
 
 
 def test_a_design_and_a_run_folder(tmp_path: Path) -> None:

@@ -1,12 +1,12 @@
-"""Checks: makes Findings, the sentences of rules about places on a road. Verb: ``inspect``.
+"""Checks roads against rules. A Finding is one rule's objection to one place. Main function: ``inspect``.
 
-A rule is a function in a file of its own under ``rules/``. It looks at one thing, and returns a Finding with
-numbers in it for every place that it objects to, or nothing:
+A rule is a function in a file of its own under ``rules/``. It checks one property and returns a Finding with
+numbers in it for every place that it objects to, or an empty tuple:
 
     def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]
 
-A rule set is a named, ordered row of rules. Rules that other packages put on the shelf (entry points of the
-group ``roadgpt.rules``) join the end of ``strict``.
+A rule set is a named, ordered list of rules. Rules that other packages register as plug-ins (entry points of
+the group ``roadgpt.rules``) are appended to ``strict``.
 """
 
 from functools import cache
@@ -34,45 +34,46 @@ RULE_SETS = {
     ),
     "sbft": ("sbft",),
 }
-"""Rules in the order in which they are asked; the first objection is the verdict."""
+"""The rules of each set in the order in which they are applied. The first objection is the verdict."""
 
 
 class Rule(Protocol):
-    """Looks at one thing about a road."""
+    """A function that checks one property of a road."""
 
     def __call__(self, road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-        """All that is wrong with it, in driving order; nothing where it is right."""
+        """Returns all objections in driving order; an empty tuple where there are none."""
         ...
 
 
 def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict") -> tuple[Finding, ...]:
-    """All findings of a rule set, in its order; the first one is the verdict, and none means a valid road.
+    """Returns all findings of a rule set in its order. The first is the verdict; a road without any is valid.
 
     Args:
-        road: the road to look at.
-        brief: what was asked for, if anything was.
-        world: map and limits.
-        rules: name of the rule set, "strict" or "sbft".
+        road: The road to check.
+        brief: What was asked for, if anything was.
+        world: Map and limits.
+        rules: Name of the rule set, "strict" or "sbft".
 
     Raises:
-        UsageError: no rule set of that name.
-        PartError: the shelf is empty, or a rule of the set is not on it; no road passes for want of rules.
+        UsageError: There is no rule set of this name.
+        PartError: No rules are installed, or a rule of the set is missing. A road never passes for lack of
+            rules.
     """
     found: list[Finding] = []
     for _, rule in rules_of(rules):
         found += rule(road, brief, world)
         if any(finding.stops for finding in found):
-            break  # there is nothing that the others could measure
+            break  # the other rules would have nothing to measure
     return tuple(found)
 
 
 @cache
 def rules_of(rules: str) -> tuple[tuple[str, Rule], ...]:
-    """Names and functions of a rule set's rules, in order.
+    """Returns the names and functions of a rule set in order.
 
     Raises:
-        UsageError: no rule set of that name.
-        PartError: the shelf is empty, or a rule of the set is not on it.
+        UsageError: There is no rule set of this name.
+        PartError: No rules are installed, or a rule of the set is missing.
     """
     if rules not in RULE_SETS:
         raise UsageError(f"no rule set called '{rules}'; there are: {', '.join(RULE_SETS)}")

@@ -1,4 +1,7 @@
-"""Where the words ask for a crest, a dip or a hump: there a road may be as abrupt as wheels can follow."""
+"""Finds where a description asks for a crest, a dip or a hump.
+
+There the road may be as abrupt as physics allows.
+"""
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
@@ -6,20 +9,20 @@ from roadgpt.check.measures import Measures, measure
 from roadgpt.road import Road
 
 BUMPS = ("crest", "dip")
-CURVE = 30.0  # m: so far a parabola may reach out of its straight into the turns at its ends
+CURVE = 30.0  # m by which a parabola may reach from its straight into the turns at its ends
 
 
 def asks_for_bumps(brief: Brief | None) -> bool:
-    """Do the words ask for a crest, a dip or a hump anywhere?"""
+    """Returns whether the description asks for a crest, a dip or a hump anywhere."""
     if brief is None:
         return False
     return any(clause.kind in BUMPS for clause in (*brief.clauses, brief.starts, brief.ends) if clause)
 
 
 def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
-    """Stations of begin and end, metres, of the gaps between turns that are to hold a crest or a dip.
+    """Returns start and end stations in metres of the gaps between turns that are to hold a crest or a dip.
 
-    Where the words leave open how many turns come before it, it may be in any gap.
+    Where the description leaves open how many turns come before it, every gap is returned.
     """
     if brief is None or not asks_for_bumps(brief):
         return []
@@ -38,7 +41,7 @@ def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
 
 
 def _turns_before(brief: Brief, index: int) -> int | None:
-    """How many turns the clauses name before one of them; None where that is open."""
+    """Returns how many turns the clauses before one of them name; None where that is open."""
     if not outline(brief).names_all_turns:
         return None
     before = outline(brief.model_copy(update={"clauses": brief.clauses[:index]})).groups

@@ -1,4 +1,4 @@
-"""From geometry back to a Brief: what a finished road is like, said in the terms of a description."""
+"""Describes a finished road in the terms of a description: from geometry back to a Brief."""
 
 from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.check.measures import LEVEL, MeasuredFeature, Measures, measure
@@ -6,19 +6,19 @@ from roadgpt.road import Road
 
 
 def describe(road: Road) -> Brief:
-    """The Brief that names everything along the road, with whole degrees, metres and percent.
+    """Returns the Brief that names everything along the road, in whole degrees, metres and percent.
 
-    Every turn and straight is a clause of its own: side, degrees and radius, or length; and the grade from
-    end to end where it is not level. Length and climb of the whole road stand beside them.
+    Every turn and every straight is a clause of its own: side, degrees and radius, or length, and the grade
+    from end to end where it is not level. Length and climb of the whole road are given too.
 
     Raises:
-        UsageError: the road has no two different points.
+        UsageError: The road has no two different points.
     """
     return described(measure(road.centreline()))
 
 
 def described(found: Measures) -> Brief:
-    """The same of a road that has been measured."""
+    """Returns the same Brief for a road that has been measured."""
     return Brief(
         clauses=tuple(_clause(feature) for feature in found.features),
         turns=None if found.turns else exactly(0),

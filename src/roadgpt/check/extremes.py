@@ -1,7 +1,7 @@
-"""Where a road is tightest, steepest and lowest: exact for pieces and parabolas, sampled for splines.
+"""Finds where a road is tightest, steepest and lowest: exactly for pieces and parabolas, sampled for splines.
 
-The curvature of a piece and the grade of a parabola run linearly, so both are extreme where one begins or
-ends; a parabola is lowest there or where its grade is 0.
+The curvature of a piece and the grade of a parabola change linearly, so both have their extremes where one
+begins or ends. A parabola is lowest there or where its grade is 0.
 """
 
 import numpy as np
@@ -10,11 +10,11 @@ from roadgpt.geometry import ElevationProfile, GradeProfile, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
-KINK = 2.0  # m: less than a car's wheelbase, so that no wheel feels a shorter one as less
+KINK = 2.0  # m: shorter than a car's wheelbase
 
 
 def tightest(road: Road) -> tuple[float, float]:
-    """Station and curvature (1/m, left positive) of the tightest place; the first one of several."""
+    """Returns station and curvature (1/m, positive to the left) of the first of the tightest places."""
     if isinstance(road.plan, PieceCurve):
         pieces = road.plan.pieces
         ends = np.cumsum([piece.length for piece in pieces])
@@ -26,7 +26,7 @@ def tightest(road: Road) -> tuple[float, float]:
 
 
 def steepest(road: Road) -> tuple[float, float]:
-    """Station and grade (ratio, uphill positive) of the steepest place; the first one of several."""
+    """Returns station and grade (ratio, uphill positive) of the first of the steepest places."""
     if isinstance(road.elevation, GradeProfile):
         s = _stations(road.elevation, road.length)
         return _greatest(s, road.elevation.grade(s))
@@ -34,10 +34,12 @@ def steepest(road: Road) -> tuple[float, float]:
 
 
 def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
-    """Where the grade changes: stations (m) of begin and end, and the change per metre, negative on a crest.
+    """Returns where the grade changes: start and end stations (m), and the change per metre.
 
-    Parabolas as they are; of other profiles every stretch of about ``KINK`` metres, in which a kink counts
-    as spread over it.
+    The change is negative on a crest.
+
+    Parabolas are returned as they are. Other profiles are divided into parts of about ``KINK`` metres; a kink
+    counts as spread over its part.
     """
     if isinstance(road.elevation, GradeProfile):
         s = _stations(road.elevation, road.length)
@@ -48,7 +50,7 @@ def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
 
 
 def lowest(profile: ElevationProfile, length: float) -> tuple[float, float]:
-    """Station and height (m) of the lowest place over so many metres."""
+    """Returns station and height (m) of the lowest place of a profile over so many metres."""
     if isinstance(profile, GradeProfile):
         s = _stations(profile, length)
         grade = profile.grade(s)
@@ -63,7 +65,7 @@ def lowest(profile: ElevationProfile, length: float) -> tuple[float, float]:
 
 
 def _stations(profile: GradeProfile, length: float) -> Array:
-    """Where parabolas begin or end on the road, and its own ends, metres, rising."""
+    """Returns the stations in metres where parabolas begin or end on the road, and its two ends."""
     s = np.array(profile.stations)
     return np.concatenate(([0.0], s[(s > 0) & (s < length)], [length]))
 

@@ -1,11 +1,14 @@
-"""What a rule has to say about one place on a road."""
+"""What a rule objects to at one place on a road."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One rule's sentence. A place is given where there is one: station ``s`` and the point, in metres."""
+    """One rule's sentence.
+
+    ``s`` is the station and (x, y) the point, in metres, where there is a single place.
+    """
 
     rule: str
     sentence: str
@@ -13,4 +16,4 @@ class Finding:
     x: float | None = None
     y: float | None = None
     stops: bool = False
-    """Nobody can drive in spite of it: there is no road, or no room for a car."""
+    """Whether nobody can drive the road in spite of it: there is no road, or no room for a car."""

@@ -1,7 +1,8 @@
-"""Which turn answers which wish: turns and straights of a road matched with the groups of an Outline.
+"""Matches the turns and straights of a measured road with the groups of an Outline.
 
-Turns answer in order, one to one. A straight that was asked for between two turns may be the whole straight
-there or, where several were asked for or its grade changes, a piece of it; pieces answer in order, each once.
+Turns are matched in order, one to one. A straight that was asked for between two turns may be the whole
+straight there. Where several were asked for, or its grade changes, it may be a piece of it; pieces are
+matched in order, each once.
 """
 
 from functools import cache
@@ -14,16 +15,16 @@ from roadgpt.check.measures import MeasuredFeature, Measures
 
 
 class Complaint(NamedTuple):
-    """What was asked and what came out, and at which station, if at one."""
+    """A sentence about what was asked and what the road has, with a station in metres where there is one."""
 
     sentence: str
     s: float | None = None
     on_heights: bool = False
-    """Could other heights on the same plan mend it?"""
+    """Whether other heights on the same plan could remedy it."""
 
 
 class _Cost(NamedTuple):
-    """Wrong features of the best way to share out turns, and what to say of them."""
+    """The number of wrong features of the best match of turns, and the complaints about them."""
 
     wrong: float
     says: tuple[Complaint, ...]
@@ -37,7 +38,7 @@ IMPOSSIBLE = _Cost(inf, ())
 
 
 def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
-    """Does a measured stretch show a feature?"""
+    """Returns whether a measured feature fulfils a requested one."""
     return (
         stretch.kind == feature.kind
         and feature.side in (None, stretch.side)
@@ -51,7 +52,7 @@ def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
 
 
 def _is_rounded_off(stretch: MeasuredFeature, asked: Range) -> bool:
-    """Is a straight too gentle as a whole, but as steep as asked over its middle half?"""
+    """Returns whether a straight is too gentle as a whole, but as steep as asked over its middle half."""
     least = asked.lo if asked.lo > 0 else -asked.hi if asked.hi < 0 else 0.0
     return stretch.kind == "straight" and 0 < least > abs(stretch.grade) and stretch.inner_grade in asked
 
@@ -59,13 +60,13 @@ def _is_rounded_off(stretch: MeasuredFeature, asked: Range) -> bool:
 def turn_complaints(
     number: int, turn: MeasuredFeature, feature: Feature, side: str | None = None
 ) -> tuple[Complaint, ...]:
-    """What is wrong with one turn.
+    """Returns what is wrong with one turn.
 
     Args:
-        number: of the turn, from 1.
-        turn: as measured.
-        feature: as asked for.
-        side: that the alternation asks for; else the feature's own.
+        number: Number of the turn, from 1.
+        turn: The turn as measured.
+        feature: The turn as asked for.
+        side: The side that an alternation requires; None for the feature's own side.
     """
     if side is None and fits(turn, feature):
         return ()
@@ -87,13 +88,13 @@ def turn_complaints(
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """What is wrong with the turns and straights in order, under the kindest way to match them."""
+    """Returns what is wrong with the turns and straights under the match with the fewest wrong features."""
     turns, gaps, groups = found.turns, found.gaps, asked.groups
     turns_are_free = not asked.names_all_turns
 
     @cache
     def best(group: int, turn: int, wanted: tuple[Feature, ...]) -> _Cost:
-        """The groups from here on, with this turn next and these straights wanted before it."""
+        """Returns the least cost from this group on, with this turn next and these straights wanted before it."""
         here = _gap_cost(gaps[turn], wanted, turn)
         if group == len(groups):
             return here if turns_are_free or turn == len(turns) else IMPOSSIBLE
@@ -112,7 +113,7 @@ def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...
 
     cost = best(0, 0, ()) if groups else RIGHT
     if cost.wrong == inf:
-        return (Complaint(f"the {len(turns)} turns cannot be shared out among what was asked for"),)
+        return (Complaint(f"the {len(turns)} turns cannot be matched with what was asked for"),)
     return cost.says
 
 
@@ -130,7 +131,7 @@ def _group_cost(group: Group, turns: tuple[MeasuredFeature, ...], first: int) ->
 
 
 def _gap_cost(gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int) -> _Cost:
-    """The wanted straights before a turn, counted from 0: in order among the pieces that are there."""
+    """Returns the cost of matching the wanted straights with the pieces before a turn (counted from 0)."""
     if not wanted or (len(wanted) == 1 and any(fits(straight, wanted[0]) for straight in gap)):
         return RIGHT
     pieces = [piece for straight in gap for piece in straight.pieces]

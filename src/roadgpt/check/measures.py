@@ -1,14 +1,14 @@
-"""What a finished road is like: its turns, straights and grades, measured on the centre line alone.
+"""Measures the turns, straights and grades of a finished road on its centre line alone.
 
-Nothing is known of how the road was made. Units are those of promises (``brief.words``): degrees, metres,
-percent uphill positive. All is measured on the centre line resampled about every metre of its plan:
+The measurement knows nothing about how the road was made. Units are those of requirements (``brief.words``):
+degrees, metres, percent uphill positive. The centre line is resampled about every metre in plan:
 
-* curvature: change of heading per metre, averaged over 5 m.
-* turn: a stretch of one hand with a curvature above 1/300 per metre; on roads of which wider turns are asked,
-  those of a motorway, with one that such turns have. Stretches of one hand less than 8 m
-  apart are one turn. Its angle is taken out to where the curvature fades below 1/3000 or changes sign; a
-  stretch that turns less than 4 degrees joins nothing, and less than 10 in all is no turn.
-* straight: 10 m or more between turns, or between a turn and an end. It is cut into pieces where its grade,
+* Curvature: change of heading per metre, averaged over 5 m.
+* Turn: a part of the road that bends to one side with a curvature above 1/300 per metre; where wider turns
+  are asked for, as on a motorway, above the curvature of such turns. Parts to one side less than 8 m apart
+  are one turn. Its angle is measured out to where the curvature falls below a tenth of that limit or changes
+  sign. Parts that turn less than 4 degrees are not joined, and less than 10 degrees in all is not a turn.
+* Straight: 10 m or more between turns, or between a turn and an end. It is cut into pieces where its grade,
   over 10 m windows, changes between up (1 % or more), flat and down; pieces of 6 m or more count.
 
 Source: the definitions of the project's referee, an outside judge of roads; ``tests/authorities`` compares.
@@ -26,70 +26,73 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 
 STEP = 1.0  # m between stations
-FADES = 10.0  # times that radius: what is straighter no longer belongs to the angle of a turn
+FADES = 10.0  # times the widest radius: straighter parts do not belong to the angle of a turn
 SMOOTHED = 5  # stations that a curvature is averaged over
-JOINED = 8.0  # m: stretches of one hand with less between them are one turn
-SLIGHT = 4.0  # degrees: a stretch that turns less joins nothing
+JOINED = 8.0  # m: parts that bend to one side and are closer together are one turn
+SLIGHT = 4.0  # degrees: a part that turns less is not joined to others
 LEAST_TURN = 10.0  # degrees
 LEAST_STRAIGHT = 10.0  # m
 LEAST_PIECE = 6.0  # m
 LEVEL = 1.0  # percent: less is flat
-HALF_WINDOW = 5  # stations to either side, of the grade that cuts a straight into pieces
-LONG_WINDOW, SHORT_WINDOW = 20, 10  # stations: of climbing and falling, and of the steepest place
+HALF_WINDOW = 5  # stations to either side for the grade that cuts a straight into pieces
+LONG_WINDOW, SHORT_WINDOW = 20, 10  # stations: for climbing and falling, and for the steepest place
 
 Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFeature:
-    """A turn, a straight, or a piece of a straight, as it was measured."""
+    """A turn, a straight, or a piece of a straight, as measured on a finished road."""
 
     kind: Literal["turn", "straight"]
     start: float
-    """Station in plan, metres."""
+    """Station in plan in metres."""
     end: float
     side: Literal["left", "right"] | None
     degrees: float
-    """Heading change: of a turn, out to where it fades; of a straight, without the 5 m at either end."""
+    """Heading change. For a turn, out to where it fades; for a straight, without the 5 m at either end."""
     radius: float
-    """Metres, at the tightest place."""
+    """Radius in metres at the tightest place."""
     grade: float
-    """Percent, from end to end."""
+    """Mean grade in percent, from end to end."""
     inner_grade: float
-    """Percent, over its middle half: a short slope between others is mostly rounded off at its ends."""
+    """Mean grade in percent over the middle half.
+
+    The ends of a short slope between others are rounded off.
+    """
     pieces: tuple["MeasuredFeature", ...] = ()
-    """Of a straight: where its grade changes class."""
+    """For a straight: its pieces between the places where its grade changes class."""
 
     @property
     def length(self) -> float:
-        """Metres."""
+        """The length in metres."""
         return self.end - self.start
 
 
 @dataclass(frozen=True, slots=True)
 class Measures:
-    """A road as it was measured."""
+    """A road as measured."""
 
     features: tuple[MeasuredFeature, ...]
     """Turns and straights in driving order."""
     length: float
-    """Metres in plan."""
+    """Length in plan in metres."""
     climb: float
-    """Metres from start to end."""
+    """Height difference in metres from start to end."""
     grade: float
-    """Percent, from start to end."""
+    """Mean grade in percent, from start to end."""
     lowest_grade: float
-    """Percent, the least over 20 m."""
+    """Least grade in percent over 20 m."""
     highest_grade: float
-    """Percent, the greatest over 20 m."""
+    """Greatest grade in percent over 20 m."""
     steepest: float
-    """Percent over 10 m, whichever way."""
+    """Greatest absolute grade in percent over 10 m."""
     hills: int
     """How often the grade over 20 m changes between up and down."""
     radius: float
-    """Metres, at the tightest place of the road."""
+    """Radius in metres at the tightest place of the road."""
     turning: float
-    """Degrees, all changes of heading added up, whichever way."""
+    """Sum of all changes of heading in degrees, regardless of side."""
 
     @property
     def turns(self) -> tuple[MeasuredFeature, ...]:
@@ -103,7 +106,7 @@ class Measures:
 
     @property
     def gaps(self) -> tuple[tuple[MeasuredFeature, ...], ...]:
-        """The straights before the first turn, between turns, and after the last: one more than turns."""
+        """The straights before the first turn, between turns, and after the last turn."""
         out: list[tuple[MeasuredFeature, ...]] = [()]
         for feature in self.features:
             if feature.kind == "turn":
@@ -113,12 +116,12 @@ class Measures:
         return tuple(out)
 
     def count(self, side: Literal["left", "right"]) -> int:
-        """Number of turns to one side."""
+        """Returns the number of turns to one side."""
         return sum(turn.side == side for turn in self.turns)
 
 
 class _Line(NamedTuple):
-    """The centre line at its stations: heading in radians, curvature in 1/m."""
+    """The resampled centre line: stations and heights in metres, heading in radians, curvature in 1/m."""
 
     s: Array
     z: Array
@@ -137,11 +140,11 @@ def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
     """Measures the road whose centre line these points are.
 
     Args:
-        points: ``(n, 2)`` or ``(n, 3)`` in metres, about 1 m apart.
-        widest: metres, the radius below which a bend is a turn.
+        points: Points ``(n, 2)`` or ``(n, 3)`` in metres, about 1 m apart.
+        widest: Radius in metres below which a bend is a turn.
 
     Raises:
-        UsageError: fewer than two different points, or a number is not finite.
+        UsageError: There are fewer than two different points, or a number is not finite.
     """
     line = _resampled(points)
     s, z = line.s, line.z
@@ -165,7 +168,7 @@ def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
 
 
 def way(grade: float) -> Literal["up", "down", "flat"]:
-    """The class of a grade in percent."""
+    """Returns the class of a grade in percent."""
     if grade >= LEVEL:
         return "up"
     return "down" if grade <= -LEVEL else "flat"
@@ -194,7 +197,7 @@ def _resampled(points: ArrayLike) -> _Line:
 
 
 def _slope(values: Array) -> Array:
-    """Change per station: central differences, one-sided at the ends."""
+    """Returns the change per station, by central differences that are one-sided at the ends."""
     out = np.empty_like(values)
     out[1:-1] = (values[2:] - values[:-2]) / 2
     out[0], out[-1] = values[1] - values[0], values[-1] - values[-2]
@@ -202,7 +205,7 @@ def _slope(values: Array) -> Array:
 
 
 def _heading(dx: Array, dy: Array) -> Array:
-    """Directions without jumps, radians."""
+    """Returns headings without jumps in radians."""
     heading = np.arctan2(dy, dx)
     jumps = np.diff(heading)
     heading[1:] -= np.cumsum(np.round(jumps / (2 * np.pi))) * (2 * np.pi)
@@ -214,18 +217,18 @@ def _radius(curvature: Array) -> float:
 
 
 def _windows(line: _Line, width: int) -> Array:
-    """Grade over so many stations, percent, at every place."""
+    """Returns the grade in percent over so many stations, at every place."""
     return np.asarray(100 * (line.z[width:] - line.z[:-width]) / (line.s[width:] - line.s[:-width]))
 
 
 def _stretches(values: NDArray[np.int8]) -> tuple[Indices, Indices]:
-    """First and last index of every stretch of equal values."""
+    """Returns the first and the last index of every run of equal values."""
     cuts = np.flatnonzero(values[1:] != values[:-1])
     return np.concatenate([[0], cuts + 1]), np.concatenate([cuts, [len(values) - 1]])
 
 
 def _signs(values: Array, least: float) -> NDArray[np.int8]:
-    """1, -1, or 0 where the value does not exceed ``least`` either way."""
+    """Returns 1 or -1, or 0 where the absolute value does not exceed ``least``."""
     return (values > least).astype(np.int8) - (values < -least).astype(np.int8)
 
 
@@ -254,7 +257,7 @@ def _turns(line: _Line, widest: float) -> list[_Bend]:
 
 
 def _joined(bends: Sequence[_Bend], s: Array) -> list[_Bend]:
-    """Neighbours of one hand and close together, made one."""
+    """Merges neighbours that bend to the same side and are close together."""
     out: list[_Bend] = []
     for bend in bends:
         before = out[-1] if out else None
@@ -306,7 +309,10 @@ def _inner_grade(line: _Line, first: int, last: int) -> float:
 
 
 def _straight(line: _Line, first: int, last: int) -> MeasuredFeature:
-    """A straight and its pieces; itself as the only one where all are too short to count."""
+    """Returns a straight with its pieces.
+
+    Where all pieces are too short to count, it is its own only piece.
+    """
     here = np.arange(first, last + 1)
     before, after = np.maximum(here - HALF_WINDOW, 0), np.minimum(here + HALF_WINDOW, len(line.s) - 1)
     local = 100 * (line.z[after] - line.z[before]) / (line.s[after] - line.s[before])

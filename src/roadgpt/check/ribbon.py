@@ -1,4 +1,4 @@
-"""The ribbon of a road as a row of quads, and how far quads stand apart: plain numpy, no geometry library.
+"""The surface of a road as a row of quads, and how far quads are apart, in plain numpy.
 
 left[0] ---- left[1] ---- left[2]        quad i is (left i, left i+1, right i+1, right i),
    |   quad 0   |   quad 1   |           clockwise where the road does not fold
@@ -16,42 +16,46 @@ from roadgpt.road import Samples
 
 Indices = NDArray[np.intp]
 Boxes = tuple[Array, Array]
-"""Least and largest x and y, ``(n, 2)`` each."""
+"""Least and greatest x and y of bounding boxes, ``(n, 2)`` each."""
 
-BLOCK = 8  # quads that share one bounding box in the second look
-PORTION = 512  # quads that share one in the first look, and are handed out together; a multiple of BLOCK
+BLOCK = 8  # quads per bounding box in the second comparison
+PORTION = 512  # quads per bounding box in the first comparison and per result; a multiple of BLOCK
 SLIVER = 1e-6  # m^2: a corner flatter than this does not count as convex
 
 
 def sides(samples: Samples, half_width: float) -> tuple[Array, Array]:
-    """Left and right edge points ``(n, 2)`` of a road at its samples, metres."""
+    """Returns left and right edge points ``(n, 2)`` in metres of a road at its samples."""
     centre = np.stack((samples.x, samples.y), axis=1)
     across = half_width * np.stack((-np.sin(samples.heading), np.cos(samples.heading)), axis=1)
     return centre + across, centre - across
 
 
 def bulge(samples: Samples, half_width: float) -> float:
-    """How far, at most, a true edge bulges beyond the straight line between its samples, metres.
+    """Returns how far, at most, a true edge bulges beyond the straight line between its samples, in metres.
 
-    The rise of an arc over its chord: chord^2 times curvature / 8, on the outer edge of the tightest bend.
+    It is the rise of an arc over its chord, chord^2 times curvature / 8, on the outer edge of the tightest
+    bend.
     """
     step, bend = samples.s[1] - samples.s[0], float(np.abs(samples.curvature).max())
     return float(step**2 * bend * (1 + bend * half_width) / 8)
 
 
 def extent(samples: Samples, half_width: float) -> tuple[Array, Array]:
-    """Least and largest x and y, ``(2,)`` each in metres, that no edge of the road lies beyond."""
+    """Returns the least and the greatest x and y of the edges of the road, ``(2,)`` each in metres."""
     edges, slack = np.concatenate(sides(samples, half_width)), bulge(samples, half_width)
     return edges.min(axis=0) - slack, edges.max(axis=0) + slack
 
 
 def quads_of(left: Array, right: Array) -> Array:
-    """Quads ``(n - 1, 4, 2)`` between edge points ``(n, 2)`` on the left and on the right."""
+    """Returns quads ``(n - 1, 4, 2)`` between edge points ``(n, 2)`` on the left and on the right."""
     return np.stack((left[:-1], left[1:], right[1:], right[:-1]), axis=1)
 
 
 def is_convex(quads: Array) -> NDArray[np.bool_]:
-    """Which quads are convex, clockwise and no slivers, ``(n,)``. False where a number is not finite."""
+    """Returns which quads are convex, clockwise and no slivers, ``(n,)``.
+
+    Numbers that are not finite give False.
+    """
     sides = np.roll(quads, -1, axis=1) - quads
     ahead = np.roll(sides, -1, axis=1)
     corner = sides[..., 0] * ahead[..., 1] - sides[..., 1] * ahead[..., 0]
@@ -59,11 +63,11 @@ def is_convex(quads: Array) -> NDArray[np.bool_]:
 
 
 def near_pairs(quads: Array, reach: float, apart: int = 2) -> Iterator[tuple[Indices, Indices]]:
-    """Pairs i < j, at least ``apart`` in the row, whose bounding boxes come within ``reach`` metres.
+    """Yields pairs i < j, at least ``apart`` in the row, whose bounding boxes come within ``reach`` metres.
 
-    They come in portions along the road: of ``PORTION`` quads j in a row, all pairs. Boxes of portions are
-    compared first, then boxes of blocks, so that of a long road only what lies near is ever looked at; and
-    who needs no more than the first meeting, stops there.
+    The pairs come in portions along the road: all pairs for ``PORTION`` consecutive quads j. Boxes of
+    portions are compared first, then boxes of blocks, so that on a long road only nearby quads are compared.
+    A caller that needs only the first contact can stop there.
     """
     low, high = quads.min(axis=1) - reach, quads.max(axis=1)
     blocks, portions = _boxes(low, high, BLOCK), _boxes(low, high, PORTION)
@@ -92,13 +96,13 @@ def _pairs_of_portion(
 
 
 def _boxes(low: Array, high: Array, size: int) -> Boxes:
-    """The bounding boxes of so many boxes in a row."""
+    """Returns the bounding boxes of every ``size`` consecutive boxes."""
     starts = np.arange(0, len(low), size)
     return np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
 
 
 def _meeting(boxes: Boxes, some: Indices, others: Indices) -> tuple[Indices, Indices]:
-    """Which of some boxes touch which of the others: indices of both."""
+    """Returns which of some boxes touch which of the others, as indices of both."""
     low, high = boxes
     touch = _touch(low[some][:, None], high[some][:, None], low[others], high[others])
     one, other = np.nonzero(touch)
@@ -115,10 +119,10 @@ def _touch(low: Array, high: Array, other_low: Array, other_high: Array) -> Any:
 
 
 def gaps(quads: Array, i: Indices, j: Indices) -> Array:
-    """How far convex quads i and j stand apart, metres ``(m,)``: by the separating axes of their sides.
+    """Returns how far convex quads i and j are apart in metres ``(m,)``, by separating axes.
 
-    Positive: they are disjoint, and at least this far apart. Negative: they overlap; it takes this much to
-    part them. Nought: they touch.
+    A positive value means that they are disjoint and at least this far apart. A negative value means that
+    they overlap, and must move by this much to be apart. Zero means that they touch.
     """
     used, index = np.unique(np.concatenate((i, j)), return_inverse=True)
     quads, i, j = quads[used], index[: len(i)], index[len(i) :]
@@ -130,7 +134,7 @@ def gaps(quads: Array, i: Indices, j: Indices) -> Array:
 
 
 def _beyond(quads: Array, outward: Array, edge: Array, i: Indices, j: Indices) -> Array:
-    """Over the sides of quads i: how far all of quad j lies beyond the side that parts them best."""
+    """Returns how far all of quad j lies beyond the side of quad i that separates them best."""
     normal, corner = outward[i][:, :, None], quads[j][:, None]
     along = normal[..., 0] * corner[..., 0] + normal[..., 1] * corner[..., 1]
     return np.asarray((along.min(axis=2) - edge[i]).max(axis=1))

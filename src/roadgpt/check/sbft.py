@@ -1,6 +1,6 @@
 """The verdict of the SBFT tool competition's validator: its rules, order, messages and quirks, but fast.
 
-Source: the Cyber-Physical Systems tool competition's validator (2024). Quirks that are kept on purpose:
+Source: the Cyber-Physical Systems tool competition's validator (2024). These quirks are kept on purpose:
 
 * its test for "inside the map" binds ``and`` before ``or``, so a road wholly outside can be valid;
 * interpolation may add a node beyond the last point;
@@ -8,8 +8,9 @@ Source: the Cyber-Physical Systems tool competition's validator (2024). Quirks t
 * the length is measured on nodes that were interpolated once more;
 * the radius is that of the circle through nodes i, i+2, i+4, and the last such window is left out.
 
-Their validator asks a geometry library about every pair of quads. Here numpy decides the clear cases, by a
-margin that no rounding can bridge, and the library (shapely, imported only then) the rest, as it does there.
+The competition's validator asks a geometry library about every pair of quads. Here numpy decides the clear
+cases, by a margin larger than any rounding error, and the library (shapely, imported only then) decides the
+rest.
 """
 
 import math
@@ -28,8 +29,8 @@ MIN_RADIUS = 47.0  # ft
 MIN_LENGTH = 20.0  # m
 MAX_POINTS = 500
 STRAIGHT = 1e-6  # m^2: three nodes that span less (twice the triangle's area) lie on a line
-SPLINE_REACH = 1.5  # m, by which their spline may leave a road: a node 1 m too far, and some for rounding
-DOUBT = 1e-9  # of the largest coordinate, but no less than so many metres: closer calls go to shapely
+SPLINE_REACH = 1.5  # m by which the competition's spline may leave a road: a node 1 m too far, and rounding
+DOUBT = 1e-9  # of the largest coordinate, or metres if more: closer cases are left to shapely
 
 TOO_FEW = "Not enough road points."
 TOO_MANY = "The road definition contains too many points"
@@ -40,14 +41,14 @@ TOO_SHARP = "The road is too sharp"
 
 
 def sbft_verdict(points: ArrayLike, map_size: float) -> tuple[bool, str]:
-    """What the competition's validator says of a road: ``(is_valid, validation_message)``.
+    """Returns the competition validator's result for a road: ``(is_valid, validation_message)``.
 
     Args:
-        points: control points ``(n, 2)`` in metres; further columns are ignored.
-        map_size: side of the square map, metres.
+        points: Control points ``(n, 2)`` in metres; further columns are ignored.
+        map_size: Side length of the square map in metres.
 
     Raises:
-        UsageError: two neighbouring points are the same or a number is not finite; the competition's code
+        UsageError: Two neighbouring points are the same or a number is not finite. The competition's code
             itself stops there.
     """
     points = np.asarray(points, float)
@@ -75,17 +76,23 @@ def _complaint(nodes: Array, map_size: float) -> str:
 
 
 def splines(points: Array) -> tuple[Array, Array]:
-    """Nodes ``(n, 2)`` of the spline through control points ``(n, 2)``, driven forwards and backwards.
+    """Returns nodes ``(n, 2)`` of the spline through control points ``(n, 2)``, forwards and backwards.
 
-    The two differ: nodes are set from the first point on, and only beyond the last one may there be one more.
+    The two differ: nodes are placed from the first point on, and only beyond the last point may there be one
+    more.
     """
     return interpolate(points), interpolate(points[::-1])
 
 
 def edges(nodes: Array, road_width: float = ROAD_WIDTH) -> tuple[Array, Array]:
-    """Left and right edge points ``(n, 2)``: across the way to the next node; at the last, the one before."""
+    """Returns left and right edge points ``(n, 2)``, perpendicular to the direction to the next node.
+
+    At the last node the direction is that from the previous node.
+    """
     ahead = np.diff(nodes, axis=0, append=nodes[-2:-1])
-    with np.errstate(invalid="ignore"):  # nodes that coincide have no direction: NaN, which no quad survives
+    with np.errstate(
+        invalid="ignore"
+    ):  # coinciding nodes have no direction: the NaN makes their quads invalid
         across = ahead / np.sqrt((ahead**2).sum(axis=1, keepdims=True)) * (road_width / 2)
     turned = np.stack((-across[:, 1], across[:, 0]), axis=1)
     turned[-1] *= -1
@@ -94,12 +101,12 @@ def edges(nodes: Array, road_width: float = ROAD_WIDTH) -> tuple[Array, Array]:
 
 def _passes_for_inside(nodes: Array, map_size: float) -> bool:
     (min_x, min_y), (_, max_y), max_x = nodes.min(axis=0), nodes.max(axis=0), nodes[:, 0].max()
-    # theirs, with what the others imply left out: 0 < min_x or ... and 0 < max_x or ... and 0 < min_y or ...
+    # their condition, simplified: 0 < min_x or ... and 0 < max_x or ... and 0 < min_y or ...
     return bool(min_x > 0 or (max_x > map_size and min_y > 0) or max_y > map_size)
 
 
 def _meets_border(left: Array, right: Array, map_size: float) -> bool:
-    """Does the closed outline touch the border line of the map?"""
+    """Returns whether the closed outline touches the border line of the map."""
     outline = np.concatenate((left, right[::-1]))
     low, high, doubt = outline.min(), outline.max(), _doubt(outline)
     if low > doubt and high < map_size - doubt:
@@ -110,17 +117,17 @@ def _meets_border(left: Array, right: Array, map_size: float) -> bool:
     try:
         with np.errstate(invalid="ignore"):
             return bool(shapely.intersects(shapely.polygons(outline), border))
-    except shapely.errors.GEOSException:  # a NaN: their code stops here, ours lets the quads complain
+    except shapely.errors.GEOSException:  # a NaN: their code stops here, ours lets the check of quads fail
         return False
 
 
 def _doubt(points: Array) -> float:
-    """Distances below this are too close to call in floating point, metres."""
+    """Returns the distance in metres below which floating point cannot decide."""
     return DOUBT * max(1.0, float(np.abs(points).max()))
 
 
 def keeps_clear(quads: Array) -> bool:
-    """Every quad valid; quads apart in the row disjoint; neighbours sharing exactly their common side."""
+    """Returns whether all quads are valid, neighbours share exactly one side, and all others are disjoint."""
     plain = is_convex(quads)
     odd = np.flatnonzero(~plain)
     if odd.size and not _are_valid(quads[odd]):
@@ -133,7 +140,7 @@ def keeps_clear(quads: Array) -> bool:
 
 
 def _strangers_are_apart(quads: Array, plain: NDArray[np.bool_]) -> bool:
-    """Are quads that are no neighbours disjoint? Equal ones do not count."""
+    """Returns whether quads that are not neighbours are disjoint; equal quads are ignored."""
     doubt = _doubt(quads)
     return all(_are_apart(quads, plain, i, j, doubt) for i, j in near_pairs(quads, reach=doubt))
 
@@ -160,7 +167,7 @@ def _are_disjoint(quads: Array, i: Indices, j: Indices) -> bool:
 
 
 def _share_a_side(quads: Array, joints: Indices) -> bool:
-    """Is what quads i and i + 1 have in common a line, for every joint i, and neither in the other?"""
+    """Returns whether quads i and i + 1 have exactly a line in common, for every joint i."""
     import shapely
 
     one, other = shapely.polygons(quads[joints]), shapely.polygons(quads[joints + 1])
@@ -172,20 +179,21 @@ def _share_a_side(quads: Array, joints: Indices) -> bool:
 
 def _is_long_enough(nodes: Array) -> bool:
     apart = nodes[-1] - nodes[0]
-    if apart @ apart > (MIN_LENGTH + 1) ** 2:  # no detour can make it shorter than its ends are apart
+    if apart @ apart > (MIN_LENGTH + 1) ** 2:  # the road is no shorter than the distance between its ends
         return True
     return measured_length(nodes) > MIN_LENGTH
 
 
 def measured_length(nodes: Array) -> float:
-    """Metres along nodes ``(n, 2)`` that are interpolated once more."""
+    """Returns the length in metres along nodes ``(n, 2)`` that are interpolated once more."""
     return walked(interpolate(nodes))
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:
-    """The least of the ``radii`` of nodes ``(n, 2)``, metres, and its middle node's index.
+    """Returns the least of the ``radii`` of nodes ``(n, 2)`` in metres, and the index of its middle node.
 
-    Infinite where no three nodes make a circle: on a straight road, or with fewer than six nodes.
+    The radius is infinite where no three nodes form a circle: on a straight road, or with fewer than six
+    nodes.
     """
     found = radii(nodes)
     if not found.size:
@@ -195,9 +203,10 @@ def smallest_radius(nodes: Array) -> tuple[float, int]:
 
 
 def radii(nodes: Array) -> Array:
-    """Radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``.
+    """Returns radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``.
 
-    The last window is left out, as theirs is. Infinite where three nodes lie on a line.
+    The last window is left out, as in the competition's code. A radius is infinite where three nodes lie on a
+    line.
     """
     a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
     (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T

@@ -1,7 +1,7 @@
-"""Curves and frames of reference: makes planar curves and height profiles, and knows no roads.
+"""Plane curves and elevation profiles. This room knows nothing about roads.
 
-A plan curve answers ``at(s)``, ``heading(s)`` and ``curvature(s)`` by exact arc length; a profile answers
-``height(s)``, ``grade(s)`` and ``vertical_curvature(s)`` at the same stations.
+A plane curve answers ``at(s)``, ``heading(s)`` and ``curvature(s)`` at an exact arc length ``s``. An
+elevation profile answers ``height(s)``, ``grade(s)`` and ``vertical_curvature(s)`` at the same stations.
 """
 
 from roadgpt.geometry.curve import ElevationProfile, PlanCurve, wrap_angle

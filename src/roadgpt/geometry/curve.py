@@ -1,4 +1,4 @@
-"""What every plan curve and every height profile answers."""
+"""The protocols that every plane curve and every elevation profile fulfils."""
 
 from typing import Protocol
 
@@ -9,42 +9,42 @@ Array = NDArray[np.float64]
 
 
 class PlanCurve(Protocol):
-    """A curve in the plane, asked by arc length ``s`` in metres, 0 to ``length``."""
+    """A curve in the plane. It is evaluated at an arc length ``s`` in metres, from 0 to ``length``."""
 
     @property
     def length(self) -> float:
-        """Arc length, metres."""
+        """The arc length of the whole curve in metres."""
         ...
 
     def at(self, s: ArrayLike) -> Array:
-        """Points ``(..., 2)`` in metres at stations ``s`` of shape ``(...)``."""
+        """Returns points of shape ``(..., 2)`` in metres at stations ``s`` of shape ``(...)``."""
         ...
 
     def heading(self, s: ArrayLike) -> Array:
-        """Directions in radians, counter-clockwise from +x, continuous along the curve."""
+        """Returns headings in radians, counter-clockwise from +x and continuous along the curve."""
         ...
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Curvatures in 1/m, positive to the left."""
+        """Returns curvatures in 1/m, positive to the left."""
         ...
 
 
 class ElevationProfile(Protocol):
-    """Heights over the same stations as the plan."""
+    """The height of a road over the stations of its plane curve."""
 
     def height(self, s: ArrayLike) -> Array:
-        """Heights in metres."""
+        """Returns heights in metres at stations ``s``."""
         ...
 
     def grade(self, s: ArrayLike) -> Array:
-        """Slopes dz/ds, as ratios: 0.05 climbs 5 m in 100 m."""
+        """Returns grades dz/ds as ratios: 0.05 climbs 5 m in 100 m."""
         ...
 
     def vertical_curvature(self, s: ArrayLike) -> Array:
-        """Change of slope d2z/ds2 in 1/m, negative on a crest."""
+        """Returns the change of grade d2z/ds2 in 1/m, which is negative on a crest."""
         ...
 
 
 def wrap_angle(angle: ArrayLike) -> Array:
-    """The same direction within (-pi, pi]."""
+    """Returns the same angle within (-pi, pi]."""
     return np.pi - np.mod(np.pi - np.asarray(angle, float), 2 * np.pi)

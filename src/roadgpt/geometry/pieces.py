@@ -1,6 +1,7 @@
-"""Lines, arcs and clothoids joined end to end: the elements of OpenDRIVE's reference line.
+"""Curves made of lines, arcs and clothoids joined end to end: the elements of OpenDRIVE's reference line.
 
-A clothoid's curvature grows linearly along it, so its points are Fresnel integrals (scipy.special.fresnel).
+The curvature of a clothoid grows linearly along it, so its points are Fresnel integrals
+(scipy.special.fresnel).
 """
 
 from collections.abc import Sequence
@@ -13,14 +14,14 @@ from scipy.special import fresnel
 
 from roadgpt.geometry.curve import Array
 
-SAME = 1e-9  # 1/m, curvatures that no measurement tells apart
-ALMOST_ARC = 1e-3  # rad, change of curvature times length squared; below it Fresnel arguments lose digits
+SAME = 1e-9  # 1/m; curvatures closer than this are treated as equal
+ALMOST_ARC = 1e-3  # rad; below this change of curvature times squared length, Fresnel arguments lose digits
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A stretch whose curvature runs linearly from ``k0`` to ``k1`` (1/m) over ``length`` (m)."""
+    """A part of a curve whose curvature changes linearly from ``k0`` to ``k1`` (1/m) over ``length`` (m)."""
 
     length: float
     k0: float = 0.0
@@ -29,10 +30,10 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class PieceCurve:
-    """A plan curve that starts at ``(x, y)`` with ``heading0`` radians and runs through its pieces.
+    """A plane curve that starts at ``(x, y)`` with heading ``heading0`` in radians and follows its pieces.
 
     Raises:
-        ValueError: there is no piece, or one is not longer than nothing.
+        ValueError: There is no piece, or a piece does not have a positive length.
     """
 
     x: float
@@ -42,11 +43,11 @@ class PieceCurve:
 
     def __post_init__(self) -> None:
         if not self.pieces or not all(piece.length > 0 for piece in self.pieces):
-            raise ValueError("a curve needs pieces, each longer than 0 m")
+            raise ValueError("a curve needs at least one piece, and each piece must be longer than 0 m")
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array, Array, Array, Array]:
-        """Per piece: station, x, y, heading and curvature at its start, and change of curvature per metre."""
+        """Returns station, x, y, heading, curvature and its change per metre at the start of each piece."""
         rows = np.array([(p.length, p.k0, p.k1) for p in self.pieces])
         length, k0, k1 = rows[:, 0], rows[:, 1], rows[:, 2]
         dk = (k1 - k0) / length
@@ -59,7 +60,7 @@ class PieceCurve:
 
     @cached_property
     def length(self) -> float:
-        """Arc length, metres."""
+        """The arc length of the whole curve in metres."""
         return float(np.sum([piece.length for piece in self.pieces]))
 
     @cached_property
@@ -67,41 +68,45 @@ class PieceCurve:
         return np.array([piece.length for piece in self.pieces])
 
     def _place(self, s: ArrayLike) -> tuple[Array, np.ndarray]:
-        """Distance into its piece, and the piece's index, for each station; the ends are extended."""
+        """Returns the distance into its piece and the index of that piece for each station.
+
+        Before the first and after the last station, the first and the last piece are extended.
+        """
         s = np.asarray(s, float)
         start = self._table[0]
         index = np.clip(np.searchsorted(start, s, side="right") - 1, 0, len(start) - 1)
         return s - start[index], index
 
     def at(self, s: ArrayLike) -> Array:
-        """Points ``(..., 2)`` in metres."""
+        """Returns points of shape ``(..., 2)`` in metres."""
         u, i = self._place(s)
         _, x, y, heading, k0, dk = self._table
         dx, dy = advance(u, heading[i], k0[i], dk[i], self._lengths[i])
         return np.stack([x[i] + dx, y[i] + dy], axis=-1)
 
     def heading(self, s: ArrayLike) -> Array:
-        """Directions in radians."""
+        """Returns headings in radians."""
         u, i = self._place(s)
         _, _, _, heading, k0, dk = self._table
         return np.asarray(heading[i] + u * (k0[i] + u * dk[i] / 2))
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Curvatures in 1/m; at a jump, the one that follows."""
+        """Returns curvatures in 1/m. Where the curvature jumps, it returns the value after the jump."""
         u, i = self._place(s)
         _, _, _, _, k0, dk = self._table
         return np.asarray(k0[i] + u * dk[i])
 
 
 def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tuple[Array, Array]:
-    """Displacement after ``u`` metres from a start with this heading, curvature and change of curvature.
+    """Returns the displacement along x and y, in metres, after ``u`` metres on a line, an arc or a clothoid.
 
     Args:
-        u: distance, metres; shape (...).
-        heading: radians, at the start.
-        k: curvature, 1/m, at the start.
-        dk: change of curvature, 1/m^2.
-        length: of the whole piece, metres; decides how it is integrated.
+        u: Distance from the start of the piece in metres, of shape (...).
+        heading: Heading at the start in radians.
+        k: Curvature at the start in 1/m.
+        dk: Change of curvature in 1/m^2.
+        length: Length of the whole piece in metres. Together with ``dk`` it selects the method of
+            integration.
     """
     u, heading, k, dk, length = np.broadcast_arrays(u, heading, k, dk, length)
     turn = k * u
@@ -116,7 +121,7 @@ def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tup
 
 
 def _fresnel(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, Array]:
-    """A clothoid is a stretch of Euler's spiral: move its start to where its curvature has grown to ``k``."""
+    """Integrates a clothoid as part of Euler's spiral, from the place where its curvature is ``k``."""
     sign = np.sign(dk)
     a = np.sqrt(np.abs(dk) / np.pi)
     origin = sign * k / np.abs(dk)
@@ -129,7 +134,7 @@ def _fresnel(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, Arra
 
 
 def _quadrature(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, Array]:
-    """Gauss-Legendre, exact to rounding for so slight a change of curvature."""
+    """Integrates by Gauss-Legendre quadrature, exact to rounding where the curvature hardly changes."""
     v = u[..., None] * (_NODES + 1) / 2
     phase = heading[..., None] + v * (k[..., None] + v * dk[..., None] / 2)
     half = u / 2
@@ -137,7 +142,7 @@ def _quadrature(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, A
 
 
 def joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-    """The same curve with neighbours of equal, constant curvature made one, and empty pieces left out."""
+    """Returns the same curve without empty pieces, and with neighbours of equal constant curvature merged."""
     out: list[Piece] = []
     for piece in pieces:
         if piece.length <= 1e-9:

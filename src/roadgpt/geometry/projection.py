@@ -1,4 +1,4 @@
-"""From points of the plane back to a curve: the nearest station and the distance to its left."""
+"""Projects points of the plane onto a curve: the nearest station and the offset to the left of it."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,9 +10,10 @@ ROUNDS = 8  # Newton steps; each squares the error
 
 
 def project(curve: PlanCurve, points: ArrayLike) -> tuple[Array, Array]:
-    """Stations ``s`` and offsets ``t`` (positive to the left), both in metres, of points ``(..., 2)``.
+    """Returns the stations ``s`` and offsets ``t`` (positive to the left) in metres of points ``(..., 2)``.
 
-    A point beyond an end belongs to that end, and its offset is its signed distance across the road there.
+    A point beyond an end of the curve is projected onto that end; its offset is its signed distance across
+    the road there.
     """
     points = np.asarray(points, float)
     flat = points.reshape(-1, 2)
@@ -36,7 +37,7 @@ def _nearest(curve: PlanCurve, flat: Array) -> Array:
 
 
 def _local(curve: PlanCurve, s: Array, flat: Array) -> tuple[Array, Array]:
-    """How far the points lie ahead of, and to the left of, the curve's frame at ``s``."""
+    """Returns how far the points lie ahead of, and to the left of, the curve's frame at ``s``."""
     away = flat - curve.at(s)
     heading = curve.heading(s)
     cos, sin = np.cos(heading), np.sin(heading)

@@ -1,7 +1,8 @@
-"""The cubic spline through points that RoadGPT and the SBFT tool competition build roads from.
+"""The cubic spline through points from which RoadGPT and the SBFT tool competition build roads.
 
-``interpolate`` gives their points exactly, quirks included; ``SplineCurve`` is the same curve by arc length.
-Source: the competition's ``road_points`` interpolation (scipy.interpolate.splprep without smoothing).
+``interpolate`` returns exactly the competition's points, quirks included. ``SplineCurve`` is the same curve
+by arc length. Source: the competition's ``road_points`` interpolation (scipy.interpolate.splprep without
+smoothing).
 """
 
 from dataclasses import dataclass
@@ -15,10 +16,10 @@ from scipy.interpolate import splev, splprep
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 
-MIN_NODES = 20  # of the interpolation, however short the road
-DECIMALS = 3  # that the competition rounds interpolated points to
+MIN_NODES = 20  # of the interpolation, for however short a road
+DECIMALS = 3  # the competition rounds interpolated points to millimetres
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-_NEWTON = 8  # steps at most; two do where nodes lie near to each other
+_NEWTON = 8  # steps at most; two are enough where nodes are close together
 _CLOSE = 1e-4  # m, before a last Newton step
 _SPANS = 4  # quadrature spans per spline interval: arc length good to a micrometre
 
@@ -32,33 +33,34 @@ def _spline(points: Array) -> tuple[Tck, Array]:
     try:
         tck, u = splprep(points.T, s=0, k=degree)
     except ValueError as error:
-        raise UsageError("two neighbouring points of the road are the same; remove the double one") from error
+        raise UsageError("two neighbouring points of the road are the same; remove the duplicate") from error
     knots, coefficients, _ = cast(tuple[Array, list[Array], int], tck)
     return (knots, coefficients, degree), np.asarray(u)
 
 
 def walked(points: Array) -> float:
-    """Length of a polyline through points ``(n, 2)``, added up one by one as the competition's library does.
+    """Returns the length of a polyline through points ``(n, 2)``, summed as the competition's library does.
 
-    Another order of adding, or hypot, would round a 30 m polyline to 29.999... and lose a node.
+    With another order of summation, or with hypot, a polyline of 30 m would round to 29.999... and lose a
+    node.
     """
     return float(np.cumsum(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)))[-1])
 
 
 def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECIMALS) -> Array:
-    """The competition's interpolated points, about one per metre, rounded to millimetres.
+    """Returns the competition's interpolated points, about one per metre, rounded to millimetres.
 
     Args:
-        points: control points ``(n, 2)`` or ``(n, 3)`` in metres, n >= 2.
-        fewest: points that a short road is given at least.
-        decimals: that are kept.
+        points: Control points ``(n, 2)`` or ``(n, 3)`` in metres, n >= 2.
+        fewest: The least number of points for a short road.
+        decimals: The number of decimals to round to.
 
     Returns:
-        ``(m, 2)`` or ``(m, 3)``. For some lengths the last point lies beyond the last control point,
-        as theirs does: ``arange`` runs over by rounding.
+        Points of shape ``(m, 2)`` or ``(m, 3)``. For some lengths the last point lies beyond the last control
+        point, as in the competition's code: ``arange`` overshoots by rounding.
 
     Raises:
-        UsageError: fewer than two points, or two neighbours are the same.
+        UsageError: There are fewer than two points, or two neighbours are the same.
     """
     points = np.asarray(points, float)
     tck, _ = _spline(points)
@@ -69,7 +71,7 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
 
 @dataclass(frozen=True, eq=False)
 class SplineCurve:
-    """A spline in the plane, or in space and seen from above, asked by arc length in plan."""
+    """A spline in the plane, or the plan view of a spline in space, evaluated by arc length in plan."""
 
     tck: Tck
     knots: Array
@@ -77,17 +79,17 @@ class SplineCurve:
 
     @classmethod
     def through(cls, points: ArrayLike) -> "SplineCurve":
-        """The curve through control points ``(n, 2)`` or ``(n, 3)`` in metres.
+        """Returns the curve through control points ``(n, 2)`` or ``(n, 3)`` in metres.
 
         Raises:
-            UsageError: fewer than two points, two neighbours are the same, or the spline runs nowhere.
+            UsageError: There are fewer than two points, or two neighbours are the same.
         """
         tck, knots = _spline(np.asarray(points, float))
         return cls(tck, knots)
 
     @cached_property
     def _arc(self) -> tuple[Array, Array]:
-        """Parameters and the arc length reached at each, by Gauss-Legendre over every span."""
+        """Returns parameters and the arc length at each, by Gauss-Legendre quadrature over every span."""
         u = np.unique(np.linspace(self.knots[:-1], self.knots[1:], _SPANS + 1).ravel())
         half = np.diff(u)[:, None] / 2
         inner = u[:-1, None] + half * (_NODES + 1)
@@ -99,16 +101,16 @@ class SplineCurve:
 
     @property
     def length(self) -> float:
-        """Arc length in plan, metres."""
+        """The arc length in plan in metres."""
         return float(self._arc[1][-1])
 
     @cached_property
     def stations(self) -> Array:
-        """Arc length at each control point, ``(n,)``, metres."""
+        """The arc length at each control point in metres, of shape ``(n,)``."""
         return self._reached(self.knots)
 
     def parameter(self, s: ArrayLike) -> Array:
-        """Spline parameters at stations ``s``, by Newton steps from a table that is already close."""
+        """Returns the spline parameters at stations ``s``, by Newton steps from the values of a table."""
         s = np.asarray(s, float)
         table_u, table_s = self._arc
         u = np.interp(s, table_s, table_u)
@@ -124,7 +126,7 @@ class SplineCurve:
         return np.asarray(np.maximum(flat, 1e-9)).reshape(np.shape(u))
 
     def _reached(self, u: Array) -> Array:
-        """Arc length at parameters ``u``: from the table to the last span, and by quadrature inside it."""
+        """Returns the arc length at parameters ``u``: from the table, then by quadrature in the last span."""
         table_u, table_s = self._arc
         i = np.clip(np.searchsorted(table_u, u, side="right") - 1, 0, len(table_u) - 2)
         half = np.asarray((u - table_u[i]) / 2)[..., None]
@@ -132,17 +134,17 @@ class SplineCurve:
         return np.asarray(table_s[i] + half[..., 0] * (self._speed(inner) @ _WEIGHTS))
 
     def at(self, s: ArrayLike) -> Array:
-        """Points ``(..., 2)`` in metres."""
+        """Returns points of shape ``(..., 2)`` in metres."""
         return np.asarray(np.stack(splev(self.parameter(s), self.tck)[:2], axis=-1), float)
 
     def heading(self, s: ArrayLike) -> Array:
-        """Directions in radians, continuous along the stations given."""
+        """Returns headings in radians, continuous along the given stations."""
         dx, dy = self._derivative(self.parameter(s), 1)[:2]
         angle = np.arctan2(dy, dx)
         return np.asarray(np.unwrap(angle) if angle.ndim else angle)
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Curvatures in 1/m."""
+        """Returns curvatures in 1/m, positive to the left."""
         u = self.parameter(s)
         dx, dy = self._derivative(u, 1)[:2]
         ddx, ddy = self._derivative(u, 2)[:2] if self.tck[2] > 1 else (np.zeros_like(dx), np.zeros_like(dy))
@@ -151,21 +153,21 @@ class SplineCurve:
 
 @dataclass(frozen=True, eq=False)
 class SplineProfile:
-    """Heights of a spline in space, over its arc length in plan."""
+    """The heights of a spline in space, over its arc length in plan."""
 
     curve: SplineCurve
 
     def height(self, s: ArrayLike) -> Array:
-        """Heights in metres."""
+        """Returns heights in metres."""
         return np.asarray(splev(self.curve.parameter(s), self.curve.tck)[2])
 
     def grade(self, s: ArrayLike) -> Array:
-        """Slopes, as ratios."""
+        """Returns grades as ratios."""
         dx, dy, dz = self.curve._derivative(self.curve.parameter(s), 1)
         return np.asarray(dz / np.maximum(np.hypot(dx, dy), 1e-9))
 
     def vertical_curvature(self, s: ArrayLike) -> Array:
-        """Change of slope in 1/m, negative on a crest."""
+        """Returns the change of grade in 1/m, negative on a crest."""
         u = self.curve.parameter(s)
         dx, dy, dz = self.curve._derivative(u, 1)
         if self.curve.tck[2] == 1:

@@ -1,7 +1,7 @@
-"""Roads: makes a World, a Design and the Road that grows from it. Verb: ``build``.
+"""Roads: the World, the Design and the Road that is built from it. Main function: ``build``.
 
-A Design is the blueprint that a designer writes and a person reads; a Road is 3-D geometry, asked with
-``road.at(s, t)``. Stations ``s`` run along the centre line, offsets ``t`` to its left, heights up.
+A Design is the blueprint that a designer writes and a person can read. A Road is 3-D geometry, evaluated with
+``road.at(s, t)``: stations ``s`` run along the centre line, offsets ``t`` to its left, heights upwards.
 """
 
 from roadgpt.road.builder import Geometry, build

@@ -1,13 +1,14 @@
-r"""The plan of a Design: how each segment becomes lines, arcs and clothoids.
+r"""The horizontal alignment of a Design: how each segment becomes lines, arcs and clothoids.
 
-A turning segment bends from the curvature at its entry over its own to that at its exit:
+A turning segment goes from the curvature at its entry over its own curvature to the curvature at its exit:
 
     curvature   own   ____arc____
                      /           \
-           entry ___/             \___ exit        entry and exit are 0 next to a straight or a turn of
-                clothoid      clothoid             the other hand; between turns of one hand, the gentler's
+           entry ___/             \___ exit        entry and exit are 0 next to a straight or a turn to
+                clothoid      clothoid             the other side; between turns to one side, the gentler's
 
-so segments of one hand in a row are one longer turn, as RoadGPT's prompt asks of turns beyond 70 degrees.
+Consecutive segments that turn to the same side are therefore one longer turn, as RoadGPT's prompt asks for
+turns beyond 70 degrees.
 """
 
 import math
@@ -17,16 +18,19 @@ from typing import NamedTuple
 from roadgpt.geometry import Piece
 from roadgpt.road.design import Segment
 
-TRANSITION_SHARE = 0.25  # of the distance, for each clothoid that the design leaves open
-LONGEST_TRANSITION = 12.0  # m, for a clothoid that the design leaves open
-MOST_TRANSITION = 0.45  # of the distance, for each clothoid of a turn whose radius is open
-ROUNDS = 60  # of settling joints; each brings neighbours closer
+TRANSITION_SHARE = 0.25  # share of the distance, for each clothoid whose length the design leaves open
+LONGEST_TRANSITION = 12.0  # m, for a clothoid whose length the design leaves open
+MOST_TRANSITION = 0.45  # share of the distance, for each clothoid of a turn without a given radius
+ROUNDS = 60  # of the fixed-point iteration; each brings neighbouring curvatures closer
 SETTLED = 1e-12  # 1/m
-EQUAL = 1e-9  # 1/m; between curvatures so near no clothoid is needed
+EQUAL = 1e-9  # 1/m; curvatures closer than this need no clothoid between them
 
 
 class _TurnSpec(NamedTuple):
-    """What a segment asks of its turn; angle and curvatures without their sign."""
+    """What a segment asks of its turn.
+
+    Angle and curvatures have no sign; ``hand`` is 1 to the left, -1 to the right.
+    """
 
     distance: float
     turn: float
@@ -36,7 +40,7 @@ class _TurnSpec(NamedTuple):
 
 
 class _TurnLayout(NamedTuple):
-    """How the turn is laid out: own curvature, and lengths of clothoid, arc, clothoid and spare straight."""
+    """A turn's own curvature, and the lengths of its clothoid, arc, clothoid and unused straight."""
 
     own: float
     first: float
@@ -46,9 +50,10 @@ class _TurnLayout(NamedTuple):
 
 
 def pieces_of(segments: Sequence[Segment]) -> list[Piece]:
-    """The pieces of all segments, in order; every segment keeps its distance and its turn exactly.
+    """Returns the pieces of all segments in order. Every segment keeps its distance and its turn exactly.
 
-    A radius is kept where it fits into the distance and the turn does not run on into others on both sides.
+    A radius is kept where it fits into the distance and where the turn does not continue into others on both
+    sides.
     """
     bends = [_bend(segment) for segment in segments]
     joints = _settled_joints(bends)
@@ -67,7 +72,7 @@ def _bend(segment: Segment) -> _TurnSpec | None:
 
 
 def _settled_joints(bends: Sequence[_TurnSpec | None]) -> list[float]:
-    """Curvatures at the start, between all segments, and at the end: a fixed point, reached from below."""
+    """Returns the curvatures at the start, between segments and at the end, by fixed-point iteration."""
     joints = [0.0] * (len(bends) + 1)
     meets = [i for i in range(1, len(bends)) if _same_hand(bends[i - 1], bends[i])]
     for _ in range(ROUNDS if meets else 0):
@@ -85,7 +90,7 @@ def _same_hand(one: _TurnSpec | None, other: _TurnSpec | None) -> bool:
 
 
 def _solve(bend: _TurnSpec, entry: float, exit_: float) -> _TurnLayout:
-    """The layout whose lengths add up to the distance and whose curvature adds up to the turn."""
+    """Returns the layout whose lengths add up to the distance and whose curvature adds up to the turn."""
     if bend.radius and 0 in (entry, exit_):
         kept = _with_radius(bend, 1 / bend.radius, entry, exit_)
         if kept:
@@ -96,7 +101,7 @@ def _solve(bend: _TurnSpec, entry: float, exit_: float) -> _TurnLayout:
 
 
 def _with_radius(bend: _TurnSpec, own: float, entry: float, exit_: float) -> _TurnLayout | None:
-    """The layout with this curvature, the spare length straight; None where the distance is too short."""
+    """Returns the layout with this curvature; None if the distance is too short for it."""
     first = bend.ramp if entry < own - EQUAL else 0.0
     last = bend.ramp if exit_ < own - EQUAL else 0.0
     turned = first * (own + entry) / 2 + last * (own + exit_) / 2
@@ -108,7 +113,7 @@ def _with_radius(bend: _TurnSpec, own: float, entry: float, exit_: float) -> _Tu
 
 
 def _pieces(bend: _TurnSpec, entry: float, exit_: float) -> list[Piece]:
-    """Clothoid, arc, clothoid; the spare length lies at the ends where the curvature is 0."""
+    """Returns clothoid, arc and clothoid; the remaining length lies at the ends where the curvature is 0."""
     shape = _solve(bend, entry, exit_)
     free = (entry == 0) + (exit_ == 0)
     k, k_in, k_out = bend.hand * shape.own, bend.hand * entry, bend.hand * exit_

@@ -1,4 +1,4 @@
-"""From a Design to a Road: lines, arcs and clothoids over parabolic grades, or RoadGPT's spline."""
+"""Builds a Road from a Design: lines, arcs and clothoids over parabolic grades, or RoadGPT's spline."""
 
 import math
 from typing import Literal
@@ -15,15 +15,15 @@ Geometry = Literal["arcs", "spline"]
 
 
 def build(design: Design, geometry: Geometry = "arcs") -> Road:
-    """The Road that grows from a Design.
+    """Returns the Road that a Design describes.
 
     Args:
-        design: the blueprint.
-        geometry: "arcs" keeps every distance, angle and radius; "spline" is RoadGPT's way: nodes at the ends
-            of the segments, and a cubic spline through them.
+        design: The blueprint.
+        geometry: "arcs" keeps every distance, angle and radius. "spline" is RoadGPT's method: nodes at the
+            ends of the segments, and a cubic spline through them.
 
     Raises:
-        UsageError: the spline's nodes coincide, or the road would be longer than 50 km.
+        UsageError: Nodes of the spline coincide, or the road would be longer than 50 km.
     """
     if geometry == "spline":
         return Road.through(nodes_of(design))

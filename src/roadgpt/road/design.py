@@ -1,11 +1,11 @@
-"""The blueprint of a road in RoadGPT's own format, read and written exactly.
+"""The blueprint of a road in RoadGPT's own JSON format, read and written exactly.
 
     {"starting_point": [x, y, z], "theta": degrees,
      "road_segment1": {"distance", "direction", "incline", "turn_degrees"}, "road_segment2": ...}
 
-``theta`` 0 looks along +x and grows counter-clockwise, as RoadGPT's code has it (its prompt says +y).
-``distance`` is the length along the plan curve; ``radius``, ``transition`` and ``vertical_radius`` are ours,
-and optional.
+A ``theta`` of 0 points along +x and grows counter-clockwise, as in RoadGPT's code (its prompt says +y).
+``distance`` is the length along the plan curve. ``radius``, ``transition`` and ``vertical_radius`` are
+optional additions of this project.
 """
 
 import math
@@ -22,7 +22,7 @@ MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
 MAX_SEGMENTS = 500
 REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # of a segment in a file
-FITS = 0.99  # of a vertical radius that was written: what is built of it, without a remark
+FITS = 0.99  # share of the written vertical radius that may be built without a remark
 KEY = re.compile(r"road_segment(\d{1,6})")
 
 Direction = Literal["left", "right", "straight"]
@@ -35,29 +35,29 @@ class _Frozen(BaseModel):
 
 
 class Segment(_Frozen):
-    """One stretch of road: how far, which way, how steep, how much it turns."""
+    """One segment of a road: how long it is, which way and how far it turns, and how steep it is."""
 
     distance: Length
-    """Metres along the plan curve."""
+    """Length along the plan curve in metres."""
     direction: Direction
     incline: Annotated[float, Field(ge=-100, le=100)] = 0.0
-    """Percent."""
+    """Grade in percent, uphill positive."""
     turn_degrees: Annotated[float, Field(ge=-360, le=360)] = 0.0
-    """Left positive, right negative."""
+    """Change of heading in degrees, positive to the left."""
     radius: Length | None = None
-    """Metres, of the arc; what the turn does not need of the distance stays straight."""
+    """Radius of the arc in metres. The part of the distance that the turn does not need stays straight."""
     transition: Length | None = None
-    """Metres, of the clothoid at either end of a turn."""
+    """Length in metres of the transition curve (clothoid) at either end of a turn."""
     vertical_radius: Length | None = None
-    """Metres, of the parabola from the slope of the segment before to its own."""
+    """Radius in metres of the vertical curve from the grade of the previous segment to this one's."""
 
 
 class Design(_Frozen):
-    """Where a road starts, which way it looks, and its segments in driving order."""
+    """Where a road starts, its heading there, and its segments in driving order."""
 
     starting_point: tuple[Finite, Finite, Finite]
     theta: Finite
-    """Degrees, 0 along +x, counter-clockwise."""
+    """Heading at the start in degrees, 0 along +x, counter-clockwise."""
     segments: Annotated[tuple[Segment, ...], Field(min_length=1, max_length=MAX_SEGMENTS)]
 
     def __repr__(self) -> str:
@@ -67,7 +67,7 @@ class Design(_Frozen):
         return f"Design({about}, from {self.starting_point} at {self.theta:g} degrees)"
 
     def to_json(self) -> dict[str, Any]:
-        """RoadGPT's dictionary; whole numbers are written as integers, as its models write them."""
+        """Returns RoadGPT's dictionary. Whole numbers are written as integers, as its models write them."""
         out: dict[str, Any] = {
             "starting_point": [_plain(v) for v in self.starting_point],
             "theta": _plain(self.theta),
@@ -84,13 +84,13 @@ def _plain(value: Any) -> Any:
 
 
 def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
-    """A Design from RoadGPT's dictionary, and a sentence for everything that had to be settled.
+    """Returns a Design read from RoadGPT's dictionary, and a sentence for each thing that had to be settled.
 
     Where ``direction`` and the sign of ``turn_degrees`` disagree, as in the thesis' own example, the
-    direction wins. A turn beyond 70 degrees or an incline beyond 15 % is kept, and remarked on.
+    direction wins. A turn beyond 70 degrees or an incline beyond 15 % is kept and remarked on.
 
     Raises:
-        UsageError: a field is missing, misnamed, of the wrong type or out of range.
+        UsageError: A field is missing, misnamed, of the wrong type or out of range.
     """
     if not isinstance(data, Mapping):
         raise UsageError("a design is a JSON object with starting_point, theta and road_segment1, ...")
@@ -99,9 +99,7 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
     numbers = [number for number, _ in numbered]
     if numbers != [*range(1, len(numbers) + 1)]:
         told = ", ".join([*map(str, numbers[:12]), *(["..."] if len(numbers) > 12 else [])])
-        remarks.append(
-            f"segments are numbered {told} and not 1, 2, 3, ...; they follow each other in this order"
-        )
+        remarks.append(f"segments are numbered {told} instead of 1, 2, 3, ...; they are taken in this order")
     for number, raw in numbered:
         segment, said = _segment(number, raw)
         segments.append(segment)
@@ -117,13 +115,13 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
 
 
 def _unfit(segments: Sequence[Segment]) -> Iterator[str]:
-    """A sentence for each vertical radius that has no room."""
+    """Yields a sentence for each vertical radius for which there is too little room."""
     for parabola in vertical_curves_of(segments):
         asked = segments[parabola.number].vertical_radius
         if asked and parabola.radius < FITS * asked:
             yield (
                 f"segment {parabola.number + 1}: a vertical radius of {asked:g} m does not fit between the "
-                f"changes of grade beside it; it becomes {parabola.radius:.0f} m"
+                f"neighbouring changes of grade; it becomes {parabola.radius:.0f} m"
             )
 
 
@@ -135,8 +133,8 @@ def _numbered(data: Mapping[str, Any]) -> list[tuple[int, Any]]:
             found.append((int(match[1]), raw))
         elif key not in ("starting_point", "theta"):
             raise UsageError(
-                f"the design has a field '{str(key)[:40]}' that nobody knows; "
-                "fields are starting_point, theta and road_segment1, road_segment2, ..."
+                f"the design has a field '{str(key)[:40]}' that is unknown; "
+                "the fields are starting_point, theta and road_segment1, road_segment2, ..."
             )
     found.sort(key=lambda pair: pair[0])
     if not found:
@@ -174,13 +172,13 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
     if segment.radius and math.radians(abs(turn)) * segment.radius > segment.distance:
         remarks.append(
             f"segment {number}: {abs(turn):g} degrees at a radius of {segment.radius:g} m do not fit into "
-            f"{segment.distance:g} m; the distance wins, and the turn is tighter"
+            f"{segment.distance:g} m; the distance is kept, and the turn is tighter"
         )
     return segment.model_copy(update={"turn_degrees": turn}), remarks
 
 
 def _no_truths(what: str, data: Mapping[str, Any]) -> None:
-    """UsageError where true or false stands for a number."""
+    """Raises UsageError where true or false is given in place of a number."""
     for name, value in data.items():
         values = value if isinstance(value, (list, tuple)) else (value,)
         if any(isinstance(each, bool) for each in values):
@@ -188,7 +186,7 @@ def _no_truths(what: str, data: Mapping[str, Any]) -> None:
 
 
 def _first(error: ValidationError) -> str:
-    """The first complaint, as 'field: what to do'."""
+    """Returns the first complaint as 'field: what to do'."""
     problem = error.errors()[0]
     place = ".".join(str(part) for part in problem["loc"])
     said = _advice(problem["type"], problem.get("ctx", {})) or str(problem["msg"])
@@ -196,13 +194,13 @@ def _first(error: ValidationError) -> str:
 
 
 def _advice(kind: str, bounds: Mapping[str, Any]) -> str | None:
-    """What to do about a complaint of pydantic's; None where its own words will do."""
+    """Returns what to do about a complaint of pydantic's; None where pydantic's own words are good enough."""
     known = {
         "missing": "is missing; add it",
-        "extra_forbidden": "is no field of a design; remove it",
-        "finite_number": "is no number; give a finite one",
-        "float_type": "is no number; give one",
-        "float_parsing": "is no number; give one",
+        "extra_forbidden": "is not a field of a design; remove it",
+        "finite_number": "is not finite; give a finite number",
+        "float_type": "is not a number; give one",
+        "float_parsing": "is not a number; give one",
         "model_type": "give an object with distance, direction, incline, turn_degrees",
     }
     limits = {"greater_than_equal": ("ge", "or more"), "less_than_equal": ("le", "or less")}

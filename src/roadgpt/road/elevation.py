@@ -1,4 +1,4 @@
-"""The heights of a Design: each segment's incline, joined by parabolas centred on the joints."""
+"""The vertical alignment of a Design: each segment's grade, joined by parabolas centred on the joints."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -9,41 +9,41 @@ from roadgpt.geometry import GradeProfile
 if TYPE_CHECKING:
     from roadgpt.road.design import Segment
 
-CREST_RADIUS = 250.0  # m, of a parabola whose radius the design leaves open
-MOST_OF_SEGMENT = 0.9  # the two parabolas of a segment may take this share of it, where radii are open
-MOST_OF_SLOPE = 0.98  # what parabolas with a radius of their own may take of a slope, over all its segments
+CREST_RADIUS = 250.0  # m, radius of a parabola where the design gives none
+MOST_OF_SEGMENT = 0.9  # share of a segment that its two parabolas may take, where no radius is given
+MOST_OF_SLOPE = 0.98  # share of a slope, over all its segments, that parabolas with a given radius may take
 
 
 class VerticalCurve(NamedTuple):
-    """The change of grade at the start of a segment."""
+    """The parabola that joins the grades of two segments, at the start of the second one."""
 
     number: int
-    """Of the segment, from 0."""
+    """Index of the segment that it leads into, from 0."""
     s: float
-    """Station of its middle, metres."""
+    """Station of its middle in metres."""
     half: float
-    """Half of its length, metres."""
+    """Half of its length in metres."""
     change: float
-    """Of the grade, as a ratio, positive in a dip."""
+    """Change of grade as a ratio, positive in a dip."""
 
     @property
     def radius(self) -> float:
-        """Metres."""
+        """The vertical radius in metres."""
         return 2 * self.half / abs(self.change)
 
 
 def vertical_curves(
     distances: Sequence[float], grades: Sequence[float], radii: Sequence[float | None]
 ) -> list[VerticalCurve]:
-    """The parabolas where grades change, in order.
+    """Returns the vertical curves where grades change, in order.
 
-    One with a radius of its own is as long as that takes. Where it does not fit between its neighbours, it is
-    made shorter, and so is theirs, in proportion.
+    A curve whose radius is given has the length that this radius requires. Where it does not fit between its
+    neighbours, it and they are shortened in proportion.
 
     Args:
-        distances: of the segments, metres.
-        grades: of the segments, ratios.
-        radii: metres, of the parabola at the start of each segment; None leaves it open.
+        distances: Lengths of the segments in metres.
+        grades: Grades of the segments as ratios.
+        radii: Radius in metres of the curve at the start of each segment; None where it may be chosen.
     """
     joints: list[tuple[int, float, float]] = []
     wants: list[float] = []
@@ -73,7 +73,7 @@ def vertical_curves(
 
 
 def _share(wants: Sequence[float], own: Sequence[bool], room: float, n: int, other: int | None) -> float:
-    """Metres of a slope for the parabola ``n`` at one of its ends."""
+    """Returns the length in metres that curve ``n`` may take of the grade at one of its ends."""
     if other is None:
         return room
     if not own[other]:  # it keeps to its own segment
@@ -82,7 +82,7 @@ def _share(wants: Sequence[float], own: Sequence[bool], room: float, n: int, oth
 
 
 def vertical_curves_of(segments: "Sequence[Segment]") -> list[VerticalCurve]:
-    """The parabolas between segments."""
+    """Returns the vertical curves between segments."""
     return vertical_curves(
         [segment.distance for segment in segments],
         [segment.incline / 100 for segment in segments],
@@ -91,7 +91,10 @@ def vertical_curves_of(segments: "Sequence[Segment]") -> list[VerticalCurve]:
 
 
 def elevation_of(segments: "Sequence[Segment]", z0: float) -> GradeProfile:
-    """The profile over the plan stations of the segments; parabolas change no height at the far joints."""
+    """Returns the elevation profile over the stations of the segments.
+
+    A vertical curve does not change the height at the neighbouring joints.
+    """
     grades = [segment.incline / 100 for segment in segments]
     stations, values = [0.0], [grades[0]]
     for i, at, half, _ in vertical_curves_of(segments):

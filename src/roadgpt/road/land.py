@@ -1,4 +1,4 @@
-"""The land around a road: it follows the road and never covers it; beyond it lie gentle hills."""
+"""The land around a road. It follows the road and never covers it; farther away there are gentle hills."""
 
 from dataclasses import dataclass
 
@@ -10,28 +10,31 @@ from roadgpt.road.road import Road
 from roadgpt.road.world import World
 
 MARGIN = 130.0  # m around the road
-FINEST, CELLS = 4.0, 160  # m; along the longer side, at most
-FAR = (300.0, 900.0, 2500.0, 7000.0)  # m beyond the margin, so that the land reaches the horizon
-BELOW = 0.35  # m that the land stays below the road, at least
+FINEST, CELLS = 4.0, 160  # m, and the most cells along the longer side
+FAR = (300.0, 900.0, 2500.0, 7000.0)  # m beyond the margin; these rows and columns reach the horizon
+BELOW = 0.35  # m by which the land stays below the road at least
 LEAST = 40.0  # m across
 LONGEST_STEP = 2.0  # m along the road
 
 
 @dataclass(frozen=True, eq=False)
 class Land:
-    """Heights over a net of columns ``x`` and rows ``y``, whose spacing is ``cell`` but for the far ones."""
+    """Heights on a grid of columns ``x`` and rows ``y``.
+
+    The spacing is ``cell``, except for the far rows and columns.
+    """
 
     x: Array
     y: Array
     heights: Array
-    """(rows, columns), metres."""
+    """Heights in metres, of shape (rows, columns)."""
     away: Array
-    """(rows, columns), metres from where the road fixes the height."""
+    """Distance in metres from the area where the road determines the height, of shape (rows, columns)."""
     cell: float
 
     @classmethod
     def around(cls, road: Road, world: World) -> "Land":
-        """The land of a road."""
+        """Returns the land around a road. It is flat where the road has no shoulder."""
         line = road.centreline(LONGEST_STEP)
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
@@ -46,11 +49,11 @@ class Land:
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:
-        """Metres at points ``(n,)``, between the rows and columns."""
+        """Returns heights in metres at points ``(n,)``, interpolated between rows and columns."""
         return self.between(self.heights, x, y)
 
     def between(self, values: Array, x: Array, y: Array) -> Array:
-        """Values ``(rows, columns)`` of the net at points ``(n,)``."""
+        """Returns values given on the grid, ``(rows, columns)``, interpolated at points ``(n,)``."""
         i = np.clip(np.searchsorted(self.x, x) - 1, 0, len(self.x) - 2)
         j = np.clip(np.searchsorted(self.y, y) - 1, 0, len(self.y) - 2)
         u = np.clip((x - self.x[i]) / (self.x[i + 1] - self.x[i]), 0.0, 1.0)
@@ -60,7 +63,7 @@ class Land:
 
 
 def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple[Array, Array]:
-    """Near the road a little below its lowest point in reach; from there on smooth, with hills."""
+    """Returns heights a little below the road near it, and smooth land with hills beyond."""
     lowest = np.full((len(y), len(x)), np.inf)
     i = np.rint((line[:, 0] - x[0]) / cell).astype(int)
     j = np.rint((line[:, 1] - y[0]) / cell).astype(int)
@@ -71,7 +74,7 @@ def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple
     fixed = np.isfinite(lowest)
     away, nearest = ndimage.distance_transform_edt(~fixed, return_indices=True)
     heights = np.asarray(lowest[tuple(nearest)] - BELOW)
-    for _ in range(3):  # without terraces, and nowhere higher
+    for _ in range(3):  # smooths terraces without raising the land
         heights = np.minimum(heights, ndimage.uniform_filter(heights, 3))
     kept = heights.copy()
     for _ in range(80):
@@ -88,7 +91,7 @@ def _hills(x: Array, y: Array) -> Array:
 
 
 def _widened(x: Array, y: Array, heights: Array, away: Array) -> tuple[Array, Array, Array, Array]:
-    """With far rows and columns on all sides, which sink to the mean."""
+    """Adds far rows and columns on all sides, which descend to the mean height."""
     far = np.array(FAR)
     pad = len(far)
     mean = float(heights.mean())

@@ -1,4 +1,4 @@
-"""The same road elsewhere on the map."""
+"""Moves a road to another place on the map."""
 
 from dataclasses import replace
 
@@ -9,8 +9,10 @@ from roadgpt.road.road import Road
 
 
 def moved(road: Road, x: float, y: float, z: float = 0.0) -> Road:
-    """A road of pieces, or through nodes, so many metres farther along each axis; nodes of two numbers have
-    no height that could change."""
+    """Returns a road shifted by so many metres along each axis.
+
+    The road consists of pieces or goes through nodes. Nodes of two numbers have no height that could change.
+    """
     shift = np.array([x, y])
     if road.nodes is not None:
         nodes = road.nodes + np.array([x, y, z])[: road.nodes.shape[1]]

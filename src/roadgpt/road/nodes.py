@@ -1,6 +1,6 @@
-"""RoadGPT's translation of a Design to nodes: straight hops, which a spline then rounds off.
+"""RoadGPT's translation of a Design to nodes: straight lines between them, which a spline then rounds off.
 
-Source: the thesis, section 5.3.2. Its program also shifts every road by (5, 5) m; that is not carried over.
+Source: the thesis, section 5.3.2. Its program also shifts every road by (5, 5) m, which is not done here.
 """
 
 import math
@@ -10,11 +10,11 @@ import numpy as np
 from roadgpt.geometry.curve import Array
 from roadgpt.road.design import Design
 
-STUB = 5.0  # m, level, before the first segment, so that the car starts on even ground
+STUB = 5.0  # m, level, before the first segment, so that the car starts on level ground
 
 
 def nodes_of(design: Design) -> Array:
-    """Nodes ``(n, 3)`` in metres: the start, the end of the stub, and the end of every segment."""
+    """Returns nodes ``(n, 3)`` in metres: the start, the end of the stub, and the end of every segment."""
     nodes = [design.starting_point]
     heading = math.radians(design.theta)
     hops = [(STUB, 0.0, 0.0)] + [(s.distance, s.turn_degrees, s.incline) for s in design.segments]

@@ -1,13 +1,13 @@
-"""Road points in the shapes in which other tools keep them.
+"""Reads road points in the formats in which other tools store them.
 
     SBFT tests             {"road_points": [[x, y], ...]}
     SDC-Scissor's tests    the same, or with [x, y, z, width], or "interpolated_road_points"
     SensoDat's tests       [{"road_points": [{"x": ..., "y": ...}, ...]}, ...]
     AsFault and DeepJanus  [[x, y, z, width], ...], alone or as "nodes", "sample_nodes" or "control_nodes"
-    tables                 .csv and .tsv, with a head that names x and y, or without one
+    tables                 .csv and .tsv, with a header that names x and y, or without one
 
-All in metres. A width is left out: lanes are the World's. So is a height that is the same everywhere, where a
-width follows it: it is that of a level.
+All values are in metres. A width is ignored, because lane widths belong to the World. A height that is the
+same for all points is ignored too where a width follows it: it is the height of a level.
 """
 
 import csv
@@ -26,7 +26,7 @@ KEYS = (
     "polyline",
     "coordinates",
 )
-INSIDE = ("m1", "road", "test", "seed")  # what may hold one of them, once more
+INSIDE = ("m1", "road", "test", "seed")  # keys whose value may hold one of them
 SUFFIXES = (".csv", ".tsv")
 DELIMITERS = (";", "\t", ",")
 X = ("x", "x_m", "pos_x", "east", "easting")
@@ -38,10 +38,10 @@ MOST_ROWS = 200_000  # of a table
 
 
 def points_in(data: Any) -> list[Any] | None:
-    """The first list of points in parsed JSON; None where there is none.
+    """Returns the first list of points in parsed JSON; None where there is none.
 
     Raises:
-        UsageError: it holds many roads.
+        UsageError: The data hold more than one road.
     """
     if isinstance(data, dict):
         for key in KEYS:
@@ -61,7 +61,10 @@ def _is_test(value: Any) -> bool:
 
 
 def plain(points: list[Any]) -> list[Any]:
-    """The same points as lists of two or three numbers; what is none of these shapes is left as it is."""
+    """Returns the same points as lists of two or three numbers.
+
+    Points of an unknown format stay as they are.
+    """
     if all(isinstance(point, dict) and {"x", "y"} <= point.keys() for point in points):
         points = sorted(points, key=_number)
         return [[point[name] for name in ("x", "y", "z") if name in point] for point in points]
@@ -72,16 +75,16 @@ def plain(points: list[Any]) -> list[Any]:
 
 
 def _number(point: dict[str, Any]) -> float:
-    """Where a point comes in its road, where it says so."""
+    """Returns the position of a point in its road, where the point states it; else 0."""
     number = point.get("sequenceNumber", 0)
     return float(number) if isinstance(number, (int, float)) else 0.0
 
 
 def points_of_table(text: str) -> list[list[float]]:
-    """Points of a table: [x, y] or [x, y, z] for each row.
+    """Returns the points of a table: [x, y] or [x, y, z] for each row.
 
     Raises:
-        UsageError: it has no columns for x and y, or a cell is no number.
+        UsageError: The table has no columns for x and y, or a cell is not a number.
     """
     lines = [line for line in text.lstrip("\ufeff").splitlines() if line.strip() and line.lstrip()[0] != "#"]
     if len(lines) > MOST_ROWS:
@@ -106,7 +109,7 @@ def points_of_table(text: str) -> list[list[float]]:
 
 
 def _named(head: list[str]) -> list[int]:
-    """Columns of x, y and, if there is one, z."""
+    """Returns the columns of x, y and, if there is one, z."""
     names = [cell.lower() for cell in head]
     found = [next((i for i, name in enumerate(names) if name in known), None) for known in (X, Y, Z)]
     if found[0] is None or found[1] is None:
@@ -118,7 +121,9 @@ def _named(head: list[str]) -> list[int]:
 
 def _first(row: list[str]) -> list[int]:
     if not 2 <= len(row) <= WITH_WIDTH:
-        raise UsageError(f"the table has {len(row)} columns and no head; name them x, y, z in its first row")
+        raise UsageError(
+            f"the table has {len(row)} columns and no header; name them x, y, z in the first row"
+        )
     return list(range(min(len(row), 3)))
 
 
@@ -126,12 +131,15 @@ def _cell(row: list[str], column: int, number: int, delimiter: str | None) -> fl
     text = row[column] if column < len(row) else ""
     value = _value(text, delimiter)
     if value is None:
-        raise UsageError(f"row {number} of the table has '{text[:40]}' in place of a number; correct it")
+        raise UsageError(f"row {number} of the table has '{text[:40]}' instead of a number; correct it")
     return value
 
 
 def _value(text: str, delimiter: str | None) -> float | None:
-    """A number, with a decimal comma too where the comma does not part cells; None where it is none."""
+    """Returns a number, or None where the text is none.
+
+    A decimal comma is accepted where the comma does not separate cells.
+    """
     try:
         value = float(text.replace(",", ".") if delimiter in (";", "\t") else text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""The Road: 3-D geometry, asked with ``road.at(s, t)``."""
+"""The Road: 3-D geometry, evaluated with ``road.at(s, t)``."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -26,15 +26,18 @@ MOST_CONTROL_POINTS = 500  # SBFT rule
 LONGEST = 50_000.0  # m, of a road
 FARTHEST = 1_000_000.0  # m, of a point from the origin
 SHORTEST = 1e-3  # m
-SHARPEST = 1e3  # 1/m, of a curvature in a file
-STEEPEST = 10.0  # metres up for each metre forward
-LOOKED_AT = 5000  # places at which a road's grade is looked at
-MOST_POINTS = 200_000  # that a road may go through
+SHARPEST = 1e3  # 1/m, greatest curvature in a file
+STEEPEST = 10.0  # metres up or down for each metre forward
+LOOKED_AT = 5000  # places at which the grade of a road is checked
+MOST_POINTS = 200_000  # of a road that goes through points
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """A road measured at stations ``s``; every array has shape ``(n,)``."""
+    """A road measured at stations ``s``.
+
+    Every array has shape ``(n,)``; lengths in metres, angles in radians.
+    """
 
     s: Array
     x: Array
@@ -46,31 +49,36 @@ class Samples:
 
     @property
     def points(self) -> Array:
-        """Centre line ``(n, 3)`` in metres."""
+        """The centre line ``(n, 3)`` in metres."""
         return np.stack([self.x, self.y, self.z], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
 class Road:
-    """A centre line in plan and the heights over it; ``nodes`` are control points, if it came from such."""
+    """A plane curve as the centre line, and the elevation over it.
+
+    ``nodes`` are the control points ``(n, 2)`` or ``(n, 3)`` of a road that was built from points.
+    """
 
     plan: PlanCurve
     elevation: ElevationProfile
     nodes: Array | None = None
     road_points: Array | None = None
-    """Control points ``(n, 2)`` of the SBFT test that the road was read from, if they are not its nodes."""
+    """Control points ``(n, 2)`` of the SBFT test that was read, if they differ from the nodes."""
     _sampled: dict[float, Samples] = field(default_factory=dict, repr=False)
 
     @classmethod
     def through(cls, points: ArrayLike, road_points: ArrayLike | None = None) -> Self:
-        """The road whose centre line is SBFT's spline through points ``(n, 2)`` or ``(n, 3)``, in metres.
+        """Returns the road whose centre line is SBFT's spline through the given points.
 
         Args:
-            points: what the spline goes through.
-            road_points: control points of the test that it was read from, if they are others.
+            points: The points ``(n, 2)`` or ``(n, 3)`` in metres that the spline passes through.
+            road_points: Control points of the test that the road was read from, if they differ from
+                ``points``.
 
         Raises:
-            UsageError: not such points, fewer than two, not finite, or two neighbours are the same.
+            UsageError: The points are not of this form, are fewer than two or not finite, two neighbours are
+                the same, or the road is too long or too steep.
         """
         nodes = _checked(points)
         control = None if road_points is None else _checked(road_points)[:, :2]
@@ -93,11 +101,14 @@ class Road:
 
     @property
     def length(self) -> float:
-        """In plan, metres."""
+        """The length in plan in metres."""
         return self.plan.length
 
     def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
-        """Points ``(..., 3)`` in metres at stations ``s`` and offsets ``t``; there is no banking."""
+        """Returns points ``(..., 3)`` in metres at stations ``s`` and offsets ``t``.
+
+        Roads have no superelevation.
+        """
         s, t = np.broadcast_arrays(np.asarray(s, float), np.asarray(t, float))
         heading = self.plan.heading(s)
         xy = self.plan.at(s)
@@ -105,29 +116,35 @@ class Road:
         return np.stack([x, y, self.elevation.height(s)], axis=-1)
 
     def locate(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-        """Stations and offsets (``s``, ``t``) of points in plan; the nearest place where several would do."""
+        """Returns stations ``s`` and offsets ``t`` in metres of points in plan.
+
+        Of several places it takes the nearest.
+        """
         return project(
             self.plan, np.stack(np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float)), -1)
         )
 
     def heading(self, s: ArrayLike) -> Array:
-        """Directions in radians."""
+        """Returns headings in radians."""
         return self.plan.heading(s)
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Curvatures in 1/m, positive to the left."""
+        """Returns curvatures in 1/m, positive to the left."""
         return self.plan.curvature(s)
 
     def grade(self, s: ArrayLike) -> Array:
-        """Slopes, as ratios."""
+        """Returns grades as ratios."""
         return self.elevation.grade(s)
 
     def vertical_curvature(self, s: ArrayLike) -> Array:
-        """Change of slope in 1/m, negative on a crest."""
+        """Returns the change of grade in 1/m, negative on a crest."""
         return self.elevation.vertical_curvature(s)
 
     def sample(self, step: float = 1.0) -> Samples:
-        """The road about every ``step`` metres, both ends included; measured once and kept."""
+        """Returns the road sampled about every ``step`` metres, both ends included.
+
+        The result is computed once and kept.
+        """
         if step not in self._sampled:
             s = np.linspace(0.0, self.length, max(2, round(self.length / step) + 1))
             xy = self.plan.at(s)
@@ -143,11 +160,14 @@ class Road:
         return self._sampled[step]
 
     def centreline(self, step: float = 1.0) -> Array:
-        """Points ``(n, 3)`` in metres, both ends included."""
+        """Returns points ``(n, 3)`` of the centre line, about every ``step`` metres, both ends included."""
         return self.sample(step).points
 
     def control_points(self) -> Array:
-        """SBFT's ``road_points`` ``(n, 2)``: our nodes, or points so dense that a spline keeps the radii."""
+        """Returns SBFT's ``road_points`` ``(n, 2)``.
+
+        These are the nodes, or points so dense that a spline keeps the radii.
+        """
         if self.road_points is not None:
             return self.road_points
         if self.nodes is not None:
@@ -156,7 +176,7 @@ class Road:
         return self.plan.at(np.linspace(0.0, self.length, count))
 
     def to_json(self) -> dict[str, Any]:
-        """The exact geometry as data; ``Road.from_json`` gives the road back."""
+        """Returns the exact geometry as data. ``Road.from_json`` restores the road."""
         if self.nodes is not None:
             out = {"nodes": self.nodes.tolist()}
             return out if self.road_points is None else {**out, "road_points": self.road_points.tolist()}
@@ -178,10 +198,11 @@ class Road:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """The road that ``to_json`` wrote.
+        """Returns the road that ``to_json`` wrote.
 
         Raises:
-            UsageError: a field is missing, not a number or not finite.
+            UsageError: A field is missing, is not a number or is not finite, or the road is too long or too
+                steep.
         """
         if "nodes" in data:
             return cls.through(data["nodes"], data.get("road_points"))
@@ -206,7 +227,7 @@ class Road:
 
 
 def _profile(data: Mapping[str, Any]) -> tuple[ElevationProfile, list[float]]:
-    """The heights that ``to_json`` wrote, and all numbers in them."""
+    """Returns the elevation that ``to_json`` wrote, and all numbers in it."""
     if "cubics" in data:
         rows = [(float(s), (float(a), float(b), float(c), float(d))) for s, a, b, c, d in data["cubics"]]
         cubics = CubicProfile(tuple(s for s, _ in rows), tuple(cubic for _, cubic in rows))
@@ -217,29 +238,27 @@ def _profile(data: Mapping[str, Any]) -> tuple[ElevationProfile, list[float]]:
 
 
 def check_length(length: float) -> None:
-    """Refuses roads that run nowhere or for ever.
+    """Checks that a road has a usable length.
 
     Raises:
-        UsageError: the length in plan is under 1 mm or over 50 km.
+        UsageError: The length in plan is below 1 mm or above 50 km.
     """
     if not SHORTEST <= length <= LONGEST:
-        raise UsageError(
-            f"the road is {length:.4g} m long, seen from above; give one of up to {LONGEST / 1000:g} km"
-        )
+        raise UsageError(f"the road is {length:.4g} m long in plan; give one of up to {LONGEST / 1000:g} km")
 
 
 def check_grade(profile: ElevationProfile, length: float) -> None:
-    """Refuses roads that stand like a wall.
+    """Checks that a road is nowhere steeper than ten metres for each metre forward.
 
     Raises:
-        UsageError: they climb or fall by more than ten metres for each metre forward.
+        UsageError: The road climbs or falls by more than that.
     """
     with np.errstate(all="ignore"):
         steepest = float(np.abs(profile.grade(np.linspace(0.0, length, LOOKED_AT))).max())
     if not steepest <= STEEPEST:
         raise UsageError(
-            f"the road has a grade of {steepest:.4g}, that many metres up or down for each metre forward; "
-            f"give one of up to {STEEPEST:g}"
+            f"the road has a grade of {steepest:.4g}, metres up or down for each metre forward; "
+            f"the limit is {STEEPEST:g}"
         )
 
 
@@ -248,7 +267,7 @@ def _checked(points: ArrayLike) -> Array:
         raise UsageError(f"the road has {len(points):,} points; give {MOST_POINTS:,} at most, a metre apart")
     try:
         if isinstance(points, (list, tuple)) and _has_truths(points):
-            raise TypeError("true and false are no numbers")
+            raise TypeError("true and false are not numbers")
         nodes = np.array(points, float)
     except (TypeError, ValueError, OverflowError) as error:
         raise UsageError(
@@ -264,5 +283,5 @@ def _checked(points: ArrayLike) -> Array:
 
 
 def _has_truths(points: Sequence[Any]) -> bool:
-    """Does true or false stand for a number?"""
+    """Returns whether true or false is given in place of a number."""
     return any(isinstance(value, bool) for row in points if isinstance(row, (list, tuple)) for value in row)

@@ -1,4 +1,4 @@
-"""A design for the spline: the same road in short straight hops, so that RoadGPT's spline keeps its bends."""
+"""Redraws a design in short straight segments, so that RoadGPT's spline keeps its bends."""
 
 import math
 
@@ -9,16 +9,16 @@ from roadgpt.road.builder import build
 from roadgpt.road.design import MAX_SEGMENTS, Design, Direction, Segment
 from roadgpt.road.nodes import STUB
 
-GROWS = 2  # hops until the grade is that of the road
-HOP = 2.0  # m; a spline through points so dense keeps radii of 14.8 m and more at SBFT's 14.33 m
+GROWS = 2  # segments until the grade is that of the road
+HOP = 2.0  # m; a spline through points this dense keeps a radius of 14.8 m above SBFT's least, 14.33 m
 
 
 def in_short_segments(design: Design) -> Design:
-    """The design whose spline runs along the lines, arcs and clothoids of this one.
+    """Returns the design whose spline follows the lines, arcs and clothoids of the given one.
 
-    RoadGPT's translation begins with a level stub, behind which the grade grows over a few hops: a spline
-    would swing below the road before a kink. What the road climbs there is left out, and all that follows is
-    as much lower or higher.
+    RoadGPT's translation begins with a level stub. Behind it the grade grows over a few segments, because a
+    spline would swing below the road before a kink. The climb that is lost there is left out, so everything
+    after it is higher or lower by that amount.
     """
     road = build(design)
     first = min(STUB, road.length / 2)

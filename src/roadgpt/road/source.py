@@ -1,4 +1,4 @@
-"""Roads from files: ours, RoadGPT designs, tests and points of other tools, tables, or OpenDRIVE."""
+"""Reads roads from files: our own, RoadGPT designs, tests and points of other tools, tables, or OpenDRIVE."""
 
 import math
 from pathlib import Path
@@ -27,24 +27,24 @@ SHAPES = (
 
 
 def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
-    """The road in a JSON file, or in the folder of a run.
+    """Returns the road in a road file, or in the folder of a run.
 
     Args:
-        path: the file, or a folder that holds ``road.json``.
-        geometry: how a RoadGPT design becomes a road.
+        path: The file, or a folder that holds ``road.json``.
+        geometry: How a RoadGPT design becomes a road.
 
     Raises:
-        UsageError: the file cannot be read, is not JSON, or holds no road.
+        UsageError: The file cannot be read, is not valid, or holds no road.
     """
     blueprint, _ = read_blueprint(path)
     return build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint
 
 
 def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
-    """What a file holds, a Design or a Road, and a sentence for everything that had to be settled.
+    """Returns the Design or the Road that a file holds, and a sentence for each thing that had to be settled.
 
     Raises:
-        UsageError: as for ``read_road``.
+        UsageError: As for ``read_road``.
     """
     path = Path(path)
     if path.is_dir():
@@ -73,26 +73,26 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
 
 
 def _lanes_told(found: ImportedRoad) -> tuple[str, ...]:
-    """What its file says of lanes and limits that a World as usual does not have."""
+    """Returns what an OpenDRIVE file says about lanes and limits that differs from the default World."""
     usual = World()
     own = found.world(usual)
     told = {
         f"lanes of {own.lane_width:g} m": own.lane_width == usual.lane_width,
-        f"a verge of {own.verge:g} m": own.verge == usual.verge,
+        f"a shoulder of {own.verge:g} m": own.verge == usual.verge,
         f"{own.speed_limit * 3.6:.4g} km/h": math.isclose(own.speed_limit, usual.speed_limit),
         f"a friction of {own.friction:g}": own.friction == usual.friction,
     }
     others = [what for what, is_usual in told.items() if not is_usual]
     if not others:
         return ()
-    return (f"its file says {', '.join(others)}; roadgpt import tells the options for that",)
+    return (f"its file says {', '.join(others)}; roadgpt import prints the options for this",)
 
 
 def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
-    """The road in parsed JSON.
+    """Returns the road in parsed JSON.
 
     Raises:
-        UsageError: it holds no road.
+        UsageError: The data hold no road.
     """
     if isinstance(data, dict):
         if "pieces" in data or ("nodes" in data and not _has_widths(data["nodes"])):
@@ -104,11 +104,11 @@ def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
     points = points_in(data)
     if points is not None:
         return Road.through(points)
-    raise UsageError(f"there is no road in it; a road file is {SHAPES}")
+    raise UsageError(f"it holds no road; a road file is {SHAPES}")
 
 
 def _has_widths(nodes: Any) -> bool:
-    """Are these another tool's points?"""
+    """Returns whether these are points of another tool."""
     return isinstance(nodes, list) and plain(nodes) != nodes
 
 
@@ -117,7 +117,10 @@ def _is_test(data: dict[str, Any]) -> bool:
 
 
 def _test_road(data: dict[str, Any]) -> tuple[Road, tuple[str, ...]]:
-    """The road of an SBFT test: through its points with heights where they follow its control points."""
+    """Returns the road of an SBFT test.
+
+    It has heights where the interpolated points follow the control points.
+    """
     dense, control = data.get("interpolated_points"), data.get("road_points")
     if not (isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3):
         points: Any = dense if control is None else control
@@ -126,11 +129,11 @@ def _test_road(data: dict[str, Any]) -> tuple[Road, tuple[str, ...]]:
     if road.road_points is None or _follows(road, road.road_points):
         return road, ()
     return Road.through(road.road_points), (
-        "interpolated_points do not follow road_points; the road_points win, and the heights are left out",
+        "interpolated_points do not follow road_points; the road_points are used, the heights ignored",
     )
 
 
 def _follows(road: Road, control: Array) -> bool:
-    """Does the road pass every control point?"""
+    """Returns whether the road passes every control point."""
     away, _ = cKDTree(road.centreline()[:, :2]).query(control)
     return bool(np.max(away) <= ASTRAY)

@@ -1,4 +1,4 @@
-r"""How fast a driver means to be at every station of its line: the friction circle, swept both ways.
+r"""Plans a driver's speed at every station of its path: the friction circle, swept in both directions.
 
     limit    ____________                    ______________
                          \                  /                 backward sweep: brake in time
@@ -20,30 +20,30 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road.world import World
 
 GRAVITY = 9.81  # m/s^2
-SLOWEST = 1.0  # m/s: no bend is planned slower, so that nobody stands still before one
-LIGHTEST = 0.4  # share of gravity that must stay on the wheels on a crest
-LATERAL, BRAKING, TRACTION = 0.64, 0.9, 0.7  # g, of the car that a road is expected to be driven by
-LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves to a lane on the inside of a bend
+SLOWEST = 1.0  # m/s: no bend is planned slower, so that a car never stops before one
+LIGHTEST = 0.4  # share of gravity that must remain as wheel load on a crest
+LATERAL, BRAKING, TRACTION = 0.64, 0.9, 0.7  # g, of the car for which roads are checked
+LEAST_STRETCH = 0.2  # m of lane per m of road, on the inside of a bend
 
 
 class PathGeometry(Protocol):
-    """What has to be known of a line; the lists have one number for every station, ``step`` metres apart."""
+    """The geometry of a driven path. Every list has one number for each station."""
 
     @property
     def step(self) -> float:
-        """Metres of road between stations."""
+        """Distance between stations in metres, along the road."""
 
     @property
     def stretch(self) -> Sequence[float]:
-        """Metres of line per metre of road."""
+        """Metres of path per metre of road."""
 
     @property
     def curvature(self) -> Sequence[float]:
-        """1/m, of the line itself."""
+        """Curvature of the path itself in 1/m."""
 
     @property
     def grade(self) -> Sequence[float]:
-        """As a ratio."""
+        """Grade as a ratio."""
 
     @property
     def crest(self) -> Sequence[float]:
@@ -52,22 +52,22 @@ class PathGeometry(Protocol):
 
 @dataclass(frozen=True)
 class DrivingLimits:
-    """What a driver asks of car and road, as shares of the load on the wheels."""
+    """The accelerations that a driver uses at most, as shares of the load on the wheels."""
 
     lateral: float
-    """Sideways acceleration in a steady bend, in g."""
+    """Lateral acceleration in a steady bend in g."""
     braking: float
-    """In g, straight on."""
+    """Braking deceleration on a straight in g."""
     traction: float
-    """In g, straight on."""
+    """Driving acceleration on a straight in g."""
     speed: float
-    """m/s."""
+    """Speed limit in m/s."""
     power: float = 100.0
-    """W per kg: above some speed the engine allows less than the tyres."""
+    """Engine power in W per kg: above some speed the engine allows less than the tyres do."""
 
 
 class _LanePath(NamedTuple):
-    """The middle of a lane, as a PathGeometry."""
+    """The middle of a lane as a PathGeometry."""
 
     step: float
     stretch: Sequence[float]
@@ -77,9 +77,10 @@ class _LanePath(NamedTuple):
 
 
 def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: World) -> Array:
-    """Speeds that a car is expected to have on a road, m/s, from a standing start.
+    """Returns the speeds in m/s at which a car is expected to drive along a road from a standing start.
 
-    On dry asphalt, under the speed limit, at the default driver's share of gravity; see ``lane_speed``.
+    It applies to dry asphalt, respects the speed limit, and uses the default driver's share of gravity; see
+    ``lane_speed``.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
     return lane_speed(curvature, grade, step, world, limits)
@@ -88,17 +89,17 @@ def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: W
 def lane_speed(
     curvature: ArrayLike, grade: ArrayLike, step: float, world: World, limits: DrivingLimits
 ) -> Array:
-    """Speeds in m/s, from a standing start, of a car in the middle of the right lane.
+    """Returns the speeds in m/s, from a standing start, of a car in the middle of the right lane.
 
-    It slows down for bends and not for crests, as the default driver does not: so a crest cannot make itself
-    look gentle.
+    The car slows down for bends but not for crests, as the default driver does. A crest can therefore not
+    make itself look gentler than it is.
 
     Args:
-        curvature: of the centre line, 1/m, ``(n,)``.
-        grade: as ratios, ``(n,)``, or one for all.
-        step: metres between stations.
-        world: width of the lane.
-        limits: what the driver asks of car and road.
+        curvature: Curvature of the centre line in 1/m, ``(n,)``.
+        grade: Grade as a ratio, ``(n,)`` or one value for all stations.
+        step: Distance between stations in metres.
+        world: Provides the width of the lane.
+        limits: What the driver asks of car and road.
     """
     bend = np.asarray(curvature, float)
     along = np.maximum(1 + bend * world.lane_width / 2, LEAST_STRETCH)
@@ -109,7 +110,7 @@ def lane_speed(
 
 
 def plan_speed(line: PathGeometry, limits: DrivingLimits) -> list[float]:
-    """Speeds in m/s at every station of the line.
+    """Returns the speed in m/s at every station of the path.
 
     The load on the wheels is that of the slope and of the crest or dip: ``g cos + v^2 * vertical curvature``.
     """
@@ -120,7 +121,7 @@ def plan_speed(line: PathGeometry, limits: DrivingLimits) -> list[float]:
 
 
 def _corner_speed(line: PathGeometry, i: int, limits: DrivingLimits) -> float:
-    """The speed at which a steady bend takes all of the lateral limit, or a crest too much of the load."""
+    """Returns the speed at which a bend uses all of the lateral limit, or a crest too much of the load."""
     steep = 1 / math.hypot(1.0, line.grade[i])
     crest = line.crest[i] * steep**3
     needed = abs(line.curvature[i]) - limits.lateral * crest
@@ -135,7 +136,7 @@ def _corner_speed(line: PathGeometry, i: int, limits: DrivingLimits) -> float:
 def _sweep(
     line: PathGeometry, top: list[float], lateral: float, along: float, power: float, *, forward: bool
 ) -> None:
-    """Lowers speeds that cannot be reached from the station before (forward) or left in time (backward)."""
+    """Lowers speeds that cannot be reached from the previous station (forward) or left in time (backward)."""
     way = 1 if forward else -1
     order = range(len(top)) if forward else range(len(top) - 1, -1, -1)
     before = top[order[0]] if not forward else 0.0

@@ -38,7 +38,7 @@ def refused(folder: Path, content: str | bytes) -> str:
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.3, 0.7, 0.99])
 def test_half_a_file(tmp_path: Path, share: float) -> None:
-    assert "it is no well-formed XML" in refused(tmp_path, SOUND[: int(share * len(SOUND))])
+    assert "it is not well-formed XML" in refused(tmp_path, SOUND[: int(share * len(SOUND))])
 
 
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e999", "", "abc", "1_0", "0x10", "1e13", "٣"])
@@ -95,7 +95,7 @@ def test_a_bomb_of_entities(tmp_path: Path) -> None:
     levels = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 12))
     bomb = f'<?xml version="1.0"?><!DOCTYPE x [<!ENTITY e0 "ha">{levels}]><OpenDRIVE>&e11;</OpenDRIVE>'
     assert "DOCTYPE" in refused(tmp_path, bomb)
-    assert "no well-formed XML (undefined entity" in refused(tmp_path, "<OpenDRIVE>&e11;</OpenDRIVE>")
+    assert "not well-formed XML (undefined entity" in refused(tmp_path, "<OpenDRIVE>&e11;</OpenDRIVE>")
 
 
 @pytest.mark.parametrize(
@@ -140,17 +140,17 @@ def test_a_line_of_a_million_elements(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (b"\x00\x01\x02\xff" * 100, "no well-formed XML"),
-        (b"PK\x03\x04" + bytes(200), "no well-formed XML"),
-        ("<html><body/></html>", "it is XML, but no OpenDRIVE: it begins with <html>"),
+        (b"\x00\x01\x02\xff" * 100, "not well-formed XML"),
+        (b"PK\x03\x04" + bytes(200), "not well-formed XML"),
+        ("<html><body/></html>", "it is XML but not OpenDRIVE: it begins with <html>"),
         ("<OpenDRIVE/>", "there is no road in it"),
         ('<OpenDRIVE><road id="1" length="9"/></OpenDRIVE>', "road 1: its <planView> has no geometry"),
-        ('<?xml version="1.0" encoding="klingon"?><OpenDRIVE/>', "no well-formed XML"),
+        ('<?xml version="1.0" encoding="klingon"?><OpenDRIVE/>', "not well-formed XML"),
         (
             '<?xml version="1.0" encoding="UTF-8"?><OpenDRIVE a="\udcff"/>'.encode(
                 "utf-8", "surrogateescape"
             ),
-            "no well",
+            "not well",
         ),
     ],
 )

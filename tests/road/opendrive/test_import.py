@@ -81,7 +81,9 @@ def test_a_road_file_may_be_opendrive(tmp_path: Path) -> None:
     road, remarks = read_blueprint(path)
     assert isinstance(road, Road)
     assert apart(road, ROADS["arcs"]) < 1e-6
-    assert remarks == ("its file says 50 km/h, a friction of 0.6; roadgpt import tells the options for that",)
+    assert remarks == (
+        "its file says 50 km/h, a friction of 0.6; roadgpt import prints the options for this",
+    )
     save(ROADS["arcs"], tmp_path, ["opendrive"], World())
     assert read_blueprint(path)[1] == ()
 
@@ -223,9 +225,9 @@ def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> N
     path.write_text(path.read_text().replace('revMinor="4"/>', f'revMinor="4">{header}</header>'))
     assert read_opendrive(path).remarks == (
         "it is made for left-hand traffic, and is driven on the right here",
-        "its lane is 3.00 to 4.00 m wide, and is taken as 3.50 m all along",
+        "its lane is 3.00 to 4.00 m wide, and is taken as 3.50 m everywhere",
         "left out: 3 further lanes (1 driving, 2 sidewalk), 2 objects, 1 railway, 2 signals, 1 surface, "
-        "1 tunnel, junction 7, banking of up to 2.9 degrees, the shape across it, heights of single lanes, "
+        "1 tunnel, junction 7, superelevation of up to 2.9 degrees, lateral shape, heights of single lanes, "
         "<geoReference> and <offset> of the map",
     )
 
@@ -255,7 +257,7 @@ def test_a_lane_that_begins_later_is_driven_all_along_and_told_of(tmp_path: Path
     sections = section(0, "sidewalk", "none") + section(30, "driving", "none") + section(70, "none", "none")
     path.write_text(SECTIONS.format(sections))
     assert read_opendrive(path).remarks[0] == (
-        "cars drive only from s = 30 to 70 m in its file, and all along here"
+        "in its file cars drive only from s = 30 to 70 m, here along the whole road"
     )
 
 
@@ -279,7 +281,7 @@ def test_the_default_road_is_the_longest_with_a_driving_lane(tmp_path: Path) -> 
     found = read_opendrive(path)
     assert found.id == "2"
     assert (
-        found.remarks[0] == "road 2 is taken, the longest of 4 with a driving lane; say --road ID for another"
+        found.remarks[0] == "road 2 is taken, the longest of 4 with a driving lane; use --road ID for another"
     )
     path.write_text(f"<OpenDRIVE>{roads[0]}{roads[2]}</OpenDRIVE>")
     assert read_opendrive(path).id == "3"
@@ -291,7 +293,7 @@ def test_a_lane_without_a_width_is_given_one(tmp_path: Path) -> None:
     right = '<lane id="-1" type="driving"><width sOffset="0" a="0"/></lane>'
     found = read_opendrive(file(tmp_path, right=right))
     assert found.lane_width == 2.0
-    assert "its lane is 0.00 to 0.00 m wide, and is taken as 2.00 m all along" in found.remarks
+    assert "its lane is 0.00 to 0.00 m wide, and is taken as 2.00 m everywhere" in found.remarks
 
 
 def test_the_longest_road_outside_of_junctions_is_taken(tmp_path: Path) -> None:
@@ -357,5 +359,5 @@ def test_a_road_can_be_moved(name: str) -> None:
 def test_a_speed_limit_that_changes_is_told_of(tmp_path: Path) -> None:
     rest = '<type s="0"><speed max="50" unit="km/h"/></type><type s="20"><speed max="30" unit="km/h"/></type>'
     found = read_opendrive(file(tmp_path, rest=rest))
-    assert found.remarks == ("its speed limit is 30 to 50 km/h, and is taken as 50 km/h all along",)
+    assert found.remarks == ("its speed limit is 30 to 50 km/h, and is taken as 50 km/h everywhere",)
     assert found.speed_limit == pytest.approx(50 / 3.6)

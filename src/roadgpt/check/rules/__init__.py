@@ -1,1 +1,1 @@
-"""The shelf of rules: one file per rule, one function ``inspect`` in it, one source for its limit."""
+"""The rules: one file per rule, with one function ``inspect`` and a source for its limit."""

@@ -9,7 +9,7 @@ ROUNDING = 1e-6  # m
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says where the road is lowest, where that is under the ground."""
+    """Reports where the road is lowest, if that is below the ground."""
     s, z = lowest(road.elevation, road.length)
     if z >= world.z_floor - ROUNDING:
         return ()

@@ -1,4 +1,4 @@
-"""All numbers of the road are finite: a road with a hole in its numbers is no road."""
+"""All numbers of the road are finite."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ from roadgpt.road import Road, World
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says where a coordinate, heading, curvature or grade is not a number."""
+    """Reports the first station where a coordinate, heading, curvature or grade is not finite."""
     if not np.isfinite(road.length):
         return (Finding("finite", "the length of the road is not a number", stops=True),)
-    with np.errstate(invalid="ignore", over="ignore"):  # what they would warn of is found below
+    with np.errstate(invalid="ignore", over="ignore"):  # such values are found below
         samples = road.sample()
     for name in ("x", "y", "z", "heading", "curvature", "grade"):
         bad = np.flatnonzero(~np.isfinite(getattr(samples, name)))

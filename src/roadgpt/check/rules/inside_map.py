@@ -1,8 +1,9 @@
-"""The whole ribbon of the road lies inside the map, off its border: 0 to the map's size along x and y.
+"""The whole surface of the road lies inside the map, off its border: 0 to the map's size along x and y.
 
-Source: RoadGPT's two checks (the furthest points lie no further apart than the map is wide, no part meets the
-border) and the SBFT competition's, whose operators bind so that a road far outside passes; here it does not.
-Near the border its own spline is looked at too, driven either way: it may run up to a metre beyond its end.
+Source: RoadGPT's two checks (the furthest points are no further apart than the map is wide, no part touches
+the border) and the SBFT competition's. The latter has an operator precedence error by which a road far
+outside passes; that road fails here. Near the border the competition's own spline is checked too, in both
+driving directions, because it may run up to a metre beyond the end of the road.
 """
 
 import numpy as np
@@ -16,7 +17,7 @@ from roadgpt.road import Road, World
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says where the road's edge first leaves the map, and whether it is too wide for any place on it."""
+    """Reports where the road leaves the map, and whether it is too large for any place on it."""
     half, size = world.road_width / 2, world.map_size
     low, high = extent(road.sample(), half)
     room = min(low.min(), size - high.max())
@@ -47,6 +48,6 @@ def _on_sbft_s_spline(road: Road, world: World) -> tuple[Finding, ...]:
     node = int(np.any((edges <= 0) | (edges >= world.map_size), axis=(1, 2)).argmax())
     x, y = (float(v) for v in nodes[node])
     sentence = (
-        f"near ({x:.0f}, {y:.0f}): the road, as SBFT lays its spline, leaves the map; keep off its border"
+        f"near ({x:.0f}, {y:.0f}): with SBFT's spline the road leaves the map; keep away from its border"
     )
     return (Finding("inside_map", sentence, float(road.locate(x, y)[0]), x, y),)

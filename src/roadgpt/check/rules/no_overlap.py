@@ -1,11 +1,11 @@
-"""The ribbon of the road nowhere lies over itself, whatever the heights: SBFT's rule against crossing.
+"""The surface of the road nowhere overlaps itself, whatever the heights: SBFT's rule against crossing.
 
-The ribbon is cut into quads about 1 m long. A quad that is not convex has folded: the bend is tighter than
-half the road is wide. Without folds, a stretch shorter than half a turn at that radius cannot reach itself:
-its curve stays out of the two circles that touch it there (Schur's comparison theorem). Quads farther along
-must stand apart, by twice the little that true edges bulge beyond the quads' straight ones. Where they nearly
-meet, the competition's own quads are asked too, whichever way the road is driven: its spline may run up to a
-metre beyond the last point.
+The surface is cut into quads about 1 m long. A quad that is not convex has folded: the bend is tighter than
+half the road width. Without folds, a part shorter than half a turn at that radius cannot reach itself,
+because its curve stays outside the two circles that touch it there (Schur's comparison theorem). Quads
+farther along must be apart by twice the small amount by which true edges bulge beyond the quads' straight
+ones. Where they nearly touch, the competition's own quads are checked too, in both driving directions,
+because its spline may run up to a metre beyond the last point.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ from roadgpt.road import Road, World
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says where the road first runs into itself, and over which of its places."""
+    """Reports the first place where the road overlaps itself, and the earlier place that it overlaps."""
     samples, half = road.sample(), world.road_width / 2
     quads = quads_of(*sides(samples, half))
     folded = np.flatnonzero(~is_convex(quads))
@@ -33,7 +33,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
         if lies_over.any():
             again = int(j[lies_over].min())
             earlier = float(samples.s[int(i[lies_over & (j == again)].min())])
-            return (_finding(road, again, f"the road lies over its own stretch at s = {earlier:.0f} m"),)
+            return (_finding(road, again, f"the road overlaps itself at s = {earlier:.0f} m"),)
         if gap.size:
             nearest = min(nearest, (float(gap.min()), int(j[gap.argmin()])))
     return _on_sbft_s_spline(road, world, nearest[1]) if nearest[0] < SPLINE_REACH else ()
@@ -43,9 +43,7 @@ def _on_sbft_s_spline(road: Road, world: World, nearest: int) -> tuple[Finding, 
     ways = splines(road.control_points())
     if all(keeps_clear(quads_of(*edges(nodes, world.road_width))) for nodes in ways):
         return ()
-    return (
-        _finding(road, nearest, "the road, as SBFT lays its spline, meets itself; part the two stretches"),
-    )
+    return (_finding(road, nearest, "with SBFT's spline the road touches itself; move the two parts apart"),)
 
 
 def _finding(road: Road, index: int, what: str) -> Finding:

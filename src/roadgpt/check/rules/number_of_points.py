@@ -1,6 +1,7 @@
-"""The road has 2 to 500 control points, and no two in a row lie at one place in plan.
+"""The road has 2 to 500 control points, and no two consecutive ones coincide in plan.
 
-Source: the SBFT competition's limits on ``road_points``; its spline has no way through a point given twice.
+Source: the SBFT competition's limits on ``road_points``. Its spline cannot pass through the same point twice
+in a row.
 """
 
 import numpy as np
@@ -13,7 +14,7 @@ FEWEST, MOST = 2, 500  # SBFT validator
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says how many control points there are, where too few or too many, or which two are one in plan."""
+    """Reports too few or too many control points, or two consecutive ones that coincide in plan."""
     points = road.control_points()
     if not FEWEST <= len(points) <= MOST:
         sentence = f"the road has {len(points)} points; give {FEWEST} to {MOST}"

@@ -1,8 +1,8 @@
-"""The road shows what its Brief promised: the turns in order, the straights between them, the grades.
+"""The road fulfils its Brief: the turns in order, the straights between them, and the grades.
 
-A promise is an Outline's range; the road is what ``check.measures`` finds on its centre line. Straights that
-nobody asked for are free. Where a count was left open ("at least three right turns, then a hairpin"), turns
-are shared out among the groups so that as few as possible are wrong.
+A requirement is a range of an Outline. The road is what ``check.measures`` finds on its centre line.
+Straights that nobody asked for are allowed. Where a count was left open ("at least three right turns, then a
+hairpin"), turns are assigned to the groups so that as few as possible are wrong.
 """
 
 from collections.abc import Iterator
@@ -16,11 +16,11 @@ from roadgpt.check.matching import Complaint, fits, sequence_complaints, turn_co
 from roadgpt.check.measures import LEVEL, Measures, measure
 from roadgpt.road import Road, World
 
-ROOMY = 150.0  # m: a map of this side holds a sweeping turn of 60 m radius with its straights
+ROOMY = 150.0  # m: a map with this side length holds a sweeping turn of 60 m radius with its straights
 
 
 class _Whole(NamedTuple):
-    """A quantity of the whole road: how it came out, what was asked, and how to say it."""
+    """A quantity of the whole road: its value, the range asked for, and the sentence about it."""
 
     value: float
     asked: Range | None
@@ -29,7 +29,7 @@ class _Whole(NamedTuple):
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says of every broken promise what was asked and what came out; nothing without a Brief."""
+    """Reports what was asked and what the road has, for each requirement that is not met."""
     if brief is None:
         return ()
     asked = promises_of(brief, world)
@@ -38,12 +38,12 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def promises_of(brief: Brief, world: World) -> Outline:
-    """The Outline that a road on this map is held to."""
+    """Returns the Outline that a road on this map must fulfil."""
     return outline(brief, world.map_size >= ROOMY, world.map_size)
 
 
 def complaints(found: Measures, asked: Outline) -> list[Complaint]:
-    """Every promise that a measured road breaks; empty where it keeps all."""
+    """Returns a Complaint for each requirement that a measured road does not meet."""
     out = list(_counts(found, asked))
     if len(found.turns) in asked.turns:
         out += sequence_complaints(found, asked)
@@ -88,7 +88,7 @@ def _many(span: Range, what: str) -> str:
 
 
 def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
-    """The whole road: up or down on average and nowhere the other way, or level everywhere."""
+    """Checks the whole road: up or down on average and nowhere the other way, or level everywhere."""
     low, high = found.lowest_grade, found.highest_grade
     if asked.grade == "up" and not (found.grade >= LEVEL and low > -LEVEL):
         worst = f"{found.grade:.1f} % on average and {low:.1f} % at its lowest over 20 m"
@@ -130,7 +130,10 @@ def _wholes(found: Measures, asked: Outline) -> tuple[_Whole, ...]:
 
 
 def _ends(found: Measures, asked: Outline) -> Iterator[Complaint]:
-    """The first and the last feature; a lead-in or lead-out straight counts only if one was asked for."""
+    """Checks the first and the last feature.
+
+    A lead-in or lead-out straight counts only if one was asked for.
+    """
     for feature, index, says in ((asked.starts, 0, "start"), (asked.ends, -1, "end")):
         if feature is None:
             continue

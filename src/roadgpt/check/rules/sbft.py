@@ -8,9 +8,9 @@ from roadgpt.road import Road, World
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says what the competition's validator says of the road's control points, if it objects."""
+    """Reports the message of the competition's validator about the road's control points, if it objects."""
     try:
         is_valid, message = sbft_verdict(road.control_points(), world.map_size)
-    except UsageError as error:  # two points at one place in plan: their code stops
+    except UsageError as error:  # two points coincide in plan: the competition's code stops
         is_valid, message = False, str(error)
     return () if is_valid else (Finding("sbft", message),)

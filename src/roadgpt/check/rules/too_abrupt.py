@@ -1,10 +1,10 @@
-"""No crest or dip is so abrupt that the car would be lifted or pressed by more than 3 m/s^2.
+"""No crest or dip is so abrupt that the car would be lifted or pressed down by more than 3 m/s^2.
 
 The vertical radius R is that of the parabola between two grades: 1 / (change of grade per metre). At speed v
-the road lifts or presses the car by v^2 / R. Where the words ask for a crest or a dip, it may do so by up to
-gravity, at which the wheels would leave the road.
+the vertical acceleration is v^2 / R. Where the description asks for a crest or a dip, it may reach gravity,
+at which the wheels would leave the road.
 
-v is the speed expected there, from a standing start and under the speed limit, slowed down by bends alone
+v is the speed expected there, from a standing start and within the speed limit, reduced by bends only
 (``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0028-vertical-radii.md``.
 """
 
@@ -24,7 +24,7 @@ ROUNDING = 1e-3  # of the limit
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says where a crest or a dip is most abrupt, where that is too much."""
+    """Reports where a crest or a dip is most abrupt, if it is too abrupt."""
     begin, end, bend = vertical_bends(road)
     suspects = np.flatnonzero(np.abs(bend) * world.speed_limit**2 > MOST * (1 + ROUNDING))
     if not suspects.size:

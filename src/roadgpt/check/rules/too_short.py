@@ -1,6 +1,6 @@
 """The road is longer than 20 m, on the curve itself and as the SBFT competition measures its least length.
 
-Where it ends before a car that starts on it has anywhere to go, nobody can drive on it.
+A road that ends before a car that starts on it has room to move cannot be driven at all.
 """
 
 from roadgpt.brief.model import Brief
@@ -10,11 +10,11 @@ from roadgpt.geometry import interpolate
 from roadgpt.road import Road, World
 from roadgpt.road.ends import GOAL, LEAST, START
 
-DOUBT = 1.0  # m: longer by this much, SBFT's measure can only agree
+DOUBT = 1.0  # m: if the road is longer by this much, SBFT's measure agrees
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says how long the road is, where that is too short."""
+    """Reports the length of the road, if it is too short."""
     length = road.length
     if length <= LEAST:
         return (_without_room(length),)

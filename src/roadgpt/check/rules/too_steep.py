@@ -1,7 +1,7 @@
 """The grade stays within 15 %, uphill and downhill, at every place and over every 10 m.
 
-Source of the limit: RoadGPT's prompt. Its code looked at the mean of blocks of ten nodes, and only uphill, so
-that a road falling by 60 % passed; here a window slides over the whole road and both signs count.
+Source of the limit: RoadGPT's prompt. RoadGPT's code checked the mean of blocks of ten nodes, and only
+uphill, so that a road falling by 60 % passed. Here a window slides over the whole road, and both signs count.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ ROUNDING = 1e-6  # ratio
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says where the road is steepest, where that is too steep."""
+    """Reports where the road is steepest, if it is too steep."""
     for (s, grade), over in ((_over_a_window(road), f" over {WINDOW:.0f} m"), (steepest(road), "")):
         if abs(grade) > world.max_grade + ROUNDING:
             x, y, _ = (float(v) for v in road.at(s))
@@ -28,7 +28,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def _over_a_window(road: Road) -> tuple[float, float]:
-    """Middle and mean grade of the steepest 10 m, or of all of a road that is shorter."""
+    """Returns the middle and the mean grade of the steepest 10 m, or of the whole road if it is shorter."""
     samples = road.sample()
     step = max(float(samples.s[1] - samples.s[0]), ROUNDING)
     width = min(max(1, round(WINDOW / step)), len(samples.s) - 1)

@@ -1,6 +1,6 @@
-"""No turn is tighter than 14.326 m (47 ft): the SBFT competition's least radius.
+"""No turn is tighter than 14.326 m (47 ft), the SBFT competition's least radius.
 
-Measured twice: on the curve itself, and as the competition does it, with circles through nodes of its own
+It is measured twice: on the curve itself, and as in the competition, by circles through nodes of its own
 spline, which cuts corners between control points.
 """
 
@@ -15,7 +15,7 @@ ROUNDING = 1e-9  # of the limit
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Says where the road is tightest, where that is too tight."""
+    """Reports where the road is tightest, if it is too tight."""
     s, bend = tightest(road)
     limit = f"tighter than {world.min_radius:.4g} m"
     if abs(bend) * world.min_radius > 1 + ROUNDING:

@@ -1,12 +1,12 @@
-"""Roads out of ASAM OpenDRIVE files, 1.1 to 1.8, of whatever tool. Verb: ``read_opendrive``.
+"""Reads roads from ASAM OpenDRIVE files, 1.1 to 1.8, of any tool. Main function: ``read_opendrive``.
 
-tree       the XML, bounded and without entities; one road of the file
-geometries lines, arcs, spirals, poly3, paramPoly3
-lanes      which lane is driven, and where its inner edge runs: the centre line of our Road
-line       the plan: as it is where it can be, else clothoids through poses a metre apart
-joins      where elements do not meet to the last digit, and what is done about it
-heights    elevation, as it is
-left_out   what our roads have no place for
+tree        the XML, with bounds and without entities; one road of the file
+geometries  lines, arcs, spirals, poly3, paramPoly3
+lanes       which lane is driven, and where its inner edge runs: the centre line of our Road
+line        the plan: unchanged where possible, otherwise clothoids through poses one metre apart
+joins       places where elements do not meet exactly, and how they are bridged
+heights     the elevation, unchanged
+left_out    what our roads cannot hold
 """
 
 import math
@@ -30,7 +30,7 @@ from roadgpt.road.world import World
 
 __all__ = ["ImportedRoad", "read_opendrive"]
 
-VARIES = 0.05  # m; lanes that vary by more are remarked on
+VARIES = 0.05  # m; a remark is made where the lane width varies by more
 WIDTHS = (2.0, 10.0)  # m, of lanes that a World may have
 SHOULDERS = (0.0, 100.0)  # m
 FRICTIONS = (0.05, 2.0)
@@ -38,44 +38,45 @@ SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s
 NODES = 5.0  # m between the nodes of a spline that rounds off kinks
 CLOSEST = 0.5  # m between such nodes
 SAME_SPEED = 0.1  # m/s
-MOST_SPANS = 3  # that are told of
-PLACES = 1_000  # at which the spline is held against the line
+MOST_SPANS = 3  # that are listed in a remark
+PLACES = 1_000  # at which the spline is compared with the line
 
 
 @dataclass(frozen=True)
 class ImportedRoad:
-    """A road of somebody else's file, and what that file says of its lanes."""
+    """A road read from an OpenDRIVE file, and what the file says about its lanes."""
 
     road: Road
     id: str
     name: str
     lane_width: float
-    """Metres, of the lane that is driven."""
+    """Width of the driven lane in metres."""
     shoulder: float
-    """Metres of shoulder beside it."""
+    """Width of the shoulder beside it in metres."""
     speed_limit: float | None
-    """m/s; None where the file does not say."""
+    """Speed limit in m/s; None where the file gives none."""
     friction: float | None
     remarks: tuple[str, ...]
-    """Sentences about everything that had to be settled."""
+    """One sentence for each thing that had to be settled."""
 
     def world(self, base: World) -> World:
-        """A World with these lanes; what the file does not say is as in ``base``."""
+        """Returns a World with these lanes. What the file does not state is taken from ``base``."""
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         known = {name: value for name, value in told.items() if value is not None}
         return base.model_copy(update={"lane_width": self.lane_width, "verge": self.shoulder, **known})
 
 
 def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
-    """A road of an OpenDRIVE file; its centre line is the inner edge of the lane that is driven.
+    """Returns a road of an OpenDRIVE file. Its centre line is the inner edge of the driven lane.
 
     Args:
-        path: the file.
-        road: the road's id; None takes the longest with a driving lane that is not part of a junction.
+        path: The file.
+        road: Id of the road. None selects the longest road with a driving lane that is not part of a
+            junction.
 
     Raises:
-        UsageError: the file cannot be read or is too large, there is no such road, or it has an element that
-            is not known or makes no sense; the sentence says which.
+        UsageError: The file cannot be read or is too large, there is no such road, or an element is unknown
+            or invalid; the sentence names it.
     """
     try:
         choice = read_tree(Path(path), road)
@@ -92,7 +93,7 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
     node, remarks = choice.road, []
     if is_our_choice and len(choice.others) > 1:
         which = f"the longest of {len(choice.others)} with a driving lane"
-        remarks.append(f"road {id_} is taken, {which}; say --road ID for another")
+        remarks.append(f"road {id_} is taken, {which}; use --road ID for another")
     line = reference_line(node)
     lanes = read_lanes(node, line[-1].s + line[-1].length)
     grown, said = _grown(node, line, lanes)
@@ -100,18 +101,18 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
     if lanes.side == 1:
         grown = reversed_road(grown)
         remarks.append(
-            "no lane is driven to the right of its line; it is taken in the direction of its left lanes"
+            "no lane to the right of its line is driven; the road follows the direction of its left lanes"
         )
     remarks += _driven_otherwise(node, lanes)
     widths, limit = lanes.lane_widths(), speed_limit(node, lanes)
     width = float(np.clip(np.median(widths), *WIDTHS))
     if np.ptp(widths) > VARIES or abs(width - float(np.median(widths))) > VARIES:
         span = f"{widths.min():.2f} to {widths.max():.2f} m"
-        remarks.append(f"its lane is {span} wide, and is taken as {width:.2f} m all along")
+        remarks.append(f"its lane is {span} wide, and is taken as {width:.2f} m everywhere")
     limits = speed_limits(node, lanes)
     if limits and max(limits) - min(limits) > SAME_SPEED:
         span = f"{min(limits) * 3.6:.0f} to {max(limits) * 3.6:.0f} km/h"
-        remarks.append(f"its speed limit is {span}, and is taken as {limits[0] * 3.6:.0f} km/h all along")
+        remarks.append(f"its speed limit is {span}, and is taken as {limits[0] * 3.6:.0f} km/h everywhere")
     sentence = left_out(choice, lanes)
     remarks += [sentence] if sentence else []
     rubbed = friction(lanes)
@@ -128,7 +129,7 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
 
 
 def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, list[str]]:
-    """The road, and what had to be settled on the way."""
+    """Returns the road, and a sentence for each thing that had to be settled."""
     heights, length = elevation(node), line[-1].s + line[-1].length
     step = jumps(heights, length)
     remarks = [step] if step else []
@@ -153,7 +154,7 @@ def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road,
         road, way = _rounded(found, heights.height(found.s)), "drawn as a spline"
     else:
         plan, s, stations = fit
-        check_length(plan.length)  # the edge of a lane may lead anywhere
+        check_length(plan.length)  # the edge of a lane may be much longer than the reference line
         road, way = Road(plan, plain(carried_over(heights, s, stations), plan.length)), "rounded off"
     missed = misses(found)
     if missed or fit is None:
@@ -163,14 +164,14 @@ def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road,
 
 
 def _away(found: SampledLine, road: Road) -> float:
-    """The largest distance between places of the file's line and the road, metres."""
+    """Returns the largest distance in metres between sampled places of the file's line and the road."""
     beside = found.poses[np.abs(found.kinks) > KINK, :2]
     some = [each[:: max(1, len(each) // PLACES)] for each in (beside, found.ends, found.poses[:, :2])]
     return float(np.abs(road.locate(*np.concatenate(some).T)[1]).max())
 
 
 def _rounded(found: SampledLine, heights: Array) -> Road:
-    """A spline through a line whose joins lie too close to each other for anything else."""
+    """Returns a spline through a line whose joins are too close to each other for any other method."""
     kept = [0]
     for i in range(1, len(found.s) - 1):
         since = found.s[i] - found.s[kept[-1]]
@@ -181,13 +182,13 @@ def _rounded(found: SampledLine, heights: Array) -> Road:
 
 
 def _driven_otherwise(node: Node, lanes: Lanes) -> list[str]:
-    """How the traffic of the file differs from ours."""
+    """Returns a sentence for each way in which traffic in the file differs from ours."""
     remarks = []
     spans = lanes.spans()
     if spans[0][0] > NEAR or spans[-1][1] < lanes.length - NEAR or len(spans) > 1:
         where = " and ".join(f"{start:.0f} to {end:.0f}" for start, end in spans[:MOST_SPANS])
         more = " and so on" if len(spans) > MOST_SPANS else ""
-        remarks.append(f"cars drive only from s = {where}{more} m in its file, and all along here")
+        remarks.append(f"in its file cars drive only from s = {where}{more} m, here along the whole road")
     if is_one_way(node, lanes):
         remarks.append("it is one-way in its file; a second lane, for oncoming cars, is added here")
     if node.attributes.get("rule") == "LHT":

@@ -1,6 +1,6 @@
-"""Clothoids from pose to pose: the curve that leaves one place and direction and comes to another.
+"""Fits clothoids between poses: each leaves one point in its direction and reaches the next in its own.
 
-One unknown is left, the change of curvature, and Newton's method finds it. Source: Bertolazzi and Frego, G1
+One unknown remains, the change of curvature, and Newton's method finds it. Source: Bertolazzi and Frego, G1
 fitting with clothoids, Mathematical Methods in the Applied Sciences 38 (2015).
 """
 
@@ -18,9 +18,12 @@ BLOCK = 20_000  # pieces at a time, to spare memory
 
 
 def clothoids(poses: Array) -> list[Piece] | None:
-    """Pieces between poses, rows x, y, heading ``(n + 1, 3)``; None where there is no such piece.
+    """Returns the pieces between poses; None where a piece does not exist.
 
-    Every piece ends at its pose to rounding, so that nothing adds up along the road.
+    Every piece ends at its pose to rounding, so that errors do not add up along the road.
+
+    Args:
+        poses: Rows x, y, heading ``(n + 1, 3)``.
     """
     found: list[Piece] = []
     for first in range(0, len(poses) - 1, BLOCK):
@@ -55,5 +58,5 @@ def _block(poses: Array) -> list[Piece] | None:
 
 
 def _angle(a: Array, turn: Array, first: Array) -> Array:
-    """Direction against the chord, ``(n, 24)``, at the places where it is integrated."""
+    """Returns the heading relative to the chord, ``(n, 24)``, at the nodes of integration."""
     return np.asarray(first[:, None] + _TAU * ((turn - a)[:, None] + _TAU * a[:, None]))

@@ -1,4 +1,4 @@
-"""The elements of a reference line: each answers where it is, and which way it looks, at a distance."""
+"""The geometry elements of a reference line. Each gives its position and heading at a distance along it."""
 
 import math
 from collections.abc import Iterator
@@ -17,38 +17,38 @@ from roadgpt.road.opendrive.tree import Node
 from roadgpt.road.road import LONGEST, check_length
 
 KNOWN = ("line", "arc", "spiral", "poly3", "paramPoly3")
-SHORTEST = 1e-3  # m; shorter elements are made one with those before them
-FINE = 0.1  # m between the places at which a polynomial's length is added up
+SHORTEST = 1e-3  # m; shorter elements are merged with the previous ones
+FINE = 0.1  # m between the places at which the length of a polynomial is summed
 MOST_PLACES = 20_000
 MOST = 4_000  # elements of one line
 OFF = 0.1  # m, between the end of an element and the station of the next
 SMALLEST_RADIUS = 0.1  # m
-SMALLEST = 1e-9  # m, of an element of a run of tiny ones
+SMALLEST = 1e-9  # m, length given to an element of zero length
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 
 class Shape(Protocol):
-    """What an element looks like from its own start, which is at the origin and looks along +x."""
+    """The shape of an element in its own frame: it starts at the origin and heads along +x."""
 
     def poses(self, share: Array) -> Array:
-        """Rows x, y and heading ``(n, 3)`` at these shares of the length, 0 to 1."""
+        """Returns rows x, y and heading ``(n, 3)`` at these fractions of the length, 0 to 1."""
         ...
 
 
 @dataclass(frozen=True)
 class GeometryElement:
-    """One element of the reference line."""
+    """One geometry element of the reference line: its start and its shape."""
 
     s: float
     x: float
     y: float
     heading: float
     length: float
-    """As the file says it."""
+    """Length in metres as stated in the file."""
     shape: Shape
 
     def poses(self, share: Array) -> Array:
-        """Rows x, y and heading ``(n, 3)`` at these shares of the length, 0 to 1."""
+        """Returns rows x, y and heading ``(n, 3)`` at these fractions of the length, 0 to 1."""
         u, v, turned = self.shape.poses(share).T
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return np.stack([self.x + u * cos - v * sin, self.y + u * sin + v * cos, self.heading + turned], -1)
@@ -56,12 +56,12 @@ class GeometryElement:
 
 @dataclass(frozen=True)
 class PieceShape:
-    """A line, an arc or a spiral."""
+    """The shape of a line, an arc or a spiral."""
 
     piece: Piece
 
     def poses(self, share: Array) -> Array:
-        """As Shape has it."""
+        """Returns rows x, y and heading ``(n, 3)`` at these fractions of the length, 0 to 1."""
         curve = PieceCurve(0.0, 0.0, 0.0, (self.piece,))
         s = share * self.piece.length
         return np.column_stack([curve.at(s), curve.heading(s)])
@@ -69,7 +69,7 @@ class PieceShape:
 
 @dataclass(frozen=True)
 class Polynomial:
-    """A curve (u(p), v(p)) for p from 0 to ``end``, each a cubic; shares are those of its true length."""
+    """A curve (u(p), v(p)) of two cubics for p from 0 to ``end``. Fractions refer to its true length."""
 
     u: Cubic
     v: Cubic
@@ -77,7 +77,7 @@ class Polynomial:
 
     @cached_property
     def _walked(self) -> tuple[Array, Array]:
-        """Parameters, and the length that is reached at each."""
+        """Returns parameters and the length reached at each."""
         rough = np.linspace(0.0, self.end, 65)
         length = float(np.hypot(*np.diff(self._at(rough), axis=1)).sum())
         count = int(min(MOST_PLACES, max(64, length / FINE)))
@@ -89,11 +89,11 @@ class Polynomial:
 
     @property
     def length(self) -> float:
-        """Metres."""
+        """The length in metres."""
         return float(self._walked[1][-1])
 
     def up_to(self, length: float) -> "Polynomial":
-        """The same curve, cut off after so many metres."""
+        """Returns the same curve, cut off at a length in metres."""
         p, walked = self._walked
         return Polynomial(self.u, self.v, float(np.interp(length, walked, p)))
 
@@ -104,7 +104,7 @@ class Polynomial:
         return np.stack([b + p * (2 * c + 3 * p * d) for _, b, c, d in (self.u, self.v)])
 
     def poses(self, share: Array) -> Array:
-        """As Shape has it."""
+        """Returns rows x, y and heading ``(n, 3)`` at these fractions of the length, 0 to 1."""
         p_table, walked = self._walked
         p = np.interp(share * walked[-1], walked, p_table)
         x, y = self._at(p)
@@ -114,10 +114,10 @@ class Polynomial:
 
 
 def reference_line(road: Node) -> list[GeometryElement]:
-    """The reference line of a road, in its order.
+    """Returns the geometry elements of a road's reference line in order.
 
     Raises:
-        UsageError: there is none, or an element is unknown or makes no sense.
+        UsageError: There are none, or an element is unknown or invalid.
     """
     nodes = road.all("planView", "geometry")
     if len(nodes) > MOST:
@@ -142,7 +142,7 @@ def reference_line(road: Node) -> list[GeometryElement]:
 
 
 def _long_enough(nodes: list[Node]) -> Iterator[Node]:
-    """The elements, but for those that are shorter than their own errors."""
+    """Yields the elements, except those that are shorter than their own rounding errors."""
     passed = 0.0
     for node in nodes:
         length = number(node, "length")
@@ -173,7 +173,7 @@ def _shape(node: Node, s: float, length: float) -> Shape:
         k0, k1 = (number(node, name) for name in names)
         if max(abs(k0), abs(k1)) * SMALLEST_RADIUS > 1:
             if length < SMALLEST_RADIUS:
-                return PieceShape(Piece(length))  # too short to be a bend: its turn is a kink where it ends
+                return PieceShape(Piece(length))  # too short to be a bend: its turn becomes a kink at its end
             raise UsageError(f"the {node.tag} at s = {s:g} turns more tightly than {SMALLEST_RADIUS:g} m")
         return PieceShape(Piece(length, k0, k1))
     if node.tag == "poly3":
@@ -182,7 +182,7 @@ def _shape(node: Node, s: float, length: float) -> Shape:
     kind = node.attributes.get("pRange", "normalized")
     if kind not in ("normalized", "arcLength"):
         raise UsageError(
-            f"the paramPoly3 at s = {s:g} has a pRange '{kind[:20]}'; it is arcLength or normalized"
+            f"the paramPoly3 at s = {s:g} has a pRange '{kind[:20]}'; give arcLength or normalized"
         )
     along, across = (_cubic(node, axis) for axis in "UV")
     shape = Polynomial(along, across, 1.0 if kind == "normalized" else length)

@@ -9,19 +9,19 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road.opendrive.numbers import cubics
 from roadgpt.road.opendrive.tree import Node
 
-SAME = 1e-9  # m, and as a ratio: heights and grades that nothing tells apart
+SAME = 1e-9  # m, and as a ratio: heights and grades closer than this are treated as equal
 CLOSE = 1e-6  # m between the starts of two cubics
-STEP = 0.05  # m; a larger one is remarked on
+STEP = 0.05  # m; a remark is made about a larger step
 
 
 def elevation(road: Node) -> CubicProfile:
-    """Heights over the stations of the file; level at 0 where it says nothing."""
+    """Returns the heights over the stations of the file; level at 0 where the file gives none."""
     found = cubics(road.all("elevationProfile", "elevation"), "s")
     return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
 
 
 def plain(profile: CubicProfile, length: float) -> ElevationProfile:
-    """The same heights as steady grades and parabolas, where they are such and do not jump."""
+    """Returns the same heights as grades and parabolas, where they are of that form and have no steps."""
     stations = [s for s in profile.stations if s < length - SAME]
     stations = [0.0, *(s for s in stations if s > SAME)]
     table = profile.cubics(np.array(stations))
@@ -38,7 +38,7 @@ def plain(profile: CubicProfile, length: float) -> ElevationProfile:
 
 
 def jumps(profile: CubicProfile, length: float) -> str | None:
-    """A sentence about the highest step; None where there is none to speak of."""
+    """Returns a sentence about the largest step in height; None where no step is larger than 5 cm."""
     worst, where = 0.0, 0.0
     for s, end in pairwise(profile.stations):
         if end < length:
@@ -48,19 +48,21 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
 
 
 def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
-    """The heights over other stations: cubics between them, the file's where they lie inside one of its own.
+    """Returns the heights over other stations, as cubics between them.
+
+    The cubics are the file's where they lie inside one of its own.
 
     Args:
-        profile: over the stations of the file.
-        s: rising stations of the file, ``(n,)``.
-        stations: of the Road at the same places, ``(n,)``.
+        profile: Heights over the stations of the file.
+        s: Increasing stations of the file, ``(n,)``.
+        stations: Stations of the Road at the same places, ``(n,)``.
     """
     cuts = np.array(profile.stations)
     behind = np.clip(np.searchsorted(s, cuts), 1, len(s) - 1)
     apart = np.minimum(cuts - s[behind - 1], s[behind] - cuts)
     places, s = s, np.sort(np.r_[s, cuts[apart > CLOSE]])
     stations = np.interp(s, places, stations)
-    # asked in the middle: rounding may have put a start just before the cubic that begins there
+    # evaluated in the middle: rounding may put a start just before the cubic that begins there
     half = np.diff(s) / 2
     table = shifted(profile.cubics(s[:-1] + half), -half)
     scale = (np.diff(s) / np.diff(stations))[:, None] ** np.arange(4)

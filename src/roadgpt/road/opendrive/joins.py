@@ -1,8 +1,9 @@
-"""Joins: where the elements of a line, or the edges of its lanes, do not meet to the last digit.
+"""Joins: places where the elements of a line, or the edges of its lanes, do not meet exactly.
 
-Files round their numbers, and tools leave elements that are shorter than their errors. A curve through every
-pose would wriggle there: a miss of 1 cm from one metre to the next is a bend of 33 m. So a line is left a
-little before such a join and met again a little behind it, the farther the worse the join is.
+Files round their numbers, and tools leave elements that are shorter than their rounding errors. A curve
+through every pose would oscillate there: an error of 1 cm within one metre is a bend of 33 m radius. The line
+is therefore left out shortly before such a join and resumed shortly after it; the worse the join, the longer
+the gap.
 """
 
 import math
@@ -13,44 +14,47 @@ import numpy as np
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
 
-KINK = 0.01  # rad; what is told of
-TOLD = 0.01  # m; gaps that are told of
-BACK = math.pi / 2  # rad; a line that jumps round by more goes back on itself
-GENTLE = 0.002  # 1/m, of the wriggle that a join may leave
+KINK = 0.01  # rad; larger kinks are reported
+TOLD = 0.01  # m; larger gaps are reported
+BACK = math.pi / 2  # rad; where the heading jumps by more, the line runs back on itself
+GENTLE = 0.002  # 1/m, curvature that bridging a join may add
 FARTHEST = 2.5  # m before and behind a join
-NEAREST = 0.1  # m; what reaches less far is left as it is
-SHORT = 1.0  # m; an element so short between two joins is passed over
-SHARE = 0.45  # of any other element, that a join may take at either end
+NEAREST = 0.1  # m; joins that need less are left unchanged
+SHORT = 1.0  # m; a shorter element between two joins is skipped
+SHARE = 0.45  # share of any other element that a join may take at either end
 CLOSEST = 0.05  # m between two poses
-WIDEST = 12.0  # m between two poses; a line that misses so long has no course
+WIDEST = 12.0  # m between two poses; over a larger gap the line cannot be reconstructed
 
 
 @dataclass(frozen=True)
 class SampledLine:
-    """Poses along the edge that is driven along."""
+    """Poses along the inner edge of the driven lane."""
 
     s: Array
     """Station of each pose in the file, ``(n,)``."""
     poses: Array
     """Rows x, y, heading ``(n, 3)``."""
     gaps: Array
-    """How far the ends miss each other that meet at each pose, metres ``(n,)``."""
+    """Distance in metres between the two ends that meet at each pose, ``(n,)``."""
     kinks: Array
-    """By how much the direction jumps at each pose, radians ``(n,)``."""
+    """Jump of the heading at each pose in radians, ``(n,)``."""
     ends: Array
-    """Where the elements of the file end and begin, ``(m, 2)``: a pose between two is in their middle."""
+    """Points ``(m, 2)`` where the elements of the file end and begin.
+
+    A pose between two elements lies halfway between them.
+    """
 
     def only(self, kept: Array) -> "SampledLine":
-        """Some of the poses."""
+        """Returns the line with only some of its poses."""
         return SampledLine(self.s[kept], self.poses[kept], self.gaps[kept], self.kinks[kept], self.ends)
 
 
 def bridged(line: SampledLine) -> SampledLine | None:
-    """The line without the poses beside its joins; None where too little is left to tell its course."""
+    """Returns the line without the poses beside its joins; None where too few poses are left to follow."""
     kept = _thinned(line.s, _away_from_joins(line))
     if np.diff(line.s[kept]).max() > WIDEST:
         return None
-    # an element so short at an end has a direction that is noise
+    # the heading of a very short element at an end is noise
     poses = line.poses.copy()
     poses[0, 2] += line.kinks[line.s < line.s[0] + NEAREST].sum()
     poses[-1, 2] -= line.kinks[line.s > line.s[-1] - NEAREST].sum()
@@ -58,7 +62,7 @@ def bridged(line: SampledLine) -> SampledLine | None:
 
 
 def turns_back(line: SampledLine) -> tuple[float, float] | None:
-    """Station and radians of a kink behind which the line runs back on itself; None where there is none."""
+    """Returns station and angle (rad) of a kink behind which the line runs back; None without one."""
     kept = bridged(line)
     for i in np.flatnonzero(np.abs(line.kinks) > BACK):
         turned = line.kinks[i]
@@ -71,7 +75,7 @@ def turns_back(line: SampledLine) -> tuple[float, float] | None:
 
 
 def _away_from_joins(line: SampledLine) -> Array:
-    # a clothoid of length l that makes up for a gap g bends by 6 g / l^2, for a kink d by 4 d / l
+    # a clothoid of length l that closes a gap g has a curvature of 6 g / l^2, for a kink d of 4 d / l
     wanted = np.maximum(np.sqrt(1.5 * line.gaps / GENTLE), 2 * np.abs(line.kinks) / GENTLE)
     joins = np.flatnonzero(wanted > NEAREST)
     kept = np.ones(len(line.s), bool)
@@ -89,7 +93,7 @@ def _away_from_joins(line: SampledLine) -> Array:
 
 
 def _thinned(s: Array, kept: Array) -> Array:
-    """Indices of what is kept, none nearer to the one before than clothoids can tell apart."""
+    """Returns the indices of the kept poses, no two closer together than clothoids can resolve."""
     out = [0]
     for i in np.flatnonzero(kept)[1:].tolist():
         if s[i] - s[out[-1]] >= CLOSEST:
@@ -101,7 +105,7 @@ def _thinned(s: Array, kept: Array) -> Array:
 
 
 def misses(line: SampledLine) -> str:
-    """How many joins there are to speak of, and how bad the worst are; empty where there are none."""
+    """Returns a text with the number of noticeable joins and the worst of them; empty where there is none."""
     kinks, gaps = np.abs(line.kinks), line.gaps
     parts = []
     for errors, least, name, unit in (

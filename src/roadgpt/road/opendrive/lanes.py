@@ -1,7 +1,7 @@
-"""Lanes: which one is driven, where its inner edge runs, how wide it is, how fast and how slippery.
+"""Lanes: which one is driven, where its inner edge runs, its width, speed limit and friction.
 
-Our roads have their centre line at the inner edge of the lane that is driven: the innermost driving lane on
-the right, or on the left where the right has none.
+The centre line of our roads is the inner edge of the driven lane. That is the innermost driving lane on the
+right, or on the left where there is none on the right.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -16,18 +16,18 @@ from roadgpt.road.opendrive.numbers import cubics, number
 from roadgpt.road.opendrive.tree import DRIVING, Node
 
 BESIDE = ("shoulder", "border")
-UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # in one m/s
-NEAR = 1.0  # m; gaps without a driving lane that nobody needs to know of
-PLACES = 64  # along a section, at which widths are looked at
+UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # per m/s
+NEAR = 1.0  # m; shorter parts without a driving lane are not reported
+PLACES = 64  # per lane section, at which widths are sampled
 MOST_SECTIONS = 5_000
 
 Which = Callable[["LaneSection"], tuple[int, int]]
-"""First and last lane of a section, by index."""
+"""Returns the first and the last lane of a section, by index."""
 
 
 @dataclass(frozen=True)
 class Lane:
-    """One lane of a section: how wide it is, or where its outer edge runs, by the station of the road."""
+    """One lane of a lane section. By station, it has a width, or a border that gives its outer edge."""
 
     node: Node
     kind: str
@@ -37,26 +37,28 @@ class Lane:
 
 @dataclass(frozen=True)
 class LaneSection:
-    """One lane section, the lanes of the driven side from the inside out."""
+    """One lane section, with the lanes of the driven side from the inside out."""
 
     s: float
     lanes: tuple[Lane, ...]
     driven: int
-    """Index of the driven lane; the number of lanes where there is none."""
+    """Index of the driven lane; equal to the number of lanes where no lane is driven."""
 
 
 @dataclass(frozen=True)
 class Lanes:
-    """What the lanes of a road come to."""
+    """The lane sections of the driven side of a road."""
 
     side: int
-    """-1: the driven lane is to the right of the reference line, 1: to the left."""
+    """-1 where the driven lane is to the right of the reference line, 1 where it is to the left."""
     sections: tuple[LaneSection, ...]
     offset: CubicProfile | None
     length: float
 
     def edge(self, s: Array) -> tuple[Array, Array]:
-        """Where the driven lane has its inner edge, metres left of the reference line, and its slope."""
+        """Returns the offset of the driven lane's inner edge, metres left of the reference line, and its
+        slope.
+        """
         t, slope = _both(self.offset, s)
         starts = np.array([section.s for section in self.sections])
         index = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
@@ -69,7 +71,7 @@ class Lanes:
         return t, slope
 
     def _outer(self, section: LaneSection, last: int, s: Array) -> tuple[Array, Array]:
-        """How far the outer edge of a lane is from lane 0, and the slope of that; 0 before the first."""
+        """Returns how far the outer edge of a lane is from lane 0, and its slope; 0 before the first lane."""
         across, lean = np.zeros(len(s)), np.zeros(len(s))
         for lane in section.lanes[: last + 1]:
             if lane.width is None and lane.border is not None:
@@ -80,7 +82,7 @@ class Lanes:
         return across, lean
 
     def joints(self) -> list[float]:
-        """Stations at which an edge may bend."""
+        """Returns the stations at which an edge may bend."""
         found = [section.s for section in self.sections]
         found += self.offset.stations if self.offset else ()
         for section in self.sections:
@@ -90,11 +92,11 @@ class Lanes:
         return found
 
     def lane_widths(self) -> Array:
-        """Of the driven lane, along all of the road, metres."""
+        """Returns widths of the driven lane in metres, sampled along the road."""
         return self._spread(lambda section: (section.driven, section.driven))
 
     def shoulder_widths(self) -> Array:
-        """Of the shoulder beside the driven lanes, along all of the road, metres."""
+        """Returns widths in metres of the shoulder beside the driven lanes, sampled along the road."""
 
         def beside(section: LaneSection) -> tuple[int, int]:
             kinds = [lane.kind for lane in section.lanes]
@@ -109,7 +111,7 @@ class Lanes:
         return self._spread(beside)
 
     def _spread(self, which: Which) -> Array:
-        """Width from the first to the last lane of each section."""
+        """Returns the width from the first to the last lane of each section, sampled along the road."""
         ends = [section.s for section in self.sections[1:]] + [self.length]
         found = []
         for section, end in zip(self.sections, ends, strict=True):
@@ -121,7 +123,7 @@ class Lanes:
         return np.concatenate(found)
 
     def spans(self) -> list[tuple[float, float]]:
-        """From where to where something drives, metres."""
+        """Returns the first and the last station in metres of every part that has a driving lane."""
         ends = [section.s for section in self.sections[1:]] + [self.length]
         found: list[tuple[float, float]] = []
         for section, end in zip(self.sections, ends, strict=True):
@@ -132,15 +134,15 @@ class Lanes:
         return found
 
     def driven(self) -> Iterator[Node]:
-        """The driven lane of each section that has one."""
+        """Yields the driven lane of each section that has one."""
         return (each.lanes[each.driven].node for each in self.sections if each.driven < len(each.lanes))
 
 
 def read_lanes(road: Node, length: float) -> Lanes:
-    """The lanes of a road.
+    """Returns the lanes of a road.
 
     Raises:
-        UsageError: there are none, or nothing drives on them.
+        UsageError: The road has no lanes, or no driving lane.
     """
     nodes = road.all("lanes", "laneSection")
     if not nodes:
@@ -185,12 +187,12 @@ def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
 
 
 def speed_limit(road: Node, lanes: Lanes) -> float | None:
-    """In m/s, as the driven lane says it first, or else the road; None where neither does."""
+    """Returns the first speed limit in m/s of the driven lane, else of the road, else None."""
     return next(iter(speed_limits(road, lanes)), None)
 
 
 def speed_limits(road: Node, lanes: Lanes) -> list[float]:
-    """All of them in m/s, in their order: those of the driven lane, or of the road where that has none."""
+    """Returns all speed limits in m/s, in order: of the driven lane, else of the road."""
     of_lane = [node for lane in lanes.driven() for node in lane.all("speed")]
     return _speeds(of_lane) or _speeds(road.all("type", "speed"))
 
@@ -204,6 +206,6 @@ def _speeds(nodes: Sequence[Node]) -> list[float]:
 
 
 def friction(lanes: Lanes) -> float | None:
-    """As the driven lane says it; None where it does not."""
+    """Returns the friction that the driven lane states; None where it states none."""
     said = [node for lane in lanes.driven() for node in lane.all("material") if "friction" in node.attributes]
     return number(said[0], "friction") if said else None

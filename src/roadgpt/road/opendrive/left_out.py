@@ -1,4 +1,4 @@
-"""What of a road in the file our Road has no place for, in one sentence."""
+"""Says in one sentence what of a road in the file our Road cannot hold."""
 
 import math
 from collections import Counter
@@ -10,19 +10,19 @@ from roadgpt.road.opendrive.lanes import BESIDE, Lanes
 from roadgpt.road.opendrive.numbers import cubics, number
 from roadgpt.road.opendrive.tree import Choice, Node, is_driven
 
-UNUSED = ("none", *BESIDE)  # lanes that a verge stands for, or nothing
-PLACES = 200  # at which the banking is looked at
-LEVEL = 1e-4  # rad, of banking
+UNUSED = ("none", *BESIDE)  # lanes that become the shoulder, or nothing
+PLACES = 200  # at which the superelevation is sampled
+LEVEL = 1e-4  # rad, of superelevation
 
 
 def left_out(choice: Choice, lanes: Lanes) -> str | None:
-    """The sentence; None where nothing of it is left out."""
+    """Returns the sentence; None where nothing is left out."""
     parts = [*_parts(choice, lanes)]
     return f"left out: {', '.join(parts)}" if parts else None
 
 
 def is_one_way(road: Node, lanes: Lanes) -> bool:
-    """Has it no lane for oncoming cars?"""
+    """Returns whether the road has no lane for oncoming cars."""
     other = "left" if lanes.side == -1 else "right"
     return not any(map(is_driven, road.all("lanes", "laneSection", other, "lane")))
 
@@ -41,8 +41,8 @@ def _parts(choice: Choice, lanes: Lanes) -> Iterator[str]:
     if banking is not None:
         most = float(np.abs(banking.height(np.linspace(0.0, lanes.length, PLACES))).max())
         if most > LEVEL:
-            yield f"banking of up to {math.degrees(most):.1f} degrees"
-    for tag, what in (("crossfall", "crossfall"), ("shape", "the shape across it")):
+            yield f"superelevation of up to {math.degrees(most):.1f} degrees"
+    for tag, what in (("crossfall", "crossfall"), ("shape", "lateral shape")):
         if any(number(each, "a", 0.0) for each in road.all("lateralProfile", tag)):
             yield what
     if road.all("lanes", "laneSection", "left", "lane", "height") + road.all(
@@ -54,7 +54,7 @@ def _parts(choice: Choice, lanes: Lanes) -> Iterator[str]:
 
 
 def _further_lanes(road: Node, lanes: Lanes) -> Counter[str]:
-    """Kinds of lanes, each by its number, but for one each way and for verges."""
+    """Counts the lanes by type, except one driving lane in each direction and the shoulders."""
     kinds: dict[int, str] = {}
     taken: set[int] = set()
     for section in road.all("lanes", "laneSection"):

@@ -1,8 +1,8 @@
-"""From a file's reference line and the edge of its lane to the plan of a Road.
+"""Turns a file's reference line and the edge of its lane into the plan of a Road.
 
-exact      lines, arcs and spirals that meet, and the reference line is the edge: they are taken as they are
-fitted     anything else: clothoids through poses a metre apart, but for those beside joins that do not meet
-rounded    where nothing can be told but the joins: a spline
+exact      lines, arcs and spirals that meet, where the reference line is the edge: they are used unchanged
+fitted     anything else: clothoids through poses one metre apart, except beside joins that do not meet
+rounded    where the joins are too close to each other for that: a spline
 """
 
 from collections.abc import Iterator
@@ -21,18 +21,18 @@ from roadgpt.road.opendrive.lanes import Lanes
 
 MEETS = 5e-4  # m, between the end of an element and the start of the next
 SAME_WAY = 1e-4  # rad
-GAP = 0.3  # m; a larger one is no road any more
-STEP = 1.0  # m between the poses that clothoids are fitted to, and less where they would stray
+GAP = 0.3  # m; a larger gap is refused
+STEP = 1.0  # m between the poses of the clothoids; less where they would leave the line
 CLOSE = 1e-4  # m, between clothoids and the line
-GENTLE = 0.02  # rad; over a turn so slight a clothoid strays by micrometres
-LEAST = 0.1  # m; nearer to each other no poses are taken
+GENTLE = 0.02  # rad; over such a slight turn a clothoid deviates by micrometres
+LEAST = 0.1  # m; the least distance between poses
 FEWEST = 2  # parts of an element: its middle tells its direction best
-TOGETHER = 1e-3  # m; nearer than this, joints are one
-LEFT_OVER = 0.05  # of a metre of the line, that a bend leaves to the edge of the lane
+TOGETHER = 1e-3  # m; joints closer together than this are merged
+LEFT_OVER = 0.05  # m of lane edge that must remain per m of line in a bend
 
 
 def exact(line: list[GeometryElement]) -> PieceCurve | None:
-    """The plan as the file has it; None where it is not made of lines, arcs and spirals that meet."""
+    """Returns the plan as the file has it; None where it is not made of lines, arcs and spirals that meet."""
     shapes = [each.shape for each in line]
     pieces = [shape.piece for shape in shapes if isinstance(shape, PieceShape)]
     if len(pieces) < len(shapes):
@@ -47,7 +47,7 @@ def exact(line: list[GeometryElement]) -> PieceCurve | None:
 
 
 def lies_on_the_line(lanes: Lanes, length: float) -> bool:
-    """Is the edge that is driven along the reference line itself?"""
+    """Returns whether the driven edge is the reference line itself."""
     s = np.linspace(0.0, length, max(FEWEST, int(length / STEP) + 1))
     s = np.unique(np.r_[s, [each for each in lanes.joints() if 0 <= each <= length]])
     t, slope = lanes.edge(s)
@@ -55,14 +55,14 @@ def lies_on_the_line(lanes: Lanes, length: float) -> bool:
 
 
 def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
-    """Poses along the edge of the lane, about a metre apart and wherever something changes.
+    """Returns poses along the edge of the lane, about one metre apart and wherever something changes.
 
     Args:
-        line: the reference line.
-        lanes: whose edge; None for the reference line itself.
+        line: The reference line.
+        lanes: The lanes whose edge is followed; None for the reference line itself.
 
     Raises:
-        UsageError: the line has a gap, the edge jumps, or the edge folds in a bend.
+        UsageError: The line has a gap, the edge jumps, or the edge folds in a bend.
     """
     joints = np.unique(lanes.joints()) if lanes else np.empty(0)
     parts = [part for each in line for part in _parts(each, joints, lanes)]
@@ -88,7 +88,7 @@ def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
 
 
 def _parts(element: GeometryElement, joints: Array, lanes: Lanes | None) -> Iterator[tuple[Array, Array]]:
-    """Stations ``(n,)`` and poses ``(n, 3)`` along one element, both ends included, cut at the joints."""
+    """Yields stations ``(n,)`` and poses ``(n, 3)`` along one element with its ends, cut at the joints."""
     start, end = element.s, element.s + element.length
     count = max(FEWEST, int(np.ceil(element.length / STEP)))
     while (
@@ -106,7 +106,10 @@ def _parts(element: GeometryElement, joints: Array, lanes: Lanes | None) -> Iter
 
 
 def _moved_aside(s: Array, poses: Array, lanes: Lanes) -> Array:
-    """The poses on the edge of the lane; at both ends as the lanes are between them."""
+    """Returns the poses moved onto the edge of the lane.
+
+    At both ends the lanes are those inside the element.
+    """
     inside = min(TOGETHER, float(s[-1] - s[0]) / 4)
     at = np.clip(s, s[0] + inside, s[-1] - inside)
     t, slope = lanes.edge(at)
@@ -121,7 +124,7 @@ def _moved_aside(s: Array, poses: Array, lanes: Lanes) -> Array:
 
 
 def _strays(element: GeometryElement, count: int) -> bool:
-    """Would clothoids between so many poses leave the line?"""
+    """Returns whether clothoids between so many poses would leave the line."""
     poses = element.poses(np.linspace(0.0, 1.0, 2 * count + 1))
     ends, middles = poses[::2], poses[1::2]
     if np.abs(np.diff(ends[:, 2])).max() < GENTLE:
@@ -137,8 +140,10 @@ def _strays(element: GeometryElement, count: int) -> bool:
 
 
 def fitted(line: SampledLine) -> tuple[PieceCurve, Array, Array] | None:
-    """The plan through the poses away from joins, their stations in the file and on it; None where clothoids
-    cannot follow."""
+    """Returns the plan through the poses away from joins, with their stations in the file and on the plan.
+
+    It returns None where clothoids cannot follow the line.
+    """
     kept = bridged(line)
     pieces = clothoids(kept.poses) if kept is not None else None
     if kept is None or pieces is None:

@@ -1,4 +1,4 @@
-"""Numbers of an OpenDRIVE file, and cubics of the distance from a station."""
+"""Reads the numbers of an OpenDRIVE file, and its cubics of the distance from a station."""
 
 import math
 import re
@@ -9,21 +9,21 @@ from roadgpt.geometry import CubicProfile
 from roadgpt.road.opendrive.tree import Node
 
 NUMBER = re.compile(r"\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*")
-LARGEST = 1e12  # of any number; beyond it sums lose their metres
+LARGEST = 1e12  # of any number; beyond it, sums are no longer exact to a metre
 
 Cubic = tuple[float, float, float, float]
 
 
 def number(node: Node, name: str, missing: float | None = None) -> float:
-    """An attribute as a finite number.
+    """Returns an attribute as a finite number.
 
     Args:
-        node: whose attribute.
-        name: of the attribute.
-        missing: what it is where the file does not say; None where it must.
+        node: The element that has the attribute.
+        name: Name of the attribute.
+        missing: Value where the file gives none; None where the attribute is required.
 
     Raises:
-        UsageError: it is missing, no number, or not finite.
+        UsageError: The attribute is missing, not a number, or not finite.
     """
     text = node.attributes.get(name)
     if text is None:
@@ -31,7 +31,7 @@ def number(node: Node, name: str, missing: float | None = None) -> float:
             raise UsageError(f"a <{node.tag}> has no {name}; add it")
         return missing
     if not NUMBER.fullmatch(text) or len(text) > 400:
-        raise UsageError(f"in a <{node.tag}>, {name} is '{text[:40]}', which is no number; correct it")
+        raise UsageError(f"in a <{node.tag}>, {name} is '{text[:40]}', which is not a number; correct it")
     value = float(text)
     if not math.isfinite(value) or abs(value) > LARGEST:
         raise UsageError(f"in a <{node.tag}>, {name} is {text[:40]}, which is too large; correct it")
@@ -39,24 +39,26 @@ def number(node: Node, name: str, missing: float | None = None) -> float:
 
 
 def cubic(node: Node) -> Cubic:
-    """The attributes a, b, c and d; b, c and d may be missing."""
+    """Returns the attributes a, b, c and d; b, c and d may be missing."""
     return (number(node, "a"), number(node, "b", 0.0), number(node, "c", 0.0), number(node, "d", 0.0))
 
 
 def cubics(nodes: Iterable[Node], station: str, start: float = 0.0) -> CubicProfile | None:
-    """Cubics, each from its station on; before the first one, its first value. None where there are none.
+    """Returns cubics, each valid from its station on; None where there are none.
+
+    Before the first cubic, its first value applies.
 
     Args:
-        nodes: elements with a, b, c, d.
-        station: the attribute that says where a cubic begins.
-        start: added to it.
+        nodes: Elements with a, b, c, d.
+        station: Name of the attribute with the station at which a cubic begins.
+        start: Station that is added to it.
     """
     rows = sorted(
         ((start + number(node, station, 0.0), cubic(node)) for node in nodes), key=lambda row: row[0]
     )
     kept: dict[float, Cubic] = {}
     for s, coefficients in rows:
-        kept[s] = coefficients  # the last one counts where several begin at one place
+        kept[s] = coefficients  # where several begin at one station, the last one applies
     if not kept:
         return None
     stations = list(kept)

@@ -1,4 +1,4 @@
-"""The same road in the other direction."""
+"""Reverses the direction of a road."""
 
 import math
 
@@ -9,7 +9,7 @@ from roadgpt.road.road import Road
 
 
 def reversed_road(road: Road) -> Road:
-    """A road of pieces, or through nodes, from its end to its start."""
+    """Returns a road of pieces, or through nodes, driven from its end to its start."""
     if road.nodes is not None:
         return Road.through(road.nodes[::-1])
     assert isinstance(road.plan, PieceCurve)

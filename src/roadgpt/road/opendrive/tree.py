@@ -1,7 +1,7 @@
-"""Reads the XML of an OpenDRIVE file without trusting it: one road is kept, all else goes by.
+"""Reads the XML of an OpenDRIVE file without trusting it. One road is kept; everything else is skipped.
 
-No DOCTYPE is allowed, so no entity can be declared, fetched or expanded. Size, number of elements, depth and
-the length of one tag are bounded, and with them time and memory.
+A DOCTYPE is not allowed, so no entity can be declared, fetched or expanded. Size, number of elements, depth
+and the length of one tag are bounded, and with them time and memory.
 """
 
 import math
@@ -21,11 +21,11 @@ MOST_KEPT = 60_000  # elements of one road
 DEEPEST = 60
 LONGEST_TAG = 1_000_000  # bytes
 CHUNK = 65_536  # bytes
-# What a road may hold that says nothing about its course.
+# Elements of a road that say nothing about its geometry.
 LEFT_OUT = frozenset(
     {"objects", "signals", "railroad", "userData", "surface", "include", "dataQuality", "link"}
 )
-# What of it is told of, in the words in which it is counted; of the header, whether it is there.
+# Elements that are reported, by the noun under which they are counted; IN_HEADER is reported if present.
 COUNTED = {
     "object": "object",
     "bridge": "bridge",
@@ -36,20 +36,20 @@ COUNTED = {
     "CRG": "surface",
 }
 IN_HEADER = ("geoReference", "offset")
-OURS = "RoadGPT"  # vendor of files that we wrote: their maps lie nowhere on Earth
+OURS = "RoadGPT"  # vendor of files that RoadGPT wrote: their georeference has no meaning
 DRIVING = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane")
 
 
 @dataclass(slots=True)
 class Node:
-    """One element."""
+    """One XML element."""
 
     tag: str
     attributes: dict[str, str]
     children: list["Node"] = field(default_factory=list)
 
     def all(self, *path: str) -> list["Node"]:
-        """Elements below it, by the tags that lead to them."""
+        """Returns the elements below it that are reached by these tags."""
         found = [self]
         for tag in path:
             found = [child for node in found for child in node.children if child.tag == tag]
@@ -58,29 +58,29 @@ class Node:
 
 @dataclass(frozen=True)
 class Choice:
-    """The road that was taken, and what else there is."""
+    """The road that was selected, and what else the file holds."""
 
     road: Node
     others: tuple[str, ...]
-    """Ids of all roads."""
+    """Ids of all roads in the file."""
     passed: Mapping[str, int]
-    """How many of COUNTED the road has."""
+    """How many of each kind in COUNTED the road has."""
     header: frozenset[str]
     """Which of IN_HEADER the file has."""
 
 
 def is_driven(lane: Node) -> bool:
-    """Is it a lane for cars that go on?"""
+    """Returns whether a lane is of a type on which cars drive."""
     return lane.attributes.get("type", "") in DRIVING
 
 
 def read_tree(path: Path, wanted: str | None) -> Choice:
-    """The road of an id; where none is given, the longest with a driving lane that is not part of a junction.
+    """Returns the road with this id, or else the longest with a driving lane that is not part of a junction.
 
     Raises:
-        UsageError: the file cannot be read, is no OpenDRIVE, is too large, or has no such road.
+        UsageError: The file cannot be read, is not OpenDRIVE, is too large, or has no such road.
     """
-    reader = _Reader(wanted)
+    reader = _RoadSelector(wanted)
     parser = expat.ParserCreate()
     parser.buffer_text = True
     parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
@@ -94,14 +94,14 @@ def read_tree(path: Path, wanted: str | None) -> Choice:
                     raise UsageError(TOO_LARGE)
                 parser.Parse(chunk, False)
                 if fed - max(parser.CurrentByteIndex, 0) > LONGEST_TAG:
-                    raise UsageError("one tag is longer than a megabyte; that is no OpenDRIVE file")
+                    raise UsageError("one tag is longer than a megabyte; that is not an OpenDRIVE file")
             parser.Parse(b"", True)
     except OSError as error:
         raise UsageError(
             f"it cannot be read: {error.strerror}; give the path of an OpenDRIVE file"
         ) from error
     except (expat.ExpatError, UnicodeError, LookupError, ValueError) as error:
-        raise UsageError(f"it is no well-formed XML ({error}); save it again as OpenDRIVE") from error
+        raise UsageError(f"it is not well-formed XML ({error}); save it again as OpenDRIVE") from error
     return reader.choice()
 
 
@@ -109,8 +109,8 @@ def _refuse_doctype(name: str, system: str | None, public: str | None, internal:
     raise UsageError("it has a DOCTYPE, which OpenDRIVE has no use for; remove it")
 
 
-class _Reader:
-    """Counts what goes by, and keeps the road that is wanted."""
+class _RoadSelector:
+    """Counts what is skipped, and keeps the selected road."""
 
     def __init__(self, wanted: str | None) -> None:
         self.wanted = wanted
@@ -122,7 +122,7 @@ class _Reader:
         self.stack: list[Node] = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
-        """An element begins."""
+        """Handles the start of an element."""
         self.elements += 1
         self.depth += 1
         if self.elements > MOST_ELEMENTS or self.depth > DEEPEST:
@@ -130,7 +130,7 @@ class _Reader:
             raise UsageError(f"it has {what}; cut out the roads that you need")
         tag = tag.rpartition(":")[2]
         if self.depth == 1 and tag != "OpenDRIVE":
-            raise UsageError(f"it is XML, but no OpenDRIVE: it begins with <{tag[:40]}>")
+            raise UsageError(f"it is XML but not OpenDRIVE: it begins with <{tag[:40]}>")
         if self.hidden or (self.stack and tag in LEFT_OUT):
             self.hidden += 1
             if tag in COUNTED:
@@ -156,7 +156,7 @@ class _Reader:
             self.header.add(OURS)
 
     def end(self, tag: str) -> None:
-        """An element ends; a road that is complete is held against the best one so far."""
+        """Handles the end of an element. A complete road is compared with the best one so far."""
         self.depth -= 1
         if self.hidden:
             self.hidden -= 1
@@ -180,7 +180,7 @@ class _Reader:
             self.best = (rank, road, self.passed)
 
     def choice(self) -> Choice:
-        """What was found, once the file is at its end."""
+        """Returns what was found, after the end of the file."""
         if self.best is None:
             if not self.ids:
                 raise UsageError("there is no road in it")
