@@ -326,7 +326,7 @@ class TestNoOverlap:
         finding = the_finding("no_overlap", road)
         # the later leg runs along x = 60 and reaches the first leg's left edge, y = 64, 26 m after the circle
         assert finding.s == pytest.approx(60 + 1.5 * math.pi * 30 + 26, abs=1.5)
-        assert "stretch at s = 2" in finding.sentence
+        assert "itself at s = 2" in finding.sentence
 
     def test_heights_do_not_excuse_it(self) -> None:
         flat = turning((60, math.inf), (1.5 * math.pi * 30, 30), (80, math.inf), x=30, y=60)

@@ -136,6 +136,6 @@ def test_a_vertical_radius_that_does_not_fit_is_remarked_on() -> None:
     assert written(300) == ()  # 15 m to either side
     (remark,) = written(2000)
     assert remark == (
-        "segment 2: a vertical radius of 2000 m does not fit between the changes of grade beside it; "
+        "segment 2: a vertical radius of 2000 m does not fit between the neighbouring changes of grade; "
         "it becomes 784 m"
     )

@@ -94,7 +94,7 @@ def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...
 
     @cache
     def best(group: int, turn: int, wanted: tuple[Feature, ...]) -> _Cost:
-        """Returns the least cost from this group on, with this turn next and these straights wanted before it."""
+        """Returns the least cost from this group on, with this turn next and these straights before it."""
         here = _gap_cost(gaps[turn], wanted, turn)
         if group == len(groups):
             return here if turns_are_free or turn == len(turns) else IMPOSSIBLE

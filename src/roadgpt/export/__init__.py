@@ -1,12 +1,12 @@
-"""Exports: makes files that other tools read. Verb: ``save``; a format is a part on the shelf ``exporters/``.
+"""Exports roads to files of other tools. Main function: ``save``. A format is a plug-in under ``exporters/``.
 
     class Exporter:
         name = "opendrive"                                     # of the format
         suffix = ".xodr"                                       # of its file
         def save(self, road, path, world, poses=None) -> None
 
-A part writes ``path``, and may write further files of the same stem beside it. The same arguments give the
-same bytes: no clock, no random number, no path of this machine.
+An exporter writes ``path``, and may write further files with the same stem beside it. The same arguments give
+the same bytes: no clock, no random number, no path of the machine.
 """
 
 import shutil
@@ -28,30 +28,30 @@ class Exporter(Protocol):
     """Writes roads in one format."""
 
     name: str
-    """Of the format, as on the shelf."""
+    """Name of the format, as it is registered."""
     suffix: str
-    """Of its file, with the dot."""
+    """Suffix of its file, including the dot."""
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write a road into a file of a folder that exists and holds nothing else.
+        """Writes a road to a file. The folder of the file exists and is empty.
 
         Args:
-            road: what is exported.
-            path: the file; others may be written beside it whose names begin with its stem.
-            world: widths of lane and verge, friction, speed limit.
-            poses: a drive along the road, for formats that can hold one.
+            road: The road to export.
+            path: The file. Other files may be written beside it if their names begin with its stem.
+            world: Widths of lane and shoulder, friction, speed limit.
+            poses: A drive along the road, for formats that can hold one.
 
         Raises:
-            ExportError: the format cannot hold this road, or what it needs is not installed.
+            ExportError: The format cannot hold this road, or something that it needs is not installed.
         """
         ...
 
 
 def exporter_of(name: str) -> Exporter:
-    """The part that writes this format.
+    """Returns the exporter of a format.
 
     Raises:
-        PartError: there is none of that name.
+        PartError: There is no exporter of this name.
     """
     found: Any = plugins.find("exporters", name)
     part: Exporter = found() if isinstance(found, type) else found
@@ -66,21 +66,22 @@ def save(
     name: str = "road",
     poses: Poses | None = None,
 ) -> tuple[Path, ...]:
-    """Write a road in each of these formats; gives back the files, all of one format before the next.
+    """Writes a road in each of these formats. Returns the files, all of one format before those of the next.
 
-    A file is there whole or not at all; one of the same name is replaced.
+    A file is either complete or absent. An existing file of the same name is replaced.
 
     Args:
-        road: what is exported.
-        folder: made where it does not exist.
-        formats: names on the shelf ``exporters``; each is found before any file is written.
-        world: widths of lane and verge, friction, speed limit.
-        name: of the files, without their suffix.
-        poses: a drive along the road, for formats that can hold one.
+        road: The road to export.
+        folder: The folder, which is created if it does not exist.
+        formats: Names of exporters. All are looked up before any file is written.
+        world: Widths of lane and shoulder, friction, speed limit.
+        name: Name of the files without suffix.
+        poses: A drive along the road, for formats that can hold one.
 
     Raises:
-        PartError: a format is unknown.
-        ExportError: a format cannot hold this road, or a file cannot be written.
+        PartError: A format is unknown.
+        UsageError: ``name`` cannot be the name of a file.
+        ExportError: A format cannot hold this road, or a file cannot be written.
     """
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:
@@ -90,7 +91,7 @@ def save(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for part in parts:
-            # a folder of its own: what a part wrote before it failed is not left behind
+            # in a folder of its own, so that nothing remains of an exporter that fails
             with tempfile.TemporaryDirectory(dir=folder, prefix=".export-", suffix=".part") as draft:
                 part.save(road, Path(draft, name + part.suffix), world, poses)
                 written += _moved(Path(draft), folder)
@@ -101,7 +102,7 @@ def save(
 
 
 def _moved(draft: Path, folder: Path) -> list[Path]:
-    """Take everything out of the draft into the folder; the names in their order."""
+    """Moves everything from the draft into the folder, and returns the paths in order."""
     targets = []
     for made in sorted(draft.iterdir()):
         target = folder / made.name

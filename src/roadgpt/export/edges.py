@@ -1,4 +1,4 @@
-"""Lines beside the centre line as polylines: as few stations as keep their chords near the curve."""
+"""Lines beside the centre line as polylines, with as few stations as keep their chords close to the curve."""
 
 from collections.abc import Sequence
 
@@ -10,21 +10,21 @@ from roadgpt.road import Road
 
 CHORD = 0.002  # m, most distance between a polyline and the curve it stands for
 LONGEST = 10.0  # m between stations on a straight
-SHORTEST = 0.05  # m; tighter bends than a kerb's are not followed any closer
-STEP = 0.5  # m between the places where the curvature is looked at
-PINCH = 0.95  # share of the radius; an offset line nearer to the centre of its bend would fold over itself
+SHORTEST = 0.05  # m between stations; tighter bends are not followed more closely
+STEP = 0.5  # m between the places where the curvature is sampled
+PINCH = 0.95  # share of the radius; an offset line closer to the centre of its bend would fold
 
 
 def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
-    """Rising stations, both ends included, dense in bends and on crests and sparse on straights.
+    """Returns increasing stations, both ends included: dense in bends and on crests, sparse on straights.
 
     Args:
-        road: where.
-        reach: of the farthest line beside the centre line, metres; outer lines need more points.
-        chord: most distance between the polyline and the curve, metres.
+        road: The road.
+        reach: Distance in metres of the farthest line beside the centre line. Outer lines need more points.
+        chord: Greatest distance in metres between the polyline and the curve.
 
     Raises:
-        ExportError: the road has a number that is not finite.
+        ExportError: The road has a number that is not finite.
     """
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / STEP)) + 1))
     finite(road.at(s))
@@ -37,7 +37,10 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
 
 
 def line(road: Road, s: Array, t: float) -> Array:
-    """Points ``(n, 3)`` at offset ``t``; pinched in a bend too tight for it, so that it never folds."""
+    """Returns points ``(n, 3)`` at offset ``t``.
+
+    In a bend too tight for it, ``t`` is reduced so that the line never folds.
+    """
     k = road.curvature(s)
     inside = k * t > PINCH
     offsets = np.where(inside, PINCH / np.where(inside, k, 1.0), t)
@@ -45,11 +48,11 @@ def line(road: Road, s: Array, t: float) -> Array:
 
 
 def lines(road: Road, s: Array, offsets: Sequence[float]) -> list[Array]:
-    """The lines at several offsets."""
+    """Returns the lines at several offsets."""
     return [line(road, s, t) for t in offsets]
 
 
 def _widened(bend: Array) -> Array:
-    """Each place as bent as its neighbours: a curvature may jump between two places that were looked at."""
+    """Returns the greatest bend of each place and its neighbours: a curvature may jump between two places."""
     padded = np.r_[bend[0], bend, bend[-1]]
     return np.asarray(np.maximum(np.maximum(padded[:-2], padded[2:]), bend))

@@ -1,4 +1,4 @@
-"""Embankments: slopes from a road's rims and ends down into the land around it."""
+"""Embankments: slopes from the edges and ends of a road down into the land around it."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -10,29 +10,29 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 from roadgpt.road.land import Land
 
-RUN = 1.7  # over fall
-FOOT = 0.4  # m that a slope ends below the land
-OUTSIDE = 2.0  # m beyond the rim, where the land's height is asked
-ACROSS = 7  # points of a rim at an end of the road
+RUN = 1.7  # horizontal length of a slope over its height
+FOOT = 0.4  # m by which a slope ends below the land
+OUTSIDE = 2.0  # m beyond the edge, where the height of the land is taken
+ACROSS = 7  # points of the edge at an end of the road
 
 
 class Embankment(NamedTuple):
-    """One slope: its upper edge and its foot, points ``(n, 3)`` each, metres."""
+    """One slope, given by its upper edge and its foot: points ``(n, 3)`` each, in metres."""
 
     edge: Array
     foot: Array
     is_left: bool
-    """Does it fall to the left of whoever walks along the edge?"""
+    """Whether it falls to the left of the direction of its edge."""
 
 
 def embankments(road: Road, rim: float, s: Array, land: Land) -> Iterator[Embankment]:
-    """The slopes at both rims, ``rim`` metres beside the centre line, and at both ends.
+    """Yields the slopes at both edges, ``rim`` metres beside the centre line, and at both ends.
 
     Args:
-        road: what is banked.
-        rim: metres from the centre line to the end of the shoulder.
-        s: stations ``(n,)`` of the rims' points.
-        land: what the slopes run down into.
+        road: The road.
+        rim: Distance in metres from the centre line to the outer edge of the shoulder.
+        s: Stations ``(n,)`` of the points of the edges.
+        land: The land that the slopes run down into.
     """
     heading = road.heading(s)
     for side in (-1.0, 1.0):

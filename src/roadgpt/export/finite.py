@@ -1,4 +1,4 @@
-"""Numbers that a file can hold."""
+"""Checks that numbers can be written to a file."""
 
 import numpy as np
 
@@ -9,10 +9,10 @@ NOT_FINITE = "the road has a number that is not finite; check it before it is ex
 
 
 def finite(values: Array) -> Array:
-    """These very values.
+    """Returns these values unchanged.
 
     Raises:
-        ExportError: one is not finite; readers of files know no such number.
+        ExportError: A value is not finite. File formats have no such numbers.
     """
     if not np.isfinite(values).all():
         raise ExportError(NOT_FINITE)

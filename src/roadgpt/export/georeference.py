@@ -1,8 +1,8 @@
-"""Where on Earth a map lies, for formats that must know: its corner (0, 0) at 48 N, 9 E, x to the east.
+"""Where on Earth a map lies, for formats that require it: corner (0, 0) at 48 N, 9 E, x to the east.
 
-The map itself is nowhere. 9 E is the middle of a UTM zone, so north on the map is north on its grid as well.
+The map itself has no real place. 9 E is the centre of a UTM zone, so north on the map is also grid north.
 Projection: transverse Mercator on WGS 84, inverse series after Snyder, Map Projections: A Working Manual (US
-Geological Survey Professional Paper 1395), pp. 60-64; within 10 km of the corner good to 0.1 mm.
+Geological Survey Professional Paper 1395), pp. 60-64; accurate to 0.1 mm within 10 km of the corner.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from roadgpt.geometry.curve import Array
 
 LATITUDE, LONGITUDE = 48.0, 9.0  # degrees, of the corner (0, 0)
 PROJECTION = f"+proj=tmerc +lat_0={LATITUDE:g} +lon_0={LONGITUDE:g} +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m"
-"""As PROJ says it; without +no_defs, which some readers do not know."""
+"""The projection as a PROJ string, without +no_defs, which some readers do not know."""
 
 SEMI_MAJOR = 6_378_137.0  # m, WGS 84
 FLATTENING = 1 / 298.257223563  # WGS 84
@@ -22,7 +22,7 @@ _EP2 = _E2 / (1 - _E2)
 
 
 def degrees(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-    """Longitudes and latitudes, in degrees, of points of the map in metres."""
+    """Returns longitudes and latitudes in degrees of points of the map in metres."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     foot = _footpoint(y)
     sin, cos, tan = np.sin(foot), np.cos(foot), np.tan(foot)
@@ -40,7 +40,7 @@ def degrees(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
 
 
 def _meridian(latitude: Array) -> Array:
-    """Metres along the meridian from the equator."""
+    """Returns the distance in metres along the meridian from the equator."""
     e4, e6 = _E2**2, _E2**3
     return np.asarray(
         SEMI_MAJOR
@@ -54,7 +54,7 @@ def _meridian(latitude: Array) -> Array:
 
 
 def _footpoint(y: Array) -> Array:
-    """Latitude in radians of the point of the meridian that lies ``y`` metres north of the corner."""
+    """Returns the latitude in radians of the point of the meridian ``y`` metres north of the corner."""
     start = np.radians(LATITUDE)
     foot = start + y / SEMI_MAJOR
     for _ in range(ROUNDS):

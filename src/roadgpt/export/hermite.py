@@ -1,4 +1,4 @@
-"""Cubics that follow a smooth function of ``s``: as few as keep it within a tolerance."""
+"""Fits cubics to a smooth function of ``s``, as few as stay within a tolerance."""
 
 from collections.abc import Callable
 
@@ -6,21 +6,22 @@ import numpy as np
 
 from roadgpt.geometry.curve import Array
 
-SHORTEST = 0.02  # m; a cusp of a spline is not followed any further
-BETWEEN = (0.25, 0.5, 0.75)  # where a cubic is held against the function
+SHORTEST = 0.02  # m; the shortest cubic, at a cusp of a spline
+BETWEEN = (0.25, 0.5, 0.75)  # where a cubic is compared with the function
 
 Function = Callable[[Array], Array]
-"""Values ``(n, d)`` at stations ``(n,)``."""
+"""Returns values ``(n, d)`` at stations ``(n,)``."""
 
 
 def cubics(value: Function, slope: Function, breaks: Array, tolerance: float) -> tuple[Array, Array]:
-    """Stations ``(n + 1,)`` and the coefficients ``(n, 4, d)`` of the cubics between them.
+    """Returns stations ``(n + 1,)`` and the coefficients ``(n, 4, d)`` of the cubics between them.
 
     Args:
-        value: what is followed.
-        slope: its derivative by s.
-        breaks: rising stations, the ends included, at which a cubic must end: the function is smooth between.
-        tolerance: most distance between cubic and function, in the unit of the values.
+        value: The function.
+        slope: Its derivative with respect to s.
+        breaks: Increasing stations, ends included, at which a cubic must end. The function is smooth between
+            them.
+        tolerance: Greatest distance between cubic and function, in the unit of the values.
     """
     stations = np.asarray(breaks, float)
     while True:
@@ -38,14 +39,14 @@ def cubics(value: Function, slope: Function, breaks: Array, tolerance: float) ->
 
 
 def at(coefficients: Array, u: Array) -> Array:
-    """Values ``(n, d)`` of cubics ``(n, 4, d)``, each at its own distance ``u`` from its start."""
+    """Returns values ``(n, d)`` of cubics ``(n, 4, d)``, each at its own distance ``u`` from its start."""
     a, b, c, d = (coefficients[:, i] for i in range(4))
     u = u[:, None]
     return np.asarray(a + u * (b + u * (c + u * d)))
 
 
 def _between(stations: Array, values: Array, slopes: Array) -> Array:
-    """The cubics that have these values and slopes at the stations (Hermite's)."""
+    """Returns the cubics that have these values and slopes at the stations (Hermite interpolation)."""
     length = np.diff(stations)[:, None]
     rise = np.diff(values, axis=0) / length
     c = (3 * rise - 2 * slopes[:-1] - slopes[1:]) / length

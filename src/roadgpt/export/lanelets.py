@@ -1,6 +1,6 @@
-"""The two lanes in sections end to end, for formats that know roads as chains of short lanes.
+"""The two lanes cut into short parts, for formats that describe roads as chains of lanelets.
 
-Both lanes of a section share the line between them, and neighbours share the points in which they meet.
+Both lanelets of a pair share the line between them, and neighbouring pairs share their end points.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ DECIMALS = 4  # of a metre
 
 @dataclass(frozen=True, eq=False)
 class LaneletPair:
-    """Polylines ``(n, 3)`` of one section in the direction of the road, in metres."""
+    """Polylines ``(n, 3)`` in metres of both lanes between two stations, in the direction of the road."""
 
     start: float
     end: float
@@ -27,10 +27,10 @@ class LaneletPair:
 
 
 def lanelet_pairs(road: Road, world: World) -> list[LaneletPair]:
-    """The sections from the road's start to its end, at least one.
+    """Returns the pairs from the start of the road to its end, at least one.
 
     Raises:
-        ExportError: the road has a number that is not finite.
+        ExportError: The road has a number that is not finite.
     """
     wide = world.lane_width
     fine = stations(road, wide)

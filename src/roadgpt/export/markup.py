@@ -1,4 +1,4 @@
-"""XML as text: elements with their attributes in the order given, and numbers that read back as they were."""
+"""XML as text: elements with attributes in the given order, and numbers that read back exactly."""
 
 import math
 from collections.abc import Mapping
@@ -17,10 +17,10 @@ Value = str | float | int
 
 
 def number(value: float) -> str:
-    """The shortest decimal that reads back as this very number; whole ones without a point.
+    """Returns the shortest decimal that reads back as the same number; whole numbers have no point.
 
     Raises:
-        ExportError: it is not finite.
+        ExportError: The number is not finite.
     """
     value = float(value) + 0.0  # -0.0 becomes 0.0
     if not math.isfinite(value):
@@ -29,12 +29,15 @@ def number(value: float) -> str:
 
 
 def escaped(text: str) -> str:
-    """Text that may stand between tags or in an attribute; what XML cannot hold at all is left out."""
+    """Returns text that may stand between tags or in an attribute.
+
+    Characters that XML cannot hold are left out.
+    """
     return "".join(filter(_is_allowed, text)).translate(_ESCAPES)
 
 
 def _is_allowed(letter: str) -> bool:
-    """Production 2 of XML 1.0."""
+    """Implements production 2 of XML 1.0."""
     if letter < " ":
         return letter in "\n\t\r"
     return not "\ud800" <= letter <= "\udfff" and letter not in "\ufffe\uffff"
@@ -42,27 +45,27 @@ def _is_allowed(letter: str) -> bool:
 
 @dataclass(slots=True)
 class Element:
-    """One element; ``add`` gives back the child, so that trees are written from the outside in."""
+    """One XML element. ``add`` returns the new child, so that a tree is written from the outside in."""
 
     name: str
     attributes: Mapping[str, Value] = field(default_factory=dict)
     children: list["Element"] = field(default_factory=list)
     raw: str = ""
-    """Content between the tags instead of children, already escaped."""
+    """Content between the tags in place of children, already escaped."""
 
     def add(self, name: str, attributes: Mapping[str, Value] | None = None, raw: str = "") -> "Element":
-        """A new child with these attributes."""
+        """Adds a child with these attributes and returns it."""
         child = Element(name, attributes or {}, raw=raw)
         self.children.append(child)
         return child
 
     def extended(self, *children: Self) -> Self:
-        """This element, with more children."""
+        """Adds children and returns this element."""
         self.children.extend(children)
         return self
 
     def to_text(self) -> str:
-        """The whole document, two spaces deep for each level."""
+        """Returns the whole document, indented by two spaces per level."""
         lines = [DECLARATION]
         _write(self, "", lines)
         return "\n".join(lines) + "\n"

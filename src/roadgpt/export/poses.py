@@ -1,4 +1,4 @@
-"""How a car moved along a road, as plain arrays: what an exporter may put beside the road."""
+"""The motion of a car along a road as plain arrays, for formats that can hold a drive."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -13,13 +13,13 @@ from roadgpt.geometry.curve import Array
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Where a car was, every array of shape ``(n,)``, n >= 2, times rising.
+    """Poses of a car. Every array has shape ``(n,)``, n >= 2, and the times increase.
 
-    Positions are those of the centre of gravity in metres; angles in radians: heading 0 along +x and
-    counter-clockwise, pitch positive nose up, roll positive left side up; time in s, speed in m/s.
+    Positions are those of the centre of gravity in metres. Angles are in radians: heading 0 along +x and
+    counter-clockwise, pitch positive nose up, roll positive left side up. Time is in s, speed in m/s.
 
     Raises:
-        UsageError: the arrays differ in length, are not finite, or the times do not rise.
+        UsageError: The arrays differ in length, are not finite, or the times do not increase.
     """
 
     time: Array
@@ -42,10 +42,10 @@ class Poses:
 
     @classmethod
     def of(cls, columns: Mapping[str, ArrayLike]) -> Self:
-        """The poses in columns that have these names, as those of a Drive; other columns are left out.
+        """Returns the poses in columns with these names, such as those of a Drive. Other columns are ignored.
 
         Raises:
-            UsageError: a column is missing, or as for the class.
+            UsageError: A column is missing, or as for the class.
         """
         missing = [each.name for each in fields(cls) if each.name not in columns]
         if missing:

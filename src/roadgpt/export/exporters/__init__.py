@@ -1,1 +1,1 @@
-"""One format per file; each is registered under the entry point ``roadgpt.exporters``."""
+"""The exporters: one format per file, each registered under the entry point ``roadgpt.exporters``."""

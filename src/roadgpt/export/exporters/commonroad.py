@@ -1,7 +1,8 @@
 """CommonRoad scenarios (XML 2020a): lanelets, a speed limit, and the task to drive to the end.
 
-Source: CommonRoad, Documentation of the XML Format, version 2020a. It has room for heights, but CommonRoad's
-planners, road boundaries and pictures stop at points that have one (commonroad-io 2024.3): none are written.
+Source: CommonRoad, Documentation of the XML Format, version 2020a. The format can hold heights, but
+CommonRoad's planners, road boundaries and pictures stop at points that have one (commonroad-io 2024.3), so
+none are written.
 """
 
 from collections.abc import Sequence
@@ -19,27 +20,27 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 
 STEP = 0.1  # s
-PATIENCE = 2.0  # times what a calm drive to the end takes
-NOWHERE = -999  # GeoNames' number of a place that is none
+PATIENCE = 2.0  # times the duration of a calm drive to the end
+NOWHERE = -999  # GeoNames' number for no place
 SPEED_LIMIT = "274"  # the sign's number in Zamunda, CommonRoad's own country, as in Germany
 
 
 class CommonRoad:
-    """CommonRoad scenario 2020a, lanelets seen from above, a speed limit, the task to drive to the end."""
+    """CommonRoad scenario 2020a: lanelets in plan view, a speed limit, the task to drive to the end."""
 
     name = "commonroad"
     suffix = ".cr.xml"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the scenario; a drive would be a solution of it, which is another format."""
+        """Writes the scenario. A drive would be a solution of it, which is another format."""
         path.write_bytes(document(road, world).to_text().encode())
 
 
 def document(road: Road, world: World) -> Element:
-    """The whole file: lanelets 1.. of the right lane, then those of the left one, the sign, the problem.
+    """Returns the whole file: lanelets of the right lane from 1, then of the left lane, sign and problem.
 
     Raises:
-        ExportError: the road has a number that is not finite.
+        ExportError: The road has a number that is not finite.
     """
     parts = lanelet_pairs(road, world)
     right, left = range(1, len(parts) + 1), range(len(parts) + 1, 2 * len(parts) + 1)
@@ -80,7 +81,7 @@ def _backward(part: LaneletPair) -> tuple[Array, Array]:
 
 
 def _lanelet(chain: Sequence[int], i: int, bounds: tuple[Array, Array], beside: int, sign: int) -> Element:
-    """The i-th of a chain; traffic beside its left bound comes the other way."""
+    """Returns the i-th lanelet of a chain. Traffic beside its left bound drives in the opposite direction."""
     out = Element("lanelet", {"id": chain[i]})
     for name, points, mark in zip(("leftBound", "rightBound"), bounds, ("dashed", "solid"), strict=True):
         bound = out.add(name)
@@ -109,7 +110,7 @@ def _limit(id_: int, place: Array, world: World) -> Element:
 
 
 def _problem(id_: int, road: Road, world: World, goal: int) -> Element:
-    """From rest in the right lane to its last lanelet, within twice the time of a calm drive."""
+    """Returns the planning problem: from rest to the last lanelet, within twice the time of a calm drive."""
     start = start_of(road)
     place = np.round(road.at(start, -world.lane_width / 2), 6)
     out = Element("planningProblem", {"id": id_})

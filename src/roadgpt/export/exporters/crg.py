@@ -1,6 +1,7 @@
 """ASAM OpenCRG 1.2, ASCII: the surface of the road along its centre line, for tyre and chassis models.
 
-Source: ASAM OpenCRG 1.2.0, user guide and file format. The surface is smooth, its heights those of the road.
+Source: ASAM OpenCRG 1.2.0, user guide and file format. The surface is smooth; its heights are those of the
+road.
 """
 
 import math
@@ -19,25 +20,25 @@ STEP = 0.1  # m between cross sections
 MOST = 200_000  # cross sections; longer roads have a wider step
 RULER = "$" * 72  # ends the header
 NOTHING = "*" * 20  # a field without a value
-ROOM = 0.99  # share of the radius: the surface may not reach the centre of a bend
+ROOM = 0.99  # share of the radius, so that the surface does not reach the centre of a bend
 
 
 class Crg:
-    """ASAM OpenCRG as text, a smooth surface along the centre line, for tyre and vehicle dynamics models."""
+    """ASAM OpenCRG as text: a smooth surface along the centre line, for tyre and vehicle dynamics models."""
 
     name = "crg"
     suffix = ".crg"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the surface of lanes and verges; OpenCRG has no place for a drive."""
+        """Writes the surface of lanes and shoulders. OpenCRG cannot hold a drive."""
         path.write_bytes(document(road, world).encode("ascii"))
 
 
 def document(road: Road, world: World) -> str:
-    """The whole file: header, then one line for each cross section: heading, height right, height left.
+    """Returns the whole file: header, then one line per cross-section with heading and two heights.
 
     Raises:
-        ExportError: a bend is so tight that the lanes overlap in it, or a number is not finite.
+        ExportError: A bend is so tight that the lanes overlap in it, or a number is not finite.
     """
     count = min(MOST, max(1, math.ceil(road.length / STEP)))
     step = road.length / count
@@ -51,7 +52,7 @@ def document(road: Road, world: World) -> str:
 
 
 def _header(length: float, step: float, points: Array, headings: Array, reach: float) -> list[str]:
-    """Lines that say where the reference line runs, how wide the surface is, what a cross section holds."""
+    """Returns the lines on the reference line, the surface's width, and the columns of a cross-section."""
     end = points[0, :2] + step * np.array([np.cos(headings).sum(), np.sin(headings).sum()])
     numbers = {
         "start_u": 0.0,
@@ -87,10 +88,10 @@ def _header(length: float, step: float, points: Array, headings: Array, reach: f
 
 
 def _headings(points: list[list[float]], step: float) -> list[float]:
-    """From each cross section to the next, ``(n - 1,)``, in radians.
+    """Returns the heading in radians from each cross-section to the next, ``(n - 1,)``.
 
-    A reader walks steps of one length in these directions. Each aims from where the walk has come to, at the
-    road's next point, so that no error adds up across the road.
+    A reader walks steps of equal length in these directions. Each one aims from the point that the walk has
+    reached at the next point of the road, so that errors do not add up across the road.
     """
     x, y = points[0]
     out = []
@@ -102,17 +103,17 @@ def _headings(points: list[list[float]], step: float) -> list[float]:
 
 
 def _reach(headings: Array, step: float, world: World) -> float:
-    """Metres to both sides that the surface covers: lanes and verges, or what the tightest bend allows."""
+    """Returns half the surface's width in metres: lane and shoulder, or what the tightest bend allows."""
     turns = np.abs(wrap_angle(np.diff(headings)))
     room = ROOM * step / math.sin(min(float(turns.max(initial=1e-12)), math.pi / 2))
     if room < world.lane_width:
         raise ExportError(
             f"OpenCRG cannot hold a bend whose radius is {room:.1f} m, less than a lane is wide; "
-            "give the road wider bends or World a smaller lane_width"
+            "use wider bends or a narrower lane"
         )
     return min(world.lane_width + world.verge, room)
 
 
 def _field(value: float) -> str:
-    """Twenty characters."""
+    """Returns a number in twenty characters."""
     return f"{value:20.12e}"

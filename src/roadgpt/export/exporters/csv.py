@@ -1,4 +1,4 @@
-"""Comma-separated values: the road every metre, and the drive every step, for tables and scripts."""
+"""Comma-separated values: the road every metre, and every step of the drive, for tables and scripts."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ class Csv:
     suffix = ".csv"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the road; a drive goes into NAME.drive.csv."""
+        """Writes the road. A drive is written to NAME.drive.csv."""
         of = road.sample(STEP)
         wide = np.full(len(of.s), world.lane_width)
         verge = np.full(len(of.s), world.verge)

@@ -1,4 +1,4 @@
-"""GeoJSON (RFC 7946): the road on the globe, for maps and geographic tools."""
+"""GeoJSON (RFC 7946): the road in geographic coordinates, for maps and geographic tools."""
 
 import json
 from pathlib import Path
@@ -24,7 +24,7 @@ class GeoJson:
     suffix = ".geojson"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write one collection of features; ``export.georeference`` says where the map's corner lies."""
+        """Writes one feature collection. ``export.georeference`` defines where the map's corner lies."""
         s, wide = road.sample(STEP).s, world.lane_width
         right, middle, left = road.at(s, -wide), road.at(s), road.at(s, wide)
         features = [
@@ -45,7 +45,7 @@ def _line(name: str, points: Array, told: dict[str, Any]) -> dict[str, Any]:
 
 
 def _area(name: str, right: Array, left: Array, told: dict[str, Any]) -> dict[str, Any]:
-    """A polygon between two edges, counter-clockwise as the standard asks."""
+    """Returns the polygon between two edges, counter-clockwise as the standard requires."""
     ring = _on_globe(np.concatenate([right, left[::-1], right[:1]]))
     return _feature(name, {"type": "Polygon", "coordinates": [ring]}, told)
 

@@ -1,7 +1,7 @@
 """Lanelet2 maps (.osm, with heights): two chains of lanelets that share the middle line.
 
 Source: Lanelet2, documentation of its primitives and tags; F. Poggenhans et al., Lanelet2: A High-Definition
-Map Framework for the Future of Automated Driving, ITSC 2018. Its usual projector, UTM, gives our metres back.
+Map Framework for the Future of Automated Driving, ITSC 2018. Its usual projector, UTM, restores our metres.
 """
 
 from itertools import count
@@ -16,40 +16,40 @@ from roadgpt.road import Road, World
 
 UTM_SCALE = 0.9996  # of lengths in the middle of a UTM zone
 DEGREE_DECIMALS = 12  # a tenth of a micrometre
-KEEP = {"visible": "true", "version": "1"}  # without these, editors of OpenStreetMap refuse to open a file
+KEEP = {"visible": "true", "version": "1"}  # editors of OpenStreetMap refuse files without these
 
 
 class Lanelet2:
-    """Lanelet2 map with heights, right and left lane as chains of lanelets, for planners and Autoware."""
+    """Lanelet2 map with heights: right and left lane as chains of lanelets, for planners and Autoware."""
 
     name = "lanelet2"
     suffix = ".osm"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the map; Lanelet2 has no place for a drive."""
+        """Writes the map. Lanelet2 cannot hold a drive."""
         path.write_bytes(document(road, world).to_text().encode())
 
 
 def document(road: Road, world: World) -> Element:
-    """The whole file; which bound of a lanelet runs against the traffic, readers find out.
+    """Returns the whole file. Readers determine which bound of a lanelet runs against the traffic.
 
     Raises:
-        ExportError: the road has a number that is not finite.
+        ExportError: The road has a number that is not finite.
     """
-    book = _MapBuilder()
+    map_ = _MapBuilder()
     limit = f"{world.speed_limit * 3.6:.6g} km/h"
-    for section in lanelet_pairs(road, world):
-        right = book.way("right", section.right, "solid")
-        middle = book.way("middle", section.middle, "dashed")
-        left = book.way("left", section.left, "solid")
-        book.lanelet(middle, right, limit)
-        book.lanelet(middle, left, limit)
+    for pair in lanelet_pairs(road, world):
+        right = map_.way("right", pair.right, "solid")
+        middle = map_.way("middle", pair.middle, "dashed")
+        left = map_.way("left", pair.left, "solid")
+        map_.lanelet(middle, right, limit)
+        map_.lanelet(middle, left, limit)
     root = Element("osm", {"version": "0.6", "generator": "RoadGPT", "upload": "false"})
-    return root.extended(*book.nodes, *book.ways, *book.lanelets)
+    return root.extended(*map_.nodes, *map_.ways, *map_.lanelets)
 
 
 class _MapBuilder:
-    """What has been written down so far, each with a number of its own."""
+    """Collects nodes, ways and lanelets, each with a number of its own."""
 
     def __init__(self) -> None:
         self.nodes: list[Element] = []
@@ -59,7 +59,10 @@ class _MapBuilder:
         self._ends: dict[str, int] = {}
 
     def way(self, name: str, points: Array, kind: str) -> int:
-        """A painted line, which begins with the node in which the one of this name before it ended."""
+        """Adds a painted line and returns its number.
+
+        It begins with the last node of the previous way of this name.
+        """
         known = [self._ends[name]] if name in self._ends else []
         nodes = [*known, *self._add_nodes(points[len(known) :])]
         self._ends[name] = nodes[-1]
@@ -71,7 +74,7 @@ class _MapBuilder:
         return number
 
     def _add_nodes(self, points: Array) -> list[int]:
-        """On the globe for every reader, and in metres for those that ask for local_x and local_y."""
+        """Adds nodes in degrees for every reader, and in metres for readers that use local_x and local_y."""
         longitude, latitude = degrees(points[:, 0] / UTM_SCALE, points[:, 1] / UTM_SCALE)
         numbers = [next(self._numbers) for _ in points]
         for number, lon, lat, (x, y, z) in zip(
@@ -83,7 +86,7 @@ class _MapBuilder:
         return numbers
 
     def lanelet(self, left: int, right: int, limit: str) -> None:
-        """The lane between two ways."""
+        """Adds the lane between two ways."""
         lanelet = Element("relation", {"id": next(self._numbers), **KEEP})
         for role, way in (("left", left), ("right", right)):
             lanelet.add("member", {"type": "way", "ref": way, "role": role})

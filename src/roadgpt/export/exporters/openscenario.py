@@ -1,7 +1,7 @@
-"""ASAM OpenSCENARIO XML 1.2: the road as a scenario that players run, and the drive as a trajectory.
+"""ASAM OpenSCENARIO XML 1.2: a scenario that players run on the road, and the drive as a trajectory.
 
 Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin is the middle of its rear axle
-on the ground; angles are right-handed, so a pitch is positive nose down (ISO 8855).
+on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855).
 """
 
 from pathlib import Path
@@ -17,22 +17,22 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 
 EGO = "Ego"
-DATE = "2026-01-01T00:00:00"  # of every file: the same road gives the same bytes
+DATE = "2026-01-01T00:00:00"  # of every file, so that the same road gives the same bytes
 LANE = "-1"  # the right one
-KEPT = 0.02  # m/s, or s
-PATIENCE = 60.0  # s beyond the time that the drive should take, after which a player gives up
-STANDS = 0.01  # m; a car that has moved less stands
+KEPT = 0.02  # m/s, or s: tolerance of the simplified speeds
+PATIENCE = 60.0  # s beyond the planned duration, after which a player stops
+STANDS = 0.01  # m; a car that has moved less is taken as standing
 DECIMALS = 6
 
 
 class OpenScenario:
-    """ASAM OpenSCENARIO 1.2 with its OpenDRIVE, the car drives the right lane to its end; drives replay."""
+    """ASAM OpenSCENARIO 1.2 with OpenDRIVE: the car drives the right lane to its end; drives are replayed."""
 
     name = "openscenario"
     suffix = ".xosc"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the scenario and the road beside it; a drive goes into NAME.drive.xosc."""
+        """Writes the scenario and, beside it, the road. A drive is written to NAME.drive.xosc."""
         stem = path.name.removesuffix(self.suffix)
         map_ = path.with_name(stem + OpenDrive.suffix)
         OpenDrive().save(road, map_, world)
@@ -43,7 +43,7 @@ class OpenScenario:
 
 
 def scenario(road: Road, world: World, map_: str) -> Element:
-    """The car starts at rest in the right lane, drives off, slows down for bends, and goes on to the end."""
+    """Returns the scenario: the car starts at rest, slows down for bends, and drives to the end."""
     profile = calm_profile(road, world, start_of(road))
     # stations are those of the rear axle
     start, end = max(start_of(road) + CAR.rear_axle, 0.0), goal_of(road) + CAR.rear_axle
@@ -77,7 +77,7 @@ def scenario(road: Road, world: World, map_: str) -> Element:
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> Element:
-    """The car is where it was, at every moment of its drive."""
+    """Returns the scenario in which the car repeats its drive, moment by moment."""
     time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
     ground = on_the_ground(poses, CAR.rear_axle)
     exact = np.column_stack([ground, poses.heading, -poses.pitch, poses.roll])
@@ -96,10 +96,10 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> Element:
 
 
 def _drives_off(ground: Array) -> int:
-    """Index of the last pose in which the car still stands at its start; 0 where it never moves.
+    """Returns the index of the last pose in which the car still stands at its start; 0 where it never moves.
 
-    Until then it waits, and the trajectory begins: players may merge poses that lie close together, as esmini
-    does within 0.1 m, and a car that stands would move at once.
+    The car waits until then, and the trajectory begins there: players may merge poses that are close
+    together, as esmini does within 0.1 m, and a standing car would then move at once.
     """
     away = np.linalg.norm(ground - ground[0], axis=1) > STANDS
     return max(int(np.argmax(away)) - 1, 0)
@@ -114,7 +114,7 @@ def _trajectory(time: Array, rows: Array) -> Element:
 
 
 def _frame(world: World, map_: str, description: str) -> tuple[Element, Element, Element]:
-    """The document, what the car is told at first, and its story."""
+    """Returns the document, the initial actions of the car, and its story."""
     root = Element("OpenSCENARIO")
     header: dict[str, Value] = {
         "revMajor": 1,
@@ -135,7 +135,7 @@ def _frame(world: World, map_: str, description: str) -> tuple[Element, Element,
 
 
 def _vehicle() -> Element:
-    """Our saloon, told from its rear axle."""
+    """Returns our saloon, measured from its rear axle."""
     out = Element("Vehicle", {"name": "saloon", "vehicleCategory": "car", "mass": CAR.mass})
     box = out.add("BoundingBox")
     box.add("Center", {"x": round(CAR.middle - CAR.rear_axle, 3), "y": 0, "z": CAR.height / 2})
@@ -151,7 +151,7 @@ def _vehicle() -> Element:
 
 
 def _act(story: Element, name: str, begin: float = 0.0) -> Element:
-    """A private action of the car that begins so many seconds after the simulation; to be filled."""
+    """Adds an empty private action of the car that begins so many seconds into the simulation."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
     group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": EGO})
@@ -170,7 +170,7 @@ def _stop(root: Element, conditions: dict[str, Element]) -> None:
 
 
 def _trigger(name: str, conditions: dict[str, Element]) -> Element:
-    """Any of the conditions is enough."""
+    """Returns a trigger for which any of the conditions is enough."""
     out = Element(name)
     for said, condition in conditions.items():
         told: dict[str, Value] = {"name": said, "delay": 0, "conditionEdge": "none"}
@@ -185,7 +185,7 @@ def _after(seconds: float) -> Element:
 
 
 def _speed(target: float) -> Element:
-    """At once."""
+    """Returns the action that sets a speed at once."""
     out = Element("LongitudinalAction")
     action = out.add("SpeedAction")
     shape: dict[str, Value] = {"dynamicsShape": "step", "value": 0, "dynamicsDimension": "time"}
@@ -195,7 +195,7 @@ def _speed(target: float) -> Element:
 
 
 def _profile(profile: SpeedProfile) -> Element:
-    """Speeds over time, with as few entries as keep them within KEPT of what was planned."""
+    """Returns speeds over time, with as few entries as keep them within KEPT of the plan."""
     graph = LineString(np.column_stack([profile.time, profile.speed])).simplify(KEPT)
     time, speed = np.array(graph.coords).T
     out = Element("LongitudinalAction")
@@ -213,7 +213,7 @@ def _in_lane(s: float) -> Element:
 
 
 def _in_world(row: Array) -> Element:
-    """A row of x, y, z, heading, pitch, roll."""
+    """Returns the position of a row of x, y, z, heading, pitch, roll."""
     out = Element("Position")
     out.add("WorldPosition", dict(zip("xyzhpr", row.tolist(), strict=True)))
     return out

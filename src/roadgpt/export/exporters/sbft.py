@@ -20,7 +20,7 @@ class Sbft:
     suffix = ".sbft.json"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the test; what came of driving it stands in the ``test.NNNN.json`` of a campaign."""
+        """Writes the test. The result of driving it is in the ``test.NNNN.json`` of a campaign."""
         points = {"road_points": road.control_points(), "interpolated_points": road.centreline(STEP)}
         data = {name: (np.round(finite(each), DECIMALS) + 0.0).tolist() for name, each in points.items()}
         path.write_bytes((json.dumps(data) + "\n").encode())

@@ -26,9 +26,9 @@ from roadgpt.road import Road, World
 PATIENCE = 120.0  # s, for netconvert
 PRECISION = 4  # decimals of a metre in a network
 DECIMALS = 4
-SHORTEST = 12.0  # m, of a piece with a limit of its own
-LOOKS = 13  # places in such a piece at which the bend is looked at
-ROUND = 5 / 3.6  # m/s: limits are whole multiples of 5 km/h, as signs have them
+SHORTEST = 12.0  # m, the shortest part with a speed limit of its own
+LOOKS = 13  # places in such a part at which the bend is sampled
+ROUND = 5 / 3.6  # m/s: limits are multiples of 5 km/h, as on signs
 
 
 class Sumo:
@@ -38,7 +38,7 @@ class Sumo:
     suffix = ".nod.xml"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write NAME.nod.xml, .edg.xml, .netccfg, .rou.xml, .sumocfg, and .net.xml if it can be made."""
+        """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml, .sumocfg, and .net.xml if it can be made."""
         stem = path.name.removesuffix(self.suffix)
         shape = np.round(line(road, stations(road, world.lane_width), 0.0), DECIMALS) + 0.0
         limits = speed_zones(road, world)
@@ -57,7 +57,7 @@ class Sumo:
 
 
 def netconvert() -> str | None:
-    """SUMO's converter: on the path, under SUMO_HOME or in the package eclipse-sumo; or None."""
+    """Returns SUMO's converter from PATH, SUMO_HOME or the package eclipse-sumo, or None."""
     places = [Path(os.environ["SUMO_HOME"])] if os.environ.get("SUMO_HOME") else []
     package = find_spec("sumo")
     if package is not None:
@@ -76,18 +76,18 @@ def _nodes(shape: Array) -> Element:
 
 
 class SpeedZone(NamedTuple):
-    """A piece of the road with a speed of its own."""
+    """A part of the road with one speed limit."""
 
     start: float
-    """Station, metres."""
+    """Station in metres."""
     speed: float
-    """m/s."""
+    """Speed limit in m/s."""
 
 
 def speed_zones(road: Road, world: World) -> list[SpeedZone]:
-    """Pieces of SHORTEST metres and more, each with the least speed that suits a calm driver there.
+    """Returns parts of SHORTEST metres or more, each with the least speed that suits a calm driver there.
 
-    A car of SUMO brakes for the limit of the next piece in time, so bends are driven as they suit.
+    A car in SUMO brakes in time for the limit of the next part, so it drives bends at a suitable speed.
     """
     count = max(1, int(road.length / SHORTEST))
     ends = np.linspace(0.0, road.length, count + 1)
@@ -101,7 +101,7 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
 
 
 def _edges(shape: Array, world: World, limits: Sequence[SpeedZone]) -> Element:
-    """One edge each way along the centre line, split where limits change; lanes lie to the right of it."""
+    """Returns one edge in each direction along the centre line, split where limits change."""
     along = float(np.hypot(*np.diff(shape[:, :2], axis=0).T).sum())
     back = [SpeedZone(along - end, speed) for end, speed in _ends(limits, along)]
     out = Element("edges")
@@ -124,7 +124,7 @@ def _edges(shape: Array, world: World, limits: Sequence[SpeedZone]) -> Element:
 
 
 def _ends(limits: Sequence[SpeedZone], length: float) -> list[tuple[float, float]]:
-    """Where each piece ends, and its speed, from the last to the first."""
+    """Returns the end and the speed of each part, from the last to the first."""
     ends = [*(limit.start for limit in limits[1:]), length]
     return [(end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
 
@@ -141,7 +141,7 @@ def _trip(limits: Sequence[SpeedZone]) -> Element:
 
 
 def _conversion(stem: str) -> Element:
-    """What netconvert is to do: ``netconvert -c NAME.netccfg``."""
+    """Returns the settings of netconvert: ``netconvert -c NAME.netccfg``."""
     out = Element("configuration")
     files = out.add("input")
     files.add("node-files", {"value": f"{stem}.nod.xml"})
@@ -162,10 +162,10 @@ def _settings(stem: str) -> Element:
 
 
 def _convert(program: str, settings: Path, network: Path) -> None:
-    """Have the network made, and leave out the comment in which netconvert says when and where.
+    """Runs netconvert, and removes the comment in which it states when and where it ran.
 
     Raises:
-        ExportError: netconvert refuses or takes too long.
+        ExportError: netconvert refuses the road or takes too long.
     """
     try:
         done = subprocess.run(  # noqa: S603 -- an installed program, and our own file by name

@@ -5,7 +5,7 @@
                              main/items.level.json, main/MissionGroup/...
                              scenarios/drive/drive.json, drive.prefab.json
 
-Put ``NAME-beamng`` into ``mods/unpacked`` of BeamNG's user folder, or what is in its ``levels`` into
+Put ``NAME-beamng`` into ``mods/unpacked`` of BeamNG's user folder, or the contents of its ``levels`` into
 ``levels`` there.
 """
 
@@ -29,13 +29,13 @@ class BeamNG:
     suffix = "-beamng"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the folder; a drive is not part of it."""
+        """Writes the folder. A drive is not part of it."""
         title = path.name.removesuffix(self.suffix)
         write_level(road, path / "levels", level_name(title), world, title)
 
 
 def level_name(title: str) -> str:
-    """What BeamNG takes for the name of a level: small letters, digits and underscores."""
+    """Returns a name that BeamNG accepts for a level: lower-case letters, digits and underscores."""
     plain = re.sub(r"[^a-z0-9]+", "_", title.lower()).strip("_")
     return f"roadgpt_{plain or 'road'}"
 
@@ -43,11 +43,11 @@ def level_name(title: str) -> str:
 def write_level(
     road: Road, levels: Path, name: str, world: World, title: str = "", seed: int = SEED, model: str = MODEL
 ) -> Path:
-    """Write a level into a folder of levels; gives back the level's own folder.
+    """Writes a level into a folder of levels, and returns the level's own folder.
 
     Raises:
-        ExportError: the road has a number that is not finite.
-        OSError: the folder cannot be written.
+        ExportError: The road has a number that is not finite.
+        OSError: The folder cannot be written.
     """
     scene = level_road(road, world, seed)
     title = title or name

@@ -1,7 +1,7 @@
 """The files of a level: one JSON object per line in ``items.level.json``, materials, ``info.json``, scenario.
 
 Source: BeamNG documentation, "Level format"; levels as the SBFT competition and BeamNGpy write them. No tool
-outside the game checks such files: ``roadgpt beamng selftest`` loads one in the game.
+outside the game checks such files; ``roadgpt beamng selftest`` loads one in the game.
 """
 
 import json
@@ -19,20 +19,22 @@ from roadgpt.road import World
 
 Item = dict[str, Any]
 
-NAMESPACE = uuid.UUID("6f1d2c0e-5b0a-5c39-9d3e-0f3a52b1c7aa")  # any fixed one: ids must not change by the day
+NAMESPACE = uuid.UUID(
+    "6f1d2c0e-5b0a-5c39-9d3e-0f3a52b1c7aa"
+)  # any fixed value, so that ids are always the same
 ABOVE_GROUND = 0.5  # m above the road at which a car is put down
-# From what friction on a surface is taken for this ground model of BeamNG.
+# Least friction for each ground model of BeamNG.
 GROUNDS = ((0.8, "ASPHALT"), (0.45, "ASPHALT_WET"), (0.25, "SNOW"), (0.0, "ICE"))
 DECIMALS = 4
 
 
 def ground_model(friction: float) -> str:
-    """Of BeamNG, that comes nearest to a friction."""
+    """Returns BeamNG's ground model that is closest to a friction."""
     return next(name for least, name in GROUNDS if friction >= least)
 
 
 def items(name: str, scene: LevelRoad, world: World) -> Mapping[str, Sequence[Item]]:
-    """What each ``items.level.json`` holds, by its folder below ``main``."""
+    """Returns the contents of each ``items.level.json`` by its folder below ``main``."""
     groups = ("sky_and_ground", "roads", "player")
     return {
         "": [_object(name, "MissionGroup", "SimGroup", "", enabled="1")],
@@ -67,7 +69,7 @@ def _surroundings(level: str, world: World, height: float) -> list[Item]:
 
 
 def _dashes(strip: Strip) -> list[Strip]:
-    """A broken line as decals of its dashes, each with its ends and the nodes between them."""
+    """Returns a broken line as decals of its dashes, each with its ends and the nodes between them."""
     nodes = strip.nodes
     along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(nodes[:, :3], axis=0), axis=1))]
 
@@ -77,7 +79,7 @@ def _dashes(strip: Strip) -> list[Strip]:
     out = []
     for number, start in enumerate(np.arange(0.0, along[-1], DASH + GAP), 1):
         end = min(start + DASH, float(along[-1]))
-        if end - start > DASH / 4:  # a shorter one has no room for a node between its ends
+        if end - start > DASH / 4:  # a shorter dash has no room for a node between its ends
             out.append(
                 replace(strip, name=f"{strip.name}_{number:03d}", nodes=at(np.linspace(start, end, 3)))
             )
@@ -140,9 +142,9 @@ def _player(level: str, scene: LevelRoad) -> Iterator[Item]:
 
 
 def rotation(heading: float, grade: float) -> Array:
-    """Rotation matrix (3, 3), row-major as level files and prefabs have it, of a car that looks this way.
+    """Returns the rotation matrix (3, 3) of a car with this heading and grade, row-major as in level files.
 
-    Its rows are where the car's left, its back and its roof point: at rest, BeamNG's cars look along -y.
+    Its rows are the directions of the car's left, rear and roof: without rotation, BeamNG's cars face -y.
     """
     size = np.hypot(1.0, grade)
     ahead = np.array([np.cos(heading), np.sin(heading), grade]) / size
@@ -151,7 +153,7 @@ def rotation(heading: float, grade: float) -> Array:
 
 
 def materials(world: World) -> Item:
-    """``main.materials.json``: plain colours, with the ground models that tyres feel."""
+    """Returns ``main.materials.json``: plain colours, with the ground models that tyres use."""
     ground = ground_model(world.friction)
     wanted = (
         (OWN.road, (0.16, 0.16, 0.17), ground),
@@ -182,7 +184,7 @@ def _material(name: str, colour: tuple[float, float, float], model: str) -> Item
 
 
 def info(name: str, title: str, world: World) -> Item:
-    """``info.json`` of the level."""
+    """Returns ``info.json`` of the level."""
     side = int(np.ceil(world.map_size))
     return {
         "title": title,
@@ -199,7 +201,7 @@ def info(name: str, title: str, world: World) -> Item:
 
 
 def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
-    """A scenario: drive from the start to the goal; and its prefab with the car."""
+    """Returns a scenario, to drive from the start to the goal, and the group of its prefab."""
     path = f"levels/{name}/scenarios/drive/drive.prefab.json"
     about = {
         "name": title,
@@ -215,7 +217,7 @@ def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
 
 
 def car(name: str, scene: LevelRoad, model: str) -> Item:
-    """The car on its start, as a prefab holds it."""
+    """Returns the car at its start as a prefab holds it."""
     start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
     return _object(
         name,
@@ -232,7 +234,7 @@ def car(name: str, scene: LevelRoad, model: str) -> Item:
 
 
 def one_per_line(objects: Sequence[Item]) -> str:
-    """As ``items.level.json`` and prefabs hold objects."""
+    """Returns objects in the form of ``items.level.json`` and of prefabs."""
     return "".join(json.dumps(each) + "\n" for each in objects)
 
 

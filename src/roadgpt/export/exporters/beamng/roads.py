@@ -1,12 +1,12 @@
-r"""A road as BeamNG has roads, for a level's files and for a running simulator alike.
+r"""Builds a road as BeamNG represents roads, for the files of a level and for a running simulator.
 
     mesh road    what the wheels stand on: a strip with depth through nodes x, y, z, width, depth
-    decal road   what is drawn on it, and what BeamNG's AI finds its way by: nodes x, y, z, width
+    decal road   what is drawn on it, and what BeamNG's AI follows: nodes x, y, z, width
 
-RoadGPT lays both along one line and shakes the mesh's nodes, so that they do not flicker where they meet.
-Here the decal lies a little above the mesh as well, and what shakes is drawn from the seed. The verge is a
-second, wider mesh just below the first. It reaches down to the ground, which lies at the lowest place of the
-road; a road without verge floats above a ground at ``world.z_floor``.
+RoadGPT lays both along one line and shifts the mesh's nodes at random, so that the two do not flicker where
+they meet. Here the decal also lies a little above the mesh, and the random shifts come from the seed. The
+shoulder is a second, wider mesh just below the first. It reaches down to the ground, which lies at the lowest
+place of the road. A road without shoulder floats above a ground at ``world.z_floor``.
 """
 
 from dataclasses import dataclass
@@ -17,19 +17,19 @@ import numpy as np
 from roadgpt.errors import ExportError
 from roadgpt.export.edges import line
 from roadgpt.export.ego import goal_of, start_of
-from roadgpt.export.exporters.opendrive.lanes import NO_VERGE
+from roadgpt.export.exporters.opendrive.lanes import NO_SHOULDER
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 
-# m between nodes: denser and sharper ones fold (BeamNGpy issue 240), and uneven ones swing BeamNG's spline.
+# m between nodes: denser ones fold (BeamNGpy issue 240), and uneven ones make BeamNG's spline swing.
 SPACING = 2.0
 DEPTH = 5.0  # m, of a mesh road (RoadGPT)
 STUB = 5.0  # m of mesh before the start and past the end (RoadGPT), so that no wheel stands on an edge
-SHAKE = 0.01  # m, most that a mesh node is moved aside
-ABOVE = 0.01, 0.02  # m that the decal lies above the mesh
+SHAKE = 0.01  # m, the greatest random shift of a mesh node
+ABOVE = 0.01, 0.02  # m by which the decal lies above the mesh
 LINE = 0.2  # m, width of a painted line (RoadGPT)
-UNDER = 0.03  # m that the verge lies below the road
-CLEAR = 0.05  # m that the ground lies below what is laid on it
+UNDER = 0.03  # m by which the shoulder lies below the road
+CLEAR = 0.05  # m by which the ground lies below everything else
 DRIVABLE, NOT_DRIVABLE = 1, -1
 GOAL = "goal"
 
@@ -40,7 +40,7 @@ class Materials(NamedTuple):
     road: str
     verge: str
     surface: str
-    """Of the decal that covers the road."""
+    """Material of the decal that covers the road."""
     edge: str
     middle: str
 
@@ -57,50 +57,50 @@ class Strip:
     name: str
     material: str
     nodes: Array
-    """Shape (n, 5) of a mesh: x, y, z, width, depth; (n, 4) of a decal: x, y, z, width."""
+    """Shape (n, 5) for a mesh: x, y, z, width, depth; shape (n, 4) for a decal: x, y, z, width."""
     drivability: int = NOT_DRIVABLE
     priority: int = 0
-    """Of a decal, among those of its scene: the painted lines lie on the asphalt."""
+    """Drawing order of a decal: painted lines are drawn on the asphalt."""
     is_dashed: bool = False
-    """A decal whose paint is broken, by DASH and GAP of our OpenDRIVE files."""
+    """Whether the paint of a decal is broken, by DASH and GAP of our OpenDRIVE files."""
 
     @property
     def is_mesh(self) -> bool:
-        """Does it hold wheels?"""
+        """Whether wheels can stand on it."""
         return bool(self.nodes.shape[1] == 5)
 
 
 @dataclass(frozen=True, eq=False)
 class LevelRoad:
-    """Strips from below upwards, and where the drive begins and ends."""
+    """The strips of a road from bottom to top, and where the drive begins and ends."""
 
     strips: tuple[Strip, ...]
     start: Array
     """x, y, z of the road under the car's centre of gravity."""
     heading: float
-    """Radians."""
+    """Heading at the start in radians."""
     grade: float
     goal: Array
     """x, y, z at the middle of the right lane."""
     ground: float
-    """Height of the level's ground, metres."""
+    """Height of the level's ground in metres."""
 
 
 def level_road(
     road: Road, world: World, seed: int, materials: Materials = OWN, lift: float = 0.0, prefix: str = ""
 ) -> LevelRoad:
-    """The road with verge, markings, start and goal; the same arguments give the same numbers.
+    """Returns the road with shoulder, markings, start and goal. The same arguments give the same numbers.
 
     Args:
-        road: what is laid.
-        world: widths of lane and verge.
-        seed: of the offsets against flicker.
-        materials: of the level that it is laid in.
-        lift: metres by which all of it is raised, where the level's ground is not at ``world.z_floor``.
-        prefix: of the strips' names, which must be unique in a level.
+        road: The road.
+        world: Widths of lane and shoulder.
+        seed: Seed of the offsets against flicker.
+        materials: Materials of the level that the road is placed in.
+        lift: Metres by which everything is raised, where the level's ground is not at ``world.z_floor``.
+        prefix: Prefix of the strips' names, which must be unique in a level.
 
     Raises:
-        ExportError: the road has a number that is not finite.
+        ExportError: The road has a number that is not finite.
     """
     rng = np.random.default_rng(seed)
     s = np.linspace(0.0, road.length, max(3, int(np.ceil(road.length / SPACING)) + 1))
@@ -125,8 +125,8 @@ def level_road(
 
 
 def _ground(middle: Array, world: World) -> float:
-    """Just below the lowest place of the verge, or of the floor where there is none; metres."""
-    if world.verge < NO_VERGE:
+    """Returns a height in metres just below the lowest shoulder, or below the floor without a shoulder."""
+    if world.verge < NO_SHOULDER:
         return world.z_floor - CLEAR
     return float(middle[:, 2].min()) - UNDER - CLEAR
 
@@ -139,9 +139,9 @@ def _meshes(
     prefix: str,
     ground: float,
 ) -> list[Strip]:
-    """The verge, where there is one, and the road."""
+    """Returns the mesh of the shoulder, if there is one, and of the road."""
     strips = []
-    if world.verge >= NO_VERGE:
+    if world.verge >= NO_SHOULDER:
         broad = 2 * (world.lane_width + world.verge)
         below = _lengthened(middle) - np.array([0.0, 0.0, UNDER])
         depths = np.maximum(DEPTH, below[:, 2] - ground)
@@ -152,7 +152,7 @@ def _meshes(
 
 
 def _decals(road: Road, world: World, s: Array, up: Array, materials: Materials, prefix: str) -> list[Strip]:
-    """What the AI finds its way by, and the painted lines."""
+    """Returns the decal that the AI follows, and the painted lines."""
     wide = world.lane_width
     wanted = (
         ("lanes", materials.surface, 0.0, world.road_width, DRIVABLE),
@@ -174,7 +174,7 @@ def _mesh(name: str, material: str, points: Array, width: float, depths: Array |
 
 
 def _lengthened(points: Array) -> Array:
-    """Straight on at both ends."""
+    """Extends a line straight on at both ends."""
     first, last = points[0] - points[1], points[-1] - points[-2]
     before = points[0] + STUB * first / np.linalg.norm(first)
     after = points[-1] + STUB * last / np.linalg.norm(last)

@@ -12,11 +12,11 @@ from roadgpt.road import Road, World
 
 
 class Gltf:
-    """Binary glTF 2.0, road, verges, markings, textures, the ground around, the path of the car; y is up."""
+    """Binary glTF 2.0: road, shoulders, markings, textures, ground, the path of the car; y is up."""
 
     name = "gltf"
     suffix = ".glb"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the scene; the path is the driven one, or the middle of the right lane."""
+        """Writes the scene. The path is that of the drive, or else the middle of the right lane."""
         path.write_bytes(to_bytes(meshes(road, world, poses), road.at(0.0)))

@@ -1,4 +1,4 @@
-"""The file: meshes become accessors of one buffer, beside a JSON that says what they are."""
+"""The file: meshes become accessors of one buffer, beside JSON that describes them."""
 
 import json
 import struct
@@ -13,7 +13,7 @@ from roadgpt.geometry.curve import Array
 
 FLOAT, UINT = 5126, 5125  # component types
 VERTICES, INDICES = 34962, 34963  # targets of buffer views
-# A picture that goes on in both directions, blurred where it is small.
+# The picture repeats in both directions, and is filtered where it appears small.
 REPEATED = {"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # x stays, up is y, left is -z
 
@@ -29,40 +29,43 @@ MATERIALS = {
 
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
-    """Triangles of one material; z is up."""
+    """Triangles of one material, in coordinates with z up."""
 
     name: str
     material: str
     points: Array
-    """Shape (n, 3), metres."""
+    """Points of shape (n, 3) in metres."""
     normals: Array
-    """Shape (n, 3), of length 1."""
+    """Unit normals of shape (n, 3)."""
     texture: Array
-    """Shape (n, 2): across and along, in metres; pictures of materials are repeated over it."""
+    """Texture coordinates of shape (n, 2), across and along in metres.
+
+    Pictures of materials repeat over them.
+    """
     triangles: np.ndarray
-    """Shape (m, 3), indices of points, counter-clockwise seen from outside."""
+    """Indices of points, of shape (m, 3), counter-clockwise seen from outside."""
 
 
 def to_bytes(meshes: Sequence[TriangleMesh], near: Array) -> bytes:
-    """The whole file.
+    """Returns the whole file.
 
     Args:
-        meshes: what is in the scene, each a node of its own.
-        near: a point of the scene; single precision is kept about it, and not about the map's corner.
+        meshes: The meshes of the scene, each a node of its own.
+        near: A point of the scene. Single precision is centred on it and not on the map's corner.
     """
     origin = np.round(near)
-    used = list(dict.fromkeys(shape.material for shape in meshes))
+    used = list(dict.fromkeys(mesh.material for mesh in meshes))
     data = _scene(meshes, origin, used)
     content = bytearray()
-    for shape in meshes:
+    for mesh in meshes:
         where = {
-            "POSITION": _put(data, content, (shape.points - origin) @ Y_UP.T, bounded=True),
-            "NORMAL": _put(data, content, shape.normals @ Y_UP.T),
-            "TEXCOORD_0": _put(data, content, shape.texture / _tile(shape.material)),
+            "POSITION": _put(data, content, (mesh.points - origin) @ Y_UP.T, bounded=True),
+            "NORMAL": _put(data, content, mesh.normals @ Y_UP.T),
+            "TEXCOORD_0": _put(data, content, mesh.texture / _tile(mesh.material)),
         }
-        indices = _put(data, content, shape.triangles.reshape(-1))
-        primitive = {"attributes": where, "indices": indices, "material": used.index(shape.material)}
-        data["meshes"].append({"name": shape.name, "primitives": [primitive]})
+        indices = _put(data, content, mesh.triangles.reshape(-1))
+        primitive = {"attributes": where, "indices": indices, "material": used.index(mesh.material)}
+        data["meshes"].append({"name": mesh.name, "primitives": [primitive]})
     for name in used:
         if name in GRAINS:
             data["images"].append(_image(data, content, name))
@@ -75,7 +78,7 @@ def to_bytes(meshes: Sequence[TriangleMesh], near: Array) -> bytes:
 
 
 def _scene(meshes: Sequence[TriangleMesh], origin: Array, materials: Sequence[str]) -> dict[str, Any]:
-    """What is where, before any shape is put into the buffer."""
+    """Returns the JSON of the scene, before any mesh is put into the buffer."""
     grained = [name for name in materials if name in GRAINS]
     return {
         "asset": {"version": "2.0", "generator": "RoadGPT"},
@@ -87,7 +90,7 @@ def _scene(meshes: Sequence[TriangleMesh], origin: Array, materials: Sequence[st
                 "translation": (Y_UP @ origin + 0.0).tolist(),
                 "children": list(range(1, len(meshes) + 1)),
             },
-            *({"name": shape.name, "mesh": i} for i, shape in enumerate(meshes)),
+            *({"name": mesh.name, "mesh": i} for i, mesh in enumerate(meshes)),
         ],
         "materials": [_material(name, grained) for name in materials],
         "textures": [{"source": i, "sampler": 0} for i in range(len(grained))],
@@ -101,12 +104,12 @@ def _scene(meshes: Sequence[TriangleMesh], origin: Array, materials: Sequence[st
 
 
 def _tile(material: str) -> float:
-    """Metres that one repetition of a material's picture covers."""
+    """Returns the length in metres that one repetition of a material's picture covers."""
     return GRAINS[material].metres if material in GRAINS else 1.0
 
 
 def _image(data: dict[str, Any], content: bytearray, material: str) -> dict[str, Any]:
-    """Append a picture to the buffer, up to a multiple of 4 bytes."""
+    """Appends a picture to the buffer, padded to a multiple of 4 bytes."""
     packed = picture(material)
     view = {"buffer": 0, "byteOffset": len(content), "byteLength": len(packed)}
     data["bufferViews"].append(view)
@@ -115,7 +118,10 @@ def _image(data: dict[str, Any], content: bytearray, material: str) -> dict[str,
 
 
 def _put(data: dict[str, Any], content: bytearray, values: np.ndarray, bounded: bool = False) -> int:
-    """Append an array to the buffer; gives back the index of its accessor. All are multiples of 4 bytes."""
+    """Appends an array to the buffer and returns the index of its accessor.
+
+    All arrays are multiples of 4 bytes.
+    """
     is_index = values.ndim == 1
     packed = np.ascontiguousarray(values, dtype="<u4" if is_index else "<f4")
     view = {"buffer": 0, "byteOffset": len(content), "byteLength": packed.nbytes}

@@ -1,4 +1,4 @@
-"""Pictures of surfaces: noise that repeats without a seam, the same ones for every road."""
+"""Textures of surfaces: noise that repeats without a seam, the same for every road."""
 
 import io
 from functools import cache
@@ -16,10 +16,10 @@ class Grain(NamedTuple):
     """A texture that makes a surface lighter and darker."""
 
     metres: float
-    """Of ground that the picture covers."""
+    """Side length in metres of the ground that the picture covers."""
     seed: int
     octaves: tuple[tuple[int, float], ...]
-    """Cells along a side, and how strong: coarse ones are seen from afar, fine ones from near."""
+    """Cells along a side, and strength: coarse ones are visible from far away, fine ones from close up."""
 
 
 GRAINS = {
@@ -27,12 +27,12 @@ GRAINS = {
     "gravel": Grain(4.0, 17, ((64, 0.30), (256, 0.40))),
     "grass": Grain(37.0, 23, ((24, 0.10), (64, 0.16), (256, 0.22))),
 }
-"""By material; strengths and sizes are those of the page with the replay."""
+"""Textures by material. Strengths and sizes are those of the page with the replay."""
 
 
 @cache
 def picture(name: str) -> bytes:
-    """The grain of a material as a grey PNG file."""
+    """Returns the texture of a material as a grey PNG file."""
     grain = GRAINS[name]
     levels = np.clip(np.round(225 * _noise(grain)), 0, 255).astype(np.uint8)
     data = io.BytesIO()
@@ -41,7 +41,7 @@ def picture(name: str) -> bytes:
 
 
 def _noise(grain: Grain) -> Array:
-    """How light each pixel is, about 1; shape (SIDE, SIDE)."""
+    """Returns the brightness of each pixel, about 1, of shape (SIDE, SIDE)."""
     rng = np.random.default_rng(grain.seed)
     out = np.ones((SIDE, SIDE))
     for cells, strength in grain.octaves:

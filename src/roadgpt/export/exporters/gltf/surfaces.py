@@ -1,7 +1,7 @@
-r"""The meshes of a road: slabs closed all round, thin strips that lie on them, the ground around.
+r"""The meshes of a road: closed slabs, thin strips on top of them, and the ground around.
 
-verge   ______|____________:____________|______   verge        the slabs of road and verges touch;
-       |______|_________________________|______|               lines and path lie a little above them
+shoulder ______|____________:____________|______ shoulder   the slabs of road and shoulders touch;
+        |______|_________________________|______|           lines and path lie a little above them
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import goal_of, on_the_ground, start_of
 from roadgpt.export.embankments import Embankment, embankments
 from roadgpt.export.exporters.gltf.container import TriangleMesh
-from roadgpt.export.exporters.opendrive.lanes import DASH, GAP, NO_VERGE
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP, NO_SHOULDER
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
@@ -18,37 +18,37 @@ from roadgpt.road.land import FAR, Land
 from roadgpt.road.world import LINE
 
 THICKNESS = 0.5  # m, of the slabs
-PAINT = 0.005  # m that markings lie above the road; less flickers where depth is coarse
-PATH = 0.02  # m that the path lies above the road
+PAINT = 0.005  # m by which markings lie above the road; less would flicker at a coarse depth resolution
+PATH = 0.02  # m by which the path lies above the road
 PATH_WIDTH = 0.3  # m
 UP = np.array([0.0, 0.0, 1.0])
 
 
 def meshes(road: Road, world: World, poses: Poses | None = None) -> list[TriangleMesh]:
-    """Everything in the scene.
+    """Returns all meshes of the scene.
 
     Raises:
-        ExportError: the road has a number that is not finite.
+        ExportError: The road has a number that is not finite.
     """
     wide, verge = world.lane_width, world.verge
     s = stations(road, wide + verge)
     out = [_slab("road", "asphalt", road, s, wide, -wide)]
-    if verge >= NO_VERGE:
+    if verge >= NO_SHOULDER:
         out.append(_slab("left verge", "gravel", road, s, wide + verge, wide))
         out.append(_slab("right verge", "gravel", road, s, -wide, -wide - verge))
     mark = min(LINE, wide / 4)
     out.append(_strip("left edge line", "paint", road, s, wide, wide - mark))
     out.append(_strip("right edge line", "paint", road, s, mark - wide, -wide))
     out += [_dashed(road, s, mark), _path(road, s, world, poses)]
-    if verge >= NO_VERGE:  # without one, the road is to float
+    if verge >= NO_SHOULDER:  # without a shoulder, the road floats
         out.append(_ground(road, world, s))
     return out
 
 
 def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
-    """The land around the road, and the banks that run down into it from rims and ends."""
+    """Returns the land around the road, and the embankments that run down into it from its edges and ends."""
     land = Land.around(road, world)
-    near = slice(len(FAR), -len(FAR))  # what lies farther is for horizons
+    near = slice(len(FAR), -len(FAR))  # the rest is only for the horizon
     x, y = np.meshgrid(land.x[near], land.y[near])
     slope_y, slope_x = np.gradient(land.heights[near, near], land.y[near], land.x[near])
     up = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1).reshape(-1, 3)
@@ -65,7 +65,7 @@ def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
 
 
 def _sloped(bank: Embankment) -> TriangleMesh:
-    """A bank, seen from outside."""
+    """Returns an embankment as seen from outside."""
     left, right = (bank.foot, bank.edge) if bank.is_left else (bank.edge, bank.foot)
     along = np.gradient(bank.edge, axis=0)
     facing = np.cross(along, left - right)
@@ -75,7 +75,7 @@ def _sloped(bank: Embankment) -> TriangleMesh:
 
 
 def _dashed(road: Road, s: Array, width: float) -> TriangleMesh:
-    """The broken line in the middle; its last dash may be shorter."""
+    """Returns the broken line in the middle. Its last dash may be shorter."""
     starts = np.arange(0.0, road.length, DASH + GAP).tolist()
     ends = [min(start + DASH, road.length) for start in starts]
     parts = [
@@ -83,7 +83,9 @@ def _dashed(road: Road, s: Array, width: float) -> TriangleMesh:
         for start, end in zip(starts, ends, strict=True)
         if end > start
     ]
-    whole = _strip("", "paint", road, np.concatenate(parts), width / 2, -width / 2)  # asks the road only once
+    whole = _strip(
+        "", "paint", road, np.concatenate(parts), width / 2, -width / 2
+    )  # evaluates the road only once
     n = len(whole.points) // 2
     cuts = np.cumsum([len(part) for part in parts])[:-1]
     left, right, normals = (
@@ -101,7 +103,9 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMe
         middle = -world.lane_width / 2
         half = min(PATH_WIDTH, world.lane_width / 2) / 2
         return _strip("path", "path", road, part, middle + half, middle - half, PATH)
-    moved = np.r_[True, np.hypot(np.diff(poses.x), np.diff(poses.y)) > 1e-6]  # one point where the car stands
+    moved = np.r_[
+        True, np.hypot(np.diff(poses.x), np.diff(poses.y)) > 1e-6
+    ]  # a single point where the car stands
     ground = on_the_ground(poses, 0.0)[moved] + PATH * UP
     heading = poses.heading[moved]
     if len(ground) < 2:
@@ -117,13 +121,13 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMe
 def _strip(
     name: str, material: str, road: Road, s: Array, left: float, right: float, lift: float = PAINT
 ) -> TriangleMesh:
-    """The surface between two offsets, seen from above."""
+    """Returns the surface between two offsets, seen from above."""
     a, b = line(road, s, left) + lift * UP, line(road, s, right) + lift * UP
     return TriangleMesh(name, material, *_band(a, b, _normals(road, s), s, np.array([left, right])))
 
 
 def _slab(name: str, material: str, road: Road, s: Array, left: float, right: float) -> TriangleMesh:
-    """The ground between two offsets with its underside, its flanks and its ends: closed all round."""
+    """Returns the closed slab between two offsets, with its underside, flanks and ends."""
     a, b = line(road, s, left), line(road, s, right)
     low_a, low_b = a - THICKNESS * UP, b - THICKNESS * UP
     up, aside = _normals(road, s), _left(road.heading(s))
@@ -143,7 +147,7 @@ _Band = tuple[Array, Array, Array, np.ndarray]
 
 
 def _band(left: Array, right: Array, normals: Array, along: Array, across: Array) -> _Band:
-    """Points, normals, texture and triangles of a band whose left and right edge run side by side."""
+    """Returns points, normals, texture and triangles of a band between a left and a right edge."""
     n = len(left)
     i = np.arange(n - 1)
     first = np.stack([n + i, n + i + 1, i + 1], axis=-1)
@@ -154,7 +158,7 @@ def _band(left: Array, right: Array, normals: Array, along: Array, across: Array
 
 
 def _end(a: Array, b: Array, c: Array, d: Array, across: Array) -> _Band:
-    """A plane figure of four corners, counter-clockwise seen from outside; a, b below, c, d above."""
+    """Returns a quad of four corners, counter-clockwise seen from outside; a, b below and c, d above."""
     points = np.array([a, b, c, d])
     facing = np.cross(b - a, d - a)
     texture = np.column_stack([across[[0, 1, 1, 0]], [-THICKNESS, -THICKNESS, 0.0, 0.0]])
@@ -163,7 +167,7 @@ def _end(a: Array, b: Array, c: Array, d: Array, across: Array) -> _Band:
 
 
 def _joined(name: str, parts: list[TriangleMesh]) -> TriangleMesh:
-    """Several meshes of one material as one."""
+    """Merges several meshes of one material."""
     shifts = np.cumsum([0, *(len(part.points) for part in parts)])
     triangles = [part.triangles + shift for part, shift in zip(parts, shifts, strict=False)]
     columns = [(part.points, part.normals, part.texture) for part in parts]
@@ -172,7 +176,7 @@ def _joined(name: str, parts: list[TriangleMesh]) -> TriangleMesh:
 
 
 def _normals(road: Road, s: Array) -> Array:
-    """Upwards, square to the surface; there is no banking."""
+    """Returns the upward normals of the surface, which has no superelevation."""
     heading, grade = road.heading(s), road.grade(s)
     up = np.stack([-grade * np.cos(heading), -grade * np.sin(heading), np.ones_like(grade)], axis=-1)
     return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))

@@ -1,4 +1,4 @@
-"""ASAM OpenDRIVE 1.8, without anything that 1.7 does not know: roads for simulators.
+"""ASAM OpenDRIVE 1.8, using nothing that 1.7 does not define: roads for simulators.
 
 Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
 """
@@ -23,15 +23,15 @@ class OpenDrive:
     suffix = ".xodr"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Write the file; OpenDRIVE has no place for a drive."""
+        """Writes the file. OpenDRIVE cannot hold a drive."""
         path.write_bytes(document(road, world).to_text().encode())
 
 
 def document(road: Road, world: World) -> Element:
-    """The whole file.
+    """Returns the whole file.
 
     Raises:
-        ExportError: the road has a number that is not finite.
+        ExportError: The road has a number that is not finite.
     """
     root = Element("OpenDRIVE")
     root.extended(_header(road, world))
@@ -46,7 +46,7 @@ def document(road: Road, world: World) -> Element:
 
 
 def _header(road: Road, world: World) -> Element:
-    """Revision, bounds of the ground that lanes and verges cover, and where on Earth it lies. No date."""
+    """Returns the header: revision, bounds of lanes and shoulders, and the georeference. It has no date."""
     x, y = road.centreline()[:, :2].T
     reach = world.lane_width + world.verge
     header = Element(

@@ -1,4 +1,4 @@
-"""The elevation: parabolas and cubics as they are; cubics that follow the heights of a spline."""
+"""The elevation: parabolas and cubics unchanged; fitted cubics where the road is a spline."""
 
 import numpy as np
 
@@ -9,12 +9,12 @@ from roadgpt.geometry import CubicProfile, GradeProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
-TOLERANCE = 1e-4  # m, between heights and the cubics that stand for them
+TOLERANCE = 1e-4  # m, between heights and their cubics
 SAME = 1e-5  # m
 
 
 def elevations(road: Road) -> list[Element]:
-    """The elements ``elevation`` of a road, in their order; the first at 0."""
+    """Returns the ``elevation`` elements of a road in order. The first is at station 0."""
     stations, table = _table(road)
     return [
         Element("elevation", dict(zip("sabcd", row, strict=True)))
@@ -23,7 +23,7 @@ def elevations(road: Road) -> list[Element]:
 
 
 def _table(road: Road) -> tuple[Array, Array]:
-    """Stations ``(n,)``, and the height over each as a cubic ``(n, 4)`` of the distance from it."""
+    """Returns stations ``(n,)``, and the height as a cubic ``(n, 4)`` of the distance from each."""
     profile, length = road.elevation, road.length
     if isinstance(profile, GradeProfile):
         stations = _within(profile.stations[:-1], length)
@@ -45,7 +45,7 @@ def _table(road: Road) -> tuple[Array, Array]:
 
 
 def _without_repetition(stations: Array, found: Array) -> tuple[Array, Array]:
-    """The cubics but for those that only carry on the one before."""
+    """Returns the cubics without those that only continue the previous one."""
     kept = [0]
     for i in range(1, len(found)):
         last, length = found[kept[-1]][None], stations[i + 1] - stations[i]
@@ -57,5 +57,5 @@ def _without_repetition(stations: Array, found: Array) -> tuple[Array, Array]:
 
 
 def _within(stations: tuple[float, ...], length: float) -> Array:
-    """Those inside the road, and its start."""
+    """Returns the stations inside the road, and its start."""
     return np.array([0.0, *(s for s in stations if 1e-9 < s < length - 1e-9)])

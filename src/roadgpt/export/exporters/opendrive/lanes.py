@@ -1,8 +1,8 @@
-r"""Two lanes and their verges, as wide all along as the World says.
+r"""Two lanes and their shoulders, with the constant widths of the World.
 
-id       2  |    1    |    -1    |  -2
-     verge  | against |  driven  | verge     the marks: solid, broken in the middle, solid
-                            0
+id      2      |    1    |    -1    |   -2
+     shoulder  | against |  driven  | shoulder     the markings: solid, broken in the middle, solid
+                         0
 """
 
 from roadgpt.export.markup import Element
@@ -10,15 +10,15 @@ from roadgpt.road import World
 from roadgpt.road.world import LINE
 
 DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
-NO_VERGE = 1e-3  # m; narrower ones are left out
+NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
 
 def lanes(world: World) -> Element:
-    """The element ``lanes``."""
+    """Returns the element ``lanes``."""
     section = Element("laneSection", {"s": 0})
-    section.add("left").extended(*_verge(2, world), _driving(1, world))
+    section.add("left").extended(*_shoulder(2, world), _driving(1, world))
     section.add("center").extended(_middle())
-    section.add("right").extended(_driving(-1, world), *_verge(-2, world))
+    section.add("right").extended(_driving(-1, world), *_shoulder(-2, world))
     return Element("lanes").extended(section)
 
 
@@ -60,13 +60,13 @@ def _driving(number: int, world: World) -> Element:
     return lane
 
 
-def _verge(number: int, world: World) -> list[Element]:
-    """Firm ground at the height of the road: a shoulder."""
-    if world.verge < NO_VERGE:
+def _shoulder(number: int, world: World) -> list[Element]:
+    """Returns the shoulder, firm ground at the height of the road; nothing where it has no width."""
+    if world.verge < NO_SHOULDER:
         return []
     return [_lane(number, "shoulder").extended(_width(world.verge))]
 
 
 def speed_kmh(world: World) -> float:
-    """The speed limit as a sign shows it."""
+    """Returns the speed limit in km/h, rounded to six decimals."""
     return round(world.speed_limit * 3.6, 6)

@@ -1,4 +1,4 @@
-"""The reference line: lines, arcs and spirals as they are, cubics for splines."""
+"""The reference line: lines, arcs and spirals unchanged, cubics for splines."""
 
 from collections.abc import Iterator
 
@@ -9,16 +9,16 @@ from roadgpt.export.markup import Element
 from roadgpt.geometry import Piece, PieceCurve, PlanCurve, SplineCurve
 from roadgpt.geometry.curve import Array
 
-TOLERANCE = 1e-4  # m, between a spline and the cubics that stand for it
-STRAIGHT = 1e-7  # m that an element may bend aside and still be called straighter than it is
-ROUND = 1e-5  # m between a spiral whose curvatures readers call equal, and the arcs that stand for it
-APART = 0.1  # m; nodes of a spline nearer than this share a cubic
-STEP = 2.0  # m between the stations at which a curve that is none of ours is cut
-SHORTEST = 1e-6  # m; a piece so short is left out, and the next one starts where it does
+TOLERANCE = 1e-4  # m, between a spline and its cubics
+STRAIGHT = 1e-7  # m of lateral deviation below which an element is written as a simpler one
+ROUND = 1e-5  # m between a spiral that readers would refuse and the arcs in its place
+APART = 0.1  # m; nodes of a spline closer together than this share a cubic
+STEP = 2.0  # m between the stations at which a curve of an unknown class is cut
+SHORTEST = 1e-6  # m; a shorter piece is left out, and the next one starts in its place
 
 
 def geometries(plan: PlanCurve) -> Iterator[Element]:
-    """The elements ``geometry`` of a plan, in their order."""
+    """Yields the ``geometry`` elements of a plan in order."""
     if isinstance(plan, PieceCurve):
         return _pieces(plan)
     return _cubics(plan)
@@ -33,15 +33,15 @@ def _pieces(plan: PieceCurve) -> Iterator[Element]:
     kept[0] = (0.0, *kept[0][1:])
     ends = [row[0] for row in kept[1:]] + [plan.length]
     for (s, (x, y), heading, piece), end in zip(kept, ends, strict=True):
-        # up to the next one, so that lengths add up even where a piece was left out
+        # up to the next piece, so that lengths add up even where a piece was left out
         length = piece.length if abs(end - s - piece.length) < SHORTEST / 100 else end - s
         yield _geometry(s, x, y, heading, length).extended(_shape(piece))
 
 
 def _tellable(piece: Piece) -> list[Piece]:
-    """The piece; or arcs, where readers would call its curvatures equal and refuse it as a spiral.
+    """Returns the piece, or arcs where readers would take its curvatures as equal and refuse it as a spiral.
 
-    CommonRoad asks numpy's ``isclose``.
+    CommonRoad compares them with numpy's ``isclose``.
     """
     if piece.k0 == piece.k1 or not np.isclose(piece.k0, piece.k1):
         return [piece]
@@ -56,7 +56,7 @@ def _geometry(s: float, x: float, y: float, heading: float, length: float) -> El
 
 
 def _shape(piece: Piece) -> Element:
-    """Line, arc or spiral; readers divide by a curvature, so none is almost nothing."""
+    """Returns a line, arc or spiral. Readers divide by the curvature, so it is never almost zero."""
     bend = piece.length**2 / 6
     if abs(piece.k1 - piece.k0) * bend > STRAIGHT:
         return Element("spiral", {"curvStart": piece.k0, "curvEnd": piece.k1})
@@ -65,9 +65,10 @@ def _shape(piece: Piece) -> Element:
 
 
 def _cubics(plan: PlanCurve) -> Iterator[Element]:
-    """Cubics by arc length, each in the frame of its start: ahead is u, to the left is v.
+    """Yields cubics by arc length, each in the frame of its start: u points ahead, v to the left.
 
-    They start and end with speed 1, and are so short that the parameter is the arc length to a micrometre.
+    They start and end with speed 1, and are so short that the parameter equals the arc length to a
+    micrometre.
     """
 
     def ways(s: Array) -> Array:
@@ -77,7 +78,7 @@ def _cubics(plan: PlanCurve) -> Iterator[Element]:
     stations, found = cubics(plan.at, ways, breaks_of(plan), TOLERANCE)
     headings = plan.heading(stations).tolist()
     ends = stations[1:].tolist()
-    last: Element | None = None  # while it is a line, and may grow
+    last: Element | None = None  # a line that may still be extended
     for s, end, heading, cubic in zip(stations.tolist(), ends, headings, found, strict=False):
         (x, y), ahead, c, d = cubic
         length = end - s
@@ -106,7 +107,7 @@ def _cubic(cu: float, cv: float, du: float, dv: float) -> Element:
 
 
 def breaks_of(plan: PlanCurve) -> Array:
-    """Stations between which a curve is smooth: the nodes of a spline, both ends included."""
+    """Returns the stations between which a curve is smooth: the nodes of a spline, both ends included."""
     if isinstance(plan, SplineCurve):
         inner = plan.stations[1:-1]
         kept, last = [], 0.0
