@@ -89,7 +89,7 @@ def test_the_reader_of_imports_sees_every_form(tmp_path: Path, monkeypatch: pyte
     assert imports_of(file) == {"run", "plugins", "check", "drive", "road", "cli"}
 
 
-@pytest.mark.parametrize("shelf", plugins.SHELVES)
+@pytest.mark.parametrize("shelf", plugins.KINDS)
 def test_every_registered_part_loads_and_every_part_file_is_registered(shelf: str) -> None:
     ours = {
         part.name: part for part in entry_points(group=f"roadgpt.{shelf}") if part.module[:8] == "roadgpt."
@@ -184,5 +184,5 @@ def test_the_wheel_holds_the_package_its_types_its_parts_and_its_licence(tmp_pat
     assert {f"roadgpt/{path.relative_to(SOURCE).as_posix()}" for path in files} <= inside
     assert "roadgpt/py.typed" in inside
     assert any(name.endswith("licenses/LICENSE") for name in inside)
-    assert all(f"[roadgpt.{shelf}]" in points for shelf in plugins.SHELVES)
+    assert all(f"[roadgpt.{shelf}]" in points for shelf in plugins.KINDS)
     assert not {name.split("/")[0] for name in inside} & {"tests", "docs", "benchmarks"}

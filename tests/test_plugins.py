@@ -47,7 +47,7 @@ def test_two_parts_of_one_name_are_refused(shelf: list[EntryPoint]) -> None:
     shelf.append(EntryPoint("sound", "collections:OrderedDict", "roadgpt.drivers"))
     assert plugins.names("drivers") == ["sound"]
     with pytest.raises(
-        PartError, match=r"2 packages bring a driver called 'sound' .*; uninstall all but one"
+        PartError, match=r"2 packages register a driver called 'sound' .*; uninstall all but one"
     ):
         plugins.find("drivers", "sound")
 
@@ -59,5 +59,5 @@ def test_one_part_that_is_found_twice_is_one_part(shelf: list[EntryPoint]) -> No
 
 def test_an_empty_shelf_is_an_error(shelf: list[EntryPoint]) -> None:
     shelf.clear()
-    with pytest.raises(PartError, match="nothing is installed on the shelf 'rules'"):
+    with pytest.raises(PartError, match="no rules are installed"):
         plugins.names("rules")

@@ -37,7 +37,7 @@ def test_what_is_no_file_is_refused_at_once(tmp_path: Path) -> None:
     os.mkfifo(pipe)
     for path in (pipe, Path("/dev/zero"), Path("/dev/random")):
         begun = time.monotonic()
-        with pytest.raises(UsageError, match=f"{path} is a pipe or a device and no file"):
+        with pytest.raises(UsageError, match=f"{path} is a pipe or a device, not a file"):
             reading.read_bytes(path)
         assert time.monotonic() - begun < 1
     with pytest.raises(IsADirectoryError):
@@ -102,7 +102,7 @@ def test_no_command_waits_for_a_pipe(tmp_path: Path, name: str) -> None:
     done = subprocess.run(program, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2
     assert name in done.stderr
-    assert "is a pipe or a device and no file" in done.stderr
+    assert "is a pipe or a device, not a file" in done.stderr
 
 
 @pytest.mark.parametrize(

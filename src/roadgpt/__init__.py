@@ -1,7 +1,7 @@
 """RoadGPT turns words into tested roads.
 
-The values and the verbs of the rooms can be taken from here; each is imported when it is first used, so that
-``import roadgpt`` stays instant::
+The values and functions of the rooms can be imported from here. Each is loaded when it is first used, so that
+``import roadgpt`` takes almost no time::
 
     import roadgpt
 
@@ -16,7 +16,7 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-# Every value and verb, and the room that owns it.
+# Every value and function, and the room that owns it.
 _ROOMS = {
     "Brief": "brief",
     "Outline": "brief",
@@ -59,7 +59,7 @@ def __dir__() -> list[str]:
     return __all__
 
 
-# What a notebook shows as a picture, by module and class: nothing is imported until one is shown.
+# Values that a notebook shows as pictures, by module and class. Nothing is imported until one is shown.
 _PICTURES = (
     ("roadgpt.road.road", "Road"),
     ("roadgpt.road.design", "Design"),
@@ -74,7 +74,7 @@ def _picture(value: Any) -> bytes | None:
 
 
 def _show_pictures_in_notebooks() -> None:
-    """Tell the notebook that runs this process, if one does, how our values look."""
+    """Tells the notebook that runs this process, if there is one, how to display our values."""
     if "IPython" in sys.modules:
         shell = sys.modules["IPython"].get_ipython()
         if shell is not None:

@@ -1,10 +1,13 @@
-"""The program ``roadgpt``, also as ``python -m roadgpt``: heeds Ctrl-C before it imports anything else."""
+"""The program ``roadgpt``, also as ``python -m roadgpt``.
+
+It handles Ctrl-C before it imports anything else.
+"""
 
 from roadgpt import stopping
 
 
 def main() -> None:
-    """Run a command; ends the process with its exit status."""
+    """Runs a command and ends the process with its exit status."""
     stopping.install()
     try:
         from roadgpt.cli import main as command

@@ -1,8 +1,8 @@
-"""What can go wrong, said as advice: every message tells what is wrong and what to do."""
+"""The errors that a user can meet. Every message says what is wrong and what to do."""
 
 
 class RoadGPTError(Exception):
-    """Base of all errors that a user can cause or cure; its text is one clear sentence."""
+    """Base class of all errors that a user can cause or remedy. Its text is one clear sentence."""
 
     exit_status = 1
 
@@ -14,33 +14,33 @@ class UsageError(RoadGPTError):
 
 
 class BriefError(UsageError):
-    """A description that is nonsense, contradicts itself or asks for the impossible."""
+    """A description is meaningless, contradicts itself or asks for the impossible."""
 
 
 class EditError(UsageError):
-    """A change request that cannot be read, names what is not on the road, or cannot be met."""
+    """A change request cannot be understood, names something that is not on the road, or cannot be met."""
 
 
 class DesignError(RoadGPTError):
-    """No road could be designed that keeps every promise of the Brief on this map."""
+    """No road could be designed on this map that meets every requirement of the Brief."""
 
     exit_status = 3
 
 
 class DriverError(RoadGPTError):
-    """A driver raised, returned something that is not a command, or hung."""
+    """A driver raised an exception, returned something that is not a command, or did not answer."""
 
 
 class SimulationError(RoadGPTError):
-    """No drive came of it: the physics broke down, or the simulator failed."""
+    """A drive could not be completed: the physics diverged, or the simulator failed."""
 
 
 class SimulatorError(SimulationError):
-    """The simulator itself failed: it could not be started, went away, or gave no answer."""
+    """The simulator itself failed: it could not be started, ended early, or did not answer."""
 
 
 class GivenUpError(RoadGPTError):
-    """A simulator that failed again and again is not asked any more."""
+    """A simulator failed several times in a row and is not used any more."""
 
     exit_status = 5
 
@@ -53,34 +53,34 @@ class GivenUpError(RoadGPTError):
 
 
 class PartError(UsageError):
-    """A part was asked for by a name that no installed package registers."""
+    """A plug-in was requested by a name that no installed package registers, or cannot be loaded."""
 
 
 class ExportError(RoadGPTError):
-    """A format cannot hold this road, what it needs is not installed, or its file cannot be written."""
+    """A format cannot hold this road, something it needs is not installed, or its file cannot be written."""
 
 
 class LearnError(UsageError):
-    """Pairs of descriptions and plans, or a grammar of phrases, that cannot be used."""
+    """Pairs of descriptions and plans, or a grammar of phrases, cannot be used."""
 
 
 class ChatError(RoadGPTError):
-    """A language model's server could not be reached, or did not do what it was asked for."""
+    """The server of a language model could not be reached, or did not do what it was asked to do."""
 
     exit_status = 4
 
 
 class BudgetError(ChatError):
-    """The next question would pass the limit of tokens or money that the campaign was given."""
+    """The next question would exceed the campaign's limit of tokens or money."""
 
 
 class ReplyError(ChatError):
-    """The server answered, but not with what was asked for: costs one road, not the campaign."""
+    """The server answered, but not with what was asked for. This costs one road, not the campaign."""
 
     def __init__(self, sentence: str, text: str = "") -> None:
         super().__init__(sentence)
         self.text = text[:2000]
-        """What the model wrote, cut after 2,000 characters; to be looked at, never to be trusted."""
+        """What the model wrote, cut after 2,000 characters. It is for people to read and is never trusted."""
 
 
 class RefusedError(ReplyError):
@@ -88,4 +88,4 @@ class RefusedError(ReplyError):
 
 
 class UnparsableError(ReplyError):
-    """No reply fits the schema that was asked for, in whatever way it was asked for."""
+    """No reply fits the requested schema, whichever way it was requested."""

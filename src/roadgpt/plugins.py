@@ -1,6 +1,7 @@
-"""Finds parts by name: providers, readers, designers, rules, exporters, simulators, drivers.
+"""Finds plug-ins by name: providers, readers, designers, rules, exporters, simulators, drivers and so on.
 
-A part registers under the entry point ``roadgpt.<shelf>``; ours use the same door as a user's.
+A plug-in registers under the entry point group ``roadgpt.<kind>``. Those of this package use the same
+mechanism as a user's.
 """
 
 from functools import cache
@@ -9,7 +10,7 @@ from typing import Any
 
 from roadgpt.errors import PartError
 
-SHELVES = (
+KINDS = (
     "providers",
     "readers",
     "designers",
@@ -23,60 +24,58 @@ SHELVES = (
 
 
 @cache
-def _registered(shelf: str) -> dict[str, list[EntryPoint]]:
-    """Parts by name; more than one of a name where packages disagree about it."""
+def _registered(kind: str) -> dict[str, list[EntryPoint]]:
+    """Returns plug-ins by name; several under one name where packages disagree."""
     found: dict[str, list[EntryPoint]] = {}
-    for part in entry_points(group=f"roadgpt.{shelf}"):
+    for part in entry_points(group=f"roadgpt.{kind}"):
         same = found.setdefault(part.name, [])
         if part.value not in {other.value for other in same}:
             same.append(part)
     return found
 
 
-def names(shelf: str) -> list[str]:
-    """Names of the parts on a shelf, sorted.
+def names(kind: str) -> list[str]:
+    """Returns the sorted names of the plug-ins of a kind.
 
     Raises:
-        PartError: the shelf is empty; no road passes for want of rules.
+        PartError: There are none. For example, no road passes for lack of rules.
     """
-    found = sorted(_registered(shelf))
+    found = sorted(_registered(kind))
     if not found:
-        raise PartError(
-            f"nothing is installed on the shelf '{shelf}'; say pip install --force-reinstall roadgpt"
-        )
+        raise PartError(f"no {kind} are installed; run pip install --force-reinstall roadgpt")
     return found
 
 
-def find(shelf: str, name: str) -> Any:
-    """The object that a part registered, imported now.
+def find(kind: str, name: str) -> Any:
+    """Returns the object that a plug-in registered. It is imported now.
 
     Raises:
-        PartError: no part of that name, or more than one; or it cannot be loaded.
+        PartError: There is no plug-in of this name or more than one, or it cannot be loaded.
     """
-    known = names(shelf)
+    known = names(kind)
     if name not in known:
-        raise PartError(f"no {shelf.removesuffix('s')} called '{name}'; there are: {', '.join(known)}")
-    part, *others = _registered(shelf)[name]
+        raise PartError(f"no {kind.removesuffix('s')} called '{name}'; there are: {', '.join(known)}")
+    part, *others = _registered(kind)[name]
     if others:
         raise PartError(
-            f"{len(others) + 1} packages bring a {shelf.removesuffix('s')} called '{name}' "
-            f"({origin(shelf, name)}); uninstall all but one"
+            f"{len(others) + 1} packages register a {kind.removesuffix('s')} called '{name}' "
+            f"({origin(kind, name)}); uninstall all but one"
         )
     try:
         return part.load()
-    except Exception as error:  # a part of another package may fail in any way, and costs only itself
+    except Exception as error:  # a plug-in of another package may fail in any way, and must not affect others
         raise PartError(
-            f"the {shelf.removesuffix('s')} '{name}' cannot be loaded ({type(error).__name__}: {error}); "
-            f"mend or uninstall {origin(shelf, name)}"
+            f"the {kind.removesuffix('s')} '{name}' cannot be loaded ({type(error).__name__}: {error}); "
+            f"repair or uninstall {origin(kind, name)}"
         ) from error
 
 
-def module_of(shelf: str, name: str) -> str:
-    """The module that a part comes from, which is not imported for it; empty where there is no such part."""
-    return next((part.module for part in _registered(shelf).get(name, ())), "")
+def module_of(kind: str, name: str) -> str:
+    """Returns the name of a plug-in's module without importing it; empty where there is no such plug-in."""
+    return next((part.module for part in _registered(kind).get(name, ())), "")
 
 
-def origin(shelf: str, name: str) -> str:
-    """Which distribution a part comes from, as 'name version'; all of them, where it is more than one."""
-    parts = _registered(shelf)[name]
+def origin(kind: str, name: str) -> str:
+    """Returns the distribution that a plug-in comes from, as 'name version'; all, if there are several."""
+    parts = _registered(kind)[name]
     return ", ".join(f"{part.dist.name} {part.dist.version}" if part.dist else "unknown" for part in parts)

@@ -1,44 +1,45 @@
-"""What came with a file, and what the user named: code and servers that only a file names are not trusted.
+"""Records where names come from. Code and servers that are named only by a file are not trusted.
 
-A run, a campaign, a plan or a folder may be somebody else's. Whoever reads one says here which drivers and
-servers it names (``came_with``), and whoever takes an option from the user says so as well (``name``). Before
-a driver's file is run, or a key is sent to a server, ``stranger`` tells which file names it and the user does
-not. What a program in Python names itself came with no file, and is no stranger.
+A run, a campaign, a plan or a folder may have been made by somebody else. Code that reads one records here
+which drivers and servers it names (``came_with``), and code that takes an option from the user records that
+too (``name``). Before a driver's file is run, or a key is sent to a server, ``stranger`` returns the file
+that names it where the user has not. Names that are given in a Python program came with no file, and are
+trusted.
 """
 
 from collections.abc import Callable
 
 
 class Names:
-    """Names of one kind, in one process: those that the user gave, and those that came with files."""
+    """Names of one kind in one process: those that the user gave, and those that came with files."""
 
     def __init__(self) -> None:
         self._named: dict[str, str] = {}
         self._files: dict[str, str] = {}
 
     def name(self, key: str, name: str = "") -> None:
-        """The user names this; ``name`` is how, where that is not the key."""
+        """Records that the user gave this key; ``name`` is the user's wording, if it differs from the key."""
         self._named[key] = name or key
 
     def named(self, key: str) -> str | None:
-        """How the user named what has this key; None where they did not."""
+        """Returns the user's wording for this key; None where the user did not give it."""
         return self._named.get(key)
 
     def came_with(self, key: str, file: object) -> None:
-        """A file names this; the first that does is told of."""
+        """Records that a file names this key. Only the first file is kept."""
         self._files.setdefault(key, str(file))
 
     def stranger(self, key: str) -> str | None:
-        """The file that names this, where the user does not."""
+        """Returns the file that names this key, where the user did not give it; else None."""
         return None if key in self._named else self._files.get(key)
 
     def join(self, others: "Names") -> None:
-        """Know what another process knew."""
+        """Adds the names that another process has recorded."""
         self._named.update(others._named)
         self._files.update(others._files)
 
     def forget(self) -> None:
-        """Begin anew, as a new process does."""
+        """Removes all names, as in a new process."""
         self._named.clear()
         self._files.clear()
 
@@ -48,7 +49,7 @@ def _nobody(question: str) -> bool:
 
 
 class Asker:
-    """Whoever can be asked for a yes; nobody can, unless a program says so."""
+    """Asks the user to confirm something. Unless a program sets ``ask``, the answer is no."""
 
     def __init__(self) -> None:
         self.ask: Callable[[str], bool] = _nobody
@@ -57,16 +58,16 @@ class Asker:
 CODE = Names()
 """Drivers in files, by the absolute path of the file and the name of the class."""
 SERVERS = Names()
-"""Of language models, by scheme, host and port."""
+"""Servers of language models, by scheme, host and port."""
 USER = Asker()
 
 
 def known() -> tuple[Names, Names]:
-    """All that this process knows, to be handed to one that works for it."""
+    """Returns all names that this process has recorded, to be handed to a process that works for it."""
     return CODE, SERVERS
 
 
 def join(names: tuple[Names, Names]) -> None:
-    """Know what the process knew that this one works for."""
+    """Adds the names that were recorded by the process that this one works for."""
     for ours, theirs in zip((CODE, SERVERS), names, strict=True):
         ours.join(theirs)

@@ -1,7 +1,8 @@
-"""Reads files that may be somebody else's: regular ones alone, whole, and no larger than their kind is.
+"""Reads files that may come from somebody else: only regular files, whole, and up to a size limit.
 
-A pipe that nobody writes into is waited for without end, and a device has no end: both are refused, and so is
-what is too large, before it fills the memory. Files that a campaign or a run wrote are read like this, too.
+Reading from a pipe without a writer would wait for ever, and a device has no end. Both are refused, and so is
+a file that is too large, before it fills the memory. Files that a campaign or a run wrote are read in the
+same way.
 """
 
 import json
@@ -18,25 +19,25 @@ from roadgpt.errors import UsageError
 
 T = TypeVar("T")
 
-LARGEST = 50_000_000  # bytes, of files of which nothing else is said
-MOST_OPENED, MOST_COMMAS = 2_000_000, 6_000_000  # of a JSON text: each of them costs many bytes of memory
-DIGITS = 300  # of a whole number; a floating-point number has 308 at most
+LARGEST = 50_000_000  # bytes, where a caller gives no other limit
+MOST_OPENED, MOST_COMMAS = 2_000_000, 6_000_000  # of a JSON text: each costs many bytes of memory
+DIGITS = 300  # of a whole number; a floating-point number has at most 308
 ANY = "a file of this kind"
 HOW = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 
 
 def opened(path: Path, most: int = LARGEST, what: str = ANY, called: str = "") -> BinaryIO:
-    """A regular file of at most so many bytes, open for reading from its beginning.
+    """Returns a regular file of limited size, opened for reading.
 
     Args:
-        path: where it is; a link to such a file will do.
-        most: bytes that it may have.
-        what: what it should be, for the sentence that says that it is too large.
-        called: what the sentence calls it, where that is not its path.
+        path: The file, or a link to one.
+        most: Greatest size in bytes.
+        what: What the file should be, for the message that it is too large.
+        called: What messages call the file, if not by its path.
 
     Raises:
-        OSError: it is not there, or may not be read.
-        UsageError: it is something else than a file, or larger.
+        OSError: The file does not exist or may not be read.
+        UsageError: The path is not a regular file, or the file is too large.
     """
     number = os.open(path, HOW)
     try:
@@ -45,7 +46,7 @@ def opened(path: Path, most: int = LARGEST, what: str = ANY, called: str = "") -
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR), str(path))
         if not stat.S_ISREG(found.st_mode):
             raise UsageError(
-                f"{called or path} is a pipe or a device and no file; write what it gives into a file first"
+                f"{called or path} is a pipe or a device, not a file; write its output to a file first"
             )
         if found.st_size > most:
             raise _too_large(called or str(path), most, what)
@@ -56,34 +57,36 @@ def opened(path: Path, most: int = LARGEST, what: str = ANY, called: str = "") -
 
 
 def read_bytes(path: Path, most: int = LARGEST, what: str = ANY) -> bytes:
-    """All of a regular file of at most so many bytes; raises as ``opened``."""
+    """Returns the content of a regular file of at most ``most`` bytes. Raises the errors of ``opened``."""
     with opened(path, most, what) as file:
         content = file.read(most + 1)
-    if len(content) > most:  # it grows, or its system tells no size
+    if len(content) > most:  # it is growing, or its file system reports no size
         raise _too_large(str(path), most, what)
     return content
 
 
 def read_text(path: Path, most: int = LARGEST, what: str = ANY, encoding: str = "utf-8") -> str:
-    """The same as text, with any ends of lines; UnicodeDecodeError where it is none."""
+    """Returns the content as text with unified line ends. Raises UnicodeDecodeError where it is not text."""
     return read_bytes(path, most, what).decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def read_json(path: Path, most: int = LARGEST, what: str = ANY) -> Any:
-    """What is in a JSON file.
+    """Returns the data in a JSON file.
 
     Raises:
-        OSError, UsageError: as ``opened``.
-        ValueError: it is not JSON, is nested too deeply, or holds a number that no machine number can hold.
+        OSError: As for ``opened``.
+        UsageError: As for ``opened``.
+        ValueError: The file is not JSON, is nested too deeply, or holds a number too large for a machine
+            number.
     """
     return json_of(read_text(path, most, what))
 
 
 def json_of(text: str) -> Any:
-    """What is in JSON text; whole numbers are no larger than a floating-point number can be.
+    """Returns the data in JSON text. Whole numbers are limited to the range of floating-point numbers.
 
     Raises:
-        ValueError: as ``read_json``.
+        ValueError: As for ``read_json``.
     """
     if text.count("[") + text.count("{") > MOST_OPENED or text.count(",") > MOST_COMMAS:
         raise ValueError("it has more parts than would fit into memory")
@@ -94,16 +97,16 @@ def json_of(text: str) -> Any:
 
 
 def check_unpacked(entries: Iterable[zipfile.ZipInfo], most: int) -> None:
-    """ValueError where a zip archive unpacks to more than so many bytes."""
+    """Raises ValueError if a zip archive would unpack to more than ``most`` bytes."""
     if sum(entry.file_size for entry in entries) > most:
         raise ValueError(f"it unpacks to more than {most / 1e6:g} MB")
 
 
 def strictly(kind: type[T], data: Any) -> T:
-    """Data out of a file as a value of a dataclass, every field of which has the type that it says.
+    """Returns data from a file as a value of a dataclass whose fields all have their declared types.
 
     Raises:
-        ValueError: a field is missing, is of another type, or is not finite where it is a number.
+        ValueError: A field is missing, has another type, or is a number that is not finite.
     """
     value: T = _reader(cast(Hashable, kind)).validate_json(json.dumps(data, allow_nan=False), strict=True)
     return value

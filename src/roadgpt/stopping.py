@@ -1,9 +1,9 @@
-"""How the program stops: one Ctrl-C is enough, SIGTERM is taken alike, and a second one ends it at once.
+"""How the program stops. One Ctrl-C is enough, SIGTERM is handled alike, and a second signal ends it at once.
 
-A signal raises KeyboardInterrupt, so that whatever waits is left, files are closed and what is finished is
-kept. But Python drops an exception that is raised while it runs the callback of a weak reference or a
-``__del__``. So the signal is written down as well: long work looks between its steps (``look``), and where
-Python says that it dropped the exception, it is raised once more.
+A signal raises KeyboardInterrupt, so that waiting ends, files are closed and finished work is kept. But
+Python drops an exception that is raised while it runs the callback of a weak reference or a ``__del__``. The
+signal is therefore also recorded: long work checks between its steps (``look``), and where Python reports
+that it dropped the exception, it is raised again.
 """
 
 import _thread
@@ -22,28 +22,29 @@ from roadgpt import children
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 USUAL = (signal.default_int_handler, signal.SIG_DFL)
-ONE_PRESS = 0.3  # s: a terminal and a program that hands signals on send the same one twice
-AGAIN = 0.05  # s until an exception that Python dropped is raised once more
-LONGER = 1.3  # times as long each time, so that it does not always fall into the same callback
+ONE_PRESS = 0.3  # s: a terminal and a program that forwards signals send the same one twice
+AGAIN = 0.05  # s until an exception that Python dropped is raised again
+LONGER = 1.3  # factor by which this time grows, so that it does not always hit the same callback
 
 
 class _State:
-    """Of this process."""
+    """The state of this process."""
 
     number = 0
-    """Of the signal that came; 0: none."""
+    """Number of the signal that came; 0 for none."""
     since = 0.0
     is_raised = False
-    """Has somebody who looked been told?"""
+    """Whether a caller of ``look`` has been interrupted."""
     is_again = False
+    """Whether the next signal is one that this process sends itself."""
     drops = 0
-    """Is the next signal one of our own?"""
+    """How often Python dropped the exception."""
     is_over = False
-    """Is all work done, so that nothing is lost?"""
+    """Whether all work is done, so that nothing can be lost."""
 
 
 def install() -> None:
-    """Heed signals from now on; those that whoever started us had ignored stay so."""
+    """Handles signals from now on, except those that the parent process had set to be ignored."""
     for number in SIGNALS:
         if signal.getsignal(number) in USUAL:
             signal.signal(number, _heard)
@@ -51,10 +52,10 @@ def install() -> None:
 
 
 def look() -> None:
-    """Between two steps of long work: is it to stop?
+    """Raises KeyboardInterrupt between two steps of long work, if the program is to stop.
 
     Raises:
-        KeyboardInterrupt: it is, and has not been told yet.
+        KeyboardInterrupt: A signal came, and no caller has been interrupted yet.
     """
     if _State.number and not _State.is_raised and threading.current_thread() is threading.main_thread():
         _State.is_raised = True
@@ -62,13 +63,13 @@ def look() -> None:
 
 
 def status() -> int:
-    """The exit status that shells have for a program that a signal stopped; 0: none came."""
+    """Returns the exit status that shells use for a program stopped by a signal; 0 if no signal came."""
     return 128 + _State.number if _State.number else 0
 
 
 @contextmanager
 def shielded() -> Iterator[None]:
-    """Processes that are started meanwhile never hear a terminal's Ctrl-C: we do, and end them."""
+    """Keeps a terminal's Ctrl-C from processes that are started meanwhile. This process ends them instead."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -80,20 +81,20 @@ def shielded() -> Iterator[None]:
 
 
 def forget() -> None:
-    """What was to stop has stopped, and the program goes on."""
+    """Forgets the signal: the work was stopped, and the program continues."""
     _State.number, _State.is_raised = 0, False
 
 
 def finish() -> None:
-    """All work is done: a signal that comes now ends the program at once, and without a word."""
+    """Marks all work as done: a signal that comes later ends the program at once and silently."""
     _State.is_over = True
 
 
 def leave() -> None:
-    """Where a signal came: end the process with its status, and do not wait for threads.
+    """Ends the process with the status of the signal, if one came, without waiting for threads.
 
-    Python itself would end it by SIGINT, whatever the status is to be, where a library in C has seen the
-    KeyboardInterrupt pass.
+    Otherwise Python would end it by SIGINT, whatever the status is, if a library in C has seen the
+    KeyboardInterrupt.
     """
     if not status():
         return
@@ -123,16 +124,16 @@ def _heard(number: int, frame: FrameType | None) -> None:
 
 
 def _dropped(what: Any) -> None:
-    """Python's hook for exceptions that nobody can catch."""
+    """Implements Python's hook for exceptions that cannot be caught."""
     if not _State.number:
         sys.__unraisablehook__(what)
         return
     if not issubclass(what.exc_type, KeyboardInterrupt):
-        return  # of an object that was half made when the signal came
+        return  # from an object that was incomplete when the signal came
     timer = threading.Timer(min(AGAIN * LONGER**_State.drops, 1.0), _once_more)
     _State.drops += 1
     timer.daemon = True
-    with suppress(RuntimeError):  # Python is ending, and so is the program
+    with suppress(RuntimeError):  # Python is shutting down
         timer.start()
 
 
@@ -142,6 +143,6 @@ def _once_more() -> None:
     _State.is_again = True
     main = threading.main_thread().ident
     if hasattr(signal, "pthread_kill") and main is not None:
-        signal.pthread_kill(main, _State.number)  # ends its waiting, too
+        signal.pthread_kill(main, _State.number)  # also interrupts a blocking call
     else:
         _thread.interrupt_main(signal.Signals(_State.number))

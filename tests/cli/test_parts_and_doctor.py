@@ -14,7 +14,7 @@ from roadgpt.errors import PartError
 
 def test_parts_lists_every_registered_part_with_a_sentence() -> None:
     listed = json.loads(CliRunner().invoke(app, ["parts", "--json"]).stdout)
-    registered = {(s, p.name) for s in plugins.SHELVES for p in entry_points(group=f"roadgpt.{s}")}
+    registered = {(s, p.name) for s in plugins.KINDS for p in entry_points(group=f"roadgpt.{s}")}
     assert {(part["shelf"], part["name"]) for part in listed} == registered
     assert all(part["about"] and part["origin"] and part["works"] for part in listed)
     plain = CliRunner().invoke(app, ["parts"]).stdout

@@ -121,7 +121,7 @@ def test_too_much_of_anything(tmp_path: Path, content: str, sentence: str) -> No
 def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe.xodr"
     os.mkfifo(pipe)
-    with pytest.raises(UsageError, match="it is a pipe or a device and no file"):
+    with pytest.raises(UsageError, match="it is a pipe or a device, not a file"):
         read_opendrive(pipe)
 
 

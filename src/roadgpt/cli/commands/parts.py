@@ -25,7 +25,7 @@ class Part:
 
 def installed() -> list[Part]:
     """Every part on every shelf; one that cannot be loaded says why."""
-    return [_part(shelf, name) for shelf in plugins.SHELVES for name in plugins.names(shelf)]
+    return [_part(shelf, name) for shelf in plugins.KINDS for name in plugins.names(shelf)]
 
 
 def _part(shelf: str, name: str) -> Part:
@@ -52,7 +52,7 @@ def command(as_json: bool) -> None:
         click.echo(json.dumps([asdict(part) for part in parts], indent=2))
         return
     wide = max(len(part.name) for part in parts)
-    for shelf in plugins.SHELVES:
+    for shelf in plugins.KINDS:
         click.secho(shelf, bold=True)
         for part in parts:
             if part.shelf == shelf:

@@ -177,7 +177,7 @@ def _convert(program: str, settings: Path, network: Path) -> None:
             check=False,
         )
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise ExportError(f"SUMO's netconvert does not work ({error}); mend or uninstall SUMO") from error
+        raise ExportError(f"SUMO's netconvert does not work ({error}); repair or uninstall SUMO") from error
     if done.returncode or not network.exists():
         said = [said for said in done.stderr.splitlines() if said.startswith("Error")] or ["it wrote no file"]
         raise ExportError(f"SUMO's netconvert refuses this road ({said[0]}); look at its map")
