@@ -35,7 +35,7 @@ def test_a_part_that_cannot_be_loaded_costs_only_itself(
     shelf: list[EntryPoint], value: str, reason: str
 ) -> None:
     shelf.append(EntryPoint("broken", value, "roadgpt.drivers"))
-    with pytest.raises(PartError, match=rf"the driver 'broken' cannot be loaded \({reason}.*; mend or"):
+    with pytest.raises(PartError, match=rf"the driver 'broken' cannot be loaded \({reason}.*; repair or"):
         plugins.find("drivers", "broken")
     assert plugins.find("drivers", "sound")() == {}
     listed = CliRunner().invoke(app, ["parts"])

@@ -1,4 +1,4 @@
-"""Child processes. A terminal's Ctrl-C does not reach them, and they are ended with all that they started."""
+"""Processes that we start: out of reach of a terminal's Ctrl-C, and ended with all that they started."""
 
 import os
 import signal
@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import IO, Any
 
-FAREWELL = 10.0  # s to wait for the end of a killed process
+FAREWELL = 10.0  # s for a process that was killed to be gone
 _APART: Mapping[str, Any] = (
     {"start_new_session": True}
     if os.name == "posix"
@@ -18,14 +18,10 @@ _running: "set[subprocess.Popen[bytes]]" = set()
 
 
 def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
-    """Starts a process in a session of its own.
-
-    Args:
-        words: The command and its arguments.
-        **how: Further arguments of ``subprocess.Popen``.
+    """Start a process in a session of its own; ``how`` is as ``subprocess.Popen`` has it.
 
     Raises:
-        OSError: The system refuses.
+        OSError: the system refuses.
     """
     process: subprocess.Popen[bytes] = subprocess.Popen(words, **_APART, **how)  # noqa: S603 - our callers' words
     _running.add(process)
@@ -33,18 +29,14 @@ def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
 
 
 def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
-    """Starts a Python process that runs ``main()`` of a module and communicates through its standard streams.
-
-    Args:
-        entry: The module.
-        **how: Further arguments of ``subprocess.Popen``; ``env`` is added to the environment.
+    """Start a Python of ours that runs ``main()`` of a module and speaks through its standard streams.
 
     Raises:
-        OSError: The system refuses.
+        OSError: the system refuses.
     """
     words = [
         sys.executable,
-        "-P",  # modules in the current directory are not imported in place of ours
+        "-P",  # a module that lies where the user stands is not taken for one of ours
         "-c",
         f"from {entry} import main; main()",
     ]
@@ -54,9 +46,9 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
 
 
 def kill(process: "subprocess.Popen[bytes]") -> None:
-    """Ends a process and its children without waiting. A process that has ended may be killed again."""
+    """End a process and what it started, and do not wait for it; one that is gone may be killed again."""
     if os.name == "posix":
-        # its group may outlive it, so it is signalled even if the process has ended
+        # its group may outlive it, so that it is asked for even where the process has ended
         with suppress(ProcessLookupError, PermissionError):
             os.killpg(process.pid, signal.SIGKILL)
     elif process.poll() is None:
@@ -67,7 +59,7 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
 
 
 def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
-    """Ends a process and its children. Returns its exit status; None where it has not ended in time."""
+    """End a process and what it started; its exit status, None where it does not go."""
     kill(process)
     with suppress(subprocess.TimeoutExpired):
         process.wait(patience)
@@ -76,23 +68,22 @@ def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int |
 
 
 def kill_all() -> None:
-    """Ends every process that was started here and has not been waited for."""
+    """End every process that was started here and is not seen off yet."""
     for process in [*_running]:
         kill(process)
 
 
 def ending(status: int | None) -> str:
-    """Returns how a process ended, in words that follow its name: 'was ended by signal 9'."""
+    """How a process ended, to follow its name: 'was ended by signal 9'."""
     if status is not None and status < 0:
         return f"was ended by signal {-status}"
     return f"ended with status {status}"
 
 
 def private_streams() -> tuple[IO[bytes], IO[bytes]]:
-    """Returns this process's standard input and output, unbuffered and for the caller alone.
+    """In a process of ours: its standard input and output for us alone, unbuffered.
 
-    From then on, anything else that reads standard input finds nothing, and anything else that prints writes
-    to standard error.
+    From then on whatever else reads finds nothing, and whatever else prints goes to standard error.
     """
     heard, said = os.dup(0), os.dup(1)
     nothing = os.open(os.devnull, os.O_RDONLY)
