@@ -58,6 +58,26 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
         process.kill()
 
 
+def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
+    """Ask a process that called ``ends_its_own`` to end with all that it has started; does not wait for it.
+
+    On Unix what a process starts lives in a session of its own, which ``kill`` does not reach.
+    """
+    if os.name == "posix" and process.poll() is None:
+        with suppress(OSError):
+            process.terminate()
+
+
+def ends_its_own() -> None:
+    """In a process of ours: from now on SIGTERM ends it together with every process that it has started."""
+    signal.signal(signal.SIGTERM, _end_all)
+
+
+def _end_all(number: int, frame: object) -> None:
+    kill_all()
+    os._exit(128 + number)
+
+
 def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
     """End a process and what it started; its exit status, None where it does not go."""
     kill(process)

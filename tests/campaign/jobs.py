@@ -1,12 +1,15 @@
 """Jobs for workers, good and bad. As a program: two workers at a job that does not end, and their pids."""
 
+import atexit
 import os
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
+from roadgpt import children
 from roadgpt.errors import UsageError
 
 TESTS = Path(__file__).resolve().parents[1]
@@ -62,6 +65,25 @@ def prints(number: int) -> int:
 
 def talks(number: int) -> None:
     print(f"{number} says so\n" * 200, end="", flush=True)
+
+
+def starts_a_program(file: str) -> int:
+    """Starts something in a session of its own, as a simulator is started; writes down its pid."""
+    words = [sys.executable, "-c", "import time; time.sleep(300)"]
+    pid = children.start(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL).pid
+    Path(file).write_text(str(pid), encoding="utf-8")
+    return pid
+
+
+def starts_a_program_and_works(file: str) -> None:
+    starts_a_program(file)
+    time.sleep(300)
+
+
+def leaves_its_programs(file: str) -> int:
+    """As a simulator does that is left politely when Python ends."""
+    atexit.register(children.kill_all)
+    return starts_a_program(file)
 
 
 def dies(status: int) -> None:

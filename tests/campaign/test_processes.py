@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -150,3 +150,44 @@ def test_workers_end_when_their_parent_was_killed() -> None:
     while any(is_alive(pid) for pid in pids) and time.monotonic() < until:
         time.sleep(0.1)
     assert not any(is_alive(pid) for pid in pids)
+
+
+def pid_in(file: Path) -> int:
+    """The pid that a job writes down."""
+    until = time.monotonic() + SOON
+    while not (file.exists() and file.read_text()) and time.monotonic() < until:
+        time.sleep(0.05)
+    return int(file.read_text())
+
+
+@pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
+@pytest.mark.parametrize("job", [jobs.leaves_its_programs, jobs.starts_a_program_and_works])
+def test_what_a_worker_has_started_ends_with_it(tmp_path: Path, job: Callable[[str], object]) -> None:
+    workers = Processes(WorkerConfig(2, jobs.nothing, SOON, tmp_path / "log"))
+    workers.submit([Job(1, job, str(tmp_path / "pid"))])
+    pid = pid_in(tmp_path / "pid")
+    if job is jobs.leaves_its_programs:
+        assert len(ended(workers, 1)) == 1
+    assert is_alive(pid)
+    begun = time.monotonic()
+    workers.stop()
+    assert time.monotonic() - begun < 8
+    time.sleep(0.2)  # killing is quick, and not at once
+    assert not is_alive(pid)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
+def test_what_a_worker_that_hangs_has_started_ends_with_it(tmp_path: Path) -> None:
+    workers = Processes(WorkerConfig(1, jobs.nothing, 1.0, tmp_path / "log"))
+    workers.submit([Job(1, jobs.starts_a_program_and_works, str(tmp_path / "pid"))])
+    first = pid_in(tmp_path / "pid")
+    (given_up,) = ended(workers, 1)
+    assert given_up.lost
+    assert "took longer than 1 s" in given_up.lost
+    last = pid_in(tmp_path / "pid")
+    until = time.monotonic() + 5  # killing is quick, and not at once
+    while is_alive(last) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not is_alive(first)
+    assert not is_alive(last)
+    workers.stop()

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from typing import IO, Any, NamedTuple
 
 from roadgpt.campaign.workers.messages import pickled, receive, send, unpickled
-from roadgpt.children import private_streams
+from roadgpt.children import ends_its_own, private_streams
 
 BEAT = 1.0  # s between signs of life
 ALIVE, READY, VALUE, ERROR = range(4)  # kinds of messages that go up
@@ -57,6 +57,7 @@ class _Sender:
 def main() -> None:
     """Work until the parent goes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears of Ctrl-C, and ends us
+    ends_its_own()
     heard, said = private_streams()
     mouth = _Sender(said)
     threading.Thread(target=mouth.beat, daemon=True).start()

@@ -9,7 +9,7 @@ import threading
 import time
 
 from roadgpt.campaign.executors import MOST_DEATHS, RunningJob, WorkerConfig
-from roadgpt.campaign.executors.processes.worker import Worker
+from roadgpt.campaign.executors.processes.worker import FAREWELL, Worker
 from roadgpt.campaign.workers.job_queue import JobQueue
 from roadgpt.campaign.workers.messages import pickled, unpickled
 from roadgpt.campaign.workers.process_loop import READY, JobMessage
@@ -60,6 +60,12 @@ class Processes(JobQueue):
         self._stops.set()
         with self._changed:
             leaving = [*self._workers]
+            idle = [worker for worker in leaving if worker.is_ready and worker.job is None]
+            for worker in leaving:
+                worker.ask_to_end()
+        due = time.monotonic() + FAREWELL
+        for worker in idle:
+            worker.join(max(0.0, due - time.monotonic()))
         for worker in leaving:
             worker.kill()
         for worker in leaving:

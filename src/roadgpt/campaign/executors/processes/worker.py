@@ -14,7 +14,8 @@ from roadgpt.campaign.workers.messages import receive, send
 from roadgpt.campaign.workers.process_loop import ALIVE, JobMessage
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-FAREWELL = 10.0  # s for a process that was killed to be gone
+FAREWELL = 10.0  # s for a process that has nothing to do, or was killed, to be gone
+PATIENCE = 1.0  # s for a process in the middle of a job to end what it has started, and itself
 
 
 class Worker:
@@ -37,6 +38,7 @@ class Worker:
         """Names of the shared values that it was sent."""
         self.fault = ""
         """Why it was ended; empty for one that ended by itself."""
+        self._asked = 0.0  # s, on the monotonic clock; 0: it was not asked to end
         self._hear = hear
         # every worker has a core of its own, so that libraries need no threads in it
         alone = {name: "1" for name in ONE_THREAD if name not in os.environ}
@@ -77,9 +79,21 @@ class Worker:
                     self._hear(self, kind, what)
         self._hear(self, None, b"")
 
+    def ask_to_end(self) -> None:
+        """Ask it to end with everything that it has started, such as a simulator, and do not wait."""
+        if self.is_ready and self.job is None:
+            with suppress(OSError, ValueError):
+                self._down.close()  # it reads that there are no more jobs, and leaves its simulator politely
+        else:
+            children.ask_to_end(self._process)
+        self._asked = time.monotonic()
+
     def kill(self, fault: str = "") -> None:
-        """End it at once, and what it has started."""
+        """End it: within a second by itself, so that what it has started ends as well, else by force."""
         self.fault = self.fault or fault
+        children.ask_to_end(self._process)
+        self._asked = self._asked or time.monotonic()
+        self.join(max(0.0, self._asked + PATIENCE - time.monotonic()))
         children.kill(self._process)
 
     def bury(self) -> str:
@@ -91,6 +105,6 @@ class Worker:
                     stream.close()
         return self.fault or children.ending(status)
 
-    def join(self) -> None:
-        """Wait until its end was heard."""
-        self._thread.join(FAREWELL)
+    def join(self, patience: float = FAREWELL) -> None:
+        """Wait until its end was heard, for so many seconds at most."""
+        self._thread.join(patience)
