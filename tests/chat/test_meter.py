@@ -119,7 +119,7 @@ def test_the_cap_of_an_answer_shrinks_to_what_is_left(stub: Stub) -> None:
 
 def test_money_without_a_price_is_told_before_anything_is_asked(stub: Stub) -> None:
     chat = open_chat(settings(stub, max_cost=1.0))
-    with pytest.raises(BudgetError, match=r"what 'm' costs is not known.*--price 0.15/0.60"):
+    with pytest.raises(BudgetError, match=r"the price of 'm' is not known.*--price 0.15/0.60"):
         chat.ask(QUESTION, Turn)
     assert stub.requests == []
 

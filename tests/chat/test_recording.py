@@ -166,7 +166,7 @@ def test_where_there_is_no_recording_that_is_told(stub: Stub) -> None:
     for folder in ("nowhere", "empty"):
         with pytest.raises(UsageError, match=f"there is no recording in {folder}"):
             open_chat(ChatSettings(replay=folder))
-    with pytest.raises(UsageError, match="recorded or replayed, not both"):
+    with pytest.raises(UsageError, match="--record or --replay, not both"):
         open_chat(settings(stub, record="a", replay="b"))
     Path("file").write_text("")
     stub.play(says('{"degrees": 5}'))

@@ -258,17 +258,17 @@ def test_nobody_waits_for_an_hour(stub: Stub, waits: list[float]) -> None:
     [
         (fails(401, "Incorrect API key provided"), "wants a key, and none is set"),
         (fails(403, "Country not supported"), "does not allow this"),
-        (fails(404, "The model `m` does not exist"), "knows no such model or address"),
+        (fails(404, "The model `m` does not exist"), "does not know this model or address"),
         (
             fails(429, "You exceeded your current quota", code="insufficient_quota"),
-            "has nothing left to spend",
+            "has no credit left",
         ),
-        (fails(413, "too large"), "refuses the question with status 413: too large"),
+        (fails(413, "too large"), "rejects the question with status 413: too large"),
         (fails(400, "This model's maximum context length is 8192 tokens"), "maximum context length"),
-        (answers({"error": {"message": "no such model", "code": 404}}), "knows no such model"),
-        (answers(b"<html>Welcome to nginx</html>"), "something else than JSON .*base URL"),
-        (answers([1, 2]), "something else than JSON"),
-        (fails(404, "<!DOCTYPE HTML><html><p>File not found"), "it answers with a web page, .*--base-url"),
+        (answers({"error": {"message": "no such model", "code": 404}}), "does not know this model"),
+        (answers(b"<html>Welcome to nginx</html>"), "did not answer with JSON .*base URL"),
+        (answers([1, 2]), "did not answer with JSON"),
+        (fails(404, "<!DOCTYPE HTML><html><p>File not found"), "it answered with a web page, .*--base-url"),
     ],
 )
 def test_what_will_not_pass_is_told_at_once(stub: Stub, waits: list[float], scene: Any, told: str) -> None:
@@ -283,7 +283,7 @@ def test_what_will_not_pass_is_told_at_once(stub: Stub, waits: list[float], scen
 def test_an_answer_that_drips_in_is_given_up_in_time(stub: Stub, scene: Any) -> None:
     stub.play(scene)
     begun = time.perf_counter()
-    with pytest.raises(ChatError, match=r"gave no whole answer within 0\.5 s"):
+    with pytest.raises(ChatError, match=r"gave no complete answer within 0\.5 s"):
         total(chat_with(stub, timeout=0.5, retries=0))
     assert time.perf_counter() - begun < 2.5
 

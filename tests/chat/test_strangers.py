@@ -124,7 +124,7 @@ def test_a_key_beside_a_plan_is_not_for_the_plans_server(monkeypatch: pytest.Mon
 def test_a_server_that_gets_no_key_and_wants_one_is_told_why(stub: Stub) -> None:
     stub.play(lambda request, handler: send(handler, 401, {"error": {"message": "no key"}}))
     result = invoke("campaign", str(plan_naming(stub.url)), "--out", "c", "-q")
-    assert "wants a key and gets none, because plan.toml names it and you do not" in result.stderr
+    assert "wants a key but is sent none, because only plan.toml names it" in result.stderr
 
 
 def ask(stub: Stub, **settings: Any) -> str:
@@ -137,7 +137,7 @@ def test_a_redirect_to_another_server_is_not_followed(stub: Stub, status: int) -
     with serving(says("hello")) as elsewhere:
         place = f"{elsewhere.url}/chat/completions"
         stub.play(lambda request, handler: send(handler, status, {}, {"Location": place}))
-        with pytest.raises(ChatError, match=r"sends the question on to http://127\.0\.0\.1:\d+, which gets"):
+        with pytest.raises(ChatError, match=r"redirects to http://127\.0\.0\.1:\d+, which is sent"):
             ask(stub)
         assert not elsewhere.requests
     assert len(stub.requests) == 1
@@ -206,5 +206,5 @@ def test_a_packed_answer_is_read(stub: Stub) -> None:
     stub.play(scene)
     assert ask(stub) == "hello"
     stub.play(lambda request, handler: send(handler, 200, b"zz", {"Content-Encoding": "zstd"}))
-    with pytest.raises(ChatError, match="packs its answer as 'zstd', which was not asked for"):
+    with pytest.raises(ChatError, match="compresses its answer as 'zstd', which was not requested"):
         ask(stub)

@@ -1,13 +1,13 @@
-"""The room of language models: a question goes out, a Reply comes back. Verb: ``ask``.
+"""Asks a language model a question and returns a Reply.
 
     chat = open_chat(ChatSettings(model="gpt-4.1-mini"))
     reply = chat.ask([Message(role="user", text="A road with 3 turns, please.")], schema=Road)
-    reply.data      # a Road, validated; or one sentence was raised
+    reply.data      # a validated Road; if the model gave none, ask() raised a ReplyError
 
-A provider is a part on the shelf ``providers``: a class that is made with ChatSettings and has ``ask``.
-What it gives back is data: validated against the schema, and nothing of it is run, formatted into a path,
-or trusted beyond its schema. Keys come from the environment, a .env file or the user's settings, and go
-nowhere but to the server.
+A provider is a plug-in registered under the entry point ``roadgpt.providers``: a class that is created with
+ChatSettings and has a method ``ask``. Its answers are data: they are validated against the schema, and never
+executed, used in a path, or trusted beyond the schema. Keys come from the environment, a .env file or the
+user's settings, and are sent to the server only.
 """
 
 import inspect
@@ -45,34 +45,35 @@ __all__ = [
 
 
 class Chat(Protocol):
-    """Someone who answers."""
+    """A language model that can be asked."""
 
     @property
     def spent(self) -> Spent:
-        """What all questions to this Chat have cost, those that came to nothing included."""
+        """What all questions to this Chat have cost so far, including those without a usable answer."""
         ...
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """The answer to the last of the messages; with a schema, ``reply.data`` is an instance of it.
+        """Returns the answer to the last of the messages; with a schema, ``reply.data`` is an instance of it.
 
         Raises:
-            BudgetError: the limit of tokens or money would be passed; nothing was asked.
-            RefusedError: the model declined.
+            BudgetError: the question could exceed the limit of tokens or money; it was not asked.
+            RefusedError: the model declined to answer.
             UnparsableError: no reply fits the schema.
-            ChatError: the server cannot be reached, refuses the key, or fails.
+            ChatError: the server cannot be reached, rejects the key, or fails.
         """
         ...
 
 
 def open_chat(settings: ChatSettings) -> Chat:
-    """A Chat with the model of the settings: its provider, a meter, and the recording where one is wanted.
+    """Returns a Chat with the model of the settings, which counts its costs and records if that is set.
 
     Raises:
-        ChatError: no key, no model, or the library of the provider is not installed.
-        PartError: no such provider.
+        ChatError: there is no key or no model, or the library of the provider is not installed.
+        UsageError: both recording and replay are set, or there is no recording to replay.
+        PartError: no provider of that name is installed.
     """
     if settings.record is not None and settings.replay is not None:
-        raise UsageError("an exchange is recorded or replayed, not both; say --record or --replay")
+        raise UsageError("exchanges are either recorded or replayed; give --record or --replay, not both")
     if settings.replay is not None:
         replayed: Chat = plugins.find("providers", "replay")(settings)
         return replayed
@@ -86,24 +87,26 @@ def open_chat(settings: ChatSettings) -> Chat:
 
 
 def _filled(settings: ChatSettings) -> ChatSettings:
-    """With the model and the server that the user has settled on elsewhere, where none are given here."""
+    """Returns the settings with the user's own model and server filled in where none are given."""
     usual = configured()
     names = [name for name in ("model", "base_url") if getattr(settings, name) is None]
     return settings.model_copy(update={name: getattr(usual, name) for name in names})
 
 
 def asks_a_model(part: Any) -> bool:
-    """Does a reader or a designer take ChatSettings, as ``__init__(self, settings)``?"""
+    """Returns True if a reader or designer takes ChatSettings, as ``__init__(self, settings)``."""
     return isinstance(part, type) and "settings" in inspect.signature(part).parameters
 
 
 def settings_for(part: Any, settings: ChatSettings | None) -> ChatSettings | None:
-    """What a part is made with: the user's own settings where none are given, None where it takes none."""
+    """Returns the settings to create a plug-in with: those given, else the user's own; None if it takes
+    none.
+    """
     return (settings or configured()) if asks_a_model(part) else None
 
 
 def instantiate(part: Any, settings: ChatSettings | None = None) -> Any:
-    """An object of a part: made with the settings where its class takes some, else without arguments."""
+    """Returns an object of a plug-in, created with the settings if its class takes some."""
     if asks_a_model(part):
         return part(settings)
     return part() if callable(part) else part

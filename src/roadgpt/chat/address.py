@@ -1,16 +1,16 @@
-"""Where a server is: its address as it is asked, and its origin, which a key belongs to."""
+"""Addresses of servers: the URL that is asked, and the origin that a key belongs to."""
 
 from urllib.parse import urlsplit
 
 OPENAI = "https://api.openai.com/v1"
-DOORS = ("/chat/completions", "/responses", "/models")  # of a base URL that was copied with its door
+DOORS = ("/chat/completions", "/responses", "/models")  # endpoints that a copied base URL may end with
 PORTS = {"http": 80, "https": 443}
 
 Origin = tuple[str, str, int | None]
 
 
 def address_of(base_url: str | None) -> str:
-    """The address of a server, with the path that its kind has where none was given."""
+    """Returns the address of a server, with the usual path added if none was given."""
     place = (base_url or OPENAI).rstrip("/")
     for door in DOORS:
         place = place.removesuffix(door)
@@ -21,7 +21,7 @@ def address_of(base_url: str | None) -> str:
 
 
 def origin_of(base_url: str | None) -> Origin:
-    """Scheme, host and port, small letters and all said; of OpenAI where no server is named."""
+    """Returns scheme, host and port in normal form; those of OpenAI if no server is named."""
     parts = urlsplit((base_url or OPENAI).strip())
     scheme = parts.scheme.lower()
     try:

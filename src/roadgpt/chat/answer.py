@@ -1,4 +1,4 @@
-"""An Answer: what is read out of a server's JSON, whose every field may be missing or of another kind."""
+"""Reads the answer of a server from its JSON, in which every field may be missing or of another type."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,7 +7,7 @@ from roadgpt.chat.model import Usage
 from roadgpt.chat.strict_json import plain
 
 NOTHING = Usage()
-MOST_TOKENS = 100_000_000  # of one exchange; a larger count is no count
+MOST_TOKENS = 100_000_000  # of one exchange; a larger number is not taken for a count
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Answer:
 
 
 def from_chat(body: dict[str, Any]) -> Answer:
-    """An answer of Chat Completions."""
+    """Returns the answer in a response of the Chat Completions API."""
     choices = body.get("choices")
     choice = choices[0] if isinstance(choices, list) and choices and isinstance(choices[0], dict) else {}
     message = choice.get("message")
@@ -42,7 +42,7 @@ def from_chat(body: dict[str, Any]) -> Answer:
 
 
 def from_responses(body: dict[str, Any]) -> Answer:
-    """An answer of Responses."""
+    """Returns the answer in a response of the Responses API."""
     said: list[str] = []
     refusal: str | None = None
     output = body.get("output")
@@ -64,7 +64,7 @@ def from_responses(body: dict[str, Any]) -> Answer:
 
 
 def _text_of(content: Any) -> str:
-    """A text, or the texts of a list of parts."""
+    """Returns a text, or the joined texts of a list of parts."""
     if isinstance(content, str):
         return content
     parts = content if isinstance(content, list) else []

@@ -1,8 +1,8 @@
-"""One request and its answer, through the library ``openai``: time limits, retries, and errors as sentences.
+"""Sends one request through the library ``openai``, with time limits, retries, and errors as sentences.
 
-The answer is read as bytes under a limit of time and size, and as JSON under our own rules, because servers
-that call themselves compatible leave out and add what they like. Whatever comes back is rid of the key
-first.
+The answer is read as bytes under limits of time and size, and parsed by our own rules, because servers
+that call themselves compatible leave fields out and add others. The key is removed from everything that
+comes back.
 """
 
 import contextvars
@@ -22,26 +22,26 @@ from roadgpt.chat.secret import NO_KEY, Key, redacted
 from roadgpt.chat.strict_json import NotReadableError, plain
 from roadgpt.errors import ChatError
 
-PAGE = ("<!doctype", "<html")  # how a web page begins, in small letters
-CONNECT = 10.0  # s, to reach it
-TALKATIVE = ("openai", "httpx2", "httpcore2")  # debug logs of theirs show headers, and what servers echo
-GRACE = 0.2  # s behind the time limit, in which the request itself may say what is wrong
-BYTES_PER_TOKEN = 24  # generous: JSON that escapes every letter
-ROOM = 200_000  # bytes, for all around a reply
+PAGE = ("<!doctype", "<html")  # how a web page begins, in lower case
+CONNECT = 10.0  # s, to connect
+TALKATIVE = ("openai", "httpx2", "httpcore2")  # their debug logs may show keys
+GRACE = 0.2  # s after the time limit, in which the request itself may report the problem
+BYTES_PER_TOKEN = 24  # generous: JSON that escapes every character
+ROOM = 200_000  # bytes, for everything around a reply
 
 sleep = time.sleep
 
 
 class ApiClient:
-    """To one server, with one key."""
+    """A client for one server with one key."""
 
     def __init__(self, settings: ChatSettings, key: Key | None) -> None:
         self.place = address_of(settings.base_url)
         self.settings = settings
         if key is None and has_openai_prices(self.place):
             raise ChatError(
-                f"no key for {self.place}; put it into the environment as OPENAI_API_KEY or into a file "
-                ".env, or name another server with --base-url"
+                f"there is no key for {self.place}; put one into the environment as OPENAI_API_KEY or into "
+                "a file .env, or name another server with --base-url"
             )
         self._key = key or NO_KEY
         self._client = self._opened()
@@ -51,7 +51,8 @@ class ApiClient:
             import openai
         except ImportError:
             raise ChatError(
-                "language models need the package 'openai'; say python -m pip install 'roadgpt[chat]'"
+                "language models need the package 'openai'; install it with:"
+                " python -m pip install 'roadgpt[chat]'"
             ) from None
         for name in TALKATIVE:
             logging.getLogger(name).setLevel(logging.WARNING)
@@ -75,27 +76,27 @@ class ApiClient:
             raise ChatError(f"a connection to {self.place} cannot be made: {why}") from None
 
     def chat(self, body: dict[str, Any]) -> dict[str, Any]:
-        """The answer of Chat Completions."""
+        """Returns the response of the Chat Completions API."""
         return self._with_patience(self._client.chat.completions.with_streaming_response.create, body)
 
     def respond(self, body: dict[str, Any]) -> dict[str, Any]:
-        """The answer of Responses."""
+        """Returns the response of the Responses API."""
         return self._with_patience(self._client.responses.with_streaming_response.create, body)
 
     def begin_conversation(self) -> dict[str, Any]:
-        """A conversation that the server keeps."""
+        """Starts a conversation that the server stores, and returns its description."""
         return self._with_patience(self._client.conversations.with_streaming_response.create, {})
 
     def models(self) -> list[dict[str, Any]]:
-        """The models that the server has, as it describes them."""
+        """Returns the models of the server, as it describes them."""
         found = self._with_patience(self._client.models.with_streaming_response.list, {}).get("data")
         return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
     def _with_patience(self, call: Callable[..., Any], body: dict[str, Any]) -> dict[str, Any]:
-        """Ask again, later and later, as long as that may help.
+        """Repeats a request with growing delays, as long as that may help.
 
         Raises:
-            FaultError: it does not.
+            RequestError: it failed for good.
         """
         for attempt in range(self.settings.retries + 1):
             try:
@@ -112,14 +113,14 @@ class ApiClient:
         raise AssertionError("unreachable")
 
     def _once(self, call: Callable[..., Any], body: dict[str, Any]) -> dict[str, Any]:
-        """One request, given up after the time limit even where bytes drip in."""
+        """Sends one request, and gives up after the time limit even if bytes still trickle in."""
         box: list[Any] = []
         context = contextvars.copy_context()
 
         def work() -> None:
             try:
                 box.append(_bytes(call, body))
-            except BaseException as error:  # handed to the thread that waits
+            except BaseException as error:  # passed to the waiting thread
                 box.append(error)
 
         thread = threading.Thread(target=context.run, args=(work,), daemon=True)
@@ -133,7 +134,7 @@ class ApiClient:
 
     def _late(self) -> RequestError:
         return RequestError(
-            f"{self.place} gave no whole answer within {self.settings.timeout:g} s", is_retryable=True
+            f"{self.place} gave no complete answer within {self.settings.timeout:g} s", is_retryable=True
         )
 
     def _decoded(self, content: bytes) -> dict[str, Any]:
@@ -144,8 +145,7 @@ class ApiClient:
         if not isinstance(found, dict):
             start = plain(redacted(content[:400].decode("utf-8", "replace"), self._key), 60)
             raise RequestError(
-                f"{self.place} answers with something else than JSON ('{start}'); "
-                "does the base URL end in /v1?"
+                f"{self.place} did not answer with JSON ('{start}'); does the base URL end in /v1?"
             )
         answer: dict[str, Any] = redacted(found, self._key)
         error = answer.get("error")
@@ -156,11 +156,11 @@ class ApiClient:
         return answer
 
     def redacted(self, value: Any) -> Any:
-        """Without the key, wherever it stands."""
+        """Returns a value without the key, wherever it occurs."""
         return redacted(value, self._key)
 
     def _fault_of(self, error: BaseException) -> BaseException:
-        """What an error of the library means, in a sentence without the key."""
+        """Returns an error of the library as a sentence without the key."""
         import openai
 
         if isinstance(error, (RequestError, NotReadableError, KeyboardInterrupt, SystemExit)):
@@ -170,7 +170,9 @@ class ApiClient:
         if isinstance(error, openai.APITimeoutError) or "Timeout" in type(error).__name__:
             return self._late()
         cause = error.__cause__ or error
-        if isinstance(cause, RequestError):  # of a hook, which the library takes for a broken connection
+        if isinstance(
+            cause, RequestError
+        ):  # raised in our hook, which the library reports as a broken connection
             return cause
         why = plain(redacted(str(cause), self._key), 100) or type(cause).__name__
         if isinstance(error, openai.APIConnectionError):
@@ -194,10 +196,10 @@ class ApiClient:
         return self._fault(status, {**told, "message": message}, retry_after(error.response.headers))
 
     def _fault(self, status: int, told: dict[str, Any], wait: float | None) -> RequestError:
-        """What a server says about an error, in a sentence."""
+        """Returns a server's error message as an error with a sentence."""
         message = str(told.get("message") or "")
         if message.lstrip().lower().startswith(PAGE):
-            message = "it answers with a web page, as no server of language models does"
+            message = "it answered with a web page, so it is not a language model server"
         said = f"{message} {told.get('code') or ''} {told.get('type') or ''}".lower()
         used_up = status == 429 and any(word in said for word in SPENT_UP)
         return RequestError(
@@ -214,26 +216,26 @@ class ApiClient:
         if status == 401 and self._key is NO_KEY:
             if file := untrusted_source(self.settings.base_url):
                 return (
-                    f"{self.place} wants a key and gets none, because {file} names it and you do not; if you "
-                    f"trust it, say so in your environment: OPENAI_BASE_URL={self.place}{told}"
+                    f"{self.place} wants a key but is sent none, because only {file} names it; if you "
+                    f"trust it, set in your environment: OPENAI_BASE_URL={self.place}{told}"
                 )
             return f"{self.place} wants a key, and none is set; put one into OPENAI_API_KEY{told}"
         if status == 401:
-            return f"{self.place} does not take the key from {self._key.origin}{told}"
+            return f"{self.place} rejects the key from {self._key.origin}{told}"
         if status == 403:
             return f"{self.place} does not allow this with the key from {self._key.origin}{told}"
         if status == 404:
-            return f"{self.place} knows no such model or address{told}; see --model and --base-url"
+            return f"{self.place} does not know this model or address{told}; see --model and --base-url"
         if used_up:
-            return f"the account at {self.place} has nothing left to spend{told}"
+            return f"the account at {self.place} has no credit left{told}"
         if status == 429:
-            return f"{self.place} has too much to do{told}"
+            return f"{self.place} is overloaded{told}"
         if status >= 500:
             return f"{self.place} failed with status {status}{told}"
-        return f"{self.place} refuses the question with status {status}{told}"
+        return f"{self.place} rejects the question with status {status}{told}"
 
 
 def _bytes(call: Callable[..., Any], body: dict[str, Any]) -> bytes:
-    """The whole answer; its client keeps it within limits."""
+    """Returns the whole answer; the client's hook keeps it within limits."""
     with call(**body) as response:
         return b"".join(response.iter_bytes())

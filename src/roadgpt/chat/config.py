@@ -1,13 +1,14 @@
-"""Where settings come from: flags, the environment, .env, TOML files, in this order; each with its origin.
+"""Finds settings in options, the environment, .env and TOML files, in this order, and remembers their origin.
 
-    flag          --model gpt-5-mini
+    option        --model gpt-5-mini
     environment   ROADGPT_MODEL=gpt-5-mini       also OPENAI_BASE_URL and OPENAI_API_KEY
     .env          the same names, in the working folder
-    TOML          roadgpt.toml in the working folder, then config.toml in the user's own: model under [chat]
+    TOML          roadgpt.toml in the working folder, then the user's config.toml: model under [chat]
 
-A plan of a campaign (its table [chat]) comes between the flags and the environment. A key is never a setting:
-it has no flag, is not part of ChatSettings, and is shown masked. It goes to servers that the user names, by a
-flag, the environment or their own file; whatever else names one may be somebody else's.
+The plan file of a campaign (its table [chat]) comes between the options and the environment. A key is never a
+setting: it has no option, is not part of ChatSettings, and is only shown masked. It is sent to servers
+that the user names by an option, the environment or the user's own file; other files may come from
+somebody else.
 """
 
 import os
@@ -33,37 +34,37 @@ DEFAULT = "default"
 DOTENV = ".env"
 PROJECT = "roadgpt.toml"
 FOLDER = (DOTENV, PROJECT)
-"""Files that come along with a working folder, and so may be somebody else's."""
+"""Files that come with a working folder, and so may have been written by somebody else."""
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 LINE = re.compile(r"\s*(?:export\s+)?([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
-OF_OTHERS = "ROADGPT_NO_NUMBA"  # the room drive heeds it
-MOST_BYTES = 1_000_000  # of a file of settings
+OF_OTHERS = "ROADGPT_NO_NUMBA"  # used in the room drive
+MOST_BYTES = 1_000_000  # of a settings file
 
 
 class Setting(NamedTuple):
-    """A value, and where it was found."""
+    """A value and where it was found."""
 
     value: Any
     origin: str
 
 
 class Layer(NamedTuple):
-    """One place in which settings are looked for."""
+    """One place in which settings are looked up."""
 
     name: str
     found: dict[str, Any]
-    """By field, or by the name of a variable where it is one of the environment's."""
+    """Values by field, or by the name of the variable if the place is the environment."""
 
 
 def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> ChatSettings:
-    """The settings of this moment; a flag that is None was not given.
+    """Returns the current settings; an option that is None was not given.
 
     Args:
-        flags: what the user gave as options.
-        plan: what a file says that the user gave, and maybe did not write.
+        flags: the user's options.
+        plan: the settings in a plan file, which may have been written by somebody else.
 
     Raises:
-        UsageError: a value that cannot be; the sentence says where it stands.
+        UsageError: a value is not valid; the message says where it was found.
     """
     return settings_from(settings_with_origin(flags, plan))
 
@@ -71,10 +72,10 @@ def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 def settings_with_origin(
     flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 ) -> dict[str, Setting]:
-    """Every setting with its origin; the first place that has it counts.
+    """Returns every setting with its origin; the first place that has it counts.
 
     Raises:
-        UsageError: a file of settings cannot be read, or holds a name that is none.
+        UsageError: a settings file cannot be read, or has a setting that does not exist.
     """
     if (flags or {}).get("base_url"):
         SERVERS.name(str(origin_of(str((flags or {})["base_url"]))))
@@ -91,10 +92,10 @@ def settings_with_origin(
 
 
 def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
-    """The ChatSettings of what was gathered.
+    """Returns the ChatSettings with these values.
 
     Raises:
-        UsageError: a value that cannot be.
+        UsageError: a value is not valid; the message says where it was found.
     """
     try:
         return ChatSettings.model_validate({name: setting.value for name, setting in found.items()})
@@ -106,17 +107,17 @@ def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
 
 
 def _fault_in(problem: Mapping[str, Any]) -> str:
-    """What is wrong with a value, in our words."""
+    """Returns what is wrong with a value, as advice."""
     bounds = problem.get("ctx", {})
     match problem["type"]:
         case "float_parsing" | "float_type" | "finite_number":
-            return "it is no number"
+            return "it is not a number"
         case "int_parsing" | "int_type" | "int_from_float":
-            return "it is no whole number"
+            return "it is not a whole number"
         case "string_type":
-            return "it is no text"
+            return "it is not text"
         case "literal_error":
-            return f"say {bounds['expected']}"
+            return f"use {bounds['expected']}"
         case "greater_than":
             return f"give a number above {bounds['gt']:g}"
         case "greater_than_equal":
@@ -128,14 +129,14 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 
 
 def key_for(base_url: str | None) -> Key | None:
-    """The key for a server; None where there is none.
+    """Returns the key for a server; None if there is none.
 
-    A server that only a file of the working folder names gets only a key from there; one that only a plan, a
-    campaign or a run names gets none. They may be somebody else's.
+    A server that is named only by a file of the working folder gets a key only from such a file. A server
+    that is named only by a plan, a campaign or a run gets none. Those files may come from somebody else.
 
     Raises:
-        UsageError: a file of settings cannot be read.
-        ChatError: the key holds what no key has, or belongs to the user and the server to a file.
+        UsageError: a settings file cannot be read.
+        ChatError: the key contains impossible characters, or is the user's while the server is a file's.
     """
     host = origin_of(base_url)[1]
     names = ["ROADGPT_API_KEY", "OPENAI_API_KEY"]
@@ -160,10 +161,10 @@ def key_for(base_url: str | None) -> Key | None:
 
 
 def name_server(base_url: str, wanted: str | None, place: object) -> None:
-    """The user names the server that a file names: it may have their key.
+    """Records that the user names the server that a file names, so that it may get the user's key.
 
     Raises:
-        UsageError: the file names another.
+        UsageError: the file names another server.
     """
     if wanted is None or origin_of(base_url) != origin_of(wanted):
         told = wanted or "no server of its own"
@@ -172,7 +173,7 @@ def name_server(base_url: str, wanted: str | None, place: object) -> None:
 
 
 def untrusted_source(base_url: str | None) -> str:
-    """The file that names this server, where the user does not; empty where they do, or nobody does."""
+    """Returns the file that names this server if the user does not; empty if the user or nobody names it."""
     if not base_url:
         return ""
     wanted = origin_of(base_url)
@@ -197,13 +198,13 @@ def _layers() -> list[Layer]:
 
 
 def user_file() -> Path:
-    """The user's own file of settings, whether it is there or not."""
+    """Returns the path of the user's own settings file, whether or not it exists."""
     home = os.environ.get("XDG_CONFIG_HOME") or os.environ.get("APPDATA")
     return (Path(home) if home else Path("~/.config").expanduser()) / "roadgpt" / "config.toml"
 
 
 def _looked_up(layer: Layer) -> dict[str, Setting]:
-    """The fields that a layer sets, whatever they are called there."""
+    """Returns the fields that a layer sets, by field name."""
     found: dict[str, Setting] = {}
     for name in FIELDS:
         variables = (f"ROADGPT_{name.upper()}", *(["OPENAI_BASE_URL"] if name == "base_url" else []))
@@ -216,18 +217,20 @@ def _looked_up(layer: Layer) -> dict[str, Setting]:
 
 
 def _read(path: Path) -> str:
-    """The text of a file of settings; empty where there is none."""
+    """Returns the text of a settings file; empty if there is none."""
     try:
         if not path.is_file():
             return ""
         return read_text(path, MOST_BYTES, "a file of settings", "utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or "it is not UTF-8"
-        raise UsageError(f"the settings in {path} cannot be read: {why}; mend or remove the file") from None
+        raise UsageError(
+            f"the settings in {path} cannot be read: {why}; correct or remove the file"
+        ) from None
 
 
 def _dotenv(path: Path) -> dict[str, Any]:
-    """The lines NAME=VALUE that are meant for us; others may stand there for other programs."""
+    """Returns the lines NAME=VALUE that are meant for RoadGPT; others are for other programs."""
     found: dict[str, Any] = {}
     for line in _read(path).splitlines():
         match = LINE.fullmatch(line)
@@ -250,14 +253,14 @@ def _toml(path: Path) -> dict[str, Any]:
     try:
         whole = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        # the message of the library may show what stands there, and that may be a key
+        # the library's message may quote the line, which may contain a key
         place = re.search(r"at line \d+", str(error))
         where = place.group() if place else "somewhere"
-        raise UsageError(f"the settings in {path} are not TOML ({where}); mend them") from None
+        raise UsageError(f"the settings in {path} are not TOML ({where}); correct them") from None
     outside = next((name for name in (*FIELDS, KEY) if name in whole), None)
     if outside:
         raise UsageError(
-            f"the setting '{outside}' in {path} stands outside of a table; put it below a line [chat]"
+            f"the setting '{outside}' in {path} is outside of a table; put it below a line [chat]"
         )
     table = whole.get("chat", {})
     if not isinstance(table, dict):
@@ -271,7 +274,7 @@ def _toml(path: Path) -> dict[str, Any]:
 
 
 def unknown_variables() -> list[str]:
-    """Variables that look like settings of ours and are none, with the place where they stand."""
+    """Returns the names of variables that look like settings of RoadGPT but are not, with their origin."""
     known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS}
     places = (("the environment", os.environ), (DOTENV, _dotenv(Path(DOTENV))))
     return [

@@ -1,7 +1,7 @@
-"""A Talk: one conversation through Responses, which stands in the place of the Assistants API that is gone.
+"""One conversation through the Responses API, which replaces the discontinued Assistants API.
 
-The server keeps it where it can, so that each new road knows the earlier ones. Where a server has Responses
-and keeps nothing, the last turns are sent along.
+If the server can store the conversation, the model knows the earlier roads of a campaign. If it cannot,
+the last messages are sent along.
 """
 
 from collections.abc import Sequence
@@ -13,27 +13,27 @@ from roadgpt.chat.model import Message
 from roadgpt.chat.request_error import RequestError
 from roadgpt.chat.server_quirks import ServerQuirks
 
-MOST_TURNS = 20  # messages that are sent along where the server keeps none
+MOST_TURNS = 20  # messages that are sent along if the server stores none
 FULL = ("context_length", "context window", "too long", "maximum context")
 
 
 class Conversation:
-    """What was said so far in one campaign."""
+    """The messages of one campaign so far."""
 
     def __init__(self) -> None:
         self.name: str | None = None
-        """Of the conversation on the server."""
+        """Id of the conversation on the server."""
         self._turns: list[Message] = []
 
     def keep(self, messages: Sequence[Message], answer: str) -> None:
-        """Remember one exchange that came to something."""
+        """Remembers one successful exchange."""
         said = [message for message in messages if message.role != "system"]
         self._turns = [*self._turns, *said, Message(role="assistant", text=answer)][-MOST_TURNS:]
 
     def respond(
         self, client: ApiClient, quirks: ServerQuirks, messages: Sequence[Message], body: dict[str, Any]
     ) -> Answer:
-        """The answer to messages behind all that was said before."""
+        """Returns the answer to messages that continue the conversation."""
         rules = "\n\n".join(message.text for message in messages if message.role == "system")
         asked = [message for message in messages if message.role != "system"]
         if rules:
@@ -48,7 +48,7 @@ class Conversation:
         except RequestError as fault:
             if not any(word in fault.said for word in FULL):
                 raise
-            self.name = None  # it has grown too long: begin another one
+            self.name = None  # it has grown too long: start a new one
             self._begin(client, quirks)
             rest = {"conversation": self.name} if self.name else {"store": False}
             return from_responses(client.respond({**body, "input": _input(asked), **rest}))

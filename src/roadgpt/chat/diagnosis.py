@@ -1,4 +1,4 @@
-"""Looks whether the language model of the settings can be asked, for ``roadgpt doctor``."""
+"""Checks for ``roadgpt doctor`` whether the language model of the settings can be asked."""
 
 from importlib.metadata import PackageNotFoundError, version
 
@@ -13,20 +13,20 @@ PATIENCE = 5.0  # s
 
 
 def diagnose() -> str:
-    """What was found, in a sentence.
+    """Returns the result of the check as a sentence.
 
     Raises:
-        ChatError: a model or a server is named that cannot be asked.
-        UsageError: a setting cannot be.
+        ChatError: a model or a server is configured but cannot be asked.
+        UsageError: a setting is not valid.
     """
     found = settings_with_origin()
     if all(found[name].origin == DEFAULT for name in ("model", "base_url")):
-        return "none is named, and none is needed; see roadgpt config show"
+        return "none is configured, and none is needed; see roadgpt config show"
     try:
         library = f"openai {version('openai')}"
     except PackageNotFoundError:
         raise ChatError(
-            "the package 'openai' is missing; say python -m pip install 'roadgpt[chat]'"
+            "the package 'openai' is missing; install it with: python -m pip install 'roadgpt[chat]'"
         ) from None
     settings = configured().model_copy(update={"timeout": PATIENCE, "retries": 0})
     place, wanted = address_of(settings.base_url), settings.model
@@ -39,5 +39,5 @@ def diagnose() -> str:
         shown = ", ".join(plain(name, 40) for name in names[:5])
         raise ChatError(f"{place} has no model '{plain(wanted)}'; it has {shown}")
     ends = next((one.get("shutdown_date") for one in models if one.get("id") == wanted), None)
-    told = f"; it is switched off on {plain(str(ends), 20)}" if ends else ""
+    told = f"; it will be switched off on {plain(str(ends), 20)}" if ends else ""
     return f"{wanted or 'any'} of {len(names)} at {place}, through {library}{told}"

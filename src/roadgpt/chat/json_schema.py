@@ -1,8 +1,8 @@
-"""The schema that is sent to servers: flat, and with the few keywords that all of them take.
+"""Converts a pydantic model to a flat JSON schema, with the few keywords that all servers accept.
 
-Objects with every field required and no others, texts, numbers, truth values, lists, enumerations, null.
-Patterns, lengths, numeric limits, defaults and tuples are left out: one server ignores them, another
-refuses them, a third answers without any constraint. They hold all the same, because every reply is
+These are objects with every field required and no others, strings, numbers, booleans, lists, enumerations and
+null. Patterns, lengths, numeric limits, defaults and tuples are left out: one server ignores them, another
+rejects them, a third then answers without any constraint. They still apply, because every reply is
 validated against the pydantic model.
 """
 
@@ -15,10 +15,11 @@ MOST_DEPTH = 5  # OpenAI's limit on nesting
 
 
 def schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    """The flat JSON schema of a model.
+    """Returns the flat JSON schema of a model.
 
     Raises:
-        TypeError: the model refers to itself, or has fields without a name; that is a fault of the program.
+        TypeError: the model refers to itself or has objects without named fields, which is a bug of the
+            caller.
     """
     whole = model.model_json_schema()
     return _flat(whole, whole.get("$defs", {}), 0)
@@ -52,7 +53,7 @@ def _flat(schema: dict[str, Any], named: dict[str, Any], depth: int) -> dict[str
 
 
 def _either(branches: list[dict[str, Any]], schema: dict[str, Any]) -> dict[str, Any]:
-    """One of several; of plain types, as one type list, which more servers take than a union."""
+    """Returns a union; one of plain types becomes a list of types, which more servers accept."""
     told = {"description": schema["description"]} if "description" in schema else {}
     if all(set(branch) == {"type"} for branch in branches):
         kinds = [branch["type"] for branch in branches]

@@ -1,7 +1,7 @@
-"""What a campaign's questions cost, and the limits that end it before they are passed.
+"""Counts what the questions of a campaign cost, and stops before a limit is exceeded.
 
-A Meter counts for a whole campaign, whoever asks: readers and designers each have a Chat of their own. The
-one that counts now is set around a block by ``counting``.
+Readers and designers each have a Chat of their own; one Meter counts for all of them. ``counting`` sets the
+current one around a block of code.
 """
 
 from collections import Counter
@@ -15,13 +15,13 @@ from roadgpt.chat.prices import cost_of, price_of
 from roadgpt.chat.strict_json import plain
 from roadgpt.errors import BudgetError
 
-LETTERS_PER_TOKEN = 4  # bytes of English and JSON; only guesses what is still to be counted by the server
+LETTERS_PER_TOKEN = 4  # bytes of English and JSON; an estimate until the server has counted
 ENDLESS = 10**15
 LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 
 
 class Meter:
-    """Counts tokens, seconds and money against a campaign's limits."""
+    """Counts tokens, seconds and money, and compares them with the limits of a campaign."""
 
     def __init__(self, max_tokens: int | None = None, max_cost: float | None = None) -> None:
         self.max_tokens, self.max_cost = max_tokens, max_cost
@@ -31,24 +31,24 @@ class Meter:
 
     @classmethod
     def of(cls, settings: ChatSettings | None) -> "Meter":
-        """With the limits of the settings; without any where there are none."""
+        """Returns a Meter with the limits of the settings; without limits if there are no settings."""
         return cls() if settings is None else cls(settings.max_tokens, settings.max_cost)
 
     def add(self, spent: Spent) -> None:
-        """Count what was spent."""
+        """Adds costs."""
         self.spent = self.spent + spent
 
     def room(self, prompt: int, most: int, price: tuple[float, float] | None, model: str) -> int:
-        """How many tokens an answer may have, so that no limit is passed.
+        """Returns how many tokens an answer may have without exceeding a limit.
 
         Args:
-            prompt: tokens of the question, guessed.
-            most: tokens of any answer.
-            price: USD per million tokens of prompt and completion; None: not known.
-            model: its name, for the sentence.
+            prompt: estimated tokens of the question.
+            most: the largest number of tokens of any answer.
+            price: USD per million tokens of prompt and of completion; None if unknown.
+            model: name of the model, for the message.
 
         Raises:
-            BudgetError: too few for an answer.
+            BudgetError: too few tokens are left for an answer.
         """
         room = min(most, self._tokens_left(prompt), self._affordable(prompt, price, model))
         if room >= LEAST_REPLY:
@@ -58,8 +58,8 @@ class Meter:
         if self._tokens_left(prompt) > room:
             limit, so_far, flag = f"{self.max_cost or 0:g} USD", f"{spent.cost or 0:.4f}", "--max-cost"
         raise BudgetError(
-            f"the limit of {limit} leaves no room for the next question ({so_far} are spent); "
-            f"go on with the same command, --out and a higher {flag}"
+            f"the limit of {limit} is too low for the next question ({so_far} are spent); "
+            f"continue with the same command, --out and a higher {flag}"
         )
 
     def _tokens_left(self, prompt: int) -> int:
@@ -68,13 +68,13 @@ class Meter:
         return self.max_tokens - self.spent.usage.total - prompt
 
     def _affordable(self, prompt: int, price: tuple[float, float] | None, model: str) -> int:
-        """Tokens of an answer that the money is enough for."""
+        """Returns for how many tokens of an answer the money is enough."""
         if self.max_cost is None:
             return ENDLESS
         if price is None or self.spent.cost is None:
             raise BudgetError(
-                f"what '{plain(model)}' costs is not known, so --max-cost cannot be kept; "
-                "say --price 0.15/0.60 (USD per million tokens of question and answer)"
+                f"the price of '{plain(model)}' is not known, so --max-cost cannot be checked; "
+                "give --price 0.15/0.60 (USD per million tokens of question and answer)"
             )
         left = self.max_cost - self.spent.cost - prompt * price[0] / 1e6
         if price[1] > 0:
@@ -93,7 +93,12 @@ _now: ContextVar[_Now | None] = ContextVar("roadgpt_meter", default=None)
 
 @contextmanager
 def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
-    """Count all questions of a block with this meter; the occasion, which road, tells recordings apart."""
+    """Counts all questions of a block with this meter.
+
+    Args:
+        meter: the meter.
+        occasion: the road that the questions are for; recordings distinguish equal questions by it.
+    """
     before = _now.set(_Now(meter, occasion))
     try:
         yield meter
@@ -102,13 +107,13 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
 
 
 def occasion() -> str:
-    """What the questions of this moment are for."""
+    """Returns what the current questions are for."""
     now = _now.get()
     return now.occasion if now else ""
 
 
 class Account:
-    """What one Chat spends; passed on to the campaign's meter, or held against its own limits."""
+    """Counts what one Chat spends, for the meter of the campaign or against limits of its own."""
 
     def __init__(self, settings: ChatSettings) -> None:
         self.settings = settings
@@ -117,28 +122,32 @@ class Account:
 
     @property
     def meter(self) -> Meter:
-        """The campaign's, or this Chat's own outside of one."""
+        """The meter of the campaign; outside of a campaign, the Chat's own."""
         now = _now.get()
         return now.meter if now else self._own
 
     def room(self, messages: Sequence[Message], model: str) -> int:
-        """Tokens that the answer to these messages may have; BudgetError where that is too few."""
+        """Returns how many tokens the answer to these messages may have.
+
+        Raises:
+            BudgetError: too few are left.
+        """
         prompt = sum(tokens_in(message.text) for message in messages)
         price = price_of(self.settings, model)
         return self.meter.room(prompt, self.settings.max_completion, price, model)
 
     def count(self, model: str, usage: Usage, seconds: float) -> float | None:
-        """Count one answered request; gives back its cost."""
+        """Counts one answered request and returns its cost in USD; None if the price is unknown."""
         cost = cost_of(usage, price_of(self.settings, model))
         self.add(Spent(calls=1, usage=usage, seconds=seconds, cost=cost))
         return cost
 
     def add(self, spent: Spent) -> None:
-        """Count what was spent elsewhere, as a recording tells."""
+        """Adds costs that were counted elsewhere, as in a recording."""
         self.spent = self.spent + spent
         self.meter.add(spent)
 
 
 def tokens_in(text: str) -> int:
-    """About how many tokens a text has."""
+    """Returns the estimated number of tokens of a text."""
     return -(-len(text.encode("utf-8", "replace")) // LETTERS_PER_TOKEN)

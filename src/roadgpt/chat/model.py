@@ -1,4 +1,4 @@
-"""The values of a conversation with a language model: Message, Usage, Reply, ChatSettings, Spent."""
+"""The values of a conversation with a language model: Message, Usage, Reply, Spent, ChatSettings."""
 
 from typing import Annotated, Any, Literal, Self
 from urllib.parse import urlsplit
@@ -11,32 +11,32 @@ from roadgpt.provenance import SERVERS
 Api = Literal["chat", "responses"]
 Repair = Literal["none", "place", "full"]
 Strategy = Literal["whole", "stepwise"]
-DECIMALS = 9  # of seconds and USD: a difference of sums is the same whatever came before
+DECIMALS = 9  # of seconds and USD, so that a difference of sums does not depend on earlier costs
 Role = Literal["system", "user", "assistant"]
 
 
 class ChatValue(BaseModel):
-    """A value: never changed, compared by content, read from and written to JSON."""
+    """Base of immutable values that are compared by content and read from and written to JSON."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)  # it may hold a key
 
 
 class Message(ChatValue):
-    """One turn of a conversation."""
+    """One message of a conversation."""
 
     role: Role
     text: str
 
 
 class Usage(ChatValue):
-    """Tokens, as the server counts them."""
+    """Numbers of tokens, as the server counts them."""
 
     prompt: int = 0
     completion: int = 0
 
     @property
     def total(self) -> int:
-        """Both together."""
+        """Tokens of question and answer together."""
         return self.prompt + self.completion
 
     def __add__(self, other: "Usage") -> "Usage":
@@ -44,32 +44,32 @@ class Usage(ChatValue):
 
 
 class Reply(ChatValue):
-    """What came of one question, all attempts at an answer together."""
+    """The answer to one question; usage, seconds and cost cover all attempts."""
 
     text: str
-    """As the model wrote it: data, to be shown and never to be run."""
+    """The text as the model wrote it; it may be shown but never executed."""
     data: SerializeAsAny[Any] = None
-    """An instance of the schema that was asked for, validated; None where none was."""
+    """A validated instance of the schema; None if no schema was given."""
     model: str
-    """As the server calls the model that answered."""
+    """The server's name of the model that answered."""
     usage: Usage = Usage()
     seconds: float = 0.0
     cost: float | None = None
-    """USD; None: the price of this model is not known."""
+    """In USD; None if the price of the model is unknown."""
     finish: str = "stop"
     conversation: str | None = None
-    """Where the server keeps the conversation, with ``api="responses"``."""
+    """The id of the conversation on the server, with ``api="responses"``."""
 
 
 class Spent(ChatValue):
-    """What a conversation has cost so far, questions that came to nothing included."""
+    """What a conversation has cost so far, including questions without a usable answer."""
 
     calls: int = 0
-    """Requests that the server answered."""
+    """Number of requests that the server answered."""
     usage: Usage = Usage()
     seconds: float = 0.0
     cost: float | None = 0.0
-    """USD; None: a model was asked whose price is not known."""
+    """In USD; None if a model was asked whose price is unknown."""
 
     def __add__(self, other: "Spent") -> "Spent":
         cost = None if self.cost is None or other.cost is None else self.cost + other.cost
@@ -81,7 +81,7 @@ class Spent(ChatValue):
         )
 
     def since(self, before: "Spent") -> "Spent":
-        """What was spent after ``before``."""
+        """Returns what was spent after ``before``."""
         cost = None if self.cost is None or before.cost is None else round(self.cost - before.cost, DECIMALS)
         return Spent(
             calls=self.calls - before.calls,
@@ -95,36 +95,37 @@ class Spent(ChatValue):
 
 
 class ChatSettings(ChatValue):
-    """Which language model is asked, and how; goes into run folders and never holds a key."""
+    """Which language model is asked and how; stored in run folders, and never contains a key."""
 
     provider: str = "openai"
-    """A name on the shelf ``providers``."""
+    """Name of an installed provider."""
     model: str | None = None
-    """As the server calls it; None: the only one that the server has."""
+    """The server's name of the model; None uses the only model that the server has."""
     base_url: str | None = None
-    """Of the server, up to ``/v1``; None: OpenAI's own."""
+    """Address of the server up to ``/v1``; None is OpenAI's own."""
     api: Api = "chat"
-    """Chat Completions, or Responses with a conversation that the server keeps."""
+    """The Chat Completions API, or the Responses API with a conversation that the server stores."""
     temperature: Annotated[float, Field(ge=0, le=2)] | None = None
-    """None: the server's own."""
+    """None uses the server's default."""
     timeout: Annotated[float, Field(gt=0, le=86_400)] = 60.0
-    """Seconds for one whole answer."""
+    """Seconds for one complete answer."""
     retries: Annotated[int, Field(ge=0, le=20)] = 3
-    """Of a request that failed for want of the server, not of the question."""
+    """How often a request is repeated that failed because of the server, not because of the question."""
     max_completion: Annotated[int, Field(ge=16, le=1_000_000)] = 4096
-    """Tokens of one reply."""
+    """Limit of the tokens of one reply."""
     max_tokens: Annotated[int, Field(ge=1)] | None = None
-    """Of the whole campaign, questions and answers."""
+    """Limit of the tokens of the whole campaign, questions and answers."""
     max_cost: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
-    """USD, of the whole campaign."""
+    """Limit in USD for the whole campaign."""
     price: str | None = None
-    """USD per million tokens of prompt and completion, as "0.15/0.60"; None: from the table."""
+    """USD per million tokens of prompt and completion, as "0.15/0.60"; None uses the built-in table."""
     record: str | None = Field(default=None, exclude=True)
-    """Folder in which every exchange is kept; stands in no file, so that a replay gives the same files."""
+    """Folder in which every exchange is stored; not written to files, so that a replay gives the same
+    files."""
     replay: str | None = Field(default=None, exclude=True)
-    """Folder from which every exchange is taken, instead of asking a server."""
+    """Folder from which every answer is taken instead of asking a server."""
     rounds: Annotated[int, Field(ge=1, le=20)] = 3
-    """Questions for one road, at most."""
+    """The largest number of questions for one road."""
     repair: Repair = "full"
     strategy: Strategy = "whole"
 
@@ -139,11 +140,11 @@ class ChatSettings(ChatValue):
         except ValueError:
             raise ValueError("the base URL cannot be read; write it like http://localhost:11434/v1") from None
         if parts.scheme not in ("http", "https") or not parts.hostname:
-            raise ValueError("that is no base URL; write it like http://localhost:11434/v1")
+            raise ValueError("that is not a base URL; write it like http://localhost:11434/v1")
         if parts.username is not None or parts.query or parts.fragment:
             raise ValueError(
-                "the base URL holds more than a place; put the key into OPENAI_API_KEY and leave "
-                "user names and everything behind ? or # away"
+                "the base URL holds more than an address; put the key into OPENAI_API_KEY and leave "
+                "out user names and everything after ? or #"
             )
         return url.strip().rstrip("/")
 
@@ -155,23 +156,28 @@ class ChatSettings(ChatValue):
         return price
 
     def essence(self) -> Self:
-        """Without what may be another when an interrupted campaign goes on: limits, patience, recordings."""
+        """Returns the settings without those that may change when a campaign is resumed.
+
+        These are the limits, the time-outs and retries, and the folders of recordings.
+        """
         usual = type(self)()
         spare = ("timeout", "retries", "max_tokens", "max_cost", "price", "record", "replay")
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
 
     def came_with(self, file: object) -> Self:
-        """The same, out of a file that may be somebody else's: no key for its server, no folders."""
+        """Returns settings from a file that may be somebody else's: without folders, and no key for its
+        server.
+        """
         if self.base_url:
             SERVERS.came_with(str(origin_of(self.base_url)), file)
         return self.model_copy(update={"record": None, "replay": None})
 
 
 def two_prices(text: str) -> tuple[float, float]:
-    """USD per million tokens of prompt and of completion, from "0.15/0.60".
+    """Returns USD per million tokens of prompt and of completion, from a text like "0.15/0.60".
 
     Raises:
-        ValueError: it is not two numbers.
+        ValueError: the text is not two numbers.
     """
     try:
         prompt, completion = (float(part) for part in text.split("/"))

@@ -1,9 +1,9 @@
-"""What tokens cost: USD per million, of the question and of the answer.
+"""Prices of tokens: USD per million, for the question and for the answer.
 
-Source: OpenAI's price page as kept in the package genai-prices 0.2.3, standard rates for prompts below
+Source: OpenAI's price page as stored in the package genai-prices 0.2.3, standard rates for prompts below
 272,000 tokens, taken on 2026-11-20. Discounts for cached prompts are not counted, so a sum may be too high
-and never too low. Models that are not in the table, and all that run on other servers, have no known price:
-say ``--price``.
+but never too low. Models that are not in the table, and all models on other servers, have no known price:
+use ``--price``.
 """
 
 import re
@@ -43,18 +43,18 @@ PRICES: dict[str, tuple[float, float]] = {
     "o3": (2, 8),
     "o4-mini": (1.1, 4.4),
 }
-DATED = re.compile(r"-\d{4}-\d{2}-\d{2}$")  # of a snapshot of a model
+DATED = re.compile(r"-\d{4}-\d{2}-\d{2}$")  # suffix of a dated snapshot of a model
 SOLD_BY = ("api.openai.com", ".openai.azure.com")
 
 
 def has_openai_prices(base_url: str | None) -> bool:
-    """Does the server ask OpenAI's prices?"""
+    """Returns True if the server charges OpenAI's prices."""
     host = urlsplit(base_url or OPENAI).hostname or ""
     return host.endswith(SOLD_BY)
 
 
 def price_of(settings: ChatSettings, model: str = "") -> tuple[float, float] | None:
-    """USD per million tokens of prompt and completion; None: not known."""
+    """Returns USD per million tokens of prompt and of completion; None if unknown."""
     if settings.price is not None:
         return two_prices(settings.price)
     if not has_openai_prices(settings.base_url):
@@ -67,5 +67,5 @@ def price_of(settings: ChatSettings, model: str = "") -> tuple[float, float] | N
 
 
 def cost_of(usage: Usage, price: tuple[float, float] | None) -> float | None:
-    """USD; None where the price is not known."""
+    """Returns the cost in USD; None if the price is unknown."""
     return None if price is None else (usage.prompt * price[0] + usage.completion * price[1]) / 1e6

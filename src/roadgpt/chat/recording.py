@@ -1,4 +1,4 @@
-"""Keeps every exchange with a provider, so that it can be replayed without one."""
+"""Stores every exchange with a provider, so that it can be replayed later."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -17,7 +17,7 @@ FAILURES = {kind.__name__: kind for kind in (RefusedError, UnparsableError, Repl
 def question_of(
     settings: ChatSettings, messages: Sequence[Message], schema: type[BaseModel] | None
 ) -> dict[str, Any]:
-    """All that a question says, and whom it is put to."""
+    """Returns everything that defines a question, including the model that is asked."""
     parameters = {
         "api": settings.api,
         "temperature": settings.temperature,
@@ -33,7 +33,7 @@ def question_of(
 
 
 class Recorder:
-    """Asks a Chat, and writes down what it answers, whether that could be used or not."""
+    """Asks a Chat and stores every answer, whether or not it could be used."""
 
     def __init__(self, settings: ChatSettings, live: Any) -> None:
         assert settings.record is not None
@@ -43,12 +43,12 @@ class Recorder:
 
     @property
     def spent(self) -> Spent:
-        """What the Chat behind has spent."""
+        """What the underlying Chat has spent."""
         spent: Spent = self._live.spent
         return spent
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """As the Chat behind answers."""
+        """Returns the answer of the underlying Chat; raises what it raises."""
         question = question_of(self._settings, messages, schema)
         before = self.spent
         try:
@@ -66,11 +66,11 @@ class Recorder:
 
 
 def replayed(kept: dict[str, Any], schema: type[BaseModel] | None, account: Account) -> Reply:
-    """The Reply that was kept, its data validated again, its cost counted again.
+    """Returns the recorded Reply; its data is validated again and its cost counted again.
 
     Raises:
-        ReplyError: what was kept is a failure.
-        ValueError: it is neither.
+        ReplyError: the exchange was recorded as a failure.
+        ValueError: the record is neither a reply nor a failure.
     """
     account.add(Spent.model_validate(kept["spent"]))
     if "failure" in kept:

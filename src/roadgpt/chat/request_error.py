@@ -1,4 +1,4 @@
-"""A request that came to nothing, and how long to wait before it is tried again."""
+"""An error of one request to a server, and how long to wait before the next try."""
 
 import random
 import time
@@ -6,29 +6,29 @@ from dataclasses import dataclass
 from email.utils import parsedate_to_datetime
 from typing import Any
 
-BUSY = {408, 409, 425, 429, 500, 502, 503, 504, 529}  # statuses after which the same question may be answered
-SPENT_UP = ("insufficient_quota", "billing", "credit")  # what a 429 says that no waiting helps
-FIRST_WAIT, LONGEST_WAIT = 0.5, 8.0  # s, between retries where the server does not say how long
+BUSY = {408, 409, 425, 429, 500, 502, 503, 504, 529}  # statuses after which a retry may help
+SPENT_UP = ("insufficient_quota", "billing", "credit")  # words in a 429 for which waiting does not help
+FIRST_WAIT, LONGEST_WAIT = 0.5, 8.0  # s, between retries if the server does not say how long
 PATIENCE = 120.0  # s, the longest wait that a server may ask for
 
 
 @dataclass
 class RequestError(Exception):
-    """A request that came to nothing."""
+    """A request that failed."""
 
     sentence: str
     status: int | None = None
     said: str = ""
-    """What the server says about it, in small letters."""
+    """The server's own error message in lower case."""
     parameter: str = ""
     wait: float | None = None
-    """Seconds that the server asks for."""
+    """Seconds that the server asks to wait."""
     is_retryable: bool = False
-    """Can the same request do better later?"""
+    """True if the same request may succeed later."""
 
 
 def retry_after(headers: Any) -> float | None:
-    """Seconds of retry-after, however it is said."""
+    """Returns the seconds of a retry-after header in any of its forms; None if there is none."""
     for name, unit in (("retry-after-ms", 0.001), ("retry-after", 1.0)):
         text = headers.get(name)
         if not text:
@@ -46,10 +46,10 @@ def retry_after(headers: Any) -> float | None:
 
 
 def retry_delay(fault: RequestError, attempt: int) -> float | None:
-    """Seconds until the next try; None: longer than anyone waits."""
+    """Returns the seconds until the next try; None if the server asks for more than PATIENCE."""
     if fault.wait is not None:
         if fault.wait > PATIENCE:
-            fault.sentence += f"; it asks to wait {fault.wait:.0f} s, come back then"
+            fault.sentence += f"; it asks to wait {fault.wait:.0f} s, so try again later"
             return None
         return fault.wait
     usual: float = min(FIRST_WAIT * 2.0**attempt, LONGEST_WAIT)

@@ -1,7 +1,7 @@
-"""Replies under a limit of size and time, whatever their status; and redirects that stay with their server.
+"""Limits the size and time of every reply, whatever its status, and refuses redirects to other servers.
 
-A server may answer with a gigabyte, also where it says that something went wrong, and a megabyte that is
-packed may hold a gigabyte. So every reply is unpacked here, piece by piece, and no further than the limit.
+A server may answer with a gigabyte even when it reports an error, and a compressed megabyte may contain a
+gigabyte. So every reply is decompressed here piece by piece, and only up to the limit.
 """
 
 import time
@@ -18,30 +18,30 @@ from roadgpt.chat.strict_json import NotReadableError, plain
 
 PACKED = {"gzip", "x-gzip"}
 ASK_FOR = "gzip"
-GZIP = 31  # zlib's word for gzip with the largest window
-OF_AN_ERROR = 100_000  # bytes; what is said of an error stands at its beginning
+GZIP = 31  # zlib's window bits for gzip with the largest window
+OF_AN_ERROR = 100_000  # bytes; the message of an error is at its beginning
 FIRST_ERROR = 400
 
 
 class ResponseLimits:
-    """Looks at every response before it is read."""
+    """A hook of the HTTP client that limits every response before it is read."""
 
     def __init__(self, most: int, seconds: float, late: Callable[[], Exception]) -> None:
         self.most, self.seconds, self.late = most, seconds, late
 
     def __call__(self, response: Any) -> None:
-        """Give a response its limits.
+        """Limits a response.
 
         Raises:
-            FaultError: it leads to another server, or is packed in a way that was not asked for.
+            RequestError: it redirects to another server, or has a content encoding that was not requested.
         """
         if "location" in response.headers and 300 <= response.status_code < FIRST_ERROR:
             _stay(str(response.request.url), response.headers["location"])
         packing = response.headers.get("content-encoding", "identity").strip().lower()
         if packing not in PACKED | {"identity", ""}:
             raise RequestError(
-                f"{_host(str(response.request.url))} packs its answer as '{plain(packing, 20)}', "
-                "which was not asked for"
+                f"{_host(str(response.request.url))} compresses its answer as '{plain(packing, 20)}', "
+                "which was not requested"
             )
         if "content-encoding" in response.headers:
             del response.headers["content-encoding"]
@@ -49,7 +49,7 @@ class ResponseLimits:
 
 
 class _Within(SyncByteStream):
-    """The bytes of a response, unpacked and up to a limit."""
+    """The bytes of a response, decompressed and limited."""
 
     def __init__(self, stream: Any, bound: ResponseLimits, is_packed: bool, status: int) -> None:
         self.stream, self.bound = stream, bound
@@ -59,11 +59,11 @@ class _Within(SyncByteStream):
         self.deadline = time.monotonic() + bound.seconds
 
     def __iter__(self) -> Iterator[bytes]:
-        """Pieces; of an error no more than its beginning.
+        """Yields pieces; of an error response only its beginning.
 
         Raises:
-            NotReadableError: it is longer than the limit.
-            FaultError: it takes longer.
+            NotReadableError: the response exceeds the limit of size.
+            RequestError: it exceeds the limit of time.
         """
         left = self.most
         for part in self.stream:
@@ -74,7 +74,9 @@ class _Within(SyncByteStream):
                 if self.is_error:
                     yield piece[:left]
                     return
-                raise NotReadableError(f"it has more than {self.most:,} bytes, and a short one was asked for")
+                raise NotReadableError(
+                    f"it has more than {self.most:,} bytes, which is far more than was asked for"
+                )
             left -= len(piece)
             yield piece
 
@@ -84,24 +86,24 @@ class _Within(SyncByteStream):
         try:
             return self.unpacker.decompress(part, most)
         except zlib.error as error:
-            raise RequestError(f"the answer is packed, and cannot be unpacked ({error})") from None
+            raise RequestError(f"the compressed answer cannot be decompressed ({error})") from None
 
     def close(self) -> None:
-        """Let go of the connection."""
+        """Closes the connection."""
         self.stream.close()
 
 
 def _stay(here: str, location: str) -> None:
-    """FaultError where a redirect leads away from its server; the same over https is the same."""
+    """Raises a RequestError if a redirect leads to another server; the same server over https is allowed."""
     try:
         there = urljoin(here, location)
         (scheme, host, port), target = origin_of(here), origin_of(there)
     except ValueError:
-        raise RequestError(f"{_host(here)} sends the question on to no address") from None
+        raise RequestError(f"{_host(here)} redirects to an invalid address") from None
     secured = ("https", host, 443)
     if target != (scheme, host, port) and not (scheme == "http" and port == 80 and target == secured):
         raise RequestError(
-            f"{_host(here)} sends the question on to {plain(_host(there), 60)}, which gets neither the "
+            f"{_host(here)} redirects to {plain(_host(there), 60)}, which is sent neither the "
             "question nor the key; if that is the right server, name it with --base-url"
         )
 

@@ -1,4 +1,4 @@
-"""Keys: held in one place, shown masked, and taken out of every text that comes back from a server."""
+"""Keys: shown only masked, and removed from every text that comes back from a server."""
 
 import re
 from dataclasses import dataclass, field
@@ -7,14 +7,14 @@ from typing import Any
 from roadgpt.errors import ChatError
 
 GONE = "(key)"
-# What looks like a key, also one that a server made shorter: sk-..., sk-proj-ab****yz; "Bearer ...".
+# What looks like a key, also one that a server abbreviated: sk-..., sk-proj-ab****yz; "Bearer ...".
 LOOKS_LIKE_A_KEY = re.compile(r"\b(?:sk|rk|pk)-[\w*.\-]{6,}|(?i:\bbearer\s+)[\w~+/=.\-]{8,}")
-SHORTEST = 8  # letters of a key that are looked for in texts; shorter ones would be found in every other word
+SHORTEST = 8  # characters of a key that is searched for in texts; shorter ones would match ordinary words
 
 
 @dataclass(frozen=True)
 class Key:
-    """A key and where it comes from; shows itself masked."""
+    """A key and its origin; its text form is masked."""
 
     value: str = field(repr=False)
     origin: str
@@ -24,20 +24,20 @@ class Key:
 
 
 NO_KEY = Key("none", "nowhere")
-"""For servers that want no key; the library insists on one."""
+"""For servers that need no key; the library requires one."""
 
 
 def masked(value: str) -> str:
-    """A key that can be shown: how it begins, and how long it is."""
+    """Returns a form of a key that can be shown: its beginning and its length."""
     head = value[:3] if len(value) >= 20 else ""
     return f"{head}... ({len(value)} letters)"
 
 
 def usable(key: Key) -> Key:
-    """The key without blanks around it.
+    """Returns the key without surrounding blanks.
 
     Raises:
-        ChatError: it holds what no header can carry; the sentence does not show it.
+        ChatError: it is empty or has characters that no header can carry; the message does not show it.
     """
     value = key.value.strip()
     if not value or not re.fullmatch(r"[!-~]+", value):
@@ -49,7 +49,9 @@ def usable(key: Key) -> Key:
 
 
 def redacted(value: Any, key: Key) -> Any:
-    """A text, or all texts in lists and dictionaries, without the key and what looks like one."""
+    """Returns a text, or all texts in lists and dictionaries, without the key and anything that looks
+    like one.
+    """
     if isinstance(value, str):
         if len(key.value) >= SHORTEST and key.value in value:
             value = value.replace(key.value, GONE)

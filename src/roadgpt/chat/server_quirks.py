@@ -1,7 +1,7 @@
-"""What a server has been found to take, remembered while the process lives: each lesson is paid for once.
+"""Remembers what a server accepts while the process runs, so that it is found out only once.
 
-The ladder, from the strictest way of asking for JSON to the loosest: a schema that the server keeps to;
-"some JSON", with the schema in words; plain text, out of which the JSON is read.
+JSON is asked for in three ways, from the strictest to the loosest: with a schema that the server enforces;
+as any JSON object, with the schema in words; as plain text, from which the JSON is read.
 """
 
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ UNUSABLE_IN_A_ROW = (
 
 
 class ResponseFormat(IntEnum):
-    """A way of asking for JSON."""
+    """A way of asking for JSON, the strictest first."""
 
     SCHEMA = 0
     OBJECT = 1
@@ -24,22 +24,22 @@ class ResponseFormat(IntEnum):
 
 @dataclass
 class ServerQuirks:
-    """Of one model on one server."""
+    """What is known about one model on one server."""
 
     caps: tuple[str, ...]
-    """Names for the cap on a reply that are still to be tried; the first is in use."""
+    """Names for the limit of a reply that are still to be tried; the first is in use."""
     response_format: ResponseFormat = ResponseFormat.SCHEMA
     dropped: set[str] = field(default_factory=set)
-    """Parameters that it refused."""
+    """Parameters that the server rejected."""
     unusable: dict[ResponseFormat, int] = field(default_factory=dict)
     keeps_conversations: bool = True
 
     def failed(self, response_format: ResponseFormat) -> None:
-        """A reply on this rung could not be used."""
+        """Counts a reply in this format that could not be used."""
         self.unusable[response_format] = self.unusable.get(response_format, 0) + 1
 
     def worked(self, response_format: ResponseFormat, refused: set[ResponseFormat]) -> None:
-        """A reply on this rung was good: begin here, where those above were refused or failed repeatedly."""
+        """Starts with this format from now on, if all stricter ones were rejected or failed repeatedly."""
         self.unusable[response_format] = 0
         above = range(self.response_format, response_format)
         if all(
@@ -53,8 +53,8 @@ _known: dict[tuple[str, str, str], ServerQuirks] = {}
 
 
 def quirks_of(place: str, model: str, api: str) -> ServerQuirks:
-    """What is known of a model on a server, asked through one of its doors."""
-    # OpenAI's newer models refuse the old name, most other servers ignore the new one without a word
+    """Returns what is known about a model on a server, for one of its two APIs."""
+    # OpenAI's newer models reject the old name, most other servers silently ignore the new one
     caps = ("max_completion_tokens", "max_tokens")
     caps = caps if has_openai_prices(place) else caps[::-1]
     return _known.setdefault(
@@ -63,5 +63,5 @@ def quirks_of(place: str, model: str, api: str) -> ServerQuirks:
 
 
 def forget() -> None:
-    """Begin anew, as a new process does."""
+    """Forgets everything, as a new process would."""
     _known.clear()

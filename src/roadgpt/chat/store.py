@@ -1,11 +1,11 @@
-"""Exchanges on the disk: a question's content gives the name of the file that holds its answers.
+"""Stores exchanges on disk: the hash of a question names the file with its answers.
 
     DIR/3f/3f9a...json    {"question": {provider, model, messages, schema, parameters},
                            "answers": {occasion: [...]}}
 
-The same question may be asked for several roads, and more than once for one: answers stand under the
-occasion (the number of the road), in the order in which they came. No key is ever part of a question or an
-answer.
+The same question may be asked for several roads, and more than once for one. So answers are grouped by
+occasion (the number of the road), in the order in which they arrived. A key is never part of a question or
+an answer.
 """
 
 import hashlib
@@ -20,7 +20,7 @@ from roadgpt.reading import read_json
 
 FORMAT = 1
 Turns = Counter[tuple[str, str, str]]
-"""How often a question was kept or taken in this campaign, by its name and occasion."""
+"""How often a question was stored or taken in this campaign, by ('kept' or 'taken', name, occasion)."""
 
 
 class ExchangeStore:
@@ -30,10 +30,10 @@ class ExchangeStore:
         self.folder = Path(folder)
 
     def keep(self, question: dict[str, Any], occasion: str, answer: dict[str, Any], turns: Turns) -> None:
-        """Write an answer down; the first of a campaign for its occasion takes the place of older ones.
+        """Stores an answer; the first one of a campaign for its occasion replaces older ones.
 
         Raises:
-            ChatError: the folder takes no files.
+            ChatError: the folder cannot be written to.
         """
         name = name_of(question)
         there = self._answers(name)
@@ -52,9 +52,10 @@ class ExchangeStore:
             ) from None
 
     def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
-        """The next answer to a question on an occasion; None where there is none left.
+        """Returns the next answer to a question on an occasion; None if there is none left.
 
-        What was recorded outside of any campaign serves on every occasion; outside of one, all recordings do.
+        Answers recorded outside of a campaign serve on every occasion; outside of a campaign, all
+        recordings serve.
         """
         name = name_of(question)
         answers = self._answers(name)
@@ -68,7 +69,7 @@ class ExchangeStore:
         return listed[turn]
 
     def models(self) -> list[str | None]:
-        """The models that were asked, as they were named."""
+        """Returns the names of the models that were asked."""
         names = {self._read(path).get("question", {}).get("model") for path in self.folder.glob("??/*.json")}
         return sorted(names, key=str)
 
@@ -89,14 +90,14 @@ class ExchangeStore:
                 return dict(found)
         except (OSError, ValueError, KeyError, TypeError):
             pass
-        raise UsageError(f"{path} is no recording that can be read; record it again with --record")
+        raise UsageError(f"{path} is not a readable recording; record it again with --record")
 
 
 def name_of(question: dict[str, Any]) -> str:
-    """64 letters that stand for a question's content."""
+    """Returns the SHA-256 of a question as 64 hexadecimal digits."""
     return hashlib.sha256(text_of(question).encode("utf-8", "backslashreplace")).hexdigest()
 
 
 def text_of(value: Any, indent: int | None = None) -> str:
-    """JSON with one form only."""
+    """Returns JSON in one canonical form."""
     return json.dumps(value, sort_keys=True, ensure_ascii=True, indent=indent, allow_nan=False)

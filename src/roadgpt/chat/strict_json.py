@@ -1,8 +1,8 @@
-"""Reading JSON out of what a model wrote: strictly, and whatever it put around it.
+"""Reads JSON from what a model wrote: strictly, but ignoring any text around it.
 
-Fences, talk before and after, and a model's thoughts are passed over. NaN and infinities, keys that are
-said twice with different values, nesting without end and floods of text are not JSON that anyone meant, and
-are refused with one sentence. Nothing is evaluated.
+Code fences, text before and after, and a model's reasoning are skipped. NaN and infinities, keys that
+occur twice with different values, extreme nesting and extreme length are rejected with one sentence.
+Nothing is evaluated.
 """
 
 import json
@@ -14,8 +14,8 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 MOST_CHARACTERS = 1_000_000
-MOST_DEPTH = 32  # brackets inside brackets; ours have 3
-MOST_TRIES = 20  # places at which an object may begin
+MOST_DEPTH = 32  # nested brackets; our schemas need 3
+MOST_TRIES = 20  # places tried as the beginning of an object
 MOST_DIGITS = 30
 THOUGHTS_END = ("</think>", "</thinking>")
 FENCE = re.compile(r"```[ \t]*[\w-]*[ \t]*\r?\n(.*?)(?:```|\Z)", re.DOTALL)
@@ -27,21 +27,21 @@ Schema = TypeVar("Schema", bound=BaseModel)
 
 
 class NotReadableError(ValueError):
-    """What a model wrote is not what was asked for; says why in a few words."""
+    """What a model wrote is not what was asked for; the message says why in a few words."""
 
 
 def plain(text: str, most: int = 80) -> str:
-    """A model's or a server's words on one line of a sentence: printable, and cut."""
+    """Returns words of a model or a server for one line of a message: printable and shortened to ``most``."""
     shown = "".join(letter if letter.isprintable() else " " for letter in text[: 4 * most])
     shown = " ".join(shown.split())
     return shown if len(shown) <= most else f"{shown[:most].rstrip()} ..."
 
 
 def read_as(schema: type[Schema], text: str) -> Schema:
-    """The first object in a text, as an instance of the schema.
+    """Returns the first object in a text as an instance of the schema.
 
     Raises:
-        NotReadableError: there is none, or it does not fit.
+        NotReadableError: there is none, or it does not fit the schema.
     """
     data = read_object(text)
     try:
@@ -59,10 +59,10 @@ def read_as(schema: type[Schema], text: str) -> Schema:
 
 
 def read_object(text: str) -> dict[str, Any]:
-    """The first JSON object in a text.
+    """Returns the first JSON object in a text.
 
     Raises:
-        NotReadableError: no text, too much of it, or no object that can be read.
+        NotReadableError: the text is blank, too long, or has no object that can be read.
     """
     if not text.strip():
         raise NotReadableError("it is blank")
@@ -82,7 +82,7 @@ def read_object(text: str) -> dict[str, Any]:
 
 
 def _candidates(text: str) -> Iterator[str]:
-    """The whole; what stands in fences; what stands in balanced braces."""
+    """Yields the whole text, the contents of code fences, and what stands in balanced braces."""
     said = text
     for end_mark in THOUGHTS_END:
         said = said.rpartition(end_mark)[2]
@@ -99,7 +99,7 @@ def _candidates(text: str) -> Iterator[str]:
 
 
 def _end_of_object(text: str, start: int) -> int | None:
-    """Behind the brace that closes the one at ``start``; None where none does."""
+    """Returns the place after the brace that closes the one at ``start``; None if none does."""
     depth, in_string = 0, False
     for match in re.compile(r'\\.|["{}]', re.DOTALL).finditer(text, start):
         sign = match.group()
@@ -146,19 +146,19 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for key, value in pairs:
         if key in found and found[key] != value:
-            raise NotReadableError(f"it says '{plain(key, 40)}' twice, and not the same")
+            raise NotReadableError(f"it has '{plain(key, 40)}' twice, with different values")
         found[key] = value
     return found
 
 
 def _constant(name: str) -> float:
-    raise NotReadableError(f"it holds {name}, which is no number")
+    raise NotReadableError(f"it holds {name}, which is not a number")
 
 
 def _number(text: str) -> float:
     found = float(text)
     if not math.isfinite(found):
-        raise NotReadableError(f"it holds {plain(text, 20)}, which is no number")
+        raise NotReadableError(f"it holds {plain(text, 20)}, which is not a number")
     return found
 
 
@@ -169,7 +169,7 @@ def _whole_number(text: str) -> int:
 
 
 def _finite(found: Schema) -> Schema:
-    """What was found; as text, "NaN" and numbers too large for any road pass for numbers elsewhere."""
+    """Returns the object; rejects "NaN" as text and numbers too large, which pydantic accepts as numbers."""
     if not all(math.isfinite(number) for number in _numbers(found.model_dump())):
         raise NotReadableError("it holds a number that is not finite")
     return found
@@ -184,7 +184,7 @@ def _numbers(value: Any) -> Iterator[float]:
 
 
 def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:
-    """Turn texts like "15 %" into numbers where the schema wants them; was there any?"""
+    """Converts texts like "15 %" to numbers where the schema wants them; returns True if there were any."""
     turned = False
     for problem in error.errors(include_url=False, include_context=False):
         if problem["type"] not in NUMERIC or not isinstance(problem["input"], str):
@@ -196,7 +196,7 @@ def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:
 
 
 def _put(data: Any, place: tuple[int | str, ...], number: float) -> bool:
-    """Put a number in the place of a text; a place may name branches of unions, which are passed over."""
+    """Replaces a text by a number; names of union branches in the place are skipped."""
     holder: Any = None
     last: int | str = ""
     for part in place:

@@ -1,6 +1,6 @@
-"""Descriptions and what they ask for: makes pairs, and the score of a reader. Verb: ``readings``.
+"""Makes training data for readers, trains them, and scores how well they read. Verb: ``readings``.
 
-Hand-written pairs lie in ``data/descriptions``; ``generator.pairs`` draws any number of others. ``labels``
-reads and checks them, ``originality`` finds descriptions that were not written one by one, and ``evaluate``
-holds a reader against them.
+Hand-written pairs of a description and its plan are in ``data/descriptions``; ``generator.pairs`` draws
+any number of others. ``labels`` reads and checks pairs, ``near_duplicates`` finds descriptions that are
+copies of each other, and ``evaluate`` compares what a reader makes of them with the labels.
 """

@@ -1,4 +1,4 @@
-"""Hand-written pairs made more: in a mirror, with another number, joined, with one more wish."""
+"""Varies hand-written pairs: mirrored, with another number, joined, with one more requirement."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,9 @@ LONGEST = 420  # letters of a joined text
 
 
 def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.Generator) -> Pair:
-    """A hand-written pair, as often as not changed in one way or another; ``others`` by language."""
+    """Returns a hand-written pair, in about half of the cases changed; ``others`` are further pairs by
+    language.
+    """
     if rng.random() < 0.5:
         pair = _made(pair, mirrored(pair.text, pair.plan))
     if rng.random() < 0.4:
@@ -44,7 +46,9 @@ def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Another number of things, where the number is said once and the plan has it once."""
+    """Returns the pair with another count, if the count occurs once in the text and once in the plan;
+    else None.
+    """
     counts = re.findall(r"(?:\bx|turns=)(\d+)(?![\d.])", pair.plan)
     if (
         len(counts) != 1
@@ -69,7 +73,7 @@ def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
 
 
 def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """One thing after the other, where both plans are clauses and nothing else."""
+    """Returns two pairs as one, if both plans have clauses only; else None."""
     if any("|" in pair.plan or pair.plan.startswith("!") for pair in (one, other)):
         return None
     if len(one.text) + len(other.text) > LONGEST:
@@ -88,7 +92,7 @@ def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] 
 
 
 def wished(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """The same with one more wish for the whole road behind it."""
+    """Returns the pair with one more requirement for the whole road; None if that is not possible."""
     if "|" in pair.plan or pair.plan.startswith("!") or pair.lang not in LANGUAGES:
         return None
     try:

@@ -1,4 +1,4 @@
-"""Back-labelling: roads are designed and measured, and what was measured is described in several styles.
+"""Back-labelling: designs and measures roads, and describes the measurements in several styles.
 
 The generator goes from phrases to plans; this goes from geometry to phrases, so that the numbers of a
 description occur together as they do on roads: lengths that add up, radii that suit their angles.
@@ -21,13 +21,13 @@ from roadgpt.road import World, build
 FAMILY = "measured-en"
 MOST_CLAUSES = 7
 FACTS = {"degrees": 0.6, "radius": 0.35, "slope": 0.6, "length": 0.6}
-"""How often each kind of fact is told of a road."""
+"""How often each kind of fact is mentioned."""
 WHOLE = {"length": 0.4, "climb": 0.25}
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How one person writes: a turn, a straight, joints and units."""
+    """How one person writes: the words for turns and straights, conjunctions and units."""
 
     turn: Sequence[str]
     straight: Sequence[str]
@@ -69,7 +69,7 @@ STYLES = (
 
 
 def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
-    """Endless pairs of descriptions of measured roads; the same seed gives the same ones."""
+    """Yields endless descriptions of measured roads with their plans; the same seed gives the same pairs."""
     rng = np.random.default_rng([seed, 11])
     asked, place = pairs(seed, {"en": 1.0}), world or World()
     while True:
@@ -86,7 +86,9 @@ def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
 
 
 def described(brief: Brief, rng: np.random.Generator) -> Pair | None:
-    """A description of some of the facts of a measured road, and its plan; None where it is too long."""
+    """Returns a description of some facts of a measured road with its plan; None if it has too many
+    clauses.
+    """
     kept = {fact for fact, share in FACTS.items() if rng.random() < share}
     style = STYLES[int(rng.integers(len(STYLES)))]
     clauses = tuple(_less(clause, kept) for clause in brief.clauses)
@@ -99,7 +101,7 @@ def described(brief: Brief, rng: np.random.Generator) -> Pair | None:
 
 
 def _less(clause: Clause, kept: set[str]) -> Clause:
-    """A clause with only those facts; what is level says so where slopes are told."""
+    """Returns a clause with only those facts; level parts say so if slopes are mentioned."""
     gone = {fact: None for fact in ("degrees", "radius", "slope", "length") if fact not in kept}
     return clause.model_copy(update={**gone, "incline": clause.incline if "slope" in kept else None})
 

@@ -1,4 +1,4 @@
-"""How sure is sure? A reader's confidence fitted to how often it was right on descriptions held back."""
+"""Calibrates a reader's confidence to how often it was right on descriptions held back from training."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,22 +17,22 @@ from roadgpt.errors import BriefError
 from roadgpt.learn.generator import Pair
 
 Floats = npt.NDArray[np.float64]
-MOST_WRONGLY = 0.004  # share of these honest descriptions that may be refused; of others it will be more
+MOST_WRONGLY = 0.004  # share of these valid descriptions that may be refused; for new ones it will be higher
 STEPS = 4000
 RATE = 0.05
-PULL = 0.01  # towards zero, so that few pairs do not make bold weights
+PULL = 0.01  # weight decay, so that few pairs do not lead to extreme weights
 
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """What stands in ``settings.json``."""
+    """The content of ``settings.json``."""
 
     refuse_from: float
     confidence: dict[str, float]
 
 
 def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> Calibration:
-    """Settings fitted on pairs that the network was not trained on."""
+    """Returns the settings fitted to pairs that the network was not trained on."""
     honest = [pair for pair in pairs if pair.plan not in REFUSALS]
     threshold = _threshold(network, honest)
     rows, rights = [], []
@@ -48,7 +48,7 @@ def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> C
 
 
 def _threshold(network: Network, honest: Sequence[Pair]) -> float:
-    """The chance of a refusal from which it is believed: hardly any honest description reaches it."""
+    """Returns the probability from which a refusal is accepted; hardly any valid description reaches it."""
     chances = [refusal(network, pair.text) for pair in honest]
     most = float(np.quantile(chances, 1 - MOST_WRONGLY)) if chances else 0.5
     return round(min(max(most, 0.5), 0.95), 3)
@@ -62,7 +62,7 @@ def _plan(line: str) -> str:
 
 
 def _fitted(rows: Floats, rights: Floats) -> Floats:
-    """Logistic regression by plain descent."""
+    """Fits a logistic regression by gradient descent."""
     weights = np.zeros(rows.shape[1])
     for _ in range(STEPS):
         chances = 1 / (1 + np.exp(-rows @ weights))

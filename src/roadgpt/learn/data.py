@@ -1,4 +1,4 @@
-"""Batches for training: generated pairs and hand-written ones, as numbers."""
+"""Turns generated and hand-written pairs into batches of numbers for training."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,21 +19,21 @@ from roadgpt.learn.shared_values import with_shared_values
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SAID_BACK = 0.06
-"""Share of hand-written pairs whose text is our own sentence instead."""
+"""Share of hand-written pairs whose text is replaced by RoadGPT's own sentence."""
 
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """A pair as numbers: pieces of the text, tokens of the plan with both ends."""
+    """A pair as numbers: pieces of the text, and tokens of the plan with both end tokens."""
 
     pieces: tuple[int, ...]
     tokens: tuple[int, ...]
 
 
 def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
-    """A pair as numbers; None where its plan has a number that is not in the text.
+    """Returns a pair as numbers; None if its plan has a number that is not in the text, or is too long.
 
-    With ``rng`` slots get numbers at random, so that all slot tokens are learnt alike.
+    With ``rng`` the slots are numbered at random, so that all slot tokens are learnt equally.
     """
     taken = slotted(pair.text)
     tokens = tokens_of(with_shared_values(pair.plan, taken.slots), taken.slots)
@@ -49,7 +49,7 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
 def _reslotted(
     words: list[str], tokens: list[str], slots: Sequence[NumberSlot], rng: np.random.Generator
 ) -> tuple[list[str], list[str]]:
-    """Slots renumbered, still in rising order."""
+    """Renumbers the slots at random, still in rising order."""
     chosen = np.sort(rng.permutation(SLOTS)[: len(slots)])
     names = {slot_name(index): slot_name(int(new)) for index, new in enumerate(chosen)}
     written = {SLOT_TOKENS[index]: SLOT_TOKENS[int(new)] for index, new in enumerate(chosen)}
@@ -57,7 +57,7 @@ def _reslotted(
 
 
 def examples(seed: int, hand: Sequence[Pair], hand_share: float, pieces: WordPieces) -> Iterator[Example]:
-    """Endless examples, a share of them hand-written and typed with noise of their own."""
+    """Yields endless examples; a share of them is hand-written and varied."""
     rng = np.random.default_rng([seed, 7])
     generated = pairs(seed)
     by_language: dict[str, list[Pair]] = {}
@@ -75,14 +75,14 @@ def examples(seed: int, hand: Sequence[Pair], hand_share: float, pieces: WordPie
 
 
 def _said_back(pair: Pair) -> Pair:
-    """What RoadGPT itself says of a Brief is read as that Brief."""
+    """Replaces the text by RoadGPT's own sentence for the plan."""
     if pair.plan.startswith("!"):
         return pair
     return Pair(sentence(read_plan(pair.plan)), pair.plan, pair.family, "en")
 
 
 def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Iterator[tuple[Numbers, Numbers]]:
-    """Padded batches of like length: pieces (size, n) and tokens (size, m), zero where nothing is."""
+    """Yields batches of similar length: pieces (size, n) and tokens (size, m), padded with zeros."""
     rng = np.random.default_rng([seed, 8])
     while True:
         many = sorted(
@@ -94,7 +94,7 @@ def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Itera
 
 
 def padded(rows: Sequence[Sequence[int]]) -> Numbers:
-    """Rows of one length, zero where nothing is."""
+    """Returns the rows as one array, padded with zeros."""
     out = np.zeros((len(rows), max(len(row) for row in rows)), dtype=np.int64)
     for index, row in enumerate(rows):
         out[index, : len(row)] = row

@@ -1,4 +1,4 @@
-"""Several processes train side by side, each on one core, and average their weights (local SGD)."""
+"""Trains in several processes, each on one core, which regularly average their weights (local SGD)."""
 
 import multiprocessing
 import os
@@ -22,13 +22,13 @@ def train_together(
     plan: TrainingSettings,
     report: Callable[[str], None],
 ) -> None:
-    """As ``train``, with ``plan.workers`` processes; on a GPU one is enough.
+    """Trains as ``train`` does, with ``plan.workers`` processes; on a GPU only one is used.
 
     Raises:
-        LearnError: a worker ended before its work did.
+        LearnError: a worker ended before its work was done.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for left_over in folder.glob("weights-*"):  # of a training that was stopped between two saves
+    for left_over in folder.glob("weights-*"):  # left by a training that was stopped between two saves
         left_over.unlink()
     if torch.cuda.is_available():
         plan = replace(plan, workers=1)
@@ -62,13 +62,15 @@ def _work(
     plan: TrainingSettings,
     parent: int,
 ) -> None:
-    """A worker's whole life."""
+    """Runs one worker."""
     torch.set_num_threads(1)
     train(folder, pieces, weights, hand, plan, lambda line: None, lambda: _not_alone(parent))
 
 
 def _not_alone(parent: int) -> None:
-    """Ends a worker whose training was killed: it would go on for ever, and write beside the next one."""
+    """Ends a worker whose parent was killed; it would otherwise run on, and write beside the next
+    training.
+    """
     if os.getppid() != parent:
         raise SystemExit(1)
 
@@ -78,5 +80,5 @@ def _all_there(workers: Sequence[BaseProcess]) -> None:
         if worker.exitcode not in (None, 0):
             raise LearnError(
                 f"a training process ended with status {worker.exitcode}; "
-                "say the same command again to go on from the last checkpoint"
+                "run the same command again to resume from the last checkpoint"
             )

@@ -1,4 +1,4 @@
-"""How well a reader reads: its Briefs held against labels, whole and by parts."""
+"""Scores a reader: compares its Briefs with the labels, as a whole and by parts."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -22,28 +22,28 @@ class Reading:
 
     pair: Pair
     got: str
-    """Plan in normal form, or '!refused'."""
+    """The plan in normal form, or '!refused'."""
     confidence: float
     reason: str
-    """Why it was refused."""
+    """Why the description was refused."""
     right: bool
     parts: frozenset[str]
-    """Those of PARTS that are right; all where a refusal was right."""
+    """Those of PARTS that are right; all of them if a refusal was right."""
 
     @property
     def is_honest(self) -> bool:
-        """Does the description ask for a road that can be built?"""
+        """True if the description asks for a road that can be built."""
         return not self.pair.plan.startswith("!")
 
     @property
     def was_refused(self) -> bool:
-        """Did the reader refuse?"""
+        """True if the reader refused."""
         return self.got.startswith("!")
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """Shares of a set of readings, each from 0 to 1, with how many they are of."""
+    """Shares of a set of readings, each from 0 to 1, and how many readings they are based on."""
 
     number: int
     exact: float
@@ -55,7 +55,7 @@ class Score:
     refused_wrongly: float
 
     def row(self, name: str) -> str:
-        """One row of a Markdown table."""
+        """Returns one row of a Markdown table."""
         shares = (
             self.exact,
             self.turns,
@@ -75,7 +75,7 @@ HEAD = (
 
 
 def readings(pairs: Iterable[Pair], read: Read) -> list[Reading]:
-    """Every description read; a refusal is a reading too."""
+    """Returns the readings of all descriptions; a refusal is a reading, too."""
     return [_reading(pair, read) for pair in pairs]
 
 
@@ -112,7 +112,7 @@ def _order(brief: Brief) -> tuple[object, ...]:
 
 
 def score(found: Sequence[Reading]) -> Score:
-    """The shares of readings that are right."""
+    """Returns which shares of the readings are right."""
     honest = [reading for reading in found if reading.is_honest]
     others = [reading for reading in found if not reading.is_honest]
     return Score(
@@ -133,7 +133,7 @@ def _share(rights: Iterable[bool]) -> float:
 
 
 def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]:
-    """Scores of groups, by language or family, say."""
+    """Returns the scores of groups, such as languages or families."""
     groups: dict[str, list[Reading]] = {}
     for reading in found:
         groups.setdefault(key(reading.pair), []).append(reading)
@@ -141,9 +141,10 @@ def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]
 
 
 def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
-    """How often a part of a plan was wanted and another was written in its place; '-' for none.
+    """Counts how often a word of a plan was wanted and another was written in its place; '-' stands for none.
 
-    Parts are compared clause by clause where the number of clauses is right, and as a bag elsewhere.
+    The words of a plan are compared without regard to their order, and those that differ are paired
+    alphabetically.
     """
     table: Counter[tuple[str, str]] = Counter()
     for reading in found:
@@ -166,6 +167,6 @@ def _words(line: str) -> list[str]:
 
 
 def worst(found: Sequence[Reading], number: int = 30) -> list[Reading]:
-    """The misses of which the reader was most sure."""
+    """Returns the misses of which the reader was most confident."""
     misses = [reading for reading in found if not reading.right]
     return sorted(misses, key=lambda reading: (-reading.confidence, reading.pair.text))[:number]

@@ -1,4 +1,4 @@
-"""The trained network as two ONNX graphs in int8: the encoder, and one step of the decoder."""
+"""Exports the trained network as two ONNX graphs in int8: the encoder, and one step of the decoder."""
 
 import json
 import tempfile
@@ -25,25 +25,25 @@ from roadgpt.learn.pretrained import NOTICE
 
 OPSET = 17
 COUNTED = 20_000
-"""Generated pairs among which the words are counted."""
+"""Number of generated pairs in which the words are counted."""
 
 
 class EncoderGraph(nn.Module):
-    """Pieces (batch, n) -> keys and values of the description (layers, 2, batch, heads, n, size)."""
+    """Maps pieces (batch, n) to keys and values of the description (layers, 2, batch, heads, n, size)."""
 
     def __init__(self, reader: ReaderNetwork) -> None:
         super().__init__()
         self.reader = reader
 
     def forward(self, pieces: Tensor) -> Tensor:
-        """Pieces numbered 0 are padding."""
+        """Encodes the pieces; pieces with the number 0 are padding."""
         seen = (pieces == 0)[:, None, None, :] * -1e4
         memory = self.reader.encode(pieces, seen)
         return torch.stack([torch.stack(pair) for pair in self.reader.start(memory)])
 
 
 class DecoderGraph(nn.Module):
-    """One token further.
+    """One step of the decoder.
 
     token (batch, 1), place (1,), own (layers, 2, batch, heads, t, size), across and seen (batch, 1, 1, n) ->
     scores (batch, tokens), own with t + 1.
@@ -56,7 +56,9 @@ class DecoderGraph(nn.Module):
     def forward(
         self, token: Tensor, place: Tensor, own: Tensor, across: Tensor, seen: Tensor
     ) -> tuple[Tensor, Tensor]:
-        """Keys and values of earlier tokens are given and returned, longer by one."""
+        """Returns the scores of the next token, and the keys and values of the earlier tokens plus this
+        one.
+        """
         reader = self.reader
         x = reader.tokens(token) + reader.plan_places(place)
         kept: list[Tensor] = []
@@ -70,7 +72,7 @@ class DecoderGraph(nn.Module):
 
 
 def export(reader: ReaderNetwork, folder: Path) -> None:
-    """Writes ``encoder.onnx`` and ``decoder.onnx``, weights in int8, into the folder."""
+    """Writes ``encoder.onnx`` and ``decoder.onnx`` with weights in int8."""
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
 
@@ -114,14 +116,14 @@ def _graphs(
 def export_checkpoint(
     checkpoint: Path, folder: Path, train_pairs: Sequence[Pair], held_back: Sequence[Pair], seed: int
 ) -> None:
-    """Everything that the reader needs, from the folder of a training.
+    """Writes everything that the reader needs from the folder of a training.
 
     Args:
-        checkpoint: holds ``checkpoint.pt`` and ``pieces.txt``.
-        folder: gets the graphs, the pieces, the words that were learnt, and the settings.
+        checkpoint: folder with ``checkpoint.pt`` and ``pieces.txt``.
+        folder: gets the graphs, the pieces, the learnt words and the settings.
         train_pairs: hand-written pairs that the model was trained on.
-        held_back: pairs that it was not trained on; confidence is fitted to them.
-        seed: of the generated pairs among which words are counted.
+        held_back: pairs that it was not trained on, for the calibration of the confidence.
+        seed: seed of the generated pairs in which words are counted.
 
     Raises:
         LearnError: there is no checkpoint.

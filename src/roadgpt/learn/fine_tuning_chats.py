@@ -1,4 +1,4 @@
-"""Pairs as chats, for fine-tuning any larger model: description -> Brief, or description -> Design."""
+"""Writes pairs as chats to fine-tune any larger model: description to Brief, or description to Design."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -19,14 +19,14 @@ TO_DESIGN = "Design a road for the description and answer with its road segments
 
 
 def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
-    """One line of JSON for each pair."""
+    """Yields one line of JSON for each pair."""
     for pair in pairs:
         answer = ADVICE[pair.plan] if pair.plan in REFUSALS else _json(read_plan(pair.plan))
         yield _chat(TO_BRIEF, pair.text, answer)
 
 
 def design_chats(pairs: Iterable[Pair], world: World, seed: int) -> Iterator[str]:
-    """One line of JSON for each pair of which a road can be designed."""
+    """Yields one line of JSON for each pair for which a road can be designed."""
     for number, pair in enumerate(pairs):
         if pair.plan in REFUSALS:
             continue

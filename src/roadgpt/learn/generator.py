@@ -1,4 +1,4 @@
-"""Descriptions by the thousand: drawn from the grammars, checked for sense, typed with noise."""
+"""Generates descriptions in any number: drawn from grammars, checked for plausibility, with typing noise."""
 
 import re
 from collections.abc import Iterator
@@ -17,9 +17,9 @@ from roadgpt.learn.plausibility import makes_sense
 from roadgpt.learn.standard import standard
 
 SPOILED = 0.045
-"""Share of honest descriptions that are made contradictory or impossible."""
+"""Share of valid descriptions that are made contradictory or impossible."""
 COMPOSED = 0.6
-"""Share of the English pairs that are composed and not drawn from a grammar."""
+"""Share of the English pairs that are composed instead of drawn from a grammar."""
 SHARES = {"en": 0.62, "de": 0.10, "fr": 0.10, "es": 0.09, "it": 0.09}
 WISH = re.compile(r"\|\s*(?:(?:starts|ends)\([^()]*\)|[^\s;|]+)")
 KIND = re.compile(
@@ -38,7 +38,7 @@ class Pair:
 
 
 def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair]:
-    """Endless pairs; the same seed gives the same ones."""
+    """Yields endless pairs; the same seed gives the same pairs."""
     rng = np.random.default_rng(seed)
     shares = languages or SHARES
     codes, weights = list(shares), np.cumsum(list(shares.values()))
@@ -51,7 +51,7 @@ def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair
 
 
 def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
-    """Now and then the pair with a wish that spoils it; else the pair as it is."""
+    """Returns the pair, in a few percent of the cases with an added requirement that makes it impossible."""
     way = rng.random()
     if way < SPOILED / 2:
         text, plan = contradicted(pair.text, pair.plan, pair.lang, rng), "!contradiction"
@@ -63,7 +63,7 @@ def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
 
 
 def draw(language: str, rng: np.random.Generator, symbol: str = "top") -> Pair | None:
-    """One pair; None where what was drawn makes no sense."""
+    """Returns one pair; None if what was drawn makes no sense."""
     try:
         text, raw = Speaker(grammar_of(language), rng).say(symbol)
         plan = assembled(raw)
@@ -86,7 +86,7 @@ def _composed(rng: np.random.Generator) -> Pair | None:
 
 
 def assembled(raw: str) -> str | None:
-    """The plan in its standard form from what the rules wrote; None where it makes no sense."""
+    """Returns the plan in standard form from what the rules wrote; None if it makes no sense."""
     if "!" in raw:
         return "!" + raw.split("!")[1].split()[0]
     wishes = [wish.lstrip("| ").replace("straight_", "straight ") for wish in WISH.findall(raw)]
@@ -105,7 +105,7 @@ def _placed(wish: str) -> str:
 
 
 def _kind_first(clause: str) -> str:
-    """A clause with its kind in front; empty mods such as 'len=' are dropped."""
+    """Returns a clause with its kind in front, without empty modifiers such as 'len='."""
     words = [word for word in clause.split() if not word.endswith("=")]
     kinds = [word for word in words if KIND.fullmatch(word)]
     if not words:

@@ -1,15 +1,15 @@
-"""Two-sided grammars: rules that write a description and, beside it, its plan.
+"""Two-sided grammars: rules that write a description and its plan at the same time.
 
-A grammar is a text. ``= name`` begins the rules of a symbol; each further line is one rule::
+A grammar is a text. ``= name`` begins the rules of a symbol; each following line is one rule::
 
     = bend
     3* <sharpness?> {bend|curve} to the <side>        => turn <sharpness> <side>
     [rather ]<#2-9:n> bends, the last one a hairpin   => turn x<=n-1>; hairpin
 
-``3*`` is a weight, ``{a|b}`` a choice, ``[a]`` is there half of the time (``[20:a]`` in 20 % of cases),
-``<name>`` another symbol (``<name?>`` half of the time, ``<name?20>``, ``<name:label>``), ``<#2-9>`` a number
-(``<#20-90/5>`` in steps), ``<=n-1>`` a sum over numbers said. Without ``=>`` the plan is that of the parts,
-in order. In a plan, ``|word`` is a wish for the whole road wherever it stands.
+``3*`` is a weight, ``{a|b}`` a choice, ``[a]`` is used half of the time (``[20:a]`` in 20 % of cases),
+``<name>`` is another symbol (``<name?>`` half of the time, ``<name?20>``, ``<name:label>``), ``<#2-9>`` a
+number (``<#20-90/5>`` in steps), ``<=n-1>`` a sum of numbers in the text. Without ``=>``, the plan joins
+those of the parts in order. In a plan, ``|word`` is a requirement for the whole road wherever it stands.
 """
 
 import re
@@ -30,17 +30,17 @@ PART = re.compile(r"<([^<>]+)>")
 NUMBER = re.compile(r"#(\d+)-(\d+)(?:/(\d+))?")
 SUM = re.compile(r"=(\w+)([-+*])(\w+)")
 JOINT = re.compile(r"<((?:link|lastlink|vlink|oops|prewish|tailwish|lenwish|sidewish|hardwish)[?0-9]*)>")
-"""Symbols that stand between others, with a space on both sides; tidying up leaves what is needed."""
+"""Symbols between other symbols; they get a space on both sides, and ``tidy`` removes what is not needed."""
 DEEPEST = 30
 
 
-class Discarded(Exception):  # noqa: N818 - no error: another throw of the dice follows
-    """What was drawn does not fit together."""
+class Discarded(Exception):  # noqa: N818 - not an error: another draw follows
+    """Raised if what was drawn does not fit together; the caller draws again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Production:
-    """One way to say a symbol."""
+    """One way to write a symbol."""
 
     text: str
     plan: str | None
@@ -53,14 +53,14 @@ class Grammar:
     language: str
     rules: Mapping[str, tuple[Production, ...]]
     weights: Mapping[str, tuple[float, ...]]
-    """Cumulative, for drawing."""
+    """Cumulative weights for drawing."""
 
 
 def read_grammar(text: str, language: str) -> Grammar:
-    """The grammar written in a text.
+    """Returns the grammar that a text describes.
 
     Raises:
-        LearnError: a symbol that is used but has no rules.
+        LearnError: a symbol is used but has no rules.
     """
     rules: dict[str, list[Production]] = {}
     weights: dict[str, list[float]] = {}
@@ -98,14 +98,14 @@ def read_grammar(text: str, language: str) -> Grammar:
 
 
 def _name(part: str) -> tuple[str, str, int]:
-    """Symbol, label and percent of a part."""
+    """Returns symbol, label and percentage of a part."""
     symbol, _, label = part.partition(":")
     symbol, question, percent = symbol.partition("?")
     return symbol, label or symbol, int(percent or 50) if question else 100
 
 
 class Speaker:
-    """Draws descriptions from a grammar; one speaker prefers digits or words throughout a description."""
+    """Draws descriptions from a grammar; each speaker prefers digits or words throughout a description."""
 
     def __init__(self, grammar: Grammar, rng: np.random.Generator) -> None:
         self.grammar = grammar
@@ -113,7 +113,11 @@ class Speaker:
         self.digits = float(rng.choice([0.02, 0.5, 0.97], p=[0.35, 0.2, 0.45]))
 
     def say(self, symbol: str, depth: int = 0) -> tuple[str, str]:
-        """A text for a symbol, and its plan."""
+        """Returns a text for a symbol, and its plan.
+
+        Raises:
+            Discarded: what was drawn does not fit together.
+        """
         if depth > DEEPEST:
             raise Discarded
         weights = self.grammar.weights[symbol]
@@ -166,7 +170,7 @@ class Speaker:
 
 
 def _is_glued(text: str, part: re.Match[str]) -> bool:
-    """Does a letter touch this number, as in 50m or R20? Then it is written in digits."""
+    """True if a letter touches this number, as in 50m or R20; it is then written in digits."""
     return text[part.end() : part.end() + 1].isalpha() or text[: part.start()][-1:].isalpha()
 
 
@@ -185,7 +189,7 @@ def _filled(part: str, plans: Mapping[str, str]) -> str:
 
 @cache
 def grammar_of(language: str) -> Grammar:
-    """Our grammar of a language: en, de, fr, es, it."""
+    """Returns RoadGPT's grammar of a language: en, de, fr, es or it."""
     folder = files("roadgpt.learn") / "phrases"
     names = sorted(path.name for path in folder.iterdir() if path.name.startswith(language))
     if not names:

@@ -1,4 +1,4 @@
-"""Descriptions that no training may see: the project's own development prompts, kept as hashes."""
+"""Descriptions that no training may see: the project's own development prompts, stored as hashes."""
 
 import re
 from hashlib import sha256
@@ -33,15 +33,15 @@ HELD_OUT = frozenset(
         "f510591305b6",
     }
 )
-"""The first 12 digits of the SHA-256 of each text in its bare form."""
+"""The first 12 digits of the SHA-256 of each text in its plain form."""
 
 
 def is_held_out(text: str) -> bool:
-    """Is this one of the held-out descriptions, apart from capitals, accents and punctuation?"""
+    """Returns True if this is a held-out description, regardless of capitals, accents and punctuation."""
     return fingerprint(text) in HELD_OUT
 
 
 def fingerprint(text: str) -> str:
-    """What is compared: the plain words of a text, hashed."""
+    """Returns the hash of the plain words of a text."""
     bare = " ".join(re.findall(r"[^\W_]+", plain(text)))
     return sha256(bare.encode()).hexdigest()[:12]

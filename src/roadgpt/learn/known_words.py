@@ -1,4 +1,4 @@
-"""Which words a reader has learnt: those that go along with something in plans, and joints."""
+"""Finds the words that a reader has learnt: those that are correlated with plans, and function words."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -9,22 +9,22 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.generator import Pair
 
-LEAST = 4  # times that a word must have been seen with what it means
+LEAST = 4  # times that a word must have been seen with a token
 LIFT = 2.5
 """How many times more often than by chance."""
 
 
 def joints() -> frozenset[str]:
-    """Words that only join others, in five languages."""
+    """Returns function words in five languages."""
     text = (files("roadgpt.learn") / "words" / "joints.txt").read_text(encoding="utf-8")
     return frozenset(plain(text).split())
 
 
 def known_words(pairs: Iterable[Pair]) -> list[str]:
-    """The words in alphabetical order.
+    """Returns the learnt words in alphabetical order.
 
-    A word counts as learnt where some token of the plans goes along with it far more often than by chance;
-    'lonely' goes along with nothing, so a lonely road is told that 'lonely' was not used.
+    A word counts as learnt if some token of the plans occurs with it far more often than by chance.
+    'lonely' occurs with nothing in particular, so for a lonely road 'lonely' is reported as unused.
     """
     word_in: Counter[str] = Counter()
     token_in: Counter[str] = Counter()

@@ -1,4 +1,4 @@
-"""Hand-written pairs: read, checked, and split so that no family of phrasing is on both sides."""
+"""Reads, checks and splits hand-written pairs; no family of phrasing is in two splits."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -19,7 +19,7 @@ SPLITS = ("train", "validation", "test")
 
 
 def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
-    """All pairs of JSON-lines files that can be used, and a sentence for each line that cannot."""
+    """Returns all usable pairs of JSON-lines files, and a sentence for each line that is not usable."""
     good: list[Pair] = []
     problems: list[str] = []
     seen: dict[str, str] = {}
@@ -38,7 +38,7 @@ def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
                 problems.append(f"{place}: is held out from training; leave it out")
                 continue
             if key in seen:
-                problems.append(f"{place}: says the same as {seen[key]}; leave one out")
+                problems.append(f"{place}: repeats {seen[key]}; leave one out")
                 continue
             seen[key] = place
             good.append(pair)
@@ -46,19 +46,21 @@ def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
 
 
 def read_pair(line: str) -> Pair:
-    """One line of JSON as a pair whose plan is written as we write it.
+    """Returns the pair in one line of JSON, with its plan in standard form.
 
     Raises:
-        LearnError: no JSON, a field that is missing, a plan that cannot be read, a text that is too long.
+        LearnError: no JSON, a missing field, a plan that cannot be read, or a text that is too long.
     """
     try:
         fields = json.loads(line)
         text, written = str(fields["text"]), str(fields["plan"])
         family, language = str(fields.get("family", "")), str(fields.get("lang", "en"))
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise LearnError(f"this is no pair ({error}); write {{'text', 'plan', 'family', 'lang'}}") from error
+        raise LearnError(
+            f"this is not a pair ({error}); write {{'text', 'plan', 'family', 'lang'}}"
+        ) from error
     if not text.strip() or len(text) > LONGEST:
-        raise LearnError(f"a text has {len(text)} letters; write 1 to {LONGEST}")
+        raise LearnError(f"a text has {len(text)} characters; write 1 to {LONGEST}")
     if written.strip() not in REFUSALS:
         try:
             brief = read_plan(written)
@@ -72,7 +74,7 @@ def read_pair(line: str) -> Pair:
 def split(
     pairs: Sequence[Pair], test: int = 500, validation: float = 0.12, seed: int = 3
 ) -> dict[str, list[Pair]]:
-    """Whole families to each side: ``test`` pairs or a few more to the test, a share to the validation."""
+    """Splits pairs by whole families: at least ``test`` pairs for the test, and a share for validation."""
     families: dict[str, list[Pair]] = {}
     for pair in pairs:
         families.setdefault(pair.family, []).append(pair)

@@ -1,4 +1,4 @@
-"""The model card: what the model is, what it was trained on, how well it reads, and where it fails."""
+"""Writes the model card: what the model is, what it was trained on, how well it reads, and where it fails."""
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
@@ -18,15 +18,16 @@ def card(
     shown: Sequence[Reading],
     training: str,
 ) -> str:
-    """The card as Markdown. It shows no description of the test split: who writes pairs may read cards.
+    """Returns the card as Markdown. It shows no description of the test split, since authors of pairs may
+    read it.
 
     Args:
-        weights: the folder of the exported model.
-        data: how many pairs each part of the data has.
+        weights: folder of the exported model.
+        data: number of pairs in each part of the data.
         found: the model's readings of the test split.
         others: readings of the same split by other readers, by name.
-        shown: the model's readings of the validation split, for what it takes for what and its misses.
-        training: one paragraph on how it was trained.
+        shown: the model's readings of the validation split, for confusions and misses.
+        training: one paragraph on the training.
     """
     return "\n".join(
         [

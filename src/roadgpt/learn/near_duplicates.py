@@ -1,6 +1,6 @@
-"""Are hand-written descriptions really written one by one? No two may share more than 60 % of their 5-grams.
+"""Finds descriptions that were not written one by one: no two may share more than 60 % of their 5-grams.
 
-Numbers, sides and words of one meaning are masked first, so that a template filled with other words is found.
+Numbers, sides and synonyms are masked first, so that a template filled with other words is found, too.
 """
 
 import json
@@ -18,13 +18,13 @@ MOST_SHARED = 0.6
 MASKS: dict[str, str] = json.loads(
     (files("roadgpt.learn") / "words" / "masks.json").read_text(encoding="utf-8")
 )
-"""What stands in the place of words -> the words."""
+"""Maps a mask to the words that it replaces."""
 MASK_OF = {word: mask for mask, its in MASKS.items() for word in its.split()}
 
 
 @dataclass(frozen=True, slots=True)
 class NearDuplicate:
-    """Two descriptions that are too much alike."""
+    """Two descriptions that are too similar."""
 
     shared: float
     first: int
@@ -32,7 +32,7 @@ class NearDuplicate:
 
 
 def masked(text: str) -> tuple[str, ...]:
-    """The words of a text, numbers, sides and synonyms masked."""
+    """Returns the words of a text with numbers, sides and synonyms masked."""
     return tuple(_mask(word) for word in re.findall(r"\d+(?:[.,]\d+)?|[^\W\d_]+", plain(text)))
 
 
@@ -44,16 +44,16 @@ def _mask(word: str) -> str:
 
 
 def grams(text: str) -> Counter[tuple[str, ...]]:
-    """How often each 5-gram occurs; a shorter text is one gram of all its words."""
+    """Counts the 5-grams of a text; a shorter text is one gram of all its words."""
     said = masked(text)
     size = min(GRAM, len(said))
     return Counter(said[at : at + size] for at in range(max(1, len(said) - size + 1)))
 
 
 def near_duplicates(texts: Sequence[str], most: float = MOST_SHARED) -> list[NearDuplicate]:
-    """All pairs of texts that share more than ``most`` of the 5-grams of the shorter one, worst first.
+    """Returns all pairs of texts that share more than ``most`` of the shorter one's 5-grams, worst first.
 
-    Texts that consist of nothing but masked words are passed over: few ways exist to say "two left bends".
+    Texts of masked words only are skipped, since there are few ways to write "two left bends".
     """
     counted = [grams(text) for text in texts]
     places: dict[tuple[str, ...], list[int]] = defaultdict(list)
@@ -73,14 +73,16 @@ def near_duplicates(texts: Sequence[str], most: float = MOST_SHARED) -> list[Nea
 
 
 def _are_bare(one: Counter[tuple[str, ...]], other: Counter[tuple[str, ...]]) -> bool:
-    """Does one of the two consist of nothing but masks, or are both shorter than a gram?"""
+    """True if one of the two has only masks, or both are shorter than a gram."""
     short = all(counter.total() == 1 and len(next(iter(counter))) < GRAM for counter in (one, other))
     masks = {*MASKS}
     return short or any(all(masks >= {*gram} for gram in counter) for counter in (one, other))
 
 
 def report(texts: Mapping[str, Sequence[str]]) -> list[str]:
-    """A sentence for each pair of twins; ``texts`` maps the name of a split to its texts."""
+    """Returns a sentence for each pair of near-duplicates; ``texts`` maps the name of a split to its
+    texts.
+    """
     side = [name for name, its in texts.items() for _ in its]
     every = [text for its in texts.values() for text in its]
     return [

@@ -1,4 +1,6 @@
-"""Honest descriptions made impossible: a wish added that contradicts them, or that no road can keep."""
+"""Makes valid descriptions impossible by adding a requirement that contradicts them or that no road can
+meet.
+"""
 
 import json
 import re
@@ -14,13 +16,13 @@ TURNING = re.compile(
 )
 WORDS = json.loads((files("roadgpt.learn") / "words" / "spoilers.json").read_text(encoding="utf-8"))
 CONFLICTS: dict[str, dict[str, list[str]]] = WORDS["conflicts"]
-"""What a plan promises -> language -> wishes that cannot be true beside it."""
+"""Maps what a plan requires to the requirements, by language, that contradict it."""
 BEYOND: dict[str, list[str]] = WORDS["beyond"]
-"""Language -> wishes that no road can keep."""
+"""Requirements that no road can meet, by language."""
 
 
 def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
-    """The description with a wish that cannot be true beside it; None where none of ours fits."""
+    """Returns the description with a requirement that contradicts it; None if none is available."""
     kinds = [kind for kind in _holds(plan) if language in CONFLICTS[kind]]
     if not kinds:
         return None
@@ -29,7 +31,7 @@ def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) 
 
 
 def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
-    """The description with a wish that no road can keep."""
+    """Returns the description with a requirement that no road can meet; None if none is available."""
     if language not in BEYOND or plan.startswith("!"):
         return None
     ways = BEYOND[language]
@@ -55,7 +57,7 @@ def _with(text: str, wish: str, rng: np.random.Generator) -> str:
 
 
 def _holds(plan: str) -> list[str]:
-    """What a plan promises that can be contradicted."""
+    """Returns what a plan requires that can be contradicted."""
     if plan.startswith("!"):
         return []
     clauses, _, wishes = plan.partition("|")

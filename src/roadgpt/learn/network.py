@@ -1,6 +1,6 @@
 """The model: the pretrained MiniLM encoder, and a small decoder that writes plans.
 
-Attention is written by hand, because only so does it leave for ONNX with lengths left open.
+Attention is written by hand, because only then can it be exported to ONNX with variable lengths.
 """
 
 import math
@@ -27,17 +27,17 @@ class NetworkSizes:
     decoder_inner: int = 1024
     decoder_heads: int = 6
     places: int = 128
-    """Longest text, in pieces."""
+    """The longest text in pieces."""
     plan_places: int = 96
-    """Longest plan, in tokens."""
+    """The longest plan in tokens."""
 
     def as_dict(self) -> dict[str, int]:
-        """For a checkpoint."""
+        """Returns the sizes for a checkpoint."""
         return asdict(self)
 
 
 class Attention(nn.Module):
-    """Multi-head attention over keys and values made elsewhere."""
+    """Multi-head attention over keys and values that are computed elsewhere."""
 
     def __init__(self, width: int, heads: int, dropout: float) -> None:
         super().__init__()
@@ -46,11 +46,13 @@ class Attention(nn.Module):
         self.dropout = dropout
 
     def split(self, x: Tensor) -> Tensor:
-        """(batch, length, width) -> (batch, heads, length, size)."""
+        """Reshapes (batch, length, width) to (batch, heads, length, size)."""
         return x.view(x.shape[0], x.shape[1], self.heads, self.size).transpose(1, 2)
 
     def forward(self, x: Tensor, key: Tensor, value: Tensor, mask: Tensor | None) -> Tensor:
-        """``key`` and ``value`` are split already; ``mask`` is added to the scores."""
+        """Returns the attended values; ``key`` and ``value`` are already split, ``mask`` is added to the
+        scores.
+        """
         query = self.split(self.query(x))
         scores = query @ key.transpose(2, 3) / math.sqrt(self.size)
         if mask is not None:
@@ -62,7 +64,7 @@ class Attention(nn.Module):
 
 
 class EncoderLayer(nn.Module):
-    """A layer of BERT: norms after the sums."""
+    """A layer of BERT, with layer norms after the sums."""
 
     def __init__(self, shape: NetworkSizes, dropout: float) -> None:
         super().__init__()
@@ -73,7 +75,7 @@ class EncoderLayer(nn.Module):
         self.dropout = nn.Dropout(dropout)
 
     def forward(self, x: Tensor, mask: Tensor) -> Tensor:
-        """One layer further."""
+        """Applies the layer to x (batch, length, width)."""
         attention = self.attention
         key, value = attention.split(attention.key(x)), attention.split(attention.value(x))
         x = self.norm(x + self.dropout(attention(x, key, value, mask)))
@@ -82,7 +84,7 @@ class EncoderLayer(nn.Module):
 
 
 class DecoderLayer(nn.Module):
-    """Attention to what was written, then to the description; norms before."""
+    """Attention to the plan so far, then to the description, with layer norms before each."""
 
     def __init__(self, shape: NetworkSizes, dropout: float) -> None:
         super().__init__()
@@ -101,24 +103,26 @@ class DecoderLayer(nn.Module):
         mask: Tensor | None,
         seen: Tensor,
     ) -> Tensor:
-        """``own``: keys and values of the plan so far; ``across``: those of the description."""
+        """Applies the layer; ``own`` are keys and values of the plan so far, ``across`` those of the
+        description.
+        """
         x = x + self.dropout(self.own(self.norms[0](x), *own, mask))
         x = x + self.dropout(self.across(self.norms[1](x), *across, seen))
         out: Tensor = x + self.dropout(self.narrow(functional.gelu(self.wide(self.norms[2](x)))))
         return out
 
     def own_keys(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Keys and values of new tokens."""
+        """Returns keys and values of new tokens."""
         y = self.norms[0](x)
         return self.own.split(self.own.key(y)), self.own.split(self.own.value(y))
 
     def across_keys(self, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Keys and values of the description."""
+        """Returns keys and values of the description."""
         return self.across.split(self.across.key(memory)), self.across.split(self.across.value(memory))
 
 
 class ReaderNetwork(nn.Module):
-    """Pieces of a description in, scores for the next token of its plan out."""
+    """Maps the pieces of a description and a partial plan to scores for the next token."""
 
     def __init__(self, shape: NetworkSizes, dropout: float = 0.1) -> None:
         super().__init__()
@@ -140,7 +144,7 @@ class ReaderNetwork(nn.Module):
             nn.init.normal_(embedding.weight, std=0.02)
 
     def encode(self, pieces: Tensor, seen: Tensor) -> Tensor:
-        """(batch, length) numbers of pieces and the mask to add -> (batch, length, width)."""
+        """Encodes piece numbers (batch, length) to (batch, length, width); ``seen`` is the mask to add."""
         places = self.places.weight[: pieces.shape[1]]
         x = self.dropout(self.norm(self.pieces(pieces) + places + self.kind))
         for layer in self.layers:
@@ -148,11 +152,11 @@ class ReaderNetwork(nn.Module):
         return x
 
     def start(self, memory: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """Keys and values of the description for every decoder layer."""
+        """Returns keys and values of the description for every decoder layer."""
         return [layer.across_keys(memory) for layer in self.decoder]
 
     def write(self, tokens: Tensor, memory: Tensor, seen: Tensor) -> Tensor:
-        """Scores after every token of whole plans (training)."""
+        """Returns the scores after every token of whole plans, for training."""
         length = tokens.shape[1]
         x = self.dropout(self.tokens(tokens) + self.plan_places.weight[:length])
         ahead = torch.full((length, length), -1e4, device=x.device, dtype=x.dtype).triu(1)
@@ -161,19 +165,21 @@ class ReaderNetwork(nn.Module):
         return self.scores(x)
 
     def scores(self, x: Tensor) -> Tensor:
-        """Scores of all tokens; their embeddings are used for reading and writing."""
+        """Returns the scores of all tokens; the token embeddings serve as input and as output weights."""
         return functional.linear(self.final(x), self.tokens.weight) * self.shape.width**-0.5 * 8 + self.bias
 
     def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
-        """Scores of the next token at every place of the plan; pieces 0 are padding."""
+        """Returns the scores of the next token at every place of the plan; pieces with the number 0 are
+        padding.
+        """
         seen = (pieces == 0)[:, None, None, :] * -1e4
         return self.write(tokens, self.encode(pieces, seen), seen)
 
 
 def load_minilm(reader: ReaderNetwork, path: Path, pieces: Sequence[str]) -> None:
-    """Fills the encoder with the pretrained weights of all-MiniLM-L6-v2 (safetensors).
+    """Loads the pretrained weights of all-MiniLM-L6-v2 (safetensors) into the encoder.
 
-    ``pieces`` may be a part of BERT's vocabulary, in any order; ``vocab.txt`` must lie beside the weights.
+    ``pieces`` may be part of BERT's vocabulary, in any order; ``vocab.txt`` must be beside the weights.
     """
     from safetensors.torch import load_file
 

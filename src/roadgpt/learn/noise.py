@@ -1,4 +1,4 @@
-"""How people really type: slips of the finger, capitals, missing dots, polite words around the wish."""
+"""Makes texts look typed by people: typing errors, capitals, missing full stops, polite phrases."""
 
 import json
 import re
@@ -14,14 +14,14 @@ NEIGHBOURS = {
 }  # fmt: skip
 WORDS = json.loads((files("roadgpt.learn") / "words" / "typing.json").read_text(encoding="utf-8"))
 SLIPS: dict[str, list[tuple[str, str]]] = WORDS["slips"]
-"""Words and how they are often mistyped or shortened, by language."""
+"""Words and common misspellings or abbreviations of them, by language."""
 BEFORE: dict[str, list[str]] = WORDS["before"]
 AFTER: dict[str, list[str]] = WORDS["after"]
-"""Polite words before and after a wish, by language."""
+"""Polite phrases after a description, by language."""
 
 
 def tidy(text: str) -> str:
-    """Spaces and articles as they should be after rules were put together."""
+    """Returns the text with spaces and articles corrected after its rules were put together."""
     text = re.sub(r"\s+", " ", text)
     text = re.sub(r"\s+([,.;:!?])(?!\d)", r"\1", text)
     text = re.sub(r"([,.;:])(?:\s*[,;])+", r"\1", text)
@@ -31,7 +31,7 @@ def tidy(text: str) -> str:
 
 
 def noisy(text: str, language: str, rng: np.random.Generator) -> str:
-    """The same wish, typed by somebody in a hurry, or by somebody polite."""
+    """Returns the text as somebody in a hurry, or somebody polite, would type it."""
     if rng.random() < 0.12:
         ways = BEFORE[language]
         text = ways[int(rng.integers(len(ways)))] + text
@@ -49,7 +49,7 @@ def noisy(text: str, language: str, rng: np.random.Generator) -> str:
 
 
 def _slip(text: str, rng: np.random.Generator) -> str:
-    """One slip: two letters swapped, one dropped, doubled, or hit beside its key."""
+    """Makes one typing error: two letters swapped, one dropped, doubled, or replaced by its neighbour key."""
     places = [m.start() for m in re.finditer(r"(?<=[a-zà-ÿ])[a-zà-ÿ]", text)]
     if not places:
         return text
@@ -69,7 +69,7 @@ def _slip(text: str, rng: np.random.Generator) -> str:
 
 
 def _dressed(text: str, rng: np.random.Generator) -> str:
-    """Capitals and punctuation."""
+    """Varies capitals and punctuation."""
     dress = rng.random()
     if dress < 0.25:
         text = text[:1].upper() + text[1:] + ("." if rng.random() < 0.5 and text[-1:].isalnum() else "")

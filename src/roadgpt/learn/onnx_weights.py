@@ -1,4 +1,4 @@
-"""The weights of an exported reader as numbers again, so that a training can go on from what is installed."""
+"""Reads the weights of an exported reader, so that training can start from the installed one."""
 
 from pathlib import Path
 from typing import Any
@@ -10,14 +10,14 @@ from roadgpt.errors import LearnError
 
 Floats = npt.NDArray[np.float32]
 OURS = "reader."
-"""In front of the names of our network in the graphs."""
+"""Prefix of the names of our network's weights in the graphs."""
 
 
 def exported_weights(folder: Path) -> dict[str, Floats]:
-    """Parameters by their name in ``roadgpt.learn.network.Reader``, as the int8 graphs round them.
+    """Returns the parameters by their name in ``roadgpt.learn.network.ReaderNetwork``, rounded as in int8.
 
     Raises:
-        LearnError: the folder holds no exported reader.
+        LearnError: the folder has no exported reader.
     """
     from onnx import load
 
@@ -47,14 +47,14 @@ def _weights_of(graph: Any) -> dict[str, Floats]:
     for node in graph.node:
         if node.op_type == "MatMulInteger":
             bias = _bias_behind(node, followers)
-            if bias.endswith(".bias") and bias != f"{OURS}bias":  # scores are made with the tokens' embedding
+            if bias.endswith(".bias") and bias != f"{OURS}bias":  # the scores use the tokens' embedding
                 weight = _rounded(arrays, node.input[1].removesuffix("_quantized"))
                 found[bias.removeprefix(OURS).removesuffix("bias") + "weight"] = weight.T.copy()
     return found
 
 
 def _rounded(arrays: dict[str, npt.NDArray[Any]], name: str) -> Floats:
-    """What the whole numbers of a weight stand for, one scale for all or one per column."""
+    """Returns the values of an int8 weight, with one scale for all or one per column."""
     whole = arrays[f"{name}_quantized"].astype(np.float32)
     zero = arrays[f"{name}_zero_point"].astype(np.float32)
     out: Floats = (whole - zero) * arrays[f"{name}_scale"].astype(np.float32)
@@ -62,7 +62,7 @@ def _rounded(arrays: dict[str, npt.NDArray[Any]], name: str) -> Floats:
 
 
 def _bias_behind(node: Any, followers: dict[str, Any]) -> str:
-    """The bias that is added to what a product gives, the first on its way."""
+    """Returns the name of the first bias that is added to a product."""
     while node.op_type != "Add":
         node = followers[node.output[0]]
     return next((str(name) for name in node.input if name.startswith(OURS)), "")

@@ -1,17 +1,19 @@
-"""The part of BERT's vocabulary that descriptions of roads need: Latin letters, small numbers, slots."""
+"""Selects the part of BERT's vocabulary that descriptions of roads need: Latin letters, small numbers,
+slots.
+"""
 
 import re
 from collections.abc import Sequence
 from pathlib import Path
 
 MARKS = 25
-"""Unused words of the vocabulary, [unused1] and on, that stand for slots and marks."""
+"""Number of unused words of the vocabulary, from [unused1], that stand for slots and marks, plus one."""
 LATIN = re.compile(r"(##)?[a-zß0-9]+|[!-/:-@\[-`{-~°º€]")
 SPECIAL = ("[UNK]", "[CLS]", "[SEP]")
 
 
 def trimmed(vocabulary: Sequence[str]) -> list[str]:
-    """The pieces that are kept, padding first."""
+    """Returns the pieces that are kept, padding first."""
     kept = ["[PAD]", *(f"[unused{number}]" for number in range(1, MARKS)), *SPECIAL]
     seen = set(kept)
     for piece in vocabulary:
@@ -24,5 +26,5 @@ def trimmed(vocabulary: Sequence[str]) -> list[str]:
 
 
 def read_vocabulary(path: Path) -> list[str]:
-    """BERT's ``vocab.txt``, or a part of it."""
+    """Returns the pieces in BERT's ``vocab.txt`` or a part of it."""
     return path.read_text(encoding="utf-8").rstrip("\n").split("\n")

@@ -1,4 +1,6 @@
-"""Does a Brief drawn at random make sense? Rules for what cannot be true at once, or fits on no map."""
+"""Checks whether a randomly drawn Brief makes sense: it must not contradict itself or be too large for
+any map.
+"""
 
 from math import inf
 
@@ -13,13 +15,13 @@ TURNS_OF = {"s_bend": 2, "chicane": 2, "slalom": 4, "serpentine": 4, "zigzag": 4
 
 
 def makes_sense(brief: Brief) -> bool:
-    """Can this be built, as far as plain rules see it?"""
+    """Returns True if this can be built, as far as simple rules can tell."""
     says_something = bool(brief.clauses or _wishes_anything(brief)) and not _shapes_no_turn(brief)
     return says_something and not contradiction(brief) and not impossibility(brief)
 
 
 def _shapes_no_turn(brief: Brief) -> bool:
-    """Is something said of turns where there are none?"""
+    """True if something is said about turns although there are none."""
     straight = bool(brief.clauses) and all(clause.kind in STRAIGHT_KINDS for clause in brief.clauses)
     none = straight or bool(brief.turns and brief.turns.hi == 0)
     said = (brief.sharpness, brief.degrees, brief.radius, brief.alternating, brief.left, brief.right)
@@ -31,7 +33,7 @@ def _wishes_anything(brief: Brief) -> bool:
 
 
 def contradiction(brief: Brief) -> bool:
-    """Things that cannot be true at once."""
+    """Returns True if the Brief contradicts itself."""
     whole = _way(brief.slope)
     for clause in _all_clauses(brief):
         way = _way(clause.slope)
@@ -82,7 +84,7 @@ def _least(clause: Clause) -> float:
 
 
 def impossibility(brief: Brief) -> bool:
-    """Things that fit on no map of 250 m, or break the rules for every road."""
+    """Returns True if the Brief fits on no map of 250 m, or breaks a rule for every road."""
     turns = sum(_least(clause) for clause in brief.clauses if clause.kind not in STRAIGHT_KINDS)
     if max(turns, brief.turns.lo or 0 if brief.turns else 0) > MOST_TURNS:
         return True
@@ -106,7 +108,7 @@ def _all_clauses(brief: Brief) -> list[Clause]:
 
 
 def _way(slope: str | None) -> str | None:
-    """Up, down or flat; nothing for nearly flat."""
+    """Returns up, down or flat; None for nearly flat."""
     if slope is None or slope == "nearly_flat":
         return None
     return slope.split("_")[-1]

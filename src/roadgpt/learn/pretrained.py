@@ -1,4 +1,4 @@
-"""Where a training begins: the public weights that the encoder starts from, known by their hash."""
+"""Prepares a new training: checks the public weights that the encoder starts from by their hash."""
 
 from collections.abc import Sequence
 from hashlib import file_digest
@@ -9,7 +9,7 @@ from roadgpt.learn.piece_vocabulary import read_vocabulary, trimmed
 
 NAME = "sentence-transformers/all-MiniLM-L6-v2 (Apache-2.0)"
 HASH = "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db"
-"""SHA-256 of its public ``model.safetensors``."""
+"""SHA-256 of the public ``model.safetensors``."""
 PIECES = "pieces.txt"
 NOTICE = f"""\
 These weights were trained for RoadGPT and are under its licence, Apache-2.0.
@@ -21,19 +21,19 @@ model.safetensors has the SHA-256
 Changes: the vocabulary was cut to Latin letters, all layers were trained further, and the weights
 were rounded to 8 bits. pieces.txt is a part of the vocabulary of BERT (Google, Apache-2.0).
 """
-"""What goes along with the weights."""
+"""The notice that is shipped with the weights."""
 
 
 def begin(out: Path, weights: Path | None, exported: Path | None = None) -> Sequence[str]:
-    """The word pieces of the training in the folder, which is prepared where it is new.
+    """Returns the word pieces of a training, and prepares its folder if it is new.
 
     Args:
-        out: the training's folder.
-        weights: folder with ``model.safetensors`` and ``vocab.txt``; not needed to go on.
-        exported: folder of an exported reader, which a new training may start from instead.
+        out: folder of the training.
+        weights: folder with ``model.safetensors`` and ``vocab.txt``; not needed to resume a training.
+        exported: folder of an exported reader from which a new training may start instead.
 
     Raises:
-        LearnError: a new training without weights, files missing, or weights that are not the public ones.
+        LearnError: a new training has no weights, files are missing, or the weights are not the public ones.
     """
     kept = out / PIECES
     if kept.exists():
@@ -47,7 +47,7 @@ def begin(out: Path, weights: Path | None, exported: Path | None = None) -> Sequ
     if weights is None:
         raise LearnError(
             "a new training needs --weights, the folder of all-MiniLM-L6-v2, or --installed, "
-            "which goes on from the reader that is installed"
+            "which starts from the installed reader"
         )
     for name in ("model.safetensors", "vocab.txt"):
         if not (weights / name).is_file():
@@ -57,7 +57,7 @@ def begin(out: Path, weights: Path | None, exported: Path | None = None) -> Sequ
     if found != HASH:
         raise LearnError(
             f"model.safetensors in {weights} is not the public all-MiniLM-L6-v2: its SHA-256 is {found}, "
-            f"not {HASH}; get it again"
+            f"not {HASH}; download it again"
         )
     out.mkdir(parents=True, exist_ok=True)
     pieces = trimmed(read_vocabulary(weights / "vocab.txt"))

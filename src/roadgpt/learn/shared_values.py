@@ -1,6 +1,7 @@
-"""What is said once for all turns stands once in the plan that a network learns to write.
+"""Moves a value that all turns share to the whole road, in the plan that a network learns to write.
 
-The normal form has it on every clause, and a small network that must write "r=20.." seven times loses count.
+The normal form repeats it in every clause, and a small network that has to write "r=20.." seven times
+loses count.
 """
 
 from collections.abc import Sequence
@@ -12,18 +13,18 @@ from roadgpt.brief.readers.model.slots import NumberSlot
 
 FIELDS = ("degrees", "radius")
 FEWEST = 2
-"""Clauses that turn, from which it is shorter so."""
+"""The number of turning clauses from which this makes a plan shorter."""
 
 
 def with_shared_values(line: str, slots: Sequence[NumberSlot]) -> str:
-    """The plan with degrees and radii that all turns share behind the bar, where the text has them once.
+    """Returns the plan with shared degrees and radii after the bar, if the text has them only once.
 
     Args:
         line: a plan, or a refusal.
         slots: the numbers of its text.
 
     Returns:
-        A plan of the same normal form.
+        A plan with the same normal form.
     """
     if line.startswith("!"):
         return line

@@ -1,4 +1,4 @@
-"""The one way in which we write a plan that could be written in several: what the model learns to write."""
+"""The standard form of a plan, which is the one that the model learns to write."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
@@ -6,5 +6,5 @@ from roadgpt.brief.plan import plan
 
 
 def standard(brief: Brief) -> str:
-    """The plan of the normal form of a Brief."""
+    """Returns the plan of a Brief's normal form."""
     return plan(normal(brief))

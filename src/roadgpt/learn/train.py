@@ -1,4 +1,4 @@
-"""Training: seeded, resumable from its checkpoint, with progress and a loss curve."""
+"""Trains the network: seeded, resumable from its checkpoint, with progress and a loss curve."""
 
 import json
 import math
@@ -19,10 +19,11 @@ from roadgpt.learn.generator import Pair
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork, load_minilm
 from roadgpt.learn.onnx_weights import exported_weights
 
-POOL = 24  # batches that are sorted by length together
+POOL = 24  # number of batches whose examples are sorted by length together
 SMOOTHING = 0.03
 FROZEN = ("pieces", "places", "kind", "norm")
-"""Word embeddings of a pretrained encoder stand still, so words that no pair has keep their place."""
+"""The embeddings of a pretrained encoder are not trained, so that words without any pair keep their
+meaning."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,20 +32,20 @@ class TrainingSettings:
 
     steps: int = 14_000
     size: int = 48
-    """Pairs in a batch."""
+    """Pairs per batch."""
     encoder_rate: float = 1.5e-4
     decoder_rate: float = 7e-4
     warm_up: int = 150
     cool_down: float = 0.3
-    """Share of the steps at the end in which the rate falls to nothing."""
+    """Share of the steps at the end during which the learning rate falls to zero."""
     hand_share: float = 0.6
     seed: int = 1
     save_every: int = 100
     workers: int = 1
-    """Processes that train side by side and average their weights whenever they save (local SGD)."""
+    """Processes that train in parallel and average their weights whenever they save (local SGD)."""
     rank: int = 0
     is_pretrained: bool = True
-    """Did the encoder start from MiniLM? Then its embeddings are kept."""
+    """True if the encoder started from MiniLM; its embeddings are then not trained."""
 
 
 def train(
@@ -56,17 +57,17 @@ def train(
     report: Callable[[str], None] = print,
     check: Callable[[], None] = lambda: None,
 ) -> ReaderNetwork:
-    """Trains from where the folder's checkpoint stands, and leaves one there.
+    """Trains from the folder's checkpoint, if there is one, and leaves a checkpoint there.
 
     Args:
-        folder: holds ``checkpoint.pt`` and ``losses.jsonl``.
+        folder: gets ``checkpoint.pt`` and ``losses.jsonl``.
         pieces: the vocabulary of word pieces.
-        weights: ``model.safetensors`` of all-MiniLM-L6-v2, or the folder of an exported reader to go on from;
-            None starts from chance.
-        hand: pairs written by hand, for training.
-        plan: how long, how fast.
-        report: is given a line from time to time.
-        check: called before every step and while it waits for other workers; raises where one is gone.
+        weights: ``model.safetensors`` of all-MiniLM-L6-v2, or the folder of an exported reader; None
+            starts from random weights.
+        hand: hand-written pairs for training.
+        plan: how to train.
+        report: receives a progress line from time to time.
+        check: called before every step and while waiting for other workers; raises if one has ended.
     """
     folder.mkdir(parents=True, exist_ok=True)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
@@ -88,7 +89,7 @@ def train(
     if state:
         optimiser.load_state_dict(state["optimiser"])
     first = int(state.get("step", 0))
-    # a stream of its own for every start, so that going on does not read the same pairs again
+    # each start has its own stream, so that a resumed training does not see the same pairs again
     seed = (plan.seed * 1_000_003 + first) * 16 + plan.rank
     stream = batches(examples(seed, hand, plan.hand_share, WordPieces(pieces)), plan.size, POOL, seed)
     began, losses = time.monotonic(), []
@@ -126,7 +127,7 @@ def _optimiser(reader: nn.Module, plan: TrainingSettings) -> torch.optim.Optimiz
 
 
 def _rate(step: int, plan: TrainingSettings) -> float:
-    """Share of the full rate: up in a line, level, down along a cosine."""
+    """Returns the share of the full learning rate: a linear rise, a constant part, a cosine fall."""
     if step < plan.warm_up:
         return (step + 1) / plan.warm_up
     left = (plan.steps - step) / max(1.0, plan.cool_down * plan.steps)
@@ -187,7 +188,7 @@ def average(
     step: int,
     check: Callable[[], None] = lambda: None,
 ) -> None:
-    """Waits for the weights of all workers at this step, and goes on with their mean."""
+    """Waits for the weights of all workers at this step, and continues with their mean."""
     own = folder / f"weights-{step}-{plan.rank}.pt"
     torch.save(reader.state_dict(), own.with_suffix(".new"))
     own.with_suffix(".new").replace(own)
@@ -198,11 +199,11 @@ def average(
     states = [torch.load(path, map_location="cpu", weights_only=True) for path in paths]
     reader.load_state_dict({name: sum(state[name] for state in states) / len(states) for name in states[0]})
     older = folder / f"weights-{step - plan.save_every}-{plan.rank}.pt"
-    older.unlink(missing_ok=True)  # by now everybody has read it
+    older.unlink(missing_ok=True)  # by now every worker has read it
 
 
 def _save(path: Path, reader: nn.Module, optimiser: torch.optim.Optimizer, step: int) -> None:
-    """Whole or not at all: written beside, then put in place."""
+    """Writes a checkpoint completely or not at all, by way of a temporary file."""
     beside = path.with_suffix(".new")
     torch.save({"reader": reader.state_dict(), "optimiser": optimiser.state_dict(), "step": step}, beside)
     beside.replace(path)

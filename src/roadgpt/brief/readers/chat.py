@@ -6,7 +6,7 @@ executed. If the answer is not a valid plan, the model gets it back with a sente
 
 from collections.abc import Sequence
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief
@@ -74,7 +74,10 @@ SAID = {
 
 
 class PlanAnswer(BaseModel):
-    """What the model is asked for."""
+    """The answer that the model is asked for."""
+
+    # the schema is part of what a recording is found by, so this text stays as it is
+    model_config = ConfigDict(json_schema_extra={"description": "What the model is asked for."})
 
     along: list[str] = Field(description="What comes along the road, in driving order.")
     road: str = Field(description="What holds for the whole road.")

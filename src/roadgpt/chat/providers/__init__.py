@@ -1,1 +1,1 @@
-"""Providers: one file for each kind of server, and one for replayed exchanges."""
+"""Providers: one plug-in for servers with OpenAI's protocol, and one for replayed exchanges."""

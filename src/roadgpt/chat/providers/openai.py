@@ -1,8 +1,8 @@
-"""Any server that speaks OpenAI's protocol: OpenAI, Azure, Ollama, llama.cpp, vLLM, LM Studio and others.
+"""Asks any server with OpenAI's protocol: OpenAI, Azure, Ollama, llama.cpp, vLLM, LM Studio and others.
 
-A server may not know schemas, may ignore them in silence, or may refuse a parameter: what it takes is found
-out by asking, from the strictest way down, and is remembered. Whatever way was taken, the reply is
-validated.
+A server may not support schemas, may silently ignore them, or may reject a parameter. What it supports is
+found out by asking, from the strictest response format down, and is remembered. The reply is validated in
+any case.
 """
 
 import json
@@ -27,13 +27,13 @@ from roadgpt.chat.strict_json import NotReadableError, plain, read_as
 from roadgpt.errors import ChatError, RefusedError, UnparsableError
 
 ABOUT_FORMAT = ("response_format", "json", "schema", "grammar", "format", "structured", "guided")
-OTHER_WAY = {400, 404, 415, 422, 500, 501}  # statuses after which another way of asking may do
-MOST_REQUESTS = 8  # for one question: three rungs, a second try, and parameters that are dropped
+OTHER_WAY = {400, 404, 415, 422, 500, 501}  # statuses after which another response format may work
+MOST_REQUESTS = 8  # for one question: three response formats, a second try, and dropped parameters
 SAMPLING = ("temperature",)
 
 
 class OpenAI:
-    """Asks a server that speaks OpenAI's protocol."""
+    """A provider for servers with OpenAI's protocol."""
 
     def __init__(self, settings: ChatSettings) -> None:
         self._client = ApiClient(settings, key_for(settings.base_url))
@@ -47,11 +47,11 @@ class OpenAI:
 
     @property
     def spent(self) -> Spent:
-        """What all questions have cost."""
+        """What all questions have cost so far."""
         return self._account.spent
 
     def _only_model(self) -> str:
-        """The one model that a server has; which of many is for the user to say."""
+        """Returns the server's only model; if it has several, the user has to choose."""
         advice = "say which with --model or ROADGPT_MODEL"
         try:
             names = [str(one.get("id")) for one in self._client.models() if one.get("id")]
@@ -63,7 +63,7 @@ class OpenAI:
         return names[0]
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """The answer, in whatever way the server can be brought to give it; raises as ``Chat.ask``."""
+        """Returns the answer, in whatever format the server supports; raises the errors of ``Chat.ask``."""
         before = self.spent
         way = FormatFallback(
             list(messages),
@@ -105,13 +105,13 @@ class OpenAI:
         )
 
     def _conversation(self) -> Conversation:
-        """The conversation of the campaign that asks now."""
+        """Returns the conversation of the current campaign."""
         return self._conversations.setdefault(self._account.meter, Conversation())
 
     def _exchange(
         self, messages: Sequence[Message], schema: type[BaseModel] | None, response_format: ResponseFormat
     ) -> Answer:
-        """One request, counted."""
+        """Sends one request and counts it."""
         form = None if schema is None else schema_of(schema)
         told = [
             *messages,
@@ -121,7 +121,7 @@ class OpenAI:
         begun = time.perf_counter()
         try:
             answer = self._sent(told, self._body(form, response_format, room))
-        except NotReadableError:  # a flood: what it cost is not told
+        except NotReadableError:  # too long an answer: its cost is not known
             usage = Usage(prompt=sum(tokens_in(one.text) for one in told), completion=room)
             self._account.count(self._model, usage, time.perf_counter() - begun)
             raise
@@ -130,7 +130,7 @@ class OpenAI:
         return answer
 
     def _sent(self, messages: Sequence[Message], body: dict[str, Any]) -> Answer:
-        """One request, through the door that the settings name."""
+        """Sends one request through the API of the settings."""
         if self._settings.api == "responses":
             return self._conversation().respond(self._client, self._quirks, messages, body)
         turns = [{"role": message.role, "content": message.text} for message in messages]
@@ -139,7 +139,7 @@ class OpenAI:
     def _body(
         self, form: dict[str, Any] | None, response_format: ResponseFormat, room: int
     ) -> dict[str, Any]:
-        """All of a request but the messages."""
+        """Returns everything in a request except the messages."""
         quirks = self._quirks
         body: dict[str, Any] = {"model": self._model}
         if quirks.caps:
@@ -164,7 +164,7 @@ class OpenAI:
         return {**body, "response_format": kind}
 
     def _adapts(self, fault: RequestError) -> bool:
-        """Was a parameter refused that can be left out or named otherwise? It is then, from now on."""
+        """Returns True if a rejected parameter can be left out or renamed, and does so from now on."""
         if fault.status not in (400, 422):
             return False
         quirks = self._quirks
@@ -181,18 +181,22 @@ class OpenAI:
 
 @dataclass
 class FormatFallback:
-    """How one question is put: from rung to rung, until an answer can be used."""
+    """How one question is asked: format by format, from the strictest to the loosest, until an answer is
+    usable.
+    """
 
     messages: list[Message]
     response_format: ResponseFormat
     is_last: bool
-    """Is this the last try? A plain text is not asked for twice."""
+    """True if this is the last try; plain text is not asked for twice."""
     refused: set[ResponseFormat] = field(default_factory=set)
     why: str = ""
-    """Why the last answer could not be used."""
+    """Why the last answer was not usable."""
 
     def goes_down(self, fault: RequestError) -> bool:
-        """Is this way of asking at fault, and is there another?"""
+        """Moves on to the next format if this one may be the cause; returns False if it is not, or if it
+        is the last.
+        """
         if self.response_format == ResponseFormat.TEXT or not _is_about_format(fault):
             return False
         self.refused.add(self.response_format)
@@ -200,7 +204,7 @@ class FormatFallback:
         return True
 
     def tries_again(self, messages: Sequence[Message], why: str) -> bool:
-        """Asks on the next rung, on the last one twice; False where that is done."""
+        """Moves on to the next format, or repeats the last one once; returns False if both are done."""
         self.why = why
         if self.response_format == ResponseFormat.TEXT and self.is_last:
             return False
@@ -211,7 +215,7 @@ class FormatFallback:
 
 
 def _is_about_format(fault: RequestError) -> bool:
-    """Can the way of asking be at fault? A plain 400 says too little to rule it out."""
+    """True if the response format may be the cause; a plain 400 says too little to exclude it."""
     if fault.status not in OTHER_WAY or any(word in fault.said for word in FULL):
         return False
     names_it = any(word in f"{fault.parameter} {fault.said}" for word in ABOUT_FORMAT)
@@ -219,7 +223,12 @@ def _is_about_format(fault: RequestError) -> bool:
 
 
 def _data(answer: Answer, schema: type[BaseModel] | None) -> BaseModel | None:
-    """The validated answer; RefusedError and NotReadableError where there is none."""
+    """Returns the validated answer; None if no schema was given.
+
+    Raises:
+        RefusedError: the model declined to answer.
+        NotReadableError: the answer is blank or does not fit the schema.
+    """
     if answer.refusal is not None:
         told = plain(answer.refusal, 160) or "no reason given"
         raise RefusedError(f"the model declined: {told}", answer.refusal)
@@ -236,7 +245,7 @@ def _data(answer: Answer, schema: type[BaseModel] | None) -> BaseModel | None:
 
 
 def _instruction(form: dict[str, Any]) -> Message:
-    """The schema in words, for servers that do not take it otherwise."""
+    """Returns the schema in words, for servers that do not support it otherwise."""
     return Message(
         role="user",
         text="Answer with one JSON object and nothing else. It must fit this JSON schema, with every field:\n"
@@ -251,5 +260,5 @@ def _complaint(why: str) -> Message:
 
 
 def _guessed(messages: Sequence[Message], answer: Answer) -> Usage:
-    """Tokens where the server counts none."""
+    """Returns estimated numbers of tokens, for servers that count none."""
     return Usage(prompt=sum(tokens_in(one.text) for one in messages), completion=tokens_in(answer.text))

@@ -1,4 +1,4 @@
-"""Recorded exchanges instead of a server: the same answers, byte for byte, without a network or a key."""
+"""Answers from recorded exchanges instead of a server: the same bytes, without a network or a key."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,21 +13,21 @@ from roadgpt.errors import ChatError, UsageError
 
 
 class Replay:
-    """Answers from a folder that ``--record`` filled."""
+    """Answers from a folder that was recorded with ``--record``."""
 
     def __init__(self, settings: ChatSettings) -> None:
         if settings.replay is None:
-            raise UsageError("which recording is to be replayed? Say --replay FOLDER")
+            raise UsageError("no recording is named; give its folder with --replay FOLDER")
         if not Path(settings.replay).is_dir():
             raise UsageError(f"there is no recording in {settings.replay}; make one with --record")
         self._store = ExchangeStore(settings.replay)
         self._account = Account(settings)
-        if settings.provider == "replay":  # asked for by that name; recordings are made of servers
+        if settings.provider == "replay":  # chosen by that name; recordings are made of servers
             settings = settings.model_copy(update={"provider": "openai"})
         self._settings = self._with_model(settings)
 
     def _with_model(self, settings: ChatSettings) -> ChatSettings:
-        """Of a recording of one model, that model need not be named."""
+        """Fills in the model if the recording has only one."""
         models = self._store.models()
         if not models:
             raise UsageError(f"there is no recording in {settings.replay}; make one with --record")
@@ -37,15 +37,16 @@ class Replay:
 
     @property
     def spent(self) -> Spent:
-        """What the recorded exchanges had cost."""
+        """What the recorded exchanges cost."""
         return self._account.spent
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """The answer that was recorded to this very question.
+        """Returns the answer that was recorded for this question.
 
         Raises:
-            ChatError: there is none.
-            ReplyError: as it was recorded.
+            ChatError: no answer to it was recorded.
+            ReplyError: the recorded exchange ended with this error.
+            UsageError: the recording cannot be read.
         """
         self._account.room(messages, self._settings.model or "")
         question = question_of(self._settings, messages, schema)
@@ -62,6 +63,6 @@ class Replay:
     def _missing(self) -> str:
         models = ", ".join(str(model) for model in self._store.models())
         return (
-            f"the recording in {self._settings.replay} holds no answer to this question; give the same "
+            f"the recording in {self._settings.replay} holds no answer to this question; use the same "
             f"description, seed and options as when it was made (model {models}), or record it with --record"
         )

@@ -1,8 +1,8 @@
-"""Descriptions composed of turns that are numbered, repeated, kept apart or counted by side, in English.
+"""Composes English descriptions of turns that are numbered, repeated, kept apart or counted by side.
 
-Grammars write one thing after another; here one sentence speaks of many things at once ("six bends, 30 m of
-straight between any two", "turns 2 and 4 go left, the others right"), and the plan follows by counting. These
-pairs teach a network to go on counting where people's examples end.
+Grammars write one feature after another. Here one sentence speaks of many features at once ("six bends, 30
+m of straight between any two", "turns 2 and 4 go left, the others right"), and the plan follows by
+counting. These pairs teach a network to keep counting beyond the numbers in people's examples.
 """
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ from roadgpt.learn.compositions.voice import Composition, Voice
 from roadgpt.learn.noise import noisy, tidy
 from roadgpt.learn.standard import standard
 
-MAP_SIZE = 750.0  # metres: what is said of eight turns and their straights need not fit on the usual map
+MAP_SIZE = 750.0  # metres: eight turns and their straights need not fit on the usual map
 WAYS: tuple[tuple[Callable[[Voice], Composition], float], ...] = (
     (spaced_turns, 0.16),
     (numbered_sides, 0.13),
@@ -43,12 +43,12 @@ WAYS: tuple[tuple[Callable[[Voice], Composition], float], ...] = (
 )
 SEVERAL = 2
 WITH_LIMITS = 0.4
-"""Share to which limits for the whole road are added."""
+"""Share of descriptions to which limits for the whole road are added."""
 SHARES = np.cumsum([share for _, share in WAYS])
 
 
 def composed(rng: np.random.Generator) -> Composition | None:
-    """A description and its plan in standard form; None where no road could be so."""
+    """Returns a description and its plan in standard form; None if no such road is possible."""
     way = WAYS[int(np.searchsorted(SHARES, rng.random() * SHARES[-1], side="right"))][0]
     voice = Voice(rng)
     said = way(voice)
@@ -63,7 +63,7 @@ def composed(rng: np.random.Generator) -> Composition | None:
 
 
 def _written(brief: Brief) -> str:
-    """The plan in standard form, but what holds for all of several turns stays behind the bar."""
+    """Returns the plan in standard form, but keeps what all of several turns share after the bar."""
     if len([clause for clause in brief.clauses if clause.kind != "straight"]) < SEVERAL:
         return standard(brief)
     rest = normal(brief.model_copy(update={"degrees": None, "radius": None}))

@@ -1,4 +1,4 @@
-"""The first so many turns one way and the rest another."""
+"""The first few turns in one way and the rest in another."""
 
 from roadgpt.learn.compositions.voice import SHARPNESS, Composition, DescribedTurn, Voice, clauses
 
@@ -12,11 +12,13 @@ ASPECTS: tuple[tuple[str, Words, float], ...] = (
     ("side", (("left", "left"), ("to the left", "left"), ("right", "right")), 0.4),
     ("sharpness", SHARPNESS, 0.25),
 )
-"""What the parts differ in, its words, and how often they do."""
+"""In what the parts differ, the words for it, and how often they do."""
 
 
 def by_parts(voice: Voice) -> Composition:
-    """Three to eight turns in two parts that differ in some way; now and then a hairpin at an end."""
+    """Returns three to eight turns in two parts that differ in some way; sometimes with a hairpin at an
+    end.
+    """
     total = voice.whole(3, 8)
     first = voice.whole(1, total - 1)
     turns = [DescribedTurn() for _ in range(total)]

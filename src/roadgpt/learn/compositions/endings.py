@@ -1,10 +1,10 @@
-"""Numbers that are taken back, and lists that say that they are whole."""
+"""Numbers that are corrected, and lists that say that they are complete."""
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, Voice
 
 
 def corrected(voice: Voice) -> Composition:
-    """A number that is taken back, and another in its place; what follows stands."""
+    """Returns a description in which a number is corrected; the rest stands."""
     side, other = voice.pick(SIDES), voice.pick(SIDES)
     wrong, angle = (5 * voice.whole(5, 22) for _ in range(2))
     said, length = voice.metres()
@@ -19,7 +19,7 @@ def corrected(voice: Voice) -> Composition:
 
 
 def nothing_more(voice: Voice) -> Composition:
-    """Things along the road, and no others."""
+    """Returns a list of features that says that there are no others."""
     said: list[str] = []
     parts: list[str] = []
     for _ in range(voice.whole(1, 4)):

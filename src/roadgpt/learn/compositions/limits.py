@@ -1,4 +1,4 @@
-"""Wishes for the whole road in any order: bounds by denial, lengths beside radii beside heights."""
+"""Requirements for the whole road in any order: negated bounds, lengths beside radii beside heights."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ from roadgpt.learn.compositions.voice import NOUNS, SIDES, Composition, Voice
 
 
 class _Wish(NamedTuple):
-    """How a wish is said, and where it stands in the plan."""
+    """The words of a requirement, and what it adds to the plan."""
 
     said: str
     of_turns: str = ""
@@ -14,7 +14,7 @@ class _Wish(NamedTuple):
 
 
 def with_limits(voice: Voice, said: Composition) -> Composition:
-    """The same road with one to three limits for the whole of it, before or behind what was said."""
+    """Returns the same road with one to three limits for the whole of it, before or after the rest."""
     ways = [_grade, _length, _height]
     if not any(word in said.plan for word in ("sharp", "gentle", "sweeping")):
         ways.append(_radius_of_hairpins if "hairpin" in said.plan else _radius)
@@ -29,7 +29,7 @@ def with_limits(voice: Voice, said: Composition) -> Composition:
 
 
 def _joined(voice: Voice, parts: list[str]) -> str:
-    """As a sentence, as sentences, or as a list with letters, numbers or dashes."""
+    """Joins the parts as a sentence, as sentences, or as a list with letters, numbers or dashes."""
     way = voice.rng.random()
     if way < 0.12:
         return "; ".join(f"{letter}) {part}" for letter, part in zip("abcdef", parts, strict=False))
@@ -43,7 +43,7 @@ def _joined(voice: Voice, parts: list[str]) -> str:
 
 
 def limited(voice: Voice) -> Composition:
-    """A number of turns and two to four wishes with numbers, in any order."""
+    """Returns a number of turns and two to four requirements with numbers, in any order."""
     number = voice.whole(2, 7)
     count, side = voice.pick((voice.turns(number), f"{voice.pick(NOUNS)}: {number}")), ""
     if voice.chance(0.2):

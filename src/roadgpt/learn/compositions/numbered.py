@@ -1,4 +1,4 @@
-"""Turns spoken of by their numbers: which go left, which are hairpins, sharp, or of an angle."""
+"""Turns that are named by their numbers: which go left, which are hairpins, sharp, or have an angle."""
 
 from roadgpt.learn.compositions.voice import (
     NOUNS,
@@ -15,7 +15,9 @@ GO = (("go", "goes"), ("turn", "turns"), ("are", "is"), ("bend", "bends"), ("go 
 
 
 def numbered_sides(voice: Voice) -> Composition:
-    """Three to eight turns, the sides of some said by their numbers and of the others together."""
+    """Returns three to eight turns; the sides of some are given by their numbers, those of the others
+    together.
+    """
     total = voice.whole(3, 8)
     side = voice.pick(SIDES)
     names, chosen, is_one = _chosen(voice, total)
@@ -28,7 +30,9 @@ def numbered_sides(voice: Voice) -> Composition:
 
 
 def numbered_kinds(voice: Voice) -> Composition:
-    """Some of the turns are told apart; others may be something else; now and then all have a side."""
+    """Returns three to seven turns, some of which are different from the others; sometimes all have one
+    side.
+    """
     total = voice.whole(3, 7)
     names, chosen, is_one = _chosen(voice, total)
     shape, kind, mods = _shape(voice, len(chosen) == 1)
@@ -50,7 +54,7 @@ def numbered_kinds(voice: Voice) -> Composition:
 
 
 def _chosen(voice: Voice, total: int) -> tuple[str, set[int], bool]:
-    """How some of the turns are named, which they are, from 0, and whether their verb is of one thing."""
+    """Returns the words for some of the turns, their indices from 0, and whether the words are singular."""
     if voice.chance(0.2):
         word, first = voice.pick((("odd", 0), ("even", 1)))
         its = {*range(first, total, 2)}
@@ -74,7 +78,7 @@ def _rest(voice: Voice, total: int, chosen: set[int]) -> str:
 
 
 def _shape(voice: Voice, is_one: bool) -> tuple[str, str, dict[str, str]]:
-    """What some turns are: how it is said, their kind, their plan words."""
+    """Returns what some turns are: the words for it, their kind, and their plan words."""
     way = voice.rng.random()
     if way < 0.4:
         return "a hairpin" if is_one else "hairpins", "hairpin", {}

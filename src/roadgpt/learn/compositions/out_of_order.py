@@ -1,10 +1,10 @@
-"""Things said in another order than they come: what goes before, what lies between, how it ends."""
+"""Features in another order than they are driven: what comes before, what lies between, how it ends."""
 
 from roadgpt.learn.compositions.voice import SHARPNESS, SIDES, Composition, Voice
 
 
 def out_of_order(voice: Voice) -> Composition:
-    """Two or three things out of their order."""
+    """Returns two or three features out of their order."""
     names = "abc" if voice.chance(0.65) else "ab"
     things: list[tuple[str, str]] = []
     for _ in names:

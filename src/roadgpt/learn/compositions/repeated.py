@@ -1,10 +1,10 @@
-"""Patterns that come again, and sides as letters with an angle for each."""
+"""Patterns that are repeated, and sides as letters with an angle for each."""
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, DescribedTurn, Voice, clauses
 
 
 def repeated(voice: Voice) -> Composition:
-    """A pattern of two or three things two to four times, and now and then one more thing."""
+    """Returns a pattern of two or three features two to four times, sometimes with one more feature."""
     parts = [_part(voice, may_be_straight=at > 0) for at in range(voice.whole(2, 3))]
     times = voice.pick((2, 2, 3, 3, 4))
     pattern = voice.say("pattern joints").join(said for said, _ in parts)
@@ -36,7 +36,7 @@ def _part(voice: Voice, may_be_straight: bool) -> tuple[str, str]:
 
 
 def lettered(voice: Voice) -> Composition:
-    """L, L, R: a list of letters; the lefts of one angle, the rights of another."""
+    """Returns a list of letters like 'L, L, R', with one angle for the lefts and another for the rights."""
     turns = [DescribedTurn(mods={"side": voice.pick(SIDES)}) for _ in range(voice.whole(3, 7))]
     text = voice.pick((", ", "-", " ", ", ")).join(turn.mods["side"][0].upper() for turn in turns)
     said = []

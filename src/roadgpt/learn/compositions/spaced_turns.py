@@ -1,4 +1,4 @@
-"""Turns kept apart: a straight between any two of them, after each, or before each."""
+"""Turns kept apart: with a straight between any two of them, after each, or before each."""
 
 from roadgpt.learn.compositions.voice import SHARPNESS, SIDES, Composition, DescribedTurn, Voice
 
@@ -12,7 +12,7 @@ NOUNS = (
 
 
 def spaced_turns(voice: Voice) -> Composition:
-    """Two to eight turns and the straights between, after or before them."""
+    """Returns two to eight turns with straights between, after or before them."""
     things, turns, wish = _things(voice)
     said, clause = _straight(voice)
     way = voice.pick(("between", "between", "between", "after", "before"))
@@ -25,7 +25,7 @@ def spaced_turns(voice: Voice) -> Composition:
 
 
 def _things(voice: Voice) -> tuple[str, list[DescribedTurn], str]:
-    """How the turns are said, what they are, and a wish for the whole road."""
+    """Returns the words for the turns, the turns, and a requirement for the whole road."""
     number = voice.whole(2, 8)
     if voice.chance(0.35):
         return *_list(voice, min(number, 6)), ""
@@ -56,7 +56,7 @@ def _all(turns: list[DescribedTurn], key: str, word: str) -> None:
 
 
 def _list(voice: Voice, number: int) -> tuple[str, list[DescribedTurn]]:
-    """Left, right, right; with an angle for each, or as letters."""
+    """Returns a list like 'left, right, right', with an angle for each, or as letters."""
     sides = [voice.pick(SIDES) for _ in range(number)]
     turns = [DescribedTurn(mods={"side": side}) for side in sides]
     names = list(sides)
@@ -71,7 +71,7 @@ def _list(voice: Voice, number: int) -> tuple[str, list[DescribedTurn]]:
 
 
 def _straight(voice: Voice) -> tuple[dict[str, str], str]:
-    """How the straights are said, alone and several; and their clause."""
+    """Returns the words for the straights, in singular and plural, and their clause."""
     said, value = voice.metres(15, 60)
     bound, amount = "", f"len={value}"
     if voice.chance(0.2):

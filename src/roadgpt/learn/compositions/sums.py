@@ -1,10 +1,10 @@
-"""Counts that add up: so many in all, so many to a side, and which come first or last."""
+"""Counts that add up: a number of turns, how many go to each side, and which come first or last."""
 
 from roadgpt.learn.compositions.voice import NOUNS, OTHER, SIDES, Composition, DescribedTurn, Voice, clauses
 
 
 def sided_sum(voice: Voice) -> Composition:
-    """A number of turns, those of each side, and now and then their order."""
+    """Returns a number of turns and how many go to each side, sometimes with their order."""
     total = voice.whole(2, 9)
     side = voice.pick(SIDES)
     few = voice.whole(1, max(1, total // 2))
@@ -29,7 +29,7 @@ def _sided(voice: Voice, number: int, side: str) -> str:
 
 
 def ranged(voice: Voice) -> Composition:
-    """Between three and five turns, one of which may be told apart."""
+    """Returns a range such as three to five turns, one of which may be different."""
     low = voice.whole(2, 5)
     high = low + voice.whole(1, 3)
     numbers = {"low": low, "high": high, "less": low - 1, "more": high + 1}

@@ -1,4 +1,4 @@
-"""A voice: phrases drawn from lists, numbers as digits or spelled, and plans put together from turns."""
+"""Draws phrases from lists, writes numbers as digits or words, and puts plans together from turns."""
 
 import json
 from collections.abc import Sequence
@@ -40,17 +40,17 @@ class DescribedTurn:
 
     kind: str = "turn"
     mods: dict[str, str] = field(default_factory=dict)
-    """Plan words by what they say: side, sharpness, slope, deg."""
+    """Plan words by what they specify: side, sharpness, slope, deg."""
 
     @property
     def clause(self) -> str:
-        """Its clause, without a count."""
+        """The clause of the turn, without a count."""
         order = ("side", "sharpness", "slope", "deg")
         return " ".join([self.kind, *(self.mods[key] for key in order if key in self.mods)])
 
 
 def clauses(turns: Sequence[DescribedTurn]) -> str:
-    """Clauses of turns that follow each other, equal ones counted."""
+    """Returns the clauses of consecutive turns; equal neighbours are counted."""
     out = []
     for clause, same in groupby(turn.clause for turn in turns):
         number = len([*same])
@@ -60,54 +60,54 @@ def clauses(turns: Sequence[DescribedTurn]) -> str:
 
 
 class Voice:
-    """Draws what is said, and how."""
+    """Draws what is said and how; one voice prefers digits or words throughout."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.rng = rng
         self.spells = rng.random() < 0.45
 
     def pick(self, ways: Sequence[Thing]) -> Thing:
-        """One of them."""
+        """Returns one of the alternatives."""
         return ways[int(self.rng.integers(len(ways)))]
 
     def say(self, way: str, *parts: str, **named: str) -> str:
-        """A phrase of this way, filled in."""
+        """Returns a phrase of this kind with its parts filled in."""
         return self.pick(PHRASES[way]).format(*parts, **named)
 
     def chance(self, share: float) -> bool:
-        """True in this share of cases."""
+        """Returns True in this share of cases."""
         return bool(self.rng.random() < share)
 
     def whole(self, low: int, high: int) -> int:
-        """A whole number, both ends allowed."""
+        """Returns a whole number from ``low`` to ``high``, both included."""
         return int(self.rng.integers(low, high + 1))
 
     def number(self, value: int) -> str:
-        """As digits or in words, as this voice does."""
+        """Returns the number in digits or in words, as this voice prefers."""
         return spell(value, "en") if self.spells else str(value)
 
     def metres(self, low: int = 15, high: int = 80) -> tuple[str, int]:
-        """A length as said, and its number."""
+        """Returns the words for a length, and its number."""
         value = 5 * self.whole(low // 5, high // 5)
         units = (" metres", " meters") if self.spells else (" m", " m", "m", " metres", " meters")
         return f"{self.number(value)}{self.pick(units)}", value
 
     def angle(self, low: int = 20, high: int = 120) -> tuple[str, int]:
-        """An angle as said, and its number."""
+        """Returns the words for an angle, and its number."""
         value = 5 * self.whole(low // 5, high // 5)
         return f"{self.number(value)}{self.pick((' degrees', ' degrees', ' deg', '°'))}", value
 
     def percent(self, low: int = 3, high: int = 12) -> tuple[str, int]:
-        """A grade as said, and its number."""
+        """Returns the words for a grade, and its number."""
         value = self.whole(low, high)
         return f"{self.number(value)}{self.pick((' %', ' percent', '%', ' per cent'))}", value
 
     def turns(self, number: int) -> str:
-        """So many turns, under one of their names."""
+        """Returns the words for this number of turns."""
         return f"{self.number(number)} {self.pick(NOUNS)}"
 
     def ordinal(self, at: int, total: int) -> str:
-        """The name of a turn, counted from 0."""
+        """Returns the name of a turn, counted from 0."""
         if at == total - 1 and self.chance(0.6):
             return self.pick(("last", "final", "last"))
         if self.chance(0.25):
@@ -115,13 +115,15 @@ class Voice:
         return ORDINALS[at]
 
     def listed(self, names: Sequence[str]) -> str:
-        """A, b and c."""
+        """Returns 'a, b and c'."""
         if len(names) == 1:
             return names[0]
         return f"{', '.join(names[:-1])}{self.pick((' and ', ' and ', ', and ', ' & '))}{names[-1]}"
 
     def framed(self, text: str, plan: str, may_slope: bool = True) -> Composition:
-        """With an opening, and now and then a purpose and a wish for the whole road."""
+        """Returns the text with an opening, and sometimes with a purpose and a requirement for the whole
+        road.
+        """
         if text.split()[0].strip(":;,").lower() not in BEGIN:
             text = self.say("openings") + text
         wishes: list[str] = []
