@@ -58,15 +58,15 @@ def folder_of(made: Survey, folder: Path) -> Path:
 def served(folder: Path, is_open: bool = False) -> Iterator[Server]:
     """The survey on a free port; it stops with the block."""
     server = opened(folder, "127.0.0.1", 0, is_open)
-    thread = threading.Thread(target=server.serve_forever, args=(0.02,))
+    thread = threading.Thread(target=server.serve_forever)
     thread.start()
     try:
         yield server
     finally:
-        server.shutdown()
+        server.stop()
         thread.join()
-        server.server_close()
-        server.desk.store.close()
+        server.close()
+        server.app.store.close()
 
 
 class Reply(NamedTuple):
@@ -108,14 +108,12 @@ class Client:
 
 
 def port_of(server: Server) -> int:
-    port = server.server_address[1]
-    assert isinstance(port, int)
-    return port
+    return server.port
 
 
 def agreed(server: Server) -> str:
     """The token of a rater who agreed to take part."""
-    store = server.desk.store
+    store = server.app.store
     token = store.add_rater()
     rater = store.rater_of(token)
     assert rater is not None

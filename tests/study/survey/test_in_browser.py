@@ -65,15 +65,15 @@ def middle(tab: Page, of: str) -> tuple[float, float]:
 
 
 def given(server: Server, token: str) -> dict[str, str]:
-    rater = server.desk.store.rater_of(token)
+    rater = server.app.store.rater_of(token)
     assert rater is not None
-    return server.desk.store.answers_of(rater)
+    return server.app.store.answers_of(rater)
 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_a_whole_rating(tab: Page, server: Server, size: str) -> None:
     tab.size(*SIZES[size])
-    token = server.desk.store.add_rater()
+    token = server.app.store.add_rater()
     base = f"http://127.0.0.1:{port_of(server)}/r/{token}"
     tab.told.clear()
     tab.asked.clear()
@@ -81,9 +81,9 @@ def test_a_whole_rating(tab: Page, server: Server, size: str) -> None:
     assert tab.run("document.querySelectorAll('form').length") == 1
     tab.click(*middle(tab, "input[name=agree]"))
     went(tab, "document.querySelector('button').click()")
-    rater = server.desk.store.rater_of(token)
+    rater = server.app.store.rater_of(token)
     assert rater is not None
-    own = pages_for(server.desk.survey, rater.digest)
+    own = pages_for(server.app.survey, rater.digest)
     wanted: dict[str, str] = {}
     for number, page in enumerate(own, 1):
         assert tab.run("location.pathname") == f"/r/{token}/{number}"
@@ -120,10 +120,10 @@ def test_a_whole_rating(tab: Page, server: Server, size: str) -> None:
 
 def test_it_can_be_done_with_the_keyboard_and_each_answer_has_its_words(tab: Page, server: Server) -> None:
     tab.size(*SIZES["desktop"])
-    token = server.desk.store.add_rater()
-    rater = server.desk.store.rater_of(token)
+    token = server.app.store.add_rater()
+    rater = server.app.store.rater_of(token)
     assert rater is not None
-    server.desk.store.agree(rater)
+    server.app.store.agree(rater)
     visit(tab, f"http://127.0.0.1:{port_of(server)}/r/{token}/1")
     tab.key("Tab", code="Tab", windowsVirtualKeyCode=9)
     assert tab.run("document.activeElement.className") == "skip"
@@ -142,10 +142,10 @@ def test_it_can_be_done_with_the_keyboard_and_each_answer_has_its_words(tab: Pag
 
 
 def test_an_answer_waits_for_a_server_that_is_away(tab: Page, server: Server) -> None:
-    token = server.desk.store.add_rater()
-    rater = server.desk.store.rater_of(token)
+    token = server.app.store.add_rater()
+    rater = server.app.store.rater_of(token)
     assert rater is not None
-    server.desk.store.agree(rater)
+    server.app.store.agree(rater)
     visit(tab, f"http://127.0.0.1:{port_of(server)}/r/{token}/1")
     tab.send(
         "Network.emulateNetworkConditions",
@@ -171,11 +171,11 @@ def test_an_answer_waits_for_a_server_that_is_away(tab: Page, server: Server) ->
 
 def test_pictures_and_the_view_are_seen_and_the_view_can_reach_nothing(tab: Page, server: Server) -> None:
     tab.size(*SIZES["desktop"])
-    token = server.desk.store.add_rater()
-    rater = server.desk.store.rater_of(token)
+    token = server.app.store.add_rater()
+    rater = server.app.store.rater_of(token)
     assert rater is not None
-    server.desk.store.agree(rater)
-    own = pages_for(server.desk.survey, rater.digest)
+    server.app.store.agree(rater)
+    own = pages_for(server.app.survey, rater.digest)
     number = next(n for n, page in enumerate(own, 1) if page.item and page.item.id == "a1")
     tab.told.clear()
     tab.asked.clear()

@@ -18,13 +18,22 @@ from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey import serving
 from roadgpt.study.survey.questions import ALIKE, MATCHES
+from roadgpt.study.survey.server import Server
 from roadgpt.study.survey.serving import LINKS, opened
 from roadgpt.study.survey.store import ANSWERS, Store, digest_of
 from roadgpt.study.survey.survey import read_survey
 from survey_made import Client, agreed, folder_of, port_of, served, survey
 
 RATERS = 50
-MAIN = "from roadgpt.cli import main; main()"
+WITHOUT = """
+import sys
+for name in ("starlette", "uvicorn", "jinja2", "markupsafe"):
+    sys.modules[name] = None  # as where it is not installed
+import roadgpt.study.reporting, roadgpt.study.working
+import roadgpt.study.survey.making, roadgpt.study.survey.analysis
+from roadgpt.__main__ import main
+main()
+"""
 
 
 def rows(folder: Path) -> set[tuple[str, str, str]]:
@@ -80,7 +89,7 @@ def test_fifty_raters_at_once_lose_no_answer(tmp_path: Path) -> None:
 def command(folder: Path, *words: str) -> Iterator[tuple[subprocess.Popen[str], list[str], int]]:
     """The command that people start; its links and its port."""
     process = subprocess.Popen(
-        [sys.executable, "-c", MAIN, "study", "survey", "serve", str(folder), "--port", "0", *words],
+        [sys.executable, "-m", "roadgpt", "study", "survey", "serve", str(folder), "--port", "0", *words],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     try:
@@ -160,6 +169,51 @@ def test_ctrl_c_ends_the_server_in_words(tmp_path: Path) -> None:
     assert "Traceback" not in out + err
 
 
+def test_ctrl_c_ends_the_server_among_many_requests(tmp_path: Path) -> None:
+    """A signal that comes within a request is no error of that request: it ends the server as well."""
+    folder = folder_of(survey(), tmp_path / "s")
+    with command(folder, "--raters", "8") as (process, links, port):
+        answered = threading.Semaphore(0)
+
+        def read(token: str) -> None:
+            client = Client(port)
+            try:
+                while client.get(f"/r/{token}").status == 200:
+                    answered.release()
+            except (OSError, HTTPException):
+                pass  # the server has ended
+            finally:
+                client.close()
+
+        threads = [threading.Thread(target=read, args=(token,)) for token in links]
+        for thread in threads:
+            thread.start()
+        for _ in range(100):
+            assert answered.acquire(timeout=60)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=30)
+        for thread in threads:
+            thread.join()
+    assert process.returncode == 130
+    assert "0 of 8 raters agreed so far" in out
+    assert err.strip() == ""
+
+
+def test_only_serving_needs_the_extra(tmp_path: Path) -> None:
+    folder = folder_of(survey(), tmp_path / "s")
+
+    def call(*words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([sys.executable, "-c", WITHOUT, *words], capture_output=True, text=True)
+
+    serve = call("study", "survey", "serve", str(folder))
+    assert serve.returncode == 2
+    assert serve.stderr.count("\n") == 1
+    assert "python -m pip install 'roadgpt[survey]'" in serve.stderr
+    assert not (folder / ANSWERS).exists()
+    analyse = call("study", "survey", "analyse", str(folder), "--synthetic", "3")
+    assert analyse.returncode == 0, analyse.stderr
+
+
 def test_every_commit_waits_for_the_disk(tmp_path: Path) -> None:
     store = Store(tmp_path / ANSWERS)
     told = {
@@ -204,7 +258,7 @@ def test_links_that_cannot_be_written_are_not_used_up(
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(serving.Server, "serve_forever", stopped)
+    monkeypatch.setattr(Server, "serve_forever", stopped)
     with pytest.raises(KeyboardInterrupt):
         serving.serve(folder, told.append, raters=3)
     tokens = [line.rpartition("/")[2] for line in (folder / LINKS).read_text().splitlines()]

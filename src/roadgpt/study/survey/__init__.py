@@ -4,7 +4,9 @@
 
 plan, picking     which roads; ``read_plan`` of a file, ``picked`` out of a study
 making            ``make``: plots, films, 3-D views, survey.json
-serving           ``serve``: links, server (``server``: HTTP; ``desk``: what is answered; ``pages``: as HTML)
+serving           ``serve``: links, and the server until Ctrl-C; needs the extra ``survey``
+server, limits    uvicorn, with limits on connections and requests
+app, pages        the Starlette application, and its Jinja2 pages out of ``templates``
 store, answers    the answers on the disk, and as rows
 synthetic         made-up raters, to try out the analysis
 analysis          ``analyse``: statistics, figures, report

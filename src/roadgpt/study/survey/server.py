@@ -1,231 +1,152 @@
-"""The survey's own small HTTP server: limits, headers and files; what is answered says ``desk``."""
+"""Serves the survey by uvicorn, with limits on connections that uvicorn lacks."""
 
-import os
-import re
+import logging
 import socket
-import sqlite3
-import sys
-import threading
-from collections.abc import Mapping
-from contextlib import suppress
-from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from asyncio import TimerHandle, Transport
+from threading import Event, Thread
 from typing import Any
 
+import h11
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
 from roadgpt.errors import UsageError
-from roadgpt.study.survey.desk import JSON, Asked, Desk, Told
+from roadgpt.study.survey.app import SurveyApp
 
-MOST_BYTES = 64 * 1024  # of a body: a page of remarks in any alphabet, many times over
-MOST_ADDRESS = 2048  # bytes
 MOST_AT_ONCE = 600  # connections; a browser opens up to six
-PATIENCE = 15.0  # s that a connection may say nothing
+MOST_HEAD = 32 * 1024  # bytes of a request before its body
+PATIENCE = 15  # s that a connection may say nothing between requests, or take to receive 64 kB
 SLOWEST = 60.0  # s in which a whole request must have come, however slowly it drips in
-PIECE = 64 * 1024  # bytes of a file that are sent at once
+BACKLOG = 128  # connections that wait to be accepted
+LONGEST_END = 5.0  # s in which requests under way may end, after Ctrl-C
 BUSY = b"HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 2\r\nContent-Length: 0\r\n\r\n"
-HEADERS = {
-    "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "no-referrer",  # the address is the rater's key
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
-    "X-Robots-Tag": "noindex, nofollow",
-}
-OUR_PAGES = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; media-src 'self'; "
-    "frame-src 'self'; connect-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
-)
-FRAMES = (
-    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'self'; sandbox allow-scripts"
-)
-"""A 3-D view carries its scripts in itself; it may neither fetch nor reach the page around it."""
-KEPT, SEEN_ANEW = "private, max-age=3600", "no-store"
+WAITS_FOR_CLIENT = (h11.IDLE, h11.SEND_BODY)
 
 
-class Server(ThreadingHTTPServer):
-    """Answers many raters at once, each in a thread of its own; ends without waiting for them."""
+class LimitedConnection(H11Protocol):
+    """One connection of a rater. It is cut where the other side takes too long to send or to receive."""
 
-    daemon_threads = True
-    request_queue_size = 128
+    def __init__(self, *args: Any, **more: Any) -> None:
+        super().__init__(*args, **more)
+        self._timers: dict[str, TimerHandle] = {}
 
-    def __init__(self, desk: Desk, host: str = "127.0.0.1", port: int = 0, most: int = MOST_AT_ONCE) -> None:
-        self.desk = desk
-        self._free = threading.BoundedSemaphore(most)
+    def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
+        """Accepts a connection, or tells it to come again where there are too many."""
+        super().connection_made(transport)
+        # else an answer, whose head and body are sent apart, waits 40 ms for the other side's kernel
+        transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if len(self.connections) >= (self.limit_concurrency or MOST_AT_ONCE):
+            transport.write(BUSY)
+            transport.close()
+        else:
+            self._watch()
+
+    def data_received(self, data: bytes) -> None:
+        """Takes a piece of a request."""
+        super().data_received(data)
+        self._watch()
+
+    def on_response_complete(self) -> None:
+        """Waits for the next request."""
+        self._stop("request")
+        super().on_response_complete()
+        self._watch()
+
+    def pause_writing(self) -> None:
+        """Waits for the other side to receive what was sent."""
+        super().pause_writing()
+        self._start("answer", PATIENCE)
+
+    def resume_writing(self) -> None:
+        """Sends more, since the other side has received most of what was sent."""
+        self._stop("answer")
+        super().resume_writing()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forgets the connection."""
+        self._stop("request")
+        self._stop("answer")
+        super().connection_lost(exc)
+
+    def _watch(self) -> None:
+        """Limits the time from the end of the last answer until the next request is there as a whole."""
+        if self.conn.their_state not in WAITS_FOR_CLIENT:
+            self._stop("request")
+        elif "request" not in self._timers:
+            self._start("request", SLOWEST)
+
+    def _start(self, name: str, seconds: float) -> None:
+        self._timers[name] = self.loop.call_later(seconds, self.transport.abort)
+
+    def _stop(self, name: str) -> None:
+        if timer := self._timers.pop(name, None):
+            timer.cancel()
+
+
+class Server:
+    """Serves one survey; it listens from the start, and answers while ``serve_forever`` runs.
+
+    Raises:
+        UsageError: nobody can listen on this host and port.
+    """
+
+    def __init__(
+        self, app: SurveyApp, host: str = "127.0.0.1", port: int = 0, most: int = MOST_AT_ONCE
+    ) -> None:
+        self.app = app
         try:
-            self.address_family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
-            super().__init__((host, port), Handler)
+            family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+            self._socket = socket.create_server((host, port), family=family, backlog=BACKLOG)
         except (OSError, OverflowError) as error:
             reason = getattr(error, "strerror", None) or error
             raise UsageError(
                 f"cannot listen on {host}, port {port} ({reason}); name another with --port or --host"
             ) from error
+        self.port = int(self._socket.getsockname()[1])
+        config = uvicorn.Config(
+            app,
+            loop="asyncio",  # the same whatever else is installed
+            http=LimitedConnection,
+            ws="none",
+            lifespan="off",
+            log_config=None,
+            log_level=logging.CRITICAL,  # addresses are raters' keys; ``limits`` tells errors
+            access_log=False,
+            proxy_headers=False,
+            server_header=False,
+            limit_concurrency=most + 1,  # uvicorn refuses the last one itself
+            timeout_keep_alive=PATIENCE,
+            timeout_graceful_shutdown=1,
+            h11_max_incomplete_event_size=MOST_HEAD,
+        )
+        self._uvicorn = uvicorn.Server(config)
+        self._has_ended = Event()
 
-    def process_request(self, request: Any, client_address: Any) -> None:
-        """Hand a connection to a thread, unless too many are at work."""
-        if self._free.acquire(blocking=False):
-            super().process_request(request, client_address)
-            return
-        with suppress(OSError):
-            request.sendall(BUSY)
-        self.shutdown_request(request)
+    def serve_forever(self) -> None:
+        """Answers requests until ``stop`` is called, or a KeyboardInterrupt is raised here.
 
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """A connection's whole life."""
+        uvicorn runs in a thread of its own, since it would take a KeyboardInterrupt that is raised within a
+        request for an error of the application, and go on.
+        """
+        Thread(target=self._run, daemon=True).start()
         try:
-            super().process_request_thread(request, client_address)
+            # not Thread.join, which takes a thread for ended when a KeyboardInterrupt is raised in it
+            while not self._has_ended.wait(0.5):
+                pass
         finally:
-            self._free.release()
+            self.stop()
+            self._has_ended.wait(LONGEST_END)
 
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """A rater who went away is no error; anything else is told without saying whose."""
-        error = sys.exc_info()[1]
-        if not isinstance(error, OSError):
-            sys.stderr.write(f"roadgpt: a request could not be answered ({error!r})\n")
-
-
-def _stop_listening(connection: socket.socket) -> None:
-    with suppress(OSError):  # it is closed already
-        connection.shutdown(socket.SHUT_RD)
-
-
-class Handler(BaseHTTPRequestHandler):
-    """One connection."""
-
-    server: Server
-    protocol_version = "HTTP/1.1"
-    timeout = PATIENCE
-
-    def handle_one_request(self) -> None:
-        """The next request; one that drips in for longer than ``SLOWEST`` is cut off, what is sent is not."""
-        cut = threading.Timer(SLOWEST, _stop_listening, [self.connection])
-        cut.daemon = True
-        cut.start()
+    def _run(self) -> None:
         try:
-            super().handle_one_request()
+            self._uvicorn.run([self._socket])
         finally:
-            cut.cancel()
+            self._has_ended.set()
 
-    def version_string(self) -> str:
-        """No versions: nobody needs to know them."""
-        return "roadgpt"
+    def stop(self) -> None:
+        """Makes ``serve_forever`` return soon, without waiting for raters; may be called by any thread."""
+        self._uvicorn.should_exit = self._uvicorn.force_exit = True
 
-    def log_message(self, *said: Any) -> None:
-        """Nothing is logged: addresses are raters' keys, and network addresses are nobody's business."""
-
-    def do_GET(self) -> None:
-        """A page or a file."""
-        self._answer(b"")
-
-    def do_HEAD(self) -> None:
-        """As GET, without the body."""
-        self._answer(b"")
-
-    def do_POST(self) -> None:
-        """Answers."""
-        length = self.headers.get("Content-Length", "")
-        if "Transfer-Encoding" in self.headers or not re.fullmatch("[0-9]{1,9}", length, re.ASCII):
-            self.send_error(411)
-        elif int(length) > MOST_BYTES:
-            self.send_error(413)
-        else:
-            body = self.rfile.read(int(length))
-            if len(body) == int(length):  # else whoever sent it went away in the middle
-                self._answer(body)
-
-    def __getattr__(self, name: str) -> Any:
-        """Methods of other names are answered as well; http.server asks for do_METHOD."""
-        if name.startswith("do_"):
-            return self._refuse
-        raise AttributeError(name)
-
-    def _refuse(self) -> None:
-        self.close_connection = True  # it may bring a body, which nobody reads
-        self._answer(b"")
-
-    def _answer(self, body: bytes) -> None:
-        if len(self.path) > MOST_ADDRESS:
-            self.send_error(414)
-            return
-        method = "GET" if self.command == "HEAD" else self.command
-        kind = self.headers.get("Content-Type", "").split(";")[0].strip().lower()
-        try:
-            told = self.server.desk.answer(Asked(method, self.path, kind, body))
-        except sqlite3.Error as error:
-            sys.stderr.write(f"roadgpt: an answer could not be saved ({error})\n")
-            self.send_error(503, explain="Your answer could not be saved. Please try again in a moment.")
-            return
-        if told.file is not None:
-            self._send_file(told)
-        else:
-            self._head(told.status, len(told.body), told.kind, told.headers)
-            self._write(told.body)
-
-    def _send_file(self, told: Told) -> None:
-        """A file, or the part of it that was asked for: some phones play no film otherwise."""
-        assert told.file is not None
-        try:
-            file = told.file.open("rb")
-        except OSError:
-            self.send_error(404)
-            return
-        with file:
-            size = os.fstat(file.fileno()).st_size
-            first, last = 0, size - 1
-            headers = {"Accept-Ranges": "bytes", "Cache-Control": KEPT}
-            if told.is_frame:
-                headers["Content-Security-Policy"] = FRAMES
-            status, wanted = 200, _range_of(self.headers.get("Range", ""), size)
-            if wanted is not None:
-                first, last = wanted
-                if first > last:
-                    self._head(416, 0, told.kind, headers | {"Content-Range": f"bytes */{size}"})
-                    return
-                status = 206
-                headers["Content-Range"] = f"bytes {first}-{last}/{size}"
-            self._head(status, last - first + 1, told.kind, headers)
-            file.seek(first)
-            left = last - first + 1
-            while left > 0 and self.command != "HEAD":
-                piece = file.read(min(PIECE, left))
-                if not piece:
-                    self.close_connection = True
-                    return
-                self.wfile.write(piece)
-                left -= len(piece)
-
-    def _head(self, status: int, length: int, kind: str, headers: Mapping[str, str]) -> None:
-        self.send_response(status)
-        usual = {"Cache-Control": SEEN_ANEW, "Content-Security-Policy": OUR_PAGES, "Content-Type": kind}
-        for name, value in (HEADERS | usual | {"Content-Length": str(length)} | dict(headers)).items():
-            self.send_header(name, value)
-        if self.close_connection:
-            self.send_header("Connection", "close")
-        self.end_headers()
-
-    def _write(self, body: bytes) -> None:
-        if self.command != "HEAD":
-            self.wfile.write(body)
-
-    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        """A sentence; nothing of the request stands in it. The connection is closed."""
-        self.close_connection = True
-        said = explain or f"{HTTPStatus(code).phrase}."
-        body, kind = (said.encode(), "text/plain; charset=utf-8")
-        if getattr(self, "path", "").endswith("/answer"):
-            body, kind = (b'{"error": "' + said.encode() + b'"}', JSON)
-        self.request_version = self.protocol_version  # a broken first line is answered in words, too
-        self._head(code, len(body), kind, {})
-        self._write(body)
-
-
-def _range_of(asked: str, size: int) -> tuple[int, int] | None:
-    """First and last byte of a single range; None where there is none that we take; first > last: beyond."""
-    found = re.fullmatch(r"bytes=(\d{0,15})-(\d{0,15})", asked.strip(), re.ASCII)
-    if found is None or not any(found.groups()):
-        return None
-    first, last = found.groups()
-    if not first:
-        return max(0, size - int(last)), size - 1
-    if last and int(last) < int(first):
-        return None
-    return int(first), min(int(last), size - 1) if last else size - 1
+    def close(self) -> None:
+        """Stops listening."""
+        self._socket.close()

@@ -4,35 +4,43 @@ import ipaddress
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.reading import read_text
 from roadgpt.run.atomic import write_whole
-from roadgpt.study.survey.desk import Desk
-from roadgpt.study.survey.server import Server
 from roadgpt.study.survey.store import ANSWERS, MOST_RATERS, Store, new_token
 from roadgpt.study.survey.survey import read_survey
+
+if TYPE_CHECKING:
+    from roadgpt.study.survey.server import Server
 
 LINKS = "links.txt"
 OPEN_DOOR = (
     "everyone who can reach this machine can reach the survey, and what they send can be read on its way; "
     "put a server that speaks HTTPS in front of it, and name its address with --url"
 )
+NEEDS = "a survey is served by Starlette, uvicorn and Jinja2"
 Tell = Callable[[str], None]
 
 
-def opened(folder: Path | str, host: str, port: int, is_open: bool = False) -> Server:
-    """A server of the survey in a folder, which listens already; ``serve_forever`` makes it answer.
+def opened(folder: Path | str, host: str, port: int, is_open: bool = False) -> "Server":
+    """Returns a server of the survey in a folder; it listens already, and ``serve_forever`` makes it answer.
 
     Raises:
-        UsageError: there is no survey, or nobody can listen there.
+        UsageError: there is no survey, nobody can listen there, or the extra ``survey`` is not installed.
         RoadGPTError: its answers cannot be opened.
     """
+    try:
+        from roadgpt.study.survey.app import SurveyApp
+        from roadgpt.study.survey.server import Server
+    except ImportError as error:
+        raise UsageError(f"{NEEDS}; say python -m pip install 'roadgpt[survey]'") from error
     folder = Path(folder).resolve()
     survey = read_survey(folder)
     store = Store(folder / ANSWERS)
     try:
-        return Server(Desk(folder, survey, store, store.shared() if is_open else ""), host, port)
+        return Server(SurveyApp(folder, survey, store, store.shared() if is_open else ""), host, port)
     except BaseException:
         store.close()
         raise
@@ -62,21 +70,21 @@ def serve(
         UsageError, RoadGPTError: as for ``opened``.
     """
     server = opened(folder, host, port, is_open)
-    store = server.desk.store
+    store = server.app.store
     try:
-        base = url.rstrip("/") or f"http://{_shown(host)}:{server.server_address[1]}"
+        base = url.rstrip("/") or f"http://{_shown(host)}:{server.port}"
         if not _is_own(host):
             tell(f"roadgpt: {OPEN_DOOR}")
         for line in _invited(Path(folder), store, raters, base):
             tell(line)
         if is_open:
-            tell(f"for everyone: {base}/join/{server.desk.shared}")
+            tell(f"for everyone: {base}/join/{server.app.shared}")
         if not store.links() and not is_open:
             tell("nobody is invited yet; say --raters N for links, or --open for one link for all")
-        tell(f"serving {server.desk.survey.title!r} at {base}; end it with Ctrl-C")
+        tell(f"serving {server.app.survey.title!r} at {base}; end it with Ctrl-C")
         server.serve_forever()
     finally:
-        server.server_close()
+        server.close()
         states = [rater.state for rater in store.raters()]
         store.close()
         tell(f"{states.count('agreed')} of {len(states)} raters agreed so far; all answers are in {folder}")

@@ -1,0 +1,271 @@
+"""The survey as a Starlette application: the addresses, and what each answers to whom.
+
+/static/NAME                                    the style and the script
+/join/SHARED                                    where a survey is open: makes a rater of whoever agrees
+/r/TOKEN                                        consent, or the first page that is not finished
+/r/TOKEN/N             GET, POST a form         page N of this rater
+/r/TOKEN/answer        POST JSON                one answer, confirmed when it is on the disk
+/r/TOKEN/media/NAME                             a picture, a film, a 3-D view
+/r/TOKEN/done, /mine, /withdraw                 the end; what is kept; deletes it
+"""
+
+import hmac
+import json
+import sqlite3
+import sys
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from pathlib import Path
+from urllib.parse import parse_qsl
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, RedirectResponse, Response
+from starlette.routing import Route
+from starlette.types import Receive, Scope, Send
+
+from roadgpt.study.survey.limits import FRAMES, RequestGuard, refusal
+from roadgpt.study.survey.order import pages_for
+from roadgpt.study.survey.pages import own_answers, questionnaire, render
+from roadgpt.study.survey.questions import clean
+from roadgpt.study.survey.store import MOST_RATERS, Rater, Store
+from roadgpt.study.survey.survey import MEDIA, Page, Survey
+
+STATIC = Path(__file__).parent / "static"
+STATIC_TYPES = {"survey.css": "text/css", "survey.js": "text/javascript"}
+MEDIA_TYPES = {"picture": "image/png", "film": "video/mp4", "view": "text/html"}
+JSON, FORM = "application/json", "application/x-www-form-urlencoded"
+MOST_FIELDS = 100  # of a form
+KEPT = {"Cache-Control": "private, max-age=3600"}
+CLOSED = "This link is closed: the answers given with it were deleted."
+NOT_SAVED = "Your answer could not be saved. Please try again in a moment."
+NOTICES = {
+    404: ("Not found", "Nothing is here. Please open the link that you were given, in full."),
+    405: ("Not here", "This address does not take such a request."),
+    415: ("Not taken", "Answers come as a form; files are not taken."),
+    422: ("Not saved", "One answer is none of those offered, or too long; go back and mend it."),
+    503: ("Full", "This survey takes no more people."),
+}
+"""Heading and sentence of a page, by status."""
+Answer = Callable[[Request, bytes], Response]
+
+
+def _in_thread(answer: Answer) -> Callable[[Request], Awaitable[Response]]:
+    """An endpoint that reads the body and answers in a worker thread, which may wait for the disk."""
+
+    async def endpoint(request: Request) -> Response:
+        return await run_in_threadpool(answer, request, await request.body())
+
+    return endpoint
+
+
+class SurveyApp:
+    """An ASGI application that serves one survey; its endpoints run in many threads at once.
+
+    Args:
+        folder: of the survey.
+        survey: what is shown and asked.
+        store: the file of answers.
+        shared: token of the link with which anyone may join; empty where nobody may.
+    """
+
+    def __init__(self, folder: Path, survey: Survey, store: Store, shared: str = "") -> None:
+        self.folder, self.survey, self.store, self.shared = folder, survey, store, shared
+
+        def at(path: str, answer: Answer, *methods: str) -> Route:
+            return Route(path, _in_thread(answer), methods=methods or ["GET"])
+
+        own = "/r/{token}"
+        routes = [
+            at("/static/{name}", self._static),
+            at("/join/{token}", self._join, "GET", "POST"),
+            at(own, self._door, "GET", "POST"),
+            at(f"{own}/", self._door, "GET", "POST"),
+            at(f"{own}/media/{{name}}", self._medium),
+            at(f"{own}/answer", self._save_one, "POST"),
+            at(f"{own}/done", self._done),
+            at(f"{own}/mine", self._mine),
+            at(f"{own}/withdraw", self._withdraw, "POST"),
+            at(f"{own}/{{number:int}}", self._numbered, "GET", "POST"),
+        ]
+        app = Starlette(
+            routes=routes,
+            exception_handlers={HTTPException: self._notice, sqlite3.Error: self._not_saved},  # type: ignore[dict-item]
+        )
+        app.router.redirect_slashes = False  # it would redirect to whatever host the request names
+        self._app = RequestGuard(app)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answers one request, as ASGI has it."""
+        await self._app(scope, receive, send)
+
+    def _static(self, request: Request, _: bytes) -> Response:
+        name = request.path_params["name"]
+        if name not in STATIC_TYPES:
+            raise HTTPException(404)
+        return Response((STATIC / name).read_bytes(), media_type=STATIC_TYPES[name])
+
+    def _join(self, request: Request, body: bytes) -> Response:
+        token = request.path_params["token"].encode("utf-8", "replace")
+        if not self.shared or not hmac.compare_digest(token, self.shared.encode()):
+            raise HTTPException(404)
+        here = f"/join/{self.shared}"
+        if request.method != "POST":
+            return self._page("consent.html", action=here, is_joining=True)
+        if _fields(request, body).get("agree") != "yes":
+            return RedirectResponse(here, 303)
+        if len(self.store.raters()) >= MOST_RATERS:
+            raise HTTPException(503)
+        own = self.store.add_rater(joined=True)
+        rater = self.store.rater_of(own)
+        assert rater is not None
+        self.store.agree(rater)
+        return RedirectResponse(f"/r/{own}/1", 303)
+
+    def _rater(self, request: Request, has_agreed: bool = True) -> tuple[Rater, str]:
+        """Whose link it is, and their address.
+
+        Raises:
+            HTTPException: it is nobody's link, or that of someone who withdrew or, where that is needed, who
+                has not agreed yet.
+        """
+        token = request.path_params["token"]
+        rater = self.store.rater_of(token)
+        if rater is None:
+            raise HTTPException(404)
+        if rater.state == "withdrawn":
+            raise HTTPException(410, CLOSED)
+        if has_agreed and rater.state != "agreed":
+            raise HTTPException(303, headers={"Location": f"/r/{token}"})
+        return rater, f"/r/{token}"
+
+    def _door(self, request: Request, body: bytes) -> Response:
+        """Consent; for one who agreed, the first page that is not finished."""
+        rater, base = self._rater(request, has_agreed=False)
+        if rater.state == "invited":
+            if request.method != "POST":
+                return self._page("consent.html", action=base, is_joining=False)
+            if _fields(request, body).get("agree") != "yes":
+                return RedirectResponse(base, 303)
+            self.store.agree(rater)
+            return RedirectResponse(f"{base}/1", 303)
+        given, own = self.store.answers_of(rater), self._pages(rater)
+        unfinished = [number for number, page in enumerate(own, 1) if _missing(page, given)]
+        return RedirectResponse(f"{base}/{unfinished[0] if unfinished else len(own)}", 303)
+
+    def _medium(self, request: Request, _: bytes) -> Response:
+        """A file of the survey: the name must be one of those that the survey lists."""
+        self._rater(request, has_agreed=False)
+        medium = self.survey.media.get(request.path_params["name"])
+        if medium is None or not (path := self.folder / MEDIA / medium.name).is_file():
+            raise HTTPException(404)
+        policy = {"Content-Security-Policy": FRAMES} if medium.kind == "view" else {}
+        return FileResponse(path, headers=KEPT | policy, media_type=MEDIA_TYPES[medium.kind])
+
+    def _save_one(self, request: Request, body: bytes) -> Response:
+        """One answer as JSON; the reply confirms it only after it is on the disk."""
+        rater, _ = self._rater(request, has_agreed=False)
+        if _kind(request) != JSON:
+            raise HTTPException(415, "an answer comes as application/json")
+        try:
+            data = json.loads(body)
+        except (ValueError, RecursionError) as error:
+            raise HTTPException(400, "this is not JSON") from error
+        match data:
+            case {"question": str(id_), "value": str(value)} if len(data) == 2:
+                question, value = self.survey.questions.get(id_), clean(value)
+            case _:
+                raise HTTPException(400, "an answer has a question and a value")
+        if question is None:
+            raise HTTPException(422, "there is no such question")
+        if not question.takes(value):
+            raise HTTPException(422, "it is none of the answers offered, or too long")
+        if not self.store.save(rater, {id_: value}):
+            raise HTTPException(403, "please agree to take part first")
+        return JSONResponse({"saved": id_})
+
+    def _numbered(self, request: Request, body: bytes) -> Response:
+        rater, base = self._rater(request)
+        own, number = self._pages(rater), int(request.path_params["number"])
+        if not 1 <= number <= len(own):
+            raise HTTPException(404)
+        if request.method != "POST":
+            return HTMLResponse(questionnaire(self.survey, own, number, base, self.store.answers_of(rater)))
+        if _kind(request) != FORM:
+            raise HTTPException(415)
+        page, fields = own[number - 1], _fields(request, body)
+        answers = {q.id: clean(fields[q.id]) for q in page.questions if q.id in fields}
+        by_id = self.survey.questions
+        if any(not by_id[id_].takes(value) for id_, value in answers.items()):
+            raise HTTPException(422)
+        if not self.store.save(rater, answers):
+            raise HTTPException(410, CLOSED)
+        given = self.store.answers_of(rater)
+        go, missing = fields.get("go", "next"), _missing(page, given)
+        if go == "back":
+            return RedirectResponse(f"{base}/{max(1, number - 1)}", 303)
+        if missing and go != "skip":
+            return HTMLResponse(questionnaire(self.survey, own, number, base, given, missing))
+        return RedirectResponse(f"{base}/{number + 1}" if number < len(own) else f"{base}/done", 303)
+
+    def _done(self, request: Request, _: bytes) -> Response:
+        rater, base = self._rater(request)
+        given = self.store.answers_of(rater)
+        left_out = sum(len(_missing(page, given)) for page in self.survey.pages)
+        return self._page("done.html", base=base, left_out=left_out)
+
+    def _mine(self, request: Request, _: bytes) -> Response:
+        rater, base = self._rater(request)
+        given = self.store.answers_of(rater)
+        return HTMLResponse(own_answers(self.survey, base, given, rater.agreed_on or ""))
+
+    def _withdraw(self, request: Request, body: bytes) -> Response:
+        rater, base = self._rater(request)
+        if _fields(request, body).get("sure") != "yes":
+            return RedirectResponse(f"{base}/mine", 303)
+        self.store.withdraw(rater)
+        return self._page("deleted.html")
+
+    def _pages(self, rater: Rater) -> Sequence[Page]:
+        return pages_for(self.survey, rater.digest)
+
+    def _page(self, template: str, status: int = 200, **values: object) -> Response:
+        return HTMLResponse(render(template, self.survey, **values), status)
+
+    def _notice(self, request: Request, error: HTTPException) -> Response:
+        """A page, or for the script JSON, that says why a request is not answered."""
+        status, headers = error.status_code, error.headers
+        if status == 303:
+            return Response(status_code=status, headers=headers)
+        if request.scope["path"].endswith("/answer"):
+            return JSONResponse({"error": error.detail}, status, headers)
+        if status == 410:
+            return self._page("deleted.html", 410 if request.method == "POST" else 200)
+        heading, sentence = NOTICES.get(status, (error.detail, error.detail))
+        text = render("notice.html", self.survey, heading=heading, sentence=sentence)
+        return HTMLResponse(text, status, headers)
+
+    def _not_saved(self, request: Request, error: sqlite3.Error) -> Response:
+        sys.stderr.write(f"roadgpt: an answer could not be saved ({error})\n")
+        return refusal(request.scope["path"], 503, NOT_SAVED)
+
+
+def _missing(page: Page, given: Mapping[str, str]) -> list[str]:
+    return [question.id for question in page.questions if question.is_needed and question.id not in given]
+
+
+def _kind(request: Request) -> str:
+    """Content type of the body, without parameters."""
+    return request.headers.get("content-type", "").split(";")[0].strip().lower()
+
+
+def _fields(request: Request, body: bytes) -> dict[str, str]:
+    """The fields of a form, the last of each name; none where it is no form."""
+    if _kind(request) != FORM:
+        return {}
+    try:
+        text = body.decode("ascii", "replace")
+        return dict(parse_qsl(text, keep_blank_values=True, max_num_fields=MOST_FIELDS))
+    except ValueError:
+        return {}
