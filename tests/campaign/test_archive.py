@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ribs.archives import CVTArchive, GridArchive
 
+from roadgpt.brief.element import Element
 from roadgpt.campaign.acquisition import (
     ANYWHERE,
     Predictions,
@@ -22,7 +23,6 @@ from roadgpt.campaign.acquisition import (
 from roadgpt.campaign.archive import SAMPLES, Archive
 from roadgpt.campaign.behaviour import bounds_of, cell_of
 from roadgpt.campaign.boundary_pairs import distance, paired
-from roadgpt.campaign.genome import Gene
 from roadgpt.campaign.variation import Candidate
 from roadgpt.design.variety import Shape, apart, shape_of
 from roadgpt.road import Design, Segment
@@ -209,13 +209,16 @@ LENGTHS = st.floats(1, 60)
 @settings(max_examples=50)
 @given(st.lists(st.tuples(LENGTHS, st.floats(15, 40), st.booleans(), st.booleans()), min_size=1, max_size=9))
 def test_pairs_are_the_nearest_relatives(roads: list) -> None:
-    genes = {
-        number: (Gene(length=length), Gene(turn=40.0 if left else -40.0, radius=radius, ramp=4.0))
+    elements = {
+        number: (
+            Element(straight=length),
+            Element(turn=40.0 if left else -40.0, radius=radius, transition=4.0),
+        )
         for number, (length, radius, left, _) in enumerate(roads, 1)
     }
     kept = [number for number, road in enumerate(roads, 1) if road[3]]
     lost = [number for number, road in enumerate(roads, 1) if not road[3]]
-    found = paired(genes, kept, lost)
+    found = paired(elements, kept, lost)
     rest = {(a, b) for a in kept for b in lost if roads[a - 1][2] == roads[b - 1][2]}
     for pair in found:
         nearest = min(
@@ -228,7 +231,7 @@ def test_pairs_are_the_nearest_relatives(roads: list) -> None:
 
 
 def test_roads_of_another_row_are_no_relatives() -> None:
-    one = (Gene(length=20.0), Gene(turn=40.0, radius=20.0, ramp=4.0))
+    one = (Element(straight=20.0), Element(turn=40.0, radius=20.0, transition=4.0))
     assert distance(one, one[:1]) == math.inf
     assert distance(one, (one[0], one[1]._replace(turn=-40.0))) == math.inf
     assert distance(one, one) == 0.0

@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 
 from roadgpt.brief import read
 from roadgpt.campaign.behaviour import BOUNDS, behaviour_of, bounds_of, cell_of, directions, turns_asked
-from roadgpt.campaign.genome import design_of, genes_of
 from roadgpt.campaign.mutation import mirrored
 from roadgpt.design import draft
+from roadgpt.design.elements import elements_of
 from roadgpt.design.layout import Place
+from roadgpt.design.writing import design_of
 from roadgpt.road import Design, Segment, World, build
 
 WORLD = World()
@@ -68,11 +69,11 @@ def test_a_straight_road_goes_one_way() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_mirror_swaps_left_and_right_and_nothing_else(seed: int) -> None:
-    genes = genes_of(draft(read("a winding road", reader="grammar"), WORLD, seed=seed))
+    elements = elements_of(draft(read("a winding road", reader="grammar"), WORLD, seed=seed).segments)
     place = Place(120.0, 120.0, 30.0)
-    one = behaviour_of(build(design_of(genes, place, WORLD)), None)
+    one = behaviour_of(build(design_of(elements, place, WORLD)), None)
     rng = np.random.default_rng(0)
-    other = behaviour_of(build(design_of(mirrored(genes, rng, WORLD), place, WORLD)), None)
+    other = behaviour_of(build(design_of(mirrored(elements, rng, WORLD), place, WORLD)), None)
     assert other.pop("LEFT") == pytest.approx(1 - one.pop("LEFT"))
     for name in ("DIR_COV_360",):  # a mirrored road looks elsewhere
         one.pop(name), other.pop(name)

@@ -17,8 +17,8 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign import Budget, Cell, Goal, Proposal, Result
 from roadgpt.campaign.behaviour import behaviour_of, cell_of
 from roadgpt.campaign.boundary_pairs import distance, pairs_of
-from roadgpt.campaign.genome import genes_of
 from roadgpt.design import draft
+from roadgpt.design.elements import elements_of
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, World, build
 from roadgpt.run import Request, Setup
@@ -182,7 +182,7 @@ def test_the_boundary_is_closed_in_on() -> None:
     assert (kept.outcome, lost.outcome) == ("PASS", "FAIL")
     assert kept.design is not None
     assert lost.design is not None
-    assert pairs[0].distance == distance(genes_of(kept.design), genes_of(lost.design))
+    assert pairs[0].distance == distance(elements_of(kept.design.segments), elements_of(lost.design.segments))
 
 
 def test_coverage_fills_the_map_faster_than_failures_do() -> None:

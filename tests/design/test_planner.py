@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt import check
+from roadgpt.brief.element import Element
 from roadgpt.brief.model import Brief, Clause, Slope, at_least, at_most, exactly
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import read_plan
@@ -14,7 +15,6 @@ from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.designers.planner import Planner
 from roadgpt.design.heights import Windows, drawn_heights
-from roadgpt.design.spans import Span
 from roadgpt.design.vertical import Pace
 from roadgpt.errors import DesignError, PartError
 from roadgpt.road import Design, World, build, read_design
@@ -144,10 +144,11 @@ def test_the_lowest_place_of_a_hilly_road_is_no_lower_than_the_ground() -> None:
 
 def test_steep_descents_of_a_hilly_road_are_drawn_from_all_that_was_promised() -> None:
     promised = Range(-14, -8)
-    spans = [Span(60.0), Span(60.0, grade=promised, promised=Range(50, 70)), Span(60.0)]
+    asked_for = Element(60.0, required_length=Range(50, 70), required_grade=promised)
+    plan = [Element(60.0), asked_for, Element(60.0)]
     asked = outline(Brief(hills=at_least(1)))
-    windows, rng, pace = Windows(asked, WORLD), np.random.default_rng(4), Pace.along(spans, WORLD)
-    steep = [drawn_heights(spans, asked, windows, rng, pace)[1][0][1] for _ in range(60)]
+    windows, rng, pace = Windows(asked, WORLD), np.random.default_rng(4), Pace.along(plan, WORLD)
+    steep = [drawn_heights(plan, asked, windows, rng, pace)[1].incline for _ in range(60)]
     assert min(steep) < -13
     assert max(steep) > -10.5  # ramps take the rest off the mean, which is what was promised
     assert np.std(steep) > 1

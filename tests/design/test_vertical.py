@@ -12,14 +12,15 @@ from llm_like import random_lists
 from roadgpt import check, read
 from roadgpt.brief.model import Brief, Clause, at_least, exactly
 from roadgpt.brief.plan import read_plan
-from roadgpt.campaign.genome import design_of, genes_of
 from roadgpt.campaign.variation import VariationContext, VariationTask, make_candidate
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
+from roadgpt.design.elements import elements_of
 from roadgpt.design.layout import Place
 from roadgpt.design.repair import repair
 from roadgpt.design.vertical import softened
+from roadgpt.design.writing import design_of
 from roadgpt.drive.driving_line import line_along
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, World, build, read_design
@@ -140,12 +141,12 @@ def test_changes_of_slope_are_gentle_enough(words: str) -> None:
         assert felt(after) <= 3.05
 
 
-def test_genes_keep_vertical_radii_and_variations_the_rule() -> None:
+def test_elements_keep_vertical_radii_and_variations_the_rule() -> None:
     brief = read("an uphill road with 3 turns")
     design = draft(brief, WORLD, seed=4)
     assert any(segment.vertical_radius for segment in design.segments)
     place = Place(*design.starting_point[:2], design.theta)
-    assert design_of(genes_of(design), place, WORLD).segments == design.segments
+    assert design_of(elements_of(design.segments), place, WORLD).segments == design.segments
     setting = VariationContext(brief, WORLD)
     found = [make_candidate(VariationTask("vary", (design,), "", (n,), setting)) for n in range(20)]
     assert sum(one is not None for one in found) >= 16

@@ -10,12 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.campaign.genome import Gene, Genes, genes_of
+from roadgpt.brief.element import Element, Elements
 from roadgpt.campaign.model import Result
+from roadgpt.design.elements import elements_of
 
 
 class Measure(NamedTuple):
-    """A number of a gene, by which two genes are compared."""
+    """A number of an element, by which two elements are compared."""
 
     field: str
     called: str
@@ -29,7 +30,7 @@ OF_TURN = (
     GRADE,
     Measure("turn", "angle", " degrees", 10.0),
     Measure("radius", "radius", " m", 2.0),
-    Measure("ramp", "clothoid", " m", 2.0),
+    Measure("transition", "clothoid", " m", 2.0),
 )
 OF_STRAIGHT = (GRADE, Measure("length", "length", " m", 10.0))
 
@@ -47,9 +48,9 @@ class BoundaryPair:
     or a clothoid, 10 degrees of a turn and 1 % of a slope count as 1."""
 
 
-def distance(one: Genes, other: Genes) -> float:
+def distance(one: Elements, other: Elements) -> float:
     """Returns the distance between corresponding roads; infinite where they do not correspond."""
-    if [np.sign(gene.turn) for gene in one] != [np.sign(gene.turn) for gene in other]:
+    if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return np.inf
     total = 0.0
     for a, b in zip(one, other, strict=True):
@@ -58,7 +59,7 @@ def distance(one: Genes, other: Genes) -> float:
     return float(np.sqrt(total))
 
 
-def weightiest(kept: Genes, lost: Genes) -> str:
+def weightiest(kept: Elements, lost: Elements) -> str:
     """Names the largest difference between corresponding roads: 'turn 2: radius 15.4 m, then 14.9 m'; or
     nothing."""
     most, found = 0.0, ""
@@ -74,13 +75,13 @@ def weightiest(kept: Genes, lost: Genes) -> str:
     return found
 
 
-def _weight(measure: Measure, a: Gene, b: Gene) -> float:
+def _weight(measure: Measure, a: Element, b: Element) -> float:
     difference: float = getattr(a, measure.field) - getattr(b, measure.field)
     return difference / measure.scale
 
 
-def _figure(gene: Gene, measure: Measure) -> str:
-    value = getattr(gene, measure.field)
+def _figure(element: Element, measure: Measure) -> str:
+    value = getattr(element, measure.field)
     size = abs(value) if measure.field == "turn" else value
     return f"{size:.2f}".rstrip("0").rstrip(".").replace("-", "−") + measure.unit
 
@@ -90,21 +91,25 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
     Every failure is paired with its nearest relative that passed; each test is in one pair at most.
     """
-    genes = {r.number: genes_of(r.design) for r in results if r.design and r.outcome in ("PASS", "FAIL")}
-    kept = [r.number for r in results if r.outcome == "PASS" and r.number in genes]
-    lost = [r.number for r in results if r.outcome == "FAIL" and r.number in genes]
-    return paired(genes, kept, lost)
+    roads = {
+        r.number: elements_of(r.design.segments)
+        for r in results
+        if r.design and r.outcome in ("PASS", "FAIL")
+    }
+    kept = [r.number for r in results if r.outcome == "PASS" and r.number in roads]
+    lost = [r.number for r in results if r.outcome == "FAIL" and r.number in roads]
+    return paired(roads, kept, lost)
 
 
-def paired(genes: dict[int, Genes], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """Returns the same pairs, for genes by the numbers of their tests."""
+def paired(roads: dict[int, Elements], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
+    """Returns the same pairs, for roads by the numbers of their tests."""
     rows: dict[tuple[float, ...], list[int]] = {}
     for number in kept:
-        rows.setdefault(_row(genes[number]), []).append(number)
+        rows.setdefault(_row(roads[number]), []).append(number)
     every = [
-        BoundaryPair(other, number, distance(genes[other], genes[number]))
+        BoundaryPair(other, number, distance(roads[other], roads[number]))
         for number in lost
-        for other in rows.get(_row(genes[number]), ())
+        for other in rows.get(_row(roads[number]), ())
     ]
     out: list[BoundaryPair] = []
     used: set[int] = set()
@@ -115,5 +120,5 @@ def paired(genes: dict[int, Genes], kept: Sequence[int], lost: Sequence[int]) ->
     return out
 
 
-def _row(genes: Genes) -> tuple[float, ...]:
-    return tuple(float(np.sign(gene.turn)) for gene in genes)
+def _row(elements: Elements) -> tuple[float, ...]:
+    return tuple(float(np.sign(element.turn)) for element in elements)

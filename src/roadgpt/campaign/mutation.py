@@ -1,4 +1,4 @@
-"""Mutations of a road's genes: each is a pure function that draws from a given random generator.
+"""Mutations of a road's elements: each is a pure function that draws from a given random generator.
 
 A mutation does not look at what was asked for: ``variation`` checks every road afterwards.
 """
@@ -9,19 +9,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.campaign.genome import Gene, Genes
+from roadgpt.brief.element import Element, Elements
 from roadgpt.road import World
 from roadgpt.road.design import MAX_INCLINE
 
 STRAIGHTS = (1.0, 150.0)  # m
 TURNS = (12.0, 200.0)  # degrees
-RAMPS = (2.0, 16.0)  # m
+TRANSITIONS = (2.0, 16.0)  # m
 OVER_LEAST_RADIUS = 1.03  # of the world's least: a spline through points 2 m apart loses so much
 WIDEST = 120.0  # m, of a radius
-STRETCH = 0.45  # standard deviation of the logarithm of a length, a radius, a ramp
+STRETCH = 0.45  # standard deviation of the logarithm of a length, a radius, a transition
 SWING = 22.0  # degrees, standard deviation
 SLOPE = 2.5  # percent, standard deviation
-MOST_GENES = 24  # of a road
+MOST_ELEMENTS = 24  # of a road
 NEW_STRAIGHT = (3.0, 45.0)  # m, of one that is put in
 NEW_TURN = (20.0, 120.0)  # degrees
 
@@ -31,17 +31,17 @@ Rng = np.random.Generator
 class Mutation(NamedTuple):
     """A kind of mutation, and how often it is drawn relative to the others."""
 
-    make: Callable[[Genes, Rng, World], Genes]
+    make: Callable[[Elements, Rng, World], Elements]
     weight: float
     is_numeric: bool
     """True if it keeps the sequence of turns and straights and changes numbers only."""
 
 
-def mutated(genes: Genes, rng: Rng, world: World, numeric: float = 0.0) -> Genes:
+def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) -> Elements:
     """Applies one to three mutations, one after the other.
 
     Args:
-        genes: of a road.
+        elements: of a road.
         rng: the random generator.
         world: gives the limits of radii and grades.
         numeric: probability that only lengths, angles, radii and slopes change.
@@ -51,17 +51,17 @@ def mutated(genes: Genes, rng: Rng, world: World, numeric: float = 0.0) -> Genes
         names = list(MUTATIONS)
     weights = np.array([MUTATIONS[name].weight for name in names])
     for number in rng.choice(len(names), size=1 + rng.integers(3), p=weights / weights.sum()):
-        genes = MUTATIONS[names[int(number)]].make(genes, rng, world)
-    return genes
+        elements = MUTATIONS[names[int(number)]].make(elements, rng, world)
+    return elements
 
 
-def crossed_over(one: Genes, other: Genes, rng: Rng) -> Genes:
-    """Returns the start of one road followed by the end of another, each cut at a random gene."""
+def crossed_over(one: Elements, other: Elements, rng: Rng) -> Elements:
+    """Returns the start of one road followed by the end of another, each cut at a random element."""
     first, last = int(rng.integers(1, len(one) + 1)), int(rng.integers(len(other)))
-    return (one[:first] + other[last:])[:MOST_GENES]
+    return (one[:first] + other[last:])[:MOST_ELEMENTS]
 
 
-def interpolated(one: Genes, other: Genes, share: float) -> Genes | None:
+def interpolated(one: Elements, other: Elements, share: float) -> Elements | None:
     """Returns the road between two whose turns and straights correspond; None where they do not.
 
     Args:
@@ -69,110 +69,120 @@ def interpolated(one: Genes, other: Genes, share: float) -> Genes | None:
         other: the road at share 1.
         share: 0 to 1.
     """
-    if [np.sign(gene.turn) for gene in one] != [np.sign(gene.turn) for gene in other]:
+    if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return None
 
     def between(a: float, b: float) -> float:
         return a if a == b else (1 - share) * a + share * b
 
-    return tuple(Gene(*map(between, a, b)) for a, b in zip(one, other, strict=True))
+    return tuple(
+        Element(
+            between(a.straight, b.straight),
+            between(a.turn, b.turn),
+            between(a.radius, b.radius),
+            between(a.transition, b.transition),
+            between(a.incline, b.incline),
+            between(a.vertical_radius or 0.0, b.vertical_radius or 0.0) or None,
+        )
+        for a, b in zip(one, other, strict=True)
+    )
 
 
-def mirrored(genes: Genes, rng: Rng, world: World) -> Genes:
+def mirrored(elements: Elements, rng: Rng, world: World) -> Elements:
     """Turns every left turn into a right one, and every right one into a left one."""
     del rng, world
-    return tuple(gene._replace(turn=-gene.turn) if gene.turn else gene for gene in genes)
+    return tuple(element._replace(turn=-element.turn) if element.turn else element for element in elements)
 
 
-def _longer(genes: Genes, rng: Rng, world: World) -> Genes:
+def _longer(elements: Elements, rng: Rng, world: World) -> Elements:
     del world
-    return _with(
-        genes, _any(genes, rng, is_turn=False), lambda g: g._replace(length=_scaled(g.length, STRAIGHTS, rng))
-    )
+    return _one(elements, rng, False, lambda e: e._replace(straight=_scaled(e.straight, STRAIGHTS, rng)))
 
 
-def _tighter(genes: Genes, rng: Rng, world: World) -> Genes:
+def _tighter(elements: Elements, rng: Rng, world: World) -> Elements:
     limits = (world.min_radius * OVER_LEAST_RADIUS, WIDEST)
-    return _with(
-        genes, _any(genes, rng, is_turn=True), lambda g: g._replace(radius=_scaled(g.radius, limits, rng))
-    )
+    return _one(elements, rng, True, lambda e: e._replace(radius=_scaled(e.radius, limits, rng)))
 
 
-def _farther(genes: Genes, rng: Rng, world: World) -> Genes:
+def _farther(elements: Elements, rng: Rng, world: World) -> Elements:
     del world
 
-    def turn(gene: Gene) -> Gene:
-        size = np.clip(abs(gene.turn) + SWING * rng.standard_normal(), *TURNS)
-        return gene._replace(turn=float(np.copysign(size, gene.turn)))
+    def turn(element: Element) -> Element:
+        size = np.clip(abs(element.turn) + SWING * rng.standard_normal(), *TURNS)
+        return element._replace(turn=float(np.copysign(size, element.turn)))
 
-    return _with(genes, _any(genes, rng, is_turn=True), turn)
+    return _one(elements, rng, True, turn)
 
 
-def _smoother(genes: Genes, rng: Rng, world: World) -> Genes:
+def _smoother(elements: Elements, rng: Rng, world: World) -> Elements:
     del world
-    return _with(
-        genes, _any(genes, rng, is_turn=True), lambda g: g._replace(ramp=_scaled(g.ramp, RAMPS, rng))
-    )
+
+    def change(element: Element) -> Element:
+        return element._replace(transition=_scaled(element.transition, TRANSITIONS, rng))
+
+    return _one(elements, rng, True, change)
 
 
-def _steeper(genes: Genes, rng: Rng, world: World) -> Genes:
+def _steeper(elements: Elements, rng: Rng, world: World) -> Elements:
     most = min(100 * world.max_grade, MAX_INCLINE) - 0.2
 
-    def slope(gene: Gene) -> Gene:
-        return gene._replace(
-            incline=float(np.clip(gene.incline + SLOPE * rng.standard_normal(), -most, most))
+    def slope(element: Element) -> Element:
+        return element._replace(
+            incline=float(np.clip(element.incline + SLOPE * rng.standard_normal(), -most, most))
         )
 
-    return _with(genes, int(rng.integers(len(genes))), slope)
+    return _with(elements, int(rng.integers(len(elements))), slope)
 
 
-def _other_hand(genes: Genes, rng: Rng, world: World) -> Genes:
+def _other_hand(elements: Elements, rng: Rng, world: World) -> Elements:
     del world
-    return _with(genes, _any(genes, rng, is_turn=True), lambda g: g._replace(turn=-g.turn))
+    return _one(elements, rng, True, lambda e: e._replace(turn=-e.turn))
 
 
-def _swapped(genes: Genes, rng: Rng, world: World) -> Genes:
+def _swapped(elements: Elements, rng: Rng, world: World) -> Elements:
     del world
-    i, j = (int(n) for n in rng.integers(len(genes), size=2))
-    row = list(genes)
+    i, j = (int(n) for n in rng.integers(len(elements), size=2))
+    row = list(elements)
     row[i], row[j] = row[j], row[i]
     return tuple(row)
 
 
-def _inserted(genes: Genes, rng: Rng, world: World) -> Genes:
-    if len(genes) >= MOST_GENES:
-        return genes
-    at = int(rng.integers(len(genes) + 1))
-    incline = genes[min(at, len(genes) - 1)].incline
-    return (*genes[:at], *_new(rng, world, incline), *genes[at:])
+def _inserted(elements: Elements, rng: Rng, world: World) -> Elements:
+    if len(elements) >= MOST_ELEMENTS:
+        return elements
+    at = int(rng.integers(len(elements) + 1))
+    incline = elements[min(at, len(elements) - 1)].incline
+    return (*elements[:at], *_new(rng, world, incline), *elements[at:])
 
 
-def _new(rng: Rng, world: World, incline: float) -> Genes:
+def _new(rng: Rng, world: World, incline: float) -> Elements:
     """Draws a turn and a straight behind it."""
     least = world.min_radius * OVER_LEAST_RADIUS
     turn = float(rng.choice((-1, 1)) * rng.uniform(*NEW_TURN))
     radius = min(least * exp(float(rng.exponential(0.5))), WIDEST)
     return (
-        Gene(turn=turn, radius=radius, ramp=float(rng.uniform(*RAMPS)), incline=incline),
-        Gene(length=float(rng.uniform(*NEW_STRAIGHT)), incline=incline),
+        Element(turn=turn, radius=radius, transition=float(rng.uniform(*TRANSITIONS)), incline=incline),
+        Element(straight=float(rng.uniform(*NEW_STRAIGHT)), incline=incline),
     )
 
 
-def _removed(genes: Genes, rng: Rng, world: World) -> Genes:
+def _removed(elements: Elements, rng: Rng, world: World) -> Elements:
     del world
-    at = int(rng.integers(len(genes)))
-    return genes[:at] + genes[at + 1 :] if len(genes) > 1 else genes
+    at = int(rng.integers(len(elements)))
+    return elements[:at] + elements[at + 1 :] if len(elements) > 1 else elements
 
 
-def _backwards(genes: Genes, rng: Rng, world: World) -> Genes:
+def _backwards(elements: Elements, rng: Rng, world: World) -> Elements:
     """Reverses the direction of driving: left turns become right turns, and climbs become descents."""
     del rng, world
-    radii = [0.0, *(gene.vertical_radius for gene in reversed(genes[1:]))]
+    radii = [None, *(element.vertical_radius for element in reversed(elements[1:]))]
     return tuple(
-        gene._replace(
-            turn=-gene.turn if gene.turn else 0.0, incline=-gene.incline + 0.0, vertical_radius=radius
+        element._replace(
+            turn=-element.turn if element.turn else 0.0,
+            incline=-element.incline + 0.0,
+            vertical_radius=radius,
         )
-        for gene, radius in zip(reversed(genes), radii, strict=True)
+        for element, radius in zip(reversed(elements), radii, strict=True)
     )
 
 
@@ -191,14 +201,14 @@ MUTATIONS: dict[str, Mutation] = {
 }
 
 
-def _any(genes: Genes, rng: Rng, is_turn: bool) -> int | None:
-    """Draws the index of a turn, or of a straight; None where there is none."""
-    found = [index for index, gene in enumerate(genes) if bool(gene.turn) == is_turn]
-    return found[int(rng.integers(len(found)))] if found else None
+def _one(elements: Elements, rng: Rng, is_turn: bool, change: Callable[[Element], Element]) -> Elements:
+    """Applies a change to a random turn, or to a random straight; none where there is none."""
+    found = [index for index, element in enumerate(elements) if bool(element.turn) == is_turn]
+    return _with(elements, found[int(rng.integers(len(found)))], change) if found else elements
 
 
-def _with(genes: Genes, index: int | None, change: Callable[[Gene], Gene]) -> Genes:
-    return genes if index is None else (*genes[:index], change(genes[index]), *genes[index + 1 :])
+def _with(elements: Elements, index: int, change: Callable[[Element], Element]) -> Elements:
+    return (*elements[:index], change(elements[index]), *elements[index + 1 :])
 
 
 def _scaled(value: float, limits: tuple[float, float], rng: Rng) -> float:

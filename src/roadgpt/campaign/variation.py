@@ -1,6 +1,6 @@
 """Variations: new roads made from tested ones, each proved before anyone drives it. Verb: ``varied``.
 
-    Task --change genes--> place on the map --> look (fast) --> build --> every rule --> Candidate, or nothing
+    Task --change elements--> place on the map --> look --> build --> every rule --> Candidate, or nothing
 
 A Task says all that a worker needs, so ``pool.map(varied, tasks)`` does the work anywhere. A change may break
 what was asked for, or lead off the map: then it is drawn again. What comes back keeps every promise of the
@@ -13,14 +13,16 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roadgpt import check
+from roadgpt.brief.element import Elements
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.behaviour import behaviour_of
-from roadgpt.campaign.genome import Genes, design_of, genes_of, spans_of
 from roadgpt.campaign.mutation import crossed_over, interpolated, mutated
 from roadgpt.campaign.surrogate_features import surrogate_features_of
 from roadgpt.design import draft
+from roadgpt.design.elements import as_written, elements_of
 from roadgpt.design.layout import Place, keeps_clear, place, walk
 from roadgpt.design.variety import Shape, shape_of
+from roadgpt.design.writing import design_of
 from roadgpt.errors import DesignError, RoadGPTError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Road, World, build
@@ -78,21 +80,21 @@ def make_candidate(task: VariationTask) -> Candidate | None:
     elif task.kind in ("draft", "wild"):
         found = _drafted(setting, rng)
         for _ in range(ROUNDS if found and task.kind == "wild" else 0):
-            found = found and (_changed((genes_of(found[0]),), setting, rng) or found)
+            found = found and (_changed((elements_of(found[0].segments),), setting, rng) or found)
     else:
-        found = _changed([genes_of(design) for design in task.parents], setting, rng)
+        found = _changed([elements_of(design.segments) for design in task.parents], setting, rng)
     return described(*found, task.origin, setting) if found else None
 
 
 def _changed(
-    parents: Sequence[Genes], setting: VariationContext, rng: np.random.Generator
+    parents: Sequence[Elements], setting: VariationContext, rng: np.random.Generator
 ) -> tuple[Design, Road] | None:
     """A road like its parent, or one that takes after two."""
     for attempt in range(TRIES):
-        genes = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
+        elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
         if len(parents) == 1 or rng.random() < CHANGED_TOO:
-            genes = mutated(genes, rng, setting.world, NUMERIC[attempt >= BOLD])
-        found = placed(genes, setting, rng)
+            elements = mutated(elements, rng, setting.world, NUMERIC[attempt >= BOLD])
+        found = placed(elements, setting, rng)
         if found:
             return found
     return None
@@ -110,21 +112,23 @@ def _drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Desig
 def _between(task: VariationTask) -> tuple[Design, Road] | None:
     """A road between two, and where it lies between their places."""
     one, other = task.parents
-    genes = interpolated(genes_of(one), genes_of(other), task.share)
-    if genes is None:
+    elements = interpolated(elements_of(one.segments), elements_of(other.segments), task.share)
+    if elements is None:
         return None
     return validated(
-        design_of(genes, _place_between(one, other, task.share), task.setting.world), task.setting
+        design_of(elements, _place_between(one, other, task.share), task.setting.world), task.setting
     )
 
 
-def placed(genes: Genes, setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
-    """The road of genes, somewhere on the map; None where it breaks a promise or a rule."""
-    line = walk(spans_of(genes))
+def placed(
+    elements: Elements, setting: VariationContext, rng: np.random.Generator
+) -> tuple[Design, Road] | None:
+    """The road of elements, somewhere on the map; None where it breaks a promise or a rule."""
+    line = walk([as_written(element) for element in elements])
     where = place(line, setting.world, rng)
     if where is None or not keeps_clear(line, setting.world, with_verges=False):
         return None
-    return validated(design_of(genes, where, setting.world), setting)
+    return validated(design_of(elements, where, setting.world), setting)
 
 
 def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:

@@ -9,13 +9,13 @@ from math import inf
 
 import numpy as np
 
+from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import longest_straight
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, inside, turn_rooms
 from roadgpt.design.heights import Windows
 from roadgpt.design.order import Order, is_hairpin
-from roadgpt.design.spans import Span
 from roadgpt.road import World
 
 LEAD_MEAN = 26.0  # m more than the least, of lead-in and lead-out
@@ -47,35 +47,37 @@ FEWEST_METRES = 1.0  # of a straight that is squeezed to make the whole length r
 
 def composed(
     order: Order, outline: Outline, windows: Windows, world: World, rng: np.random.Generator, haste: float
-) -> list[Span] | None:
-    """The spans of a draft in driving order; None where they cannot have the length that was asked for."""
+) -> list[Element] | None:
+    """The elements of a draft in driving order; None where they cannot have the length that was asked for."""
     rooms = [
         room._replace(grade=windows.of(turn))
         for room, turn in zip(turn_rooms(order.turns, outline, world), order.turns, strict=True)
     ]
-    turns: list[Span | None] = list(drawn_turns(rooms, outline, world, rng, haste))
-    spans: list[Span] = []
+    turns: list[Element | None] = list(drawn_turns(rooms, outline, world, rng, haste))
+    elements: list[Element] = []
     between = [is_hairpin(a) and is_hairpin(b) for a, b in pairwise(order.turns)]
     legs = [False, *between, False][: len(order.gaps)]
     for before, gap, after, leg in zip([None, *turns], order.gaps, [*turns, None], legs, strict=True):
         if leg and not gap and haste < CRAMPED:
-            spans.append(Span(free_straight(rng, haste, LEG, LEG_MEAN)))
+            elements.append(Element(free_straight(rng, haste, LEG, LEG_MEAN)))
         else:
-            spans += gap_between(before, gap, after, outline, windows, rng, haste)
+            elements += gap_between(before, gap, after, outline, windows, rng, haste)
         if after:
-            spans.append(after)
+            elements.append(after)
     if outline.hills:
-        spans = _with_hills(spans, outline.hills, rng)
+        elements = _with_hills(elements, outline.hills, rng)
     length = asked_length(outline, windows)
-    whole = _with_length(spans, length, rng, haste) if length else spans
+    whole = _with_length(elements, length, rng, haste) if length else elements
     return _from_corner_to_corner(whole, world) if whole and outline.turns.hi == 0 else whole
 
 
-def _from_corner_to_corner(spans: list[Span], world: World) -> list[Span]:
+def _from_corner_to_corner(elements: list[Element], world: World) -> list[Element]:
     """Straights one after another, shortened to what the map holds; the promises are asked later."""
     longest = longest_straight(world.map_size, world.road_width) - ROUNDING
-    keep = longest / sum(span.length for span in spans)
-    return [span._replace(length=keep * span.length) for span in spans] if keep < 1 else spans
+    keep = longest / sum(element.length for element in elements)
+    return (
+        [element._replace(straight=keep * element.length) for element in elements] if keep < 1 else elements
+    )
 
 
 def asked_length(outline: Outline, windows: Windows) -> Range | None:
@@ -89,60 +91,62 @@ def asked_length(outline: Outline, windows: Windows) -> Range | None:
 
 
 def gap_between(
-    before: Span | None,
+    before: Element | None,
     wishes: Sequence[Feature],
-    after: Span | None,
+    after: Element | None,
     outline: Outline,
     windows: Windows,
     rng: np.random.Generator,
     haste: float,
-) -> list[Span]:
+) -> list[Element]:
     """The straights between two turns, or between a turn and an end."""
     if wishes:
         few = outline.turns.hi <= 1 and len(wishes) == 1
         return _asked_gap(before, wishes, after, windows, rng, haste, LONELY_MEAN if few else JOIN_MEAN)
     if not before and not after:
         length = ALONE[0] + rng.random() * (ALONE[1] - ALONE[0]) * (1 - 0.6 * haste)
-        return [Span(length, grade=windows.base)]
+        return [Element(length, required_grade=windows.base)]
     if not before or not after:
         mean = LONELY_MEAN if outline.turns.hi == 1 else LEAD_MEAN
-        return [Span(free_straight(rng, haste, LEAD, mean) + _approach(outline, after, rng))]
-    changes = windows.part(before.grade, after.grade)
+        return [Element(free_straight(rng, haste, LEAD, mean) + _approach(outline, after, rng))]
+    changes = windows.part(before.required_grade, after.required_grade)
     least = CHANGE if changes else 0.0
     if before.turn * after.turn > 0:
         least = max(least, SEPARATE)
     elif not changes and rng.random() < DIRECT:
         length = HARDLY * rng.random()
-        return [Span(length)] if length > FEWEST_METRES else []
+        return [Element(length)] if length > FEWEST_METRES else []
     return [
-        Span(free_straight(rng, haste, max(least, FEWEST_METRES), JOIN_MEAN) + _approach(outline, after, rng))
+        Element(
+            free_straight(rng, haste, max(least, FEWEST_METRES), JOIN_MEAN) + _approach(outline, after, rng)
+        )
     ]
 
 
-def _approach(outline: Outline, after: Span | None, rng: np.random.Generator) -> float:
+def _approach(outline: Outline, after: Element | None, rng: np.random.Generator) -> float:
     return APPROACH * (0.4 + rng.random()) if outline.hard and after else 0.0
 
 
 def _asked_gap(
-    before: Span | None,
+    before: Element | None,
     wishes: Sequence[Feature],
-    after: Span | None,
+    after: Element | None,
     windows: Windows,
     rng: np.random.Generator,
     haste: float,
     mean: float,
-) -> list[Span]:
+) -> list[Element]:
     """Asked-for straights; where the grade must change next to a turn, it does so a little away from it."""
-    out: list[Span] = []
+    out: list[Element] = []
     grades = windows.row(wishes)
-    if before and windows.part(before.grade, grades[0]):
-        out.append(Span(STEP_ASIDE, grade=before.grade))
+    if before and windows.part(before.required_grade, grades[0]):
+        out.append(Element(STEP_ASIDE, required_grade=before.required_grade))
     for number, (wish, grade) in enumerate(zip(wishes, grades, strict=True)):
         neighbours = [grades[i] for i in (number - 1, number + 1) if 0 <= i < len(grades)]
         if number == 0 and before:
-            neighbours.append(before.grade)
+            neighbours.append(before.required_grade)
         if number == len(wishes) - 1 and after:
-            neighbours.append(after.grade)
+            neighbours.append(after.required_grade)
         changes = [
             _change(grade, other, windows, haste) for other in neighbours if windows.part(grade, other)
         ]
@@ -150,18 +154,18 @@ def _asked_gap(
         if number and windows.alike(grades[number - 1], grade):
             out.append(_ledge(grades[number - 1], grade, windows))
         length = drawn_straight(wish, rng, haste, least, mean)
-        out.append(Span(length, grade=grade, promised=wish.length or OPEN))
-    if after and windows.part(grades[-1], after.grade):
-        out.append(Span(STEP_ASIDE, grade=after.grade))
+        out.append(Element(length, required_length=wish.length or OPEN, required_grade=grade))
+    if after and windows.part(grades[-1], after.required_grade):
+        out.append(Element(STEP_ASIDE, required_grade=after.required_grade))
     return out
 
 
-def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Span:
+def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Element:
     """A short straight of another slope, by which those before and behind it are seen to be two."""
     grade = windows.other(after)
     changes = windows.between(before, grade) + windows.between(grade, after)
     length = max(STEP_ASIDE, windows.least * changes / 100)
-    return Span(length, grade=grade, promised=Range(length, length))
+    return Element(length, required_length=Range(length, length), required_grade=grade)
 
 
 def _change(grade: Range | None, other: Range | None, windows: Windows, haste: float) -> float:
@@ -177,46 +181,46 @@ def _change(grade: Range | None, other: Range | None, windows: Windows, haste: f
     return max(most * (1 - 0.3 * haste), min(comfortable, LONGEST_CHANGE) * (1 - haste))
 
 
-def _with_hills(spans: list[Span], hills: Range, rng: np.random.Generator) -> list[Span]:
+def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator) -> list[Element]:
     """Free straights lengthened until climbs and falls find room."""
     stretches = int(hills.lo) + 1
-    room = sum(max(int(span.length / HILL), 1) for span in spans if span.length > 0.7 * HILL)
-    free = [i for i, span in enumerate(spans) if span.is_elastic]
-    out = list(spans)
+    room = sum(max(int(element.length / HILL), 1) for element in elements if element.length > 0.7 * HILL)
+    free = [i for i, element in enumerate(elements) if element.is_elastic]
+    out = list(elements)
     for _ in range(max(stretches - room, 0) if free else 0):
         i = free[rng.integers(len(free))]
-        out[i] = out[i]._replace(length=out[i].length + HILL)
+        out[i] = out[i]._replace(straight=out[i].length + HILL)
     return out
 
 
 def _with_length(
-    spans: list[Span], asked: Range, rng: np.random.Generator, haste: float
-) -> list[Span] | None:
+    elements: list[Element], asked: Range, rng: np.random.Generator, haste: float
+) -> list[Element] | None:
     """Free straights stretched or squeezed until the road has a length that was asked for."""
-    now = sum(span.length for span in spans)
+    now = sum(element.length for element in elements)
     core = _core(asked)
     if core.lo + 1 < now < core.hi - 1:
-        return spans
+        return elements
     low = core.lo if core.lo > 0 else 0.7 * asked.hi
     high = core.hi if core.hi < inf else 1.3 * asked.lo
     target = low + (high - low) * (0.15 + 0.7 * rng.random())
-    free = [i for i, span in enumerate(spans) if span.is_elastic]
+    free = [i for i, element in enumerate(elements) if element.is_elastic]
     if not free:
-        return spans
+        return elements
     missing = target - now
     if missing > 0:
         shares = rng.dirichlet(np.ones(len(free)))
-        lengths = [spans[i].length + missing * share for i, share in zip(free, shares, strict=True)]
+        lengths = [elements[i].length + missing * share for i, share in zip(free, shares, strict=True)]
     else:
-        least = [_least(spans, i, LEAD if haste < 0.5 else SHORT_LEAD) for i in free]
-        slack = sum(spans[i].length - floor for i, floor in zip(free, least, strict=True))
+        least = [_least(elements, i, LEAD if haste < 0.5 else SHORT_LEAD) for i in free]
+        slack = sum(elements[i].length - floor for i, floor in zip(free, least, strict=True))
         if slack < -missing:
-            return spans if now < asked.hi - 1 else None
+            return elements if now < asked.hi - 1 else None
         keep = 1 + missing / slack
-        lengths = [floor + keep * (spans[i].length - floor) for i, floor in zip(free, least, strict=True)]
-    out = list(spans)
+        lengths = [floor + keep * (elements[i].length - floor) for i, floor in zip(free, least, strict=True)]
+    out = list(elements)
     for i, length in zip(free, lengths, strict=True):
-        out[i] = out[i]._replace(length=length)
+        out[i] = out[i]._replace(straight=length)
     return out
 
 
@@ -228,14 +232,14 @@ def _core(asked: Range) -> Range:
     return Range(asked.lo + edge, asked.hi - edge)
 
 
-def _least(spans: Sequence[Span], index: int, lead: float) -> float:
+def _least(elements: Sequence[Element], index: int, lead: float) -> float:
     """How short the straight may get."""
-    before = spans[index - 1] if index else None
-    after = spans[index + 1] if index + 1 < len(spans) else None
+    before = elements[index - 1] if index else None
+    after = elements[index + 1] if index + 1 < len(elements) else None
     least = lead
     if before and after:
         least = SEPARATE if before.turn * after.turn > 0 else FEWEST_METRES
-    promised = spans[index].promised
-    if promised:
-        least = max(least, inside(promised.lo), CHANGE)
-    return min(least, spans[index].length)
+    required = elements[index].required_length
+    if required:
+        least = max(least, inside(required.lo), CHANGE)
+    return min(least, elements[index].length)

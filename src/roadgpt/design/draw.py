@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import KINDS, SHARPNESS, Range, overlap
 from roadgpt.check.measures import LEAST_TURN
-from roadgpt.design.spans import MOST_RAMP, Span, segments_of_turn, turn_span
+from roadgpt.design.elements import MOST_TRANSITION, segments_of_turn, turn_element
 from roadgpt.errors import DesignError
 from roadgpt.road import World
 
@@ -102,7 +103,7 @@ def _inside(span: Range, share: float) -> Range:
 
 def drawn_turns(
     rooms: Sequence[TurnRoom], outline: Outline, world: World, rng: np.random.Generator, haste: float
-) -> list[Span]:
+) -> list[Element]:
     """Turns whose angles, radii and ramps are drawn.
 
     Args:
@@ -177,7 +178,7 @@ def _swing(signed: Sequence[float]) -> float:
 
 def drawn_turn(
     room: TurnRoom, angle: float, longest: float, hard: bool, rng: np.random.Generator, haste: float
-) -> Span:
+) -> Element:
     """One turn whose radius and ramps are drawn.
 
     Args:
@@ -198,7 +199,7 @@ def drawn_turn(
         ramp = 0.1 * length
         radius = min(max((length - ramp) / radians(angle), least), most)
         angle = min(max(degrees((length - ramp) / radius), room.degrees.lo), room.degrees.hi)
-        return turn_span(angle, room.hand, radius, ramp, room.grade)
+        return turn_element(angle, room.hand, radius, ramp, room.grade)
     if not room.tight and not hard:
         least = max(least, SHORTEST_TURN * (1 - haste) / radians(angle))
     wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
@@ -209,7 +210,7 @@ def drawn_turn(
         if rng.random() < 0.7:
             angle = max(room.degrees.lo, min(angle, degrees(longest / radius)))
         radius = max(least, min(radius, longest / radians(angle)))
-    return turn_span(angle, room.hand, radius, _ramp(room, angle, radius, rng), room.grade)
+    return turn_element(angle, room.hand, radius, _ramp(room, angle, radius, rng), room.grade)
 
 
 def _ramp(room: TurnRoom, angle: float, radius: float, rng: np.random.Generator) -> float:
@@ -219,7 +220,7 @@ def _ramp(room: TurnRoom, angle: float, radius: float, rng: np.random.Generator)
     ramp = min(max(share * arc, RAMP_LIMITS[0]), max(RAMP_LIMITS[1], radius / RADII_OF_RAMP))
     if room.tight:
         ramp = min(ramp, max(arc - SEEN_ARC, 1.0))
-    return min(ramp, MOST_RAMP * arc / segments_of_turn(angle))
+    return min(ramp, MOST_TRANSITION * arc / segments_of_turn(angle))
 
 
 def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least: float, mean: float) -> float:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.element import Element, Elements
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range
@@ -20,7 +21,6 @@ from roadgpt.design.draw import TurnRoom, drawn_turn, longest_turn, turn_rooms
 from roadgpt.design.heights import Windows
 from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, Complex, Line, Place, walk
 from roadgpt.design.order import Order
-from roadgpt.design.spans import Span
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
@@ -43,27 +43,29 @@ LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
 class Grown(NamedTuple):
     """A plan and where it lies."""
 
-    spans: list[Span]
+    elements: list[Element]
     line: Line
     place: Place
 
 
 class _Way(NamedTuple):
-    """The road so far: its spans, points every few metres with their stations, and where it has come to."""
+    """The road so far: its elements, points every few metres with stations, and where it has come to."""
 
-    spans: tuple[Span, ...]
+    elements: Elements
     s: Array
     z: Complex
     length: float
     end: complex
     heading: complex
 
-    def with_(self, spans: Sequence[Span], line: Line) -> "_Way":
+    def with_(self, elements: Sequence[Element], line: Line) -> "_Way":
         every = max(1, round(COARSE / float(line.s[1])))
         z = self.end + self.heading * line.z
-        turned = np.exp(1j * np.radians(sum(span.turn for span in spans)))  # exact: the walk adds up errors
+        turned = np.exp(
+            1j * np.radians(sum(element.turn for element in elements))
+        )  # exact: the walk adds up errors
         return _Way(
-            (*self.spans, *spans),
+            (*self.elements, *elements),
             np.concatenate([self.s, self.length + line.s[1::every]]),
             np.concatenate([self.z, z[1::every]]),
             self.length + float(line.s[-1]),
@@ -126,11 +128,11 @@ class _Growth:
             return None
         theta = round(float(np.degrees(np.angle(heading))) % 360, 1) % 360
         place = Place(round(start.real, 2), round(start.imag, 2), theta)
-        return Grown(list(way.spans), walk(way.spans), place)
+        return Grown(list(way.elements), walk(way.elements), place)
 
     def _grown(self, start: _Way) -> _Way | None:
         """The whole road; where it does not go on, some turns are taken back and others tried."""
-        steps: list[tuple[_Way, Span | None]] = [(start, None)]
+        steps: list[tuple[_Way, Element | None]] = [(start, None)]
         for back in range(1, DEAD_ENDS + 1):
             while (following := self._turn(len(steps) - 1, steps[-1][0].length)) is not None:
                 way, before = steps[-1]
@@ -164,11 +166,11 @@ class _Growth:
     def _step(
         self,
         way: _Way,
-        before: Span | None,
+        before: Element | None,
         room: TurnRoom,
         wishes: Sequence[Feature],
         at: int,
-    ) -> tuple[_Way, Span] | None:
+    ) -> tuple[_Way, Element] | None:
         """The road with one turn more, and that turn.
 
         Args:
@@ -191,11 +193,11 @@ class _Growth:
             turn = drawn_turn(
                 room._replace(hand=hand), angle, self.longest, self.outline.hard, self.rng, haste
             )
-            spans = gap_between(before, wishes, turn, self.outline, self.windows, self.rng, 0.5 + haste / 2)
-            spans = _stretched(spans, extra * (1 - haste) * self.rng.uniform(*UNEVEN))
-            line = walk([*spans, turn])
+            gap = gap_between(before, wishes, turn, self.outline, self.windows, self.rng, 0.5 + haste / 2)
+            elements = _stretched(gap, extra * (1 - haste) * self.rng.uniform(*UNEVEN))
+            line = walk([*elements, turn])
             if self._is_free(way, line, AHEAD):
-                return way.with_([*spans, turn], line), turn
+                return way.with_([*elements, turn], line), turn
         return None
 
     def _extra(self, so_far: float, at: int) -> float:
@@ -205,13 +207,13 @@ class _Growth:
         turns = max(len(self.order.turns) - at, 0)
         return max(self.target - so_far - turns * (self.longest / 2 + LEAST_LEFT), 0.0) / (turns + 1)
 
-    def _out(self, way: _Way, before: Span | None) -> _Way | None:
+    def _out(self, way: _Way, before: Element | None) -> _Way | None:
         """The road with its last straight."""
         wishes = self.order.gaps[-1]
-        spans = gap_between(before, wishes, None, self.outline, self.windows, self.rng, 1.0)
-        missing = self.target - way.length - sum(span.length for span in spans)
+        elements = gap_between(before, wishes, None, self.outline, self.windows, self.rng, 1.0)
+        missing = self.target - way.length - sum(element.length for element in elements)
         for share in (1.0, 0.7, 0.4, 0.0):
-            longer = _stretched(spans, share * missing) if missing > 0 else spans
+            longer = _stretched(elements, share * missing) if missing > 0 else elements
             line = walk(longer)
             if self._is_free(way, line, 0.0):
                 return way.with_(longer, line)
@@ -237,14 +239,14 @@ class _Growth:
         return not (near & (s[:, None] - way.s[here] > NEIGHBOURS)).any()
 
 
-def _stretched(spans: Sequence[Span], metres: float) -> list[Span]:
+def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
     """With the first straight that may be longer made so; with one in front where there is none."""
-    out = list(spans)
-    for i, span in enumerate(out):
-        if span.is_elastic:
-            out[i] = span._replace(length=span.length + metres)
+    out = list(elements)
+    for i, element in enumerate(out):
+        if element.is_elastic:
+            out[i] = element._replace(straight=element.length + metres)
             return out
-    return out if out else [Span(metres)] if metres > 1 else []
+    return out if out else [Element(metres)] if metres > 1 else []
 
 
 def is_long(outline: Outline) -> bool:

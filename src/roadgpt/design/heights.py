@@ -5,14 +5,15 @@ from math import inf
 
 import numpy as np
 
+from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import STEEPEST, Range, overlap
 from roadgpt.check.measures import LEVEL
 from roadgpt.check.rules.too_abrupt import MOST
+from roadgpt.design.elements import TENTH
 from roadgpt.design.order import is_hairpin
 from roadgpt.design.ramps import eased
 from roadgpt.design.softening import held, one_way, softened_values, steep_kept
-from roadgpt.design.spans import TENTH, Inclines, Slope, Span
 from roadgpt.design.vertical import COMFORT, Pace
 from roadgpt.errors import DesignError
 from roadgpt.road import World
@@ -130,18 +131,20 @@ def drawn_in(grade: Range) -> Range:
 
 
 def drawn_heights(
-    spans: Sequence[Span],
+    plan: Sequence[Element],
     outline: Outline,
     windows: Windows,
     rng: np.random.Generator,
     pace: Pace,
     ease: float = 1.0,
     bumps: bool = False,
-) -> list[Inclines]:
-    """Inclines of every span, drawn; rounded to a tenth of a percent.
+) -> list[Element]:
+    """Returns the elements of a plan with inclines, drawn and rounded to a tenth of a percent.
+
+    A straight of several slopes becomes several elements.
 
     Args:
-        spans: of a draft, in driving order.
+        plan: elements of a draft, in driving order.
         outline: what was asked for.
         windows: the grades that it allows.
         rng: source of chance.
@@ -152,29 +155,28 @@ def drawn_heights(
     is_hilly = bool(outline.hills and outline.hills.lo > 0)
     if is_hilly:
         assert outline.hills is not None
-        parts = _hilly(spans, outline.hills, rng)
-        grades = [g for _, g, _ in parts]
-        owners = [(i, length) for i, _, length in parts]
+        drawn = _hilly(plan, outline.hills, rng)
     else:
-        grades = _grades(spans, outline, windows, rng)
-        owners = [(i, span.length) for i, span in enumerate(spans)]
-    lengths = np.array([length for _, length in owners])
-    limits = [overlap(spans[i].grade or windows.base, windows.limit) or windows.limit for i, _ in owners]
-    values = np.clip(grades, [r.lo for r in limits], [r.hi for r in limits])
+        grades = _grades(plan, outline, windows, rng)
+        drawn = [[one._replace(incline=grade)] for one, grade in zip(plan, grades, strict=True)]
+    row = [element for own in drawn for element in own]
+    lengths = np.array([element.length for element in row])
+    limits = [overlap(e.required_grade or windows.base, windows.limit) or windows.limit for e in row]
+    values = np.clip([e.incline for e in row], [r.lo for r in limits], [r.hi for r in limits])
     if outline.steepest and outline.steepest.lo > 0:
         values = _with_steepest(values, lengths, limits, outline.steepest, rng)
         limits = steep_kept(values, lengths, limits, outline.steepest.lo)
     if ease > 0:
-        limits = [
-            held(spans[i], value, room) for (i, _), value, room in zip(owners, values, limits, strict=True)
-        ]
+        limits = [held(one, value, room) for one, value, room in zip(row, values, limits, strict=True)]
     if is_hilly or is_mountainous(outline):
         limits = [one_way(value, room) for value, room in zip(values, limits, strict=True)]
     values = softened_values(values, lengths, limits, pace, ease, bumps)
     if outline.climb:
         values = _with_climb(values, lengths, limits, outline.climb, rng)
         values = softened_values(values, lengths, limits, pace, ease, bumps)
-    return eased(spans, _shared_out(spans, owners, rounded(values)), windows.limit, pace, ease, bumps)
+    final = iter(rounded(values).tolist())
+    drawn = [[element._replace(incline=next(final)) for element in own] for own in drawn]
+    return eased(_joining(drawn), windows.limit, pace, ease, bumps)
 
 
 def rounded(values: np.ndarray) -> np.ndarray:
@@ -186,37 +188,37 @@ def rounded(values: np.ndarray) -> np.ndarray:
 
 
 def _grades(
-    spans: Sequence[Span], outline: Outline, windows: Windows, rng: np.random.Generator
+    plan: Sequence[Element], outline: Outline, windows: Windows, rng: np.random.Generator
 ) -> list[float]:
-    """One grade per span; joining straights get NaN, and are filled from their neighbours at the end."""
-    if outline.hard and all(span.grade in (None, windows.base) for span in spans):
-        return _crests(spans, windows, rng)
-    if not windows.base and not any(span.grade for span in spans):
+    """One grade per element; joining straights get NaN, and are filled from their neighbours at the end."""
+    if outline.hard and all(element.required_grade in (None, windows.base) for element in plan):
+        return _crests(plan, windows, rng)
+    if not windows.base and not any(element.required_grade for element in plan):
         free = _steady_grades if is_mountainous(outline) else _free_grades
-        return free(spans, windows, rng)
+        return free(plan, windows, rng)
     out: list[float] = []
     last: tuple[Range | None, float] = (None, 0.0)
-    for span in spans:
-        window = span.grade or (windows.base if span.turn or len(spans) == 1 else None)
+    for element in plan:
+        window = element.required_grade or (windows.base if element.turn or len(plan) == 1 else None)
         if window is None:
             out.append(np.nan)
             continue
         keeps = last[0] is not None and last[1] in window and rng.random() < STEADY
         value = last[1] if keeps else _between(window, rng)
-        if span.promised and (window.hi - window.lo < NARROW or span.length < BRIEF):
+        if element.required_length and (window.hi - window.lo < NARROW or element.length < BRIEF):
             value = _far_end(window, rng)
         out.append(value)
         last = (window, value)
     return out
 
 
-def _crests(spans: Sequence[Span], windows: Windows, rng: np.random.Generator) -> list[float]:
+def _crests(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
     """Every straight climbs more, or falls less, than the bends at its ends: those are taken over a crest."""
     if windows.base is None:
-        return [(-1 if span.turn else 1) * _between(Range(*CREST), rng) for span in spans]
+        return [(-1 if element.turn else 1) * _between(Range(*CREST), rng) for element in plan]
     middle = (windows.base.lo + windows.base.hi) / 2
     halves = Range(windows.base.lo, middle), Range(middle, windows.base.hi)
-    return [_between(halves[0] if span.turn else halves[1], rng) for span in spans]
+    return [_between(halves[0] if element.turn else halves[1], rng) for element in plan]
 
 
 def _far_end(window: Range, rng: np.random.Generator) -> float:
@@ -231,21 +233,21 @@ def _between(window: Range, rng: np.random.Generator) -> float:
     return window.lo + float(rng.random()) * (window.hi - window.lo)
 
 
-def _free_grades(spans: Sequence[Span], windows: Windows, rng: np.random.Generator) -> list[float]:
+def _free_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
     """Heights nobody asked for: level, one slope, or a different one for every feature."""
     style, top = rng.random(), min(STEEP, windows.limit.hi)
     if style < LEVEL_SHARE:
-        return [0.0] * len(spans)
+        return [0.0] * len(plan)
     low = min(GENTLE, top)
     if style < LEVEL_SHARE + SLOPE_SHARE:
-        return [float(rng.choice((-1, 1)) * (low + rng.random() * (top - low)))] * len(spans)
+        return [float(rng.choice((-1, 1)) * (low + rng.random() * (top - low)))] * len(plan)
     out, grade, so_far = [], 0.0, inf
-    for span in spans:
-        if span.turn or rng.random() < 0.5:
+    for element in plan:
+        if element.turn or rng.random() < 0.5:
             drawn = float(rng.choice((-1, 0, 1), p=(0.4, 0.2, 0.4)) * (low + rng.random() * (top - low)))
             if so_far >= ROLL:
                 grade, so_far = drawn, 0.0
-        so_far += span.length
+        so_far += element.length
         out.append(grade)
     return out
 
@@ -260,35 +262,39 @@ def is_mountainous(outline: Outline) -> bool:
     return sum(group.lo for group in outline.groups if is_hairpin(group.feature)) > 1
 
 
-def _steady_grades(spans: Sequence[Span], windows: Windows, rng: np.random.Generator) -> list[float]:
+def _steady_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
     """All up or all down, here steeper and there less."""
     top = min(STEEP, windows.limit.hi)
     low = min(2 * GENTLE, top)
     way = float(rng.choice((-1, 1))) * (low + rng.random() * (top - low))
-    return [way * _between(Range(*STEADY_SHARE), rng) for _ in spans]
+    return [way * _between(Range(*STEADY_SHARE), rng) for _ in plan]
 
 
-def _hilly(spans: Sequence[Span], hills: Range, rng: np.random.Generator) -> list[tuple[int, float, float]]:
-    """Span, grade and length of stretches that climb and fall in turn; promised grades stay.
+def _hilly(plan: Sequence[Element], hills: Range, rng: np.random.Generator) -> list[list[Element]]:
+    """Elements that climb and fall in turn; promised grades stay.
 
-    Long straights are cut into several; a stretch too short for a hill of its own goes on as the one before.
+    Long straights are cut into several; an element too short for a hill of its own goes on as the one before.
     """
-    out: list[tuple[int, float, float]] = []
+    out: list[list[Element]] = []
     sign, wanted, so_far = float(rng.choice((-1, 1))), 0, 0.0
     most = hills.hi if hills.hi < inf else hills.lo + 2
-    for index, span in enumerate(spans):
-        parts = 1 if span.turn or span.grade else max(1, int(span.length / HILL))
+    for element in plan:
+        asked = element.required_grade
+        parts = 1 if element.turn or asked else max(1, int(element.length / HILL))
+        own: list[Element] = []
         for _ in range(parts):
-            length = span.length / parts
-            if span.grade and not (span.grade.lo < 0 < span.grade.hi):
-                own = float(np.sign(span.grade.lo + span.grade.hi))
-                wanted, sign, so_far = wanted + (own != sign and bool(out)), own or sign, 0.0
+            length = element.length / parts
+            if asked and not (asked.lo < 0 < asked.hi):
+                way = float(np.sign(asked.lo + asked.hi))
+                wanted, sign, so_far = wanted + (way != sign and bool(out or own)), way or sign, 0.0
             elif so_far >= HILL and wanted < most:
                 wanted, sign, so_far = wanted + 1, -sign, 0.0
             so_far += length
-            size = abs(_between(span.grade, rng)) if span.grade and 0 not in span.grade else None
+            size = abs(_between(asked, rng)) if asked and 0 not in asked else None
             low, high = HILL_GRADES
-            out.append((index, sign * (size or low + rng.random() * (high - low)), length))
+            incline = sign * (size or low + rng.random() * (high - low))
+            own.append(element._replace(straight=element.straight / parts, incline=incline))
+        out.append(own)
     return out
 
 
@@ -334,22 +340,18 @@ def _with_climb(
     return np.asarray(np.clip(known + down, least, most))
 
 
-def _shared_out(
-    spans: Sequence[Span], owners: Sequence[tuple[int, float]], values: np.ndarray
-) -> list[Inclines]:
-    """Inclines per span; a joining straight takes its neighbours' grades, half each where they differ."""
-    out: list[Inclines] = [[] for _ in spans]
-    for (index, length), value in zip(owners, values, strict=True):
-        out[index].append(Slope(length, float(value)))
-    for index, inclines in enumerate(out):
-        if not np.isnan(inclines[0].incline):
+def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
+    """Gives a joining straight its neighbours' grades, half each where they differ."""
+    out = [*drawn]
+    for index, own in enumerate(out):
+        if not np.isnan(own[0].incline):
             continue
-        before = next(
-            (out[i][-1].incline for i in range(index - 1, -1, -1) if not np.isnan(out[i][-1].incline)), None
-        )
+        before = next((o[-1].incline for o in out[:index][::-1] if not np.isnan(o[-1].incline)), None)
         after = next((o[0].incline for o in out[index + 1 :] if not np.isnan(o[0].incline)), None)
         first, last = (before if before is not None else after), (after if after is not None else before)
-        half, incline = inclines[0].length / 2, first or 0.0
-        same = first == last
-        out[index] = [Slope(2 * half, incline)] if same else [Slope(half, incline), Slope(half, last or 0.0)]
+        if first == last:
+            out[index] = [own[0]._replace(incline=first or 0.0)]
+        else:
+            half = own[0]._replace(straight=own[0].straight / 2)
+            out[index] = [half._replace(incline=grade or 0.0) for grade in (first, last)]
     return out

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import EDGE
-from roadgpt.design.spans import Span
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 
@@ -46,23 +46,24 @@ class Place(NamedTuple):
     theta: float
 
 
-def walk(spans: Sequence[Span]) -> Line:
-    """The centre line of spans, in steps of about a metre."""
-    knots, bends, length = bends_of(spans)
+def walk(elements: Sequence[Element]) -> Line:
+    """Returns the centre line of elements, in steps of about a metre."""
+    knots, bends, length = bends_of(elements)
     s = np.linspace(0.0, length, max(2, round(length / STEP)) + 1)
     steps = np.exp(1j * _headings(s[:-1] + s[1] / 2, knots, bends)) * s[1]
     return Line(s, np.concatenate([[0j], np.cumsum(steps)]))
 
 
-def bends_of(spans: Sequence[Span]) -> tuple[Array, Array, float]:
+def bends_of(elements: Sequence[Element]) -> tuple[Array, Array, float]:
     """Stations (m), curvatures there (1/m), linear in between and 0 after the last; and the length."""
     knots, bends, at = [0.0], [0.0], 0.0
-    for span in spans:
-        if span.turn:
-            k = span.curvature
-            knots += [at, at + span.ramp, at + span.length - span.ramp, at + span.length]
+    for element in elements:
+        length = element.length
+        if element.turn:
+            k, transition = element.curvature, element.transition
+            knots += [at, at + transition, at + length - transition, at + length]
             bends += [0.0, k, k, 0.0]
-        at += span.length
+        at += length
     return np.array(knots), np.array(bends), at
 
 

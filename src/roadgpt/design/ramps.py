@@ -8,13 +8,12 @@ straight has no room for comfortable parabolas: there they bend more, as little 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import inf
 
 import numpy as np
 
+from roadgpt.brief.element import Element
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import HALF_WINDOW, LEVEL
-from roadgpt.design.spans import Inclines, Slope, Span
 from roadgpt.design.vertical import ROUNDING, Pace
 from roadgpt.geometry.curve import Array
 from roadgpt.road.elevation import vertical_curves
@@ -37,27 +36,25 @@ GENTLER = (
 
 
 def eased(
-    spans: Sequence[Span], inclines: Sequence[Inclines], limit: Range, pace: Pace, ease: float, bumps: bool
-) -> list[Inclines]:
-    """The inclines with joints moved inside rows of straights, and narrow grades kept on the whole.
+    drawn: Sequence[Sequence[Element]], limit: Range, pace: Pace, ease: float, bumps: bool
+) -> list[Element]:
+    """Returns elements with joints moved inside rows of straights, and narrow grades kept on the whole.
 
     Args:
-        spans: of a draft, in driving order.
-        inclines: slopes of each.
+        drawn: the elements of a draft in driving order; a straight of several slopes is several of them.
         limit: percent that no incline may leave.
         pace: radii that the speeds ask for.
         ease: share of comfort that is tried first.
         bumps: crests and dips were asked for, so that the last resort is what wheels can follow.
     """
-    out = [*inclines]
-    starts = np.cumsum([0.0, *(span.length for span in spans)])
-    for first, last in _rows(spans, inclines):
-        row = spans[first:last]
-        drawn = [inclines[i][0].incline for i in range(first, last)]
+    out = [*drawn]
+    starts = np.cumsum([0.0, *(sum(element.length for element in own) for own in drawn)])
+    for first, last in _rows(drawn):
+        row = [own[0] for own in drawn[first:last]]
         best: _Row | None = None
         for share, gentler in _tries(ease, bumps):
             at = [float(s) for s in starts[first + 1 : last]]
-            softer = [_softer(grade, span, gentler) for grade, span in zip(drawn, row, strict=True)]
+            softer = [_softer(element, gentler) for element in row]
             way = _settled(row, softer, limit, [pace.eased(s, share, bumps) for s in at])
             fits = way.fits([pace.least(s, bumps and share == 0) for s in at])
             if best is None or fits:
@@ -65,8 +62,8 @@ def eased(
             if fits and way.keeps(row, softer, 0.0 if share else SLACK):
                 break
         assert best is not None
-        out[first:last] = best.inclines()
-    return out
+        out[first:last] = [(element,) for element in best.sloped(row)]
+    return [element for own in out for element in own]
 
 
 def _tries(ease: float, bumps: bool) -> list[tuple[float, float]]:
@@ -79,11 +76,11 @@ def _near(grade: float, wanted: Range, slack: float) -> bool:
     return wanted.lo - slack <= grade <= wanted.hi + slack
 
 
-def _softer(grade: float, span: Span, share: float) -> float:
-    if span.grade is None or not _is_fixed(span):
-        return grade
-    gentle = min(max(0.0, span.grade.lo), span.grade.hi)
-    return grade + share * (gentle - grade)
+def _softer(element: Element, share: float) -> float:
+    if element.required_grade is None or not element.has_fixed_length:
+        return element.incline
+    gentle = min(max(0.0, element.required_grade.lo), element.required_grade.hi)
+    return element.incline + share * (gentle - element.incline)
 
 
 @dataclass(frozen=True)
@@ -99,19 +96,19 @@ class _Row:
     radii: Sequence[float]
     """Metres, of the parabolas at the inner joints."""
 
-    def keeps(self, row: Sequence[Span], drawn: Sequence[float], slack: float) -> bool:
+    def keeps(self, row: Sequence[Element], drawn: Sequence[float], slack: float) -> bool:
         """Is every straight with a promised length as steep as promised, and written hardly steeper?"""
         means = _means(self.joints, self.grades, self.edges, self.radii)
         inner = _inner(self.joints, self.grades, self.edges, self.radii)
         if np.abs(self.grades - drawn).max() > PUSHED:
             return False
         return all(
-            span.grade is None
-            or 0 in span.grade
-            or _near(mean, span.grade, slack)
-            or _near(middle, span.grade, slack)
-            for span, mean, middle in zip(row, means, inner, strict=True)
-            if _is_fixed(span)
+            element.required_grade is None
+            or 0 in element.required_grade
+            or _near(mean, element.required_grade, slack)
+            or _near(middle, element.required_grade, slack)
+            for element, mean, middle in zip(row, means, inner, strict=True)
+            if element.has_fixed_length
         )
 
     def fits(self, least: Sequence[float]) -> bool:
@@ -119,44 +116,41 @@ class _Row:
         halves = _halves(self.joints, self.grades, self.radii)
         return bool(np.all(halves >= np.abs(np.diff(self.grades)) * np.array(least) / 200 * (1 - ROUNDING)))
 
-    def inclines(self) -> list[Inclines]:
-        """The slope of every straight, and the radius from the one before."""
+    def sloped(self, row: Sequence[Element]) -> Iterator[Element]:
+        """Yields the straights with their lengths, grades, and radii from the ones before."""
         lengths = np.diff(self.joints, prepend=0.0).tolist()
-        return [
-            [Slope(length, grade, radius)]
-            for length, grade, radius in zip(lengths, self.grades.tolist(), [None, *self.radii], strict=True)
-        ]
+        for element, length, grade, radius in zip(
+            row, lengths, self.grades.tolist(), [None, *self.radii], strict=True
+        ):
+            yield element._replace(straight=length, incline=grade, vertical_radius=radius)
 
 
-def _rows(spans: Sequence[Span], inclines: Sequence[Inclines]) -> Iterator[tuple[int, int]]:
+def _rows(drawn: Sequence[Sequence[Element]]) -> Iterator[tuple[int, int]]:
     """First and last + 1 of straights that follow each other, where the length of one was asked for."""
     first = 0
-    for at in range(len(spans) + 1):
-        if at < len(spans) and not spans[at].turn and len(inclines[at]) == 1:
+    for at in range(len(drawn) + 1):
+        if at < len(drawn) and not drawn[at][0].turn and len(drawn[at]) == 1:
             continue
-        if at - first > 1 and any(_is_fixed(span) for span in spans[first:at]):
+        if at - first > 1 and any(own[0].has_fixed_length for own in drawn[first:at]):
             yield first, at
         first = at + 1
 
 
-def _is_fixed(span: Span) -> bool:
-    return span.promised is not None and span.promised.hi < inf
-
-
-def _settled(row: Sequence[Span], drawn: Sequence[float], limit: Range, radii: Sequence[float]) -> _Row:
+def _settled(row: Sequence[Element], drawn: Sequence[float], limit: Range, radii: Sequence[float]) -> _Row:
     """Lengths and inclines by which every straight is measured as it was drawn."""
-    wanted = np.cumsum([span.length for span in row])
+    wanted = np.cumsum([element.length for element in row])
     joints, grades = wanted.copy(), np.array(drawn, dtype=float)
-    movable = np.array([_is_fixed(one) or _is_fixed(other) for one, other in pairwise(row)])
+    movable = np.array([one.has_fixed_length or other.has_fixed_length for one, other in pairwise(row)])
     for _ in range(ROUNDS):
         edges = joints.copy()
         edges[:-1] += _shifts(joints, grades, radii)
         means = _means(joints, grades, edges, radii)
         inner = _inner(joints, grades, edges, radii)
-        for i, span in enumerate(row):
-            if span.grade and _is_fixed(span) and 0 not in span.grade and inner[i] not in span.grade:
-                grades[i] += min(max(means[i], span.grade.lo), span.grade.hi) - means[i]
-                grades[i] = min(max(grades[i], span.grade.lo), span.grade.hi)
+        for i, element in enumerate(row):
+            asked = element.required_grade
+            if asked and element.has_fixed_length and 0 not in asked and inner[i] not in asked:
+                grades[i] += min(max(means[i], asked.lo), asked.hi) - means[i]
+                grades[i] = min(max(grades[i], asked.lo), asked.hi)
         grades = np.clip(grades, limit.lo, limit.hi)
         joints[:-1] += np.where(movable, wanted[:-1] - edges[:-1], 0.0)
         joints = _spread(joints)

@@ -6,8 +6,8 @@ from math import inf
 
 import numpy as np
 
+from roadgpt.brief.element import Element
 from roadgpt.brief.words import Range, overlap
-from roadgpt.design.spans import Span
 from roadgpt.design.vertical import Pace, softened
 
 SEEN = 1.8  # percent: the least slope of a climb or fall that is to be seen as one
@@ -25,9 +25,9 @@ def steep_kept(values: np.ndarray, lengths: np.ndarray, limits: Sequence[Range],
     return out
 
 
-def held(span: Span, value: float, room: Range) -> Range:
+def held(element: Element, value: float, room: Range) -> Range:
     """The limit of a straight whose length and grade were asked for: what was drawn, or hardly less."""
-    if span.grade is None or span.promised is None or span.promised.hi == inf or 0 in span.grade:
+    if element.required_grade is None or not element.has_fixed_length or 0 in element.required_grade:
         return room
     return overlap(room, Range(value - HELD, value + HELD)) or room
 

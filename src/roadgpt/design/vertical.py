@@ -16,9 +16,9 @@ from math import floor
 
 import numpy as np
 
+from roadgpt.brief.element import Element
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.layout import bends_of
-from roadgpt.design.spans import Span
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Segment, World, build
 from roadgpt.road.elevation import MOST_OF_SLOPE, VerticalCurve, vertical_curves_of
@@ -27,6 +27,7 @@ from roadgpt.road.speed_profile import GRAVITY, expected_speed
 COMFORT = 0.5  # m/s^2
 EASES = (1.0, 0.5, 0.25, 0.0)  # shares of comfort, in the order in which they are tried
 STEP = 2.0  # m between the stations at which a speed is expected
+SEEN = 12.0  # m: of shorter straights, no slope is looked for
 NEAR = 20.0  # m to either side of a joint, of which the fastest place counts
 SPARE, LEAST_SPARE = 1.1, 1.02  # of a comfortable radius, and of the least, for what rounding of grades takes
 ROUNDS = 80  # of moving grades
@@ -43,9 +44,9 @@ class Pace:
         self._world = world
 
     @classmethod
-    def along(cls, spans: Sequence[Span], world: World) -> "Pace":
-        """Of spans."""
-        return cls(*bends_of(spans), world)
+    def along(cls, elements: Sequence[Element], world: World) -> "Pace":
+        """Returns the radii for a draft of elements."""
+        return cls(*bends_of(elements), world)
 
     @classmethod
     def of(cls, design: Design, world: World) -> "Pace":

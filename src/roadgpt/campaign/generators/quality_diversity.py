@@ -12,10 +12,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from roadgpt.brief.element import Elements
 from roadgpt.campaign.acquisition import Predictions, dissimilar, select, spread_out
 from roadgpt.campaign.archive import Archive
 from roadgpt.campaign.boundary_pairs import paired
-from roadgpt.campaign.genome import Genes, genes_of
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
 from roadgpt.campaign.search import (
     DRIVEN,
@@ -29,6 +29,7 @@ from roadgpt.campaign.search import (
 from roadgpt.campaign.surrogate import FEWEST, MOST, TREES, Surrogate, target_of
 from roadgpt.campaign.surrogate_features import hazard_of
 from roadgpt.campaign.variation import Candidate, Kind, VariationTask, describe_known
+from roadgpt.design.elements import elements_of
 from roadgpt.road import Design
 
 KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
@@ -58,7 +59,7 @@ class QualityDiversity:
         self._driven = [axis for axis in self._wanted.axes if axis in DRIVEN]
         self._results: dict[int, Result] = {}
         self._looks: dict[int, Candidate] = {}
-        self._genes: dict[int, Genes] = {}
+        self._roads: dict[int, Elements] = {}
         self._elites: list[int] = []
 
     def tell(self, results: Sequence[Result]) -> None:
@@ -140,12 +141,12 @@ class QualityDiversity:
     def _bisected(self, batch: int, n: int, pool: Pool) -> list[Candidate]:
         """Roads between those that were kept and their nearest relatives that were not."""
         for number, result in self._results.items():
-            if number not in self._genes and result.design:
-                self._genes[number] = genes_of(result.design)
+            if number not in self._roads and result.design:
+                self._roads[number] = elements_of(result.design.segments)
         kept = [number for number, result in self._results.items() if not result.failed]
         lost = [number for number, result in self._results.items() if result.failed]
         tasks: list[VariationTask] = []
-        for pair in paired(self._genes, kept, lost):
+        for pair in paired(self._roads, kept, lost):
             if pair.distance > CLOSE and len(tasks) < BISECTED * n:
                 ends = self._design(pair.kept), self._design(pair.lost)
                 origin = f"between {pair.kept}+{pair.lost}"

@@ -8,28 +8,28 @@ wishes that hardly fit are met in the end, and only those that cannot be are ref
 
 from collections import Counter
 from collections.abc import Sequence
-from math import ceil
 from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt import check
+from roadgpt.brief.element import Element
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.check.bumps import asks_for_bumps
-from roadgpt.check.extremes import lowest
 from roadgpt.check.matching import Complaint
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import complaints, promises_of
 from roadgpt.design.advice import TOO_ABRUPT, advice, too_fast
 from roadgpt.design.compose import composed
+from roadgpt.design.elements import cut
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.layout import Line, Place, keeps_clear, place, smallest_box, walk
 from roadgpt.design.order import drawn_order
-from roadgpt.design.spans import Span, cut
 from roadgpt.design.variety import ENOUGH, Shape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace, joined, too_abrupt
+from roadgpt.design.writing import design_at
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.road.elevation import elevation_of
@@ -49,7 +49,6 @@ GROWN = 20  # drafts of a road whose length was asked for, that grow on the map 
 GROWN_ON_TRIAL = 5  # of these, where it is tried whether there is room
 NO_HASTE = 16  # drafts that are drawn freely
 VERGES = 0.6  # of the drafts: so long, legs keep off each other's verges as well
-CENTIMETRE = 100.0  # per metre: the start is written to the centimetre
 FAILED_ON_HEIGHTS = 40  # slopes that broke a promise or the rule: then the speed may be what stood in the way
 SLOWER = (50.0, 30.0)  # km/h, that are tried in order to say so
 STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
@@ -58,7 +57,7 @@ STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
 class _Draft(NamedTuple):
     """A plan that fits on the map and keeps clear of itself."""
 
-    spans: list[Span]
+    elements: list[Element]
     line: Line
     place: Place
     shape: Shape
@@ -172,7 +171,7 @@ class _Search:
         if not keeps_clear(found.line, self.world, with_verges=False):
             self.failed["over itself"] += 1
             return None
-        return _Draft(found.spans, found.line, found.place, shape_of(found.line.s, found.line.z))
+        return _Draft(found.elements, found.line, found.place, shape_of(found.line.s, found.line.z))
 
     def _speed_that_would_do(self) -> float | None:
         """A lower limit, km/h, at which the slopes asked for can be had, if they stood in the way."""
@@ -184,11 +183,11 @@ class _Search:
 
     def _plan(self, haste: float, with_verges: bool) -> _Draft | None:
         order = drawn_order(self.outline, self.rng, plain=haste > 0.5)
-        spans = composed(order, self.outline, self.windows, self.world, self.rng, haste)
-        if spans is None:
+        elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
+        if elements is None:
             self.failed["longer than was asked for"] += 1
             return None
-        line = walk(spans)
+        line = walk(elements)
         where = place(line, self.world, self.rng)
         if where is None:
             self.failed["too large"] += 1
@@ -197,15 +196,16 @@ class _Search:
         if not keeps_clear(line, self.world, with_verges):
             self.failed["over itself"] += 1
             return None
-        return _Draft(spans, line, where, shape_of(line.s, line.z))
+        return _Draft(elements, line, where, shape_of(line.s, line.z))
 
     def _finished(self, drafted: _Draft) -> tuple[Design, Road] | None:
         """The Design and its Road, where some heights keep the promises and every rule passes its road."""
         segments = self._with_heights(drafted)
         if segments is None:
             return None
-        x, y, theta = drafted.place
-        design = Design(starting_point=(x, y, self._start(segments)), theta=theta, segments=segments)
+        low, high = STARTS_AT
+        ground = max(low, self.world.z_floor + 1) + self.rng.random() * (high - low)
+        design = design_at(drafted.place, segments, ground)
         road = build(design)
         objections = check.inspect(road, self.brief, self.world)
         if objections:
@@ -214,13 +214,12 @@ class _Search:
         return design, road
 
     def _with_heights(self, drafted: _Draft) -> tuple[Segment, ...] | None:
-        pace = Pace.along(drafted.spans, self.world)
+        pace = Pace.along(drafted.elements, self.world)
         for ease in (*EASES, EASES[-1]):
-            heights = drawn_heights(
-                drafted.spans, self.outline, self.windows, self.rng, pace, ease, self.bumps
+            sloped = drawn_heights(
+                drafted.elements, self.outline, self.windows, self.rng, pace, ease, self.bumps
             )
-            pairs = zip(drafted.spans, heights, strict=True)
-            drawn = [segment for span, inclines in pairs for segment in cut(span, inclines)]
+            drawn = [segment for element in sloped for segment in cut(element)]
             for share in dict.fromkeys((1.0, ease)):  # all may have comfort after all
                 segments = joined(drawn, pace, share)
                 broken = self._broken(drafted.line, segments, pace)
@@ -239,11 +238,3 @@ class _Search:
         heights = elevation_of(segments, 0.0).height(line.s)
         points = np.stack([line.z.real, line.z.imag, heights], axis=1)
         return complaints(measure(points, self.outline.widest), self.outline)
-
-    def _start(self, segments: Sequence[Segment]) -> float:
-        """Height of the start, such that the lowest place lies a little above 0, or above the floor."""
-        profile = elevation_of(segments, 0.0)
-        _, sag = lowest(profile, profile.stations[-1])
-        low, high = STARTS_AT
-        ground = max(low, self.world.z_floor + 1) + self.rng.random() * (high - low)
-        return ceil((ground - sag) * CENTIMETRE) / CENTIMETRE

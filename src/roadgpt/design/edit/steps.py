@@ -12,8 +12,7 @@ from typing import Literal, Protocol
 
 from roadgpt.brief.model import Side
 from roadgpt.design.edit.anatomy import Block, Blocks
-from roadgpt.design.spans import Slope as OneSlope
-from roadgpt.design.spans import cut, turn_span
+from roadgpt.design.elements import cut, turn_element
 from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN
 
@@ -135,8 +134,8 @@ def turn_segments(
     degrees: float, hand: int, radius: float, ramp: float, incline: float
 ) -> tuple[Segment, ...]:
     """A turn as the planner writes it."""
-    span = turn_span(degrees, hand, radius, ramp, None)
-    return tuple(cut(span, [OneSlope(span.length, round(incline * TENTH) / TENTH)]))
+    turn = turn_element(degrees, hand, radius, ramp)
+    return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,6 @@ import numpy as np
 from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Feature, Outline
-from roadgpt.check.extremes import lowest
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.repair.changes import changes_between
@@ -27,16 +26,15 @@ from roadgpt.design.repair.proposal import Part, mean_incline, parts_of, shows, 
 from roadgpt.design.repair.slopes import sloped
 from roadgpt.design.repair.solving import Aim, solved
 from roadgpt.design.repair.wishes import wishes_of
+from roadgpt.design.writing import ABOVE_GROUND, start_height
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Segment, World, build
-from roadgpt.road.elevation import elevation_of
 
 How = Literal["none", "place", "full"]
 MOST_SEGMENTS = 60  # of a list that is repaired in full; on more, a road of a map's size is no longer a list
 ROUNDS = 2  # of solving: the second with the transitions that came of the first
 TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
-ABOVE_GROUND = 1.0  # m that a road which lay under the ground is raised above it
 SHORTEST_RAMP = 0.1  # m
 
 
@@ -79,12 +77,9 @@ def _in_place(design: Design, world: World) -> Design:
     if "inside_map" in found:
         design = placed(design, world) or design
     if "below_floor" in found:
-        x, y, z = design.starting_point
-        profile = elevation_of(design.segments, z)
-        missing = world.z_floor + ABOVE_GROUND - lowest(profile, profile.stations[-1])[1]
-        design = design.model_copy(
-            update={"starting_point": (x, y, ceil((z + missing) * CENTIMETRE) / CENTIMETRE)}
-        )
+        x, y, _ = design.starting_point
+        height = start_height(design.segments, world.z_floor + ABOVE_GROUND)
+        design = design.model_copy(update={"starting_point": (x, y, height)})
     return design
 
 

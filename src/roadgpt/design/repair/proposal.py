@@ -12,8 +12,6 @@ import numpy as np
 from roadgpt.check.measures import LEAST_TURN, Measures, way
 from roadgpt.road import Segment
 
-SEEN = 12.0  # m: of shorter straights, no slope is looked for
-
 
 class Part(NamedTuple):
     """Segments ``first`` to ``end`` (not included) that are one turn, or straight and of one slope."""

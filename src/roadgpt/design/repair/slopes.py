@@ -14,8 +14,8 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range, overlap
 from roadgpt.check.measures import LEVEL, measure, way
 from roadgpt.design.heights import Windows
-from roadgpt.design.repair.proposal import SEEN, Part, mean_incline
-from roadgpt.design.vertical import Pace, made_to_fit, runs_of, too_abrupt, widened
+from roadgpt.design.repair.proposal import Part, mean_incline
+from roadgpt.design.vertical import SEEN, Pace, made_to_fit, runs_of, too_abrupt, widened
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World, build

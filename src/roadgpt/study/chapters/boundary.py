@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from roadgpt.campaign.boundary_pairs import BoundaryPair, pairs_of, weightiest
-from roadgpt.campaign.genome import genes_of
 from roadgpt.campaign.model import Result
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
+from roadgpt.design.elements import elements_of
 from roadgpt.report.page import Block, Table, TableCell, cell
 from roadgpt.study.chapters.many import again
 from roadgpt.study.chapters.saying import decimal
@@ -79,5 +79,5 @@ def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result
         cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
         decimal(lost.at_s, 0),
         decimal(pair.distance),
-        cell(weightiest(genes_of(kept.design), genes_of(lost.design))),
+        cell(weightiest(elements_of(kept.design.segments), elements_of(lost.design.segments))),
     ]

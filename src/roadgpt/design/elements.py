@@ -1,0 +1,141 @@
+"""Elements and RoadGPT's segments: how each is written as the other.
+
+RoadGPT's format cuts a turn beyond 70 degrees into several segments; an element is the whole turn. Elements
+that a planner drafted come back from their segments as they were, to the last written digit.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import ceil, floor, radians
+
+from roadgpt.brief.element import Element
+from roadgpt.brief.words import Range
+from roadgpt.road import Segment
+from roadgpt.road.alignment import LONGEST_TRANSITION, TRANSITION_SHARE
+from roadgpt.road.design import MAX_TURN
+
+MILLIMETRE = 1000.0  # per metre: distances are written to the millimetre
+TENTH = 10.0  # per unit: angles, transitions and inclines are written to the tenth
+HUNDREDTH = 100.0  # per metre: radii are written to the centimetre
+MOST_TRANSITION = 0.55  # of a segment's arc: with more it could not keep its radius (see road.alignment)
+SHORTEST = 0.5  # m, of a straight that is written
+SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn between two straights
+
+
+def turn_element(
+    angle: float, hand: int, radius: float, transition: float, required_grade: Range | None = None
+) -> Element:
+    """Returns a turn with its numbers rounded as they will be written, and its transition short enough.
+
+    Args:
+        angle: degrees, positive.
+        hand: 1 to the left, -1 to the right.
+        radius: metres.
+        transition: metres, of the clothoid at either end; a segment limits it to a share of its arc.
+        required_grade: percent that was asked for.
+    """
+    parts = segments_of_turn(angle)
+    share = round(angle / parts * TENTH) / TENTH
+    radius = ceil(radius * HUNDREDTH) / HUNDREDTH
+    most = MOST_TRANSITION * radius * radians(share)
+    transition = max(floor(min(transition, most) * TENTH), 1) / TENTH
+    return Element(
+        turn=hand * share * parts, radius=radius, transition=transition, required_grade=required_grade
+    )
+
+
+def as_written(element: Element) -> Element:
+    """Returns the element with its plan rounded as it will be written."""
+    if not element.turn:
+        return element._replace(straight=max(element.straight, SHORTEST))
+    hand = 1 if element.turn > 0 else -1
+    written = turn_element(abs(element.turn), hand, element.radius, element.transition)
+    return element._replace(turn=written.turn, radius=written.radius, transition=written.transition)
+
+
+def segments_of_turn(angle: float) -> int:
+    """Returns how many of RoadGPT's segments a turn of so many degrees takes."""
+    return max(1, ceil(angle / MAX_TURN - 1e-9))
+
+
+def cut(element: Element) -> list[Segment]:
+    """Returns the segments of an element whose numbers are rounded as they will be written."""
+    if not element.turn:
+        return [
+            Segment(
+                distance=round(element.straight * MILLIMETRE) / MILLIMETRE,
+                direction="straight",
+                incline=element.incline,
+                vertical_radius=element.vertical_radius,
+            )
+        ]
+    parts = segments_of_turn(abs(element.turn))
+    share = element.turn / parts
+    arc = element.radius * radians(abs(share))
+    out = []
+    for part in range(parts):
+        ends = (part == 0) + (part == parts - 1)
+        # outer parts a hair long, inner ones a hair short: so every part can keep the radius
+        exact = (arc + ends * element.transition / 2) * MILLIMETRE
+        out.append(
+            Segment(
+                distance=(ceil(exact) if ends else floor(exact)) / MILLIMETRE,
+                direction="left" if element.turn > 0 else "right",
+                incline=element.incline,
+                turn_degrees=round(share * TENTH) / TENTH,
+                radius=element.radius if ends else None,
+                transition=element.transition if ends else None,
+                vertical_radius=None if part else element.vertical_radius,
+            )
+        )
+    return out
+
+
+def elements_of(segments: Sequence[Segment]) -> tuple[Element, ...]:
+    """Returns the elements of segments in driving order; neighbouring straights of one incline are one."""
+    out: list[Element] = []
+    for group in _groups(segments):
+        for element in _of_group(group):
+            last = out[-1] if out else None
+            if last and not last.turn and not element.turn and last.incline == element.incline:
+                out[-1] = last._replace(straight=last.straight + element.straight)
+            else:
+                out.append(element)
+    return tuple(out)
+
+
+def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
+    """Yields the segments that are one turn, or one straight each."""
+    group = [segments[0]]
+    for before, segment in pairwise(segments):
+        if _goes_on(before, segment, group[0].radius):
+            group.append(segment)
+        else:
+            yield group
+            group = [segment]
+    yield group
+
+
+def _goes_on(before: Segment, segment: Segment, radius: float | None) -> bool:
+    """Tells whether a segment was cut off the same turn as the one before."""
+    same = (before.turn_degrees, before.incline) == (segment.turn_degrees, segment.incline)
+    return bool(segment.turn_degrees) and same and (segment.radius is None or segment.radius == radius)
+
+
+def _of_group(group: Sequence[Segment]) -> Iterator[Element]:
+    first = group[0]
+    length = sum(segment.distance for segment in group)
+    turn = sum(segment.turn_degrees for segment in group)
+    if not turn:
+        yield Element(length, incline=first.incline, vertical_radius=first.vertical_radius)
+        return
+    transition = first.transition or min(TRANSITION_SHARE * first.distance, LONGEST_TRANSITION)
+    radius = (length - transition) / radians(abs(turn))
+    spare = 0.0
+    if first.radius and first.radius < radius:
+        spare = length - transition - first.radius * radians(abs(turn))
+        radius = first.radius
+    straight = Element(spare / 2, incline=first.incline)
+    bend = Element(turn=round(turn, 6), radius=radius, transition=transition, incline=first.incline)
+    row = (straight, bend, straight) if spare > SPARE else (bend,)
+    yield from (row[0]._replace(vertical_radius=first.vertical_radius), *row[1:])

@@ -1,0 +1,66 @@
+"""Writes elements as a Design on the map, at slopes that suit the speed."""
+
+from collections.abc import Sequence
+from math import ceil
+
+import numpy as np
+
+from roadgpt.brief.element import Element
+from roadgpt.check.extremes import lowest
+from roadgpt.design.elements import as_written, cut
+from roadgpt.design.heights import rounded
+from roadgpt.design.layout import Place
+from roadgpt.design.vertical import SEEN, Pace, joined, made_to_fit, runs_of, too_abrupt, widened
+from roadgpt.road import Design, Segment, World
+from roadgpt.road.design import MAX_INCLINE
+from roadgpt.road.elevation import elevation_of
+
+ABOVE_GROUND = 1.0  # m from the ground to the lowest place of a road
+CENTIMETRE = 100.0  # per metre: how heights are written
+
+
+def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...]:
+    """Returns RoadGPT's segments, on slopes that are clearly up, down or flat after rounding.
+
+    Slopes that change too fast for the speed are moved towards each other.
+    """
+    written = [as_written(element) for element in elements]
+    pace = Pace.along(written, world)
+    inclines = [element.incline for element in elements]
+    segments = joined(_cut(written, inclines), pace)
+    if not too_abrupt(segments, pace):
+        return segments
+    most = min(100 * world.max_grade, MAX_INCLINE)
+    lengths = [element.length for element in written]
+    short = {i for i, element in enumerate(written) if not element.turn and lengths[i] < SEEN}
+    runs = runs_of(inclines, short)
+    grades = made_to_fit(inclines, lengths, runs, [(-most, most)] * len(written), pace)
+    return widened(joined(_cut(written, grades), pace), pace)
+
+
+def _cut(written: Sequence[Element], grades: Sequence[float]) -> list[Segment]:
+    """Returns the segments of elements with these inclines, percent."""
+    pairs = zip(written, grades, strict=True)
+    sloped = (element._replace(incline=float(rounded(np.array(grade))) + 0.0) for element, grade in pairs)
+    return [segment for element in sloped for segment in cut(element)]
+
+
+def design_of(elements: Sequence[Element], place: Place, world: World) -> Design:
+    """Returns the design of elements whose lowest point lies a little above the ground."""
+    return design_at(place, segments_of(elements, world), max(0.0, world.z_floor) + ABOVE_GROUND)
+
+
+def design_at(place: Place, segments: tuple[Segment, ...], ground: float) -> Design:
+    """Returns the design of segments whose lowest point lies at that height in metres."""
+    return Design(
+        starting_point=(place.x, place.y, start_height(segments, ground)),
+        theta=place.theta,
+        segments=segments,
+    )
+
+
+def start_height(segments: Sequence[Segment], ground: float) -> float:
+    """Returns the height of the start in metres at which the lowest point lies at ``ground``."""
+    profile = elevation_of(segments, 0.0)
+    _, sag = lowest(profile, profile.stations[-1])
+    return ceil((ground - sag) * CENTIMETRE) / CENTIMETRE
