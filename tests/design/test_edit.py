@@ -12,7 +12,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.check.measures import Measures, measure
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
-from roadgpt.design.edit.anatomy import blocks_of, joined
+from roadgpt.design.road_elements import elements_on_road, joined
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Segment, World, build, in_short_segments
 
@@ -33,7 +33,7 @@ def changed(road: str, words: str) -> Design:
 @pytest.mark.parametrize("name", sorted(ROADS))
 def test_blocks_are_the_segments_in_order_and_the_turns_that_are_seen(name: str) -> None:
     design = ROADS[name]
-    blocks, found = blocks_of(design)
+    blocks, found = elements_on_road(design)
     assert joined(blocks) == design.segments
     turns = [block for block in blocks if block.kind == "turn"]
     assert [turn.side for turn in turns] == [turn.side for turn in found.turns]
@@ -215,7 +215,7 @@ def test_a_segment_without_a_radius_keeps_what_its_writer_left_open() -> None:
 
 
 def test_blocks_are_named_for_what_they_were() -> None:
-    blocks, _ = blocks_of(ROADS["h01"])
+    blocks, _ = elements_on_road(ROADS["h01"])
     assert [block.name for block in blocks] == ["gap 0", "turn 1", "gap 1", "turn 2", "gap 2"]
 
 

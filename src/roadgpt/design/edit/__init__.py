@@ -14,7 +14,6 @@ from typing import NamedTuple
 from roadgpt import plugins
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.check.measures import Measures
-from roadgpt.design.edit.anatomy import Blocks, blocks_of
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.inserting import ways_to_add
 from roadgpt.design.edit.pointing import pointed
@@ -25,6 +24,7 @@ from roadgpt.design.edit.steps import Bend, FlipAll, Step
 from roadgpt.design.edit.telling import sentences
 from roadgpt.design.edit.trying import tried
 from roadgpt.design.edit.ways import Way, ways_to_alternate, ways_to_change
+from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World
 
@@ -76,7 +76,7 @@ def _by_rules(design: Design, request: Request, world: World, geometry: Geometry
         raise EditError(
             f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
         )
-    blocks, found = blocks_of(design, geometry)
+    blocks, found = elements_on_road(design, geometry)
     rows: list[tuple[Change, Sequence[Way]]] = []
     idle: list[Change] = []
     for number, change in enumerate(_folded(request.changes), 1):
@@ -118,7 +118,9 @@ def _is_mirror(request: Request) -> bool:
     return any(change.what == "mirror" for change in request.changes)
 
 
-def _ways(change: Change, blocks: Blocks, found: Measures, world: World, number: int) -> tuple[Way, ...]:
+def _ways(
+    change: Change, blocks: RoadElements, found: Measures, world: World, number: int
+) -> tuple[Way, ...]:
     if change.what == "mirror":
         if not any(block.kind == "turn" for block in blocks):
             raise EditError("the road has no turn, so its mirror image is the same")

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 from roadgpt.check.measures import Measures
-from roadgpt.design.edit.anatomy import Block
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.sloping import SlopeOfAll
 from roadgpt.design.edit.steps import Step
+from roadgpt.design.road_elements import RoadElement
 
 
-def is_beyond(change: Change, block: Block, found: Measures) -> bool:
+def is_beyond(change: Change, block: RoadElement, found: Measures) -> bool:
     """Is a block on the wrong side of what a change bounds?"""
     assert change.to is not None
     seen = block.seen
@@ -25,7 +25,7 @@ def is_beyond(change: Change, block: Block, found: Measures) -> bool:
     return (now - change.to) * change.bound < 0
 
 
-def within(change: Change, blocks: Sequence[Block]) -> tuple[tuple[Step, ...], ...]:
+def within(change: Change, blocks: Sequence[RoadElement]) -> tuple[tuple[Step, ...], ...]:
     """Slopes of blocks that keep the bound: what is beyond is as steep as it says."""
     assert change.to is not None
     names = frozenset(block.name for block in blocks)

@@ -15,11 +15,11 @@ from roadgpt.check.measures import Measures
 from roadgpt.design.answer import AnswerSegment, Number
 from roadgpt.design.asking import rules
 from roadgpt.design.designers.chat import RULES
-from roadgpt.design.edit.anatomy import Block, Blocks, blocks_of
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.telling import between
 from roadgpt.design.repair import repair
+from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road
 from roadgpt.errors import EditError, UsageError
 from roadgpt.road import Design, Geometry, Segment, World, build, read_design
 from roadgpt.road.design import MAX_SEGMENTS
@@ -55,7 +55,7 @@ def edited_by_chat(
         EditError: no answer was a valid road that differs from the old one.
         ChatError: the model could not be asked.
     """
-    blocks, found = blocks_of(design, geometry)
+    blocks, found = elements_on_road(design, geometry)
     opening = [
         Message(role="system", text=f"{rules(RULES, world)}\n\n{TASK}"),
         Message(role="user", text=_question(design, words, blocks, found)),
@@ -88,7 +88,7 @@ def edited_by_chat(
     )
 
 
-def _question(design: Design, words: str, blocks: Blocks, found: Measures) -> str:
+def _question(design: Design, words: str, blocks: RoadElements, found: Measures) -> str:
     lines = [
         f"segment {number}: {json.dumps(segment.model_dump(exclude_none=True))}"
         for number, segment in enumerate(design.segments, 1)
@@ -106,7 +106,7 @@ def _question(design: Design, words: str, blocks: Blocks, found: Measures) -> st
     )
 
 
-def _seen(blocks: Sequence[Block]) -> list[str]:
+def _seen(blocks: Sequence[RoadElement]) -> list[str]:
     out, first, straights = [], 1, 0
     for block in blocks:
         end = first + len(block.segments) - 1
@@ -122,11 +122,11 @@ def _seen(blocks: Sequence[Block]) -> list[str]:
     return out
 
 
-def _spoken_of(words: str, blocks: Blocks) -> set[int] | None:
+def _spoken_of(words: str, blocks: RoadElements) -> set[int] | None:
     """Numbers of the segments that the request speaks of; None where rules cannot tell."""
     try:
         request = read_request(words)
-        meant: list[Block] = []
+        meant: list[RoadElement] = []
         for change in request.changes:
             if change.what == "mirror":
                 meant += blocks

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.anatomy import Block
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.sloping import Slope, SlopeOfAll
 from roadgpt.design.edit.steps import Step
+from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -17,7 +17,7 @@ LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
 STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 
 
-def ways_to_slope(change: Change, block: Block, found: Measures, world: World) -> list[Step]:
+def ways_to_slope(change: Change, block: RoadElement, found: Measures, world: World) -> list[Step]:
     """Grades of one turn or straight."""
     now = block.seen.grade if block.seen else block.incline
     limit = 100 * world.max_grade
@@ -54,7 +54,7 @@ def ways_to_slope(change: Change, block: Block, found: Measures, world: World) -
     return _steeper(change, block, now, sign, limit)
 
 
-def _steeper(change: Change, block: Block, now: float, sign: int, limit: float) -> list[Step]:
+def _steeper(change: Change, block: RoadElement, now: float, sign: int, limit: float) -> list[Step]:
     if change.more < 0:
         if abs(now) < LEVEL:
             return []
@@ -75,7 +75,7 @@ def _steeper(change: Change, block: Block, now: float, sign: int, limit: float) 
 
 
 def ways_to_slope_all(
-    change: Change, blocks: Sequence[Block], found: Measures, world: World
+    change: Change, blocks: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[tuple[Step, ...], ...]:
     """Grades of the whole road, or of all that lies behind a place."""
     names = frozenset(block.name for block in blocks)

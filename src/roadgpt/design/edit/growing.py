@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from roadgpt.check.measures import Measures
-from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.steps import Aims, Bend, Goal, Step, Stretch
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -28,13 +28,13 @@ class WholeLength:
         """Of the whole road, whose name is empty."""
         return (Goal("", "length", self.length, self.length - self.slack, self.length + self.slack),)
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """The blocks as they are."""
         return blocks
 
 
 def ways_to_stretch_the_road(
-    change: Change, blocks: Sequence[Block], found: Measures, world: World
+    change: Change, blocks: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[tuple[Step, ...], ...]:
     """All ways, the preferred one first.
 
@@ -60,7 +60,7 @@ def ways_to_stretch_the_road(
     return tuple(out)
 
 
-def _ways(blocks: Sequence[Block], more: float, world: World) -> list[tuple[Step, ...]]:
+def _ways(blocks: Sequence[RoadElement], more: float, world: World) -> list[tuple[Step, ...]]:
     gaps = [block for block in blocks if block.kind == "gap" and block.seen is not None]
     out = []
     if gaps:
@@ -72,7 +72,7 @@ def _ways(blocks: Sequence[Block], more: float, world: World) -> list[tuple[Step
     return out
 
 
-def _straights(gaps: Sequence[Block], more: float) -> tuple[Step, ...]:
+def _straights(gaps: Sequence[RoadElement], more: float) -> tuple[Step, ...]:
     """All of them in proportion; none where they would get too short."""
     lengths = [gap.seen.length if gap.seen else gap.length for gap in gaps]
     if more >= 0:
@@ -90,7 +90,7 @@ def _straights(gaps: Sequence[Block], more: float) -> tuple[Step, ...]:
     )
 
 
-def _everything(blocks: Sequence[Block], more: float, world: World) -> tuple[Step, ...]:
+def _everything(blocks: Sequence[RoadElement], more: float, world: World) -> tuple[Step, ...]:
     """Turns with other radii, as far as they may, and the rest on straights."""
     turns = [block for block in blocks if block.kind == "turn" and block.seen is not None]
     gaps = [block for block in blocks if block.kind == "gap" and block.seen is not None]

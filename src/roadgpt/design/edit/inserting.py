@@ -5,12 +5,12 @@ from dataclasses import replace
 from math import radians
 
 from roadgpt.brief.model import Side
-from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.room import SEPARATE, gap
 from roadgpt.design.edit.steps import OTHER, Goal, Insert, Step, Stretch, turn_segments
 from roadgpt.design.edit.ways import Way
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -37,7 +37,7 @@ SHARPNESS = {
 }
 
 
-def ways_to_add(change: Change, blocks: Blocks, world: World, number: int) -> tuple[Way, ...]:
+def ways_to_add(change: Change, blocks: RoadElements, world: World, number: int) -> tuple[Way, ...]:
     """All ways to add what a change asks for.
 
     Args:
@@ -62,7 +62,7 @@ def ways_to_add(change: Change, blocks: Blocks, world: World, number: int) -> tu
     return tuple(out)
 
 
-def _place(change: Change, blocks: Blocks) -> tuple[str, list[tuple[str, int]]]:
+def _place(change: Change, blocks: RoadElements) -> tuple[str, list[tuple[str, int]]]:
     """The block to stand before (empty: none), and gaps that may be split instead, with their segment."""
     place = change.place
     how = place.how if place else "end"
@@ -108,7 +108,7 @@ def _place(change: Change, blocks: Blocks) -> tuple[str, list[tuple[str, int]]]:
     return after, [("", 0)]
 
 
-def _middle(blocks: Blocks) -> tuple[Block, int]:
+def _middle(blocks: RoadElements) -> tuple[RoadElement, int]:
     """The gap nearest to the road's middle, and its nearest joint; 0: halve its longest segment."""
     whole, at = sum(block.length for block in blocks), 0.0
     best, found = float("inf"), (blocks[0], 0)
@@ -148,7 +148,7 @@ def _measures(change: Change, world: World) -> list[tuple[float, float]]:
     return out
 
 
-def _sides(change: Change, blocks: Blocks, before: str) -> list[list[Side]]:
+def _sides(change: Change, blocks: RoadElements, before: str) -> list[list[Side]]:
     """Sides of the new turns: as said, else away from the turn before."""
     count = change.count * (2 if change.kind in ("s_bend", "chicane") else 1)
     alternates = change.kind in ("s_bend", "chicane") or (count > 1 and change.side is None)
@@ -162,7 +162,7 @@ def _sides(change: Change, blocks: Blocks, before: str) -> list[list[Side]]:
     return out
 
 
-def _away(blocks: Blocks, before: str) -> list[Side]:
+def _away(blocks: RoadElements, before: str) -> list[Side]:
     names = [block.name for block in blocks]
     at = names.index(before) if before else len(blocks)
     last = next((b.side for b in reversed(blocks[:at]) if b.kind == "turn"), None) or "right"
@@ -171,7 +171,7 @@ def _away(blocks: Blocks, before: str) -> list[Side]:
 
 def _turns(
     change: Change,
-    blocks: Blocks,
+    blocks: RoadElements,
     before: str,
     split: tuple[str, int],
     sides: Sequence[Side],
@@ -189,7 +189,7 @@ def _turns(
         first = sum(s.distance for s in own[:index]) if index else blocks[at].length / 2
         gap_before, gap_after = gap_before + first, gap_after - first
     incline = _incline(blocks, at)
-    new: list[Block] = []
+    new: list[RoadElement] = []
     goals: list[Goal] = []
     lead = _lead(turn_before, sides[0], gap_before) + spare[0]
     if lead:
@@ -201,7 +201,7 @@ def _turns(
             new.append(gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
         name = f"new {number} turn {i + 1}"
         segments = turn_segments(degrees, 1 if side == "left" else -1, radius, ramp, incline)
-        new.append(Block(name, "turn", segments, side))
+        new.append(RoadElement(name, "turn", segments, side))
         goals += _goals(change, name, degrees, radius)
     tail = _lead(turn_after, sides[-1], gap_after) + spare[1]
     if tail:
@@ -228,7 +228,7 @@ def _goals(change: Change, name: str, degrees: float, radius: float) -> list[Goa
     return out
 
 
-def _behind(blocks: Blocks) -> tuple[float, Block | None]:
+def _behind(blocks: RoadElements) -> tuple[float, RoadElement | None]:
     """Metres since the last turn, and that turn."""
     metres = 0.0
     for block in reversed(blocks):
@@ -238,13 +238,13 @@ def _behind(blocks: Blocks) -> tuple[float, Block | None]:
     return metres, None
 
 
-def _lead(turn: Block | None, side: Side, gap: float) -> float:
+def _lead(turn: RoadElement | None, side: Side, gap: float) -> float:
     """Metres that are missing between a turn (None: an end of the road) and the next of that side."""
     needed = LEAD if turn is None else SEPARATE if turn.side == side else JOINT
     return round(needed - gap, 1) if gap < needed - 0.5 else 0.0
 
 
-def _incline(blocks: Blocks, at: int) -> float:
+def _incline(blocks: RoadElements, at: int) -> float:
     """Percent, of what stands next to a place."""
     before = [s for block in blocks[:at] for s in block.segments]
     after = [s for block in blocks[at:] for s in block.segments]
@@ -252,7 +252,7 @@ def _incline(blocks: Blocks, at: int) -> float:
 
 
 def _straight_ways(
-    change: Change, blocks: Blocks, before: str, splits: Sequence[tuple[str, int]], number: int
+    change: Change, blocks: RoadElements, before: str, splits: Sequence[tuple[str, int]], number: int
 ) -> tuple[Way, ...]:
     names = [block.name for block in blocks]
     at = names.index(before) if before else len(blocks)

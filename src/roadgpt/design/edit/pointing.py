@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
-from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.edit.request import Place, Target, What
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
 LONG, SHORT = 60.0, 30.0  # m: brief.words
@@ -14,7 +14,7 @@ OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "stra
 KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
 
 
-def pointed(target: Target, blocks: Blocks, what: What) -> list[Block]:
+def pointed(target: Target, blocks: RoadElements, what: What) -> list[RoadElement]:
     """The blocks that are meant, in driving order.
 
     Args:
@@ -40,17 +40,17 @@ def pointed(target: Target, blocks: Blocks, what: What) -> list[Block]:
     return _spared(target, chosen, blocks) if target.numbers else chosen  # 'turns 1 to 4 except turn 2'
 
 
-def turns(blocks: Blocks) -> list[Block]:
+def turns(blocks: RoadElements) -> list[RoadElement]:
     """All turns."""
     return [block for block in blocks if block.kind == "turn"]
 
 
-def straights(blocks: Blocks) -> list[Block]:
+def straights(blocks: RoadElements) -> list[RoadElement]:
     """All straights that are seen."""
     return [block for block in blocks if block.kind == "gap" and block.seen is not None]
 
 
-def _road(target: Target, blocks: Blocks, what: What) -> list[Block]:
+def _road(target: Target, blocks: RoadElements, what: What) -> list[RoadElement]:
     found = list(blocks)
     if target.half:
         found = _half(blocks, target.half)
@@ -72,9 +72,9 @@ def _road(target: Target, blocks: Blocks, what: What) -> list[Block]:
     return [block for block in found if block.segments]
 
 
-def _half(blocks: Blocks, half: int) -> list[Block]:
+def _half(blocks: RoadElements, half: int) -> list[RoadElement]:
     """The blocks whose middle lies in the first or in the second half of the road."""
-    whole, at, out = sum(block.length for block in blocks), 0.0, list[Block]()
+    whole, at, out = sum(block.length for block in blocks), 0.0, list[RoadElement]()
     for block in blocks:
         if (at + block.length / 2 < whole / 2) == (half == 1):
             out.append(block)
@@ -82,7 +82,7 @@ def _half(blocks: Blocks, half: int) -> list[Block]:
     return out
 
 
-def _end(blocks: Blocks, what: What, last: bool) -> Block:
+def _end(blocks: RoadElements, what: What, last: bool) -> RoadElement:
     if what in OF_TURNS:
         found = turns(blocks)
         if not found:
@@ -98,7 +98,7 @@ def _single(target: Target) -> Target:
     return replace(target, place=None) if target.noun == "road" else target
 
 
-def _among(target: Target, found: Sequence[Block], blocks: Blocks) -> list[Block]:
+def _among(target: Target, found: Sequence[RoadElement], blocks: RoadElements) -> list[RoadElement]:
     """Those that are as they were said to be, and where."""
     out = [block for block in found if _fits(target, block)]
     if target.half:
@@ -110,7 +110,7 @@ def _among(target: Target, found: Sequence[Block], blocks: Blocks) -> list[Block
     return out if target.numbers else _spared(target, out, blocks)
 
 
-def _spared(target: Target, found: list[Block], blocks: Blocks) -> list[Block]:
+def _spared(target: Target, found: list[RoadElement], blocks: RoadElements) -> list[RoadElement]:
     """Without those that 'except' names."""
     if target.but is None:
         return found
@@ -119,7 +119,7 @@ def _spared(target: Target, found: list[Block], blocks: Blocks) -> list[Block]:
     return [block for block in found if block.name not in gone]
 
 
-def _fits(target: Target, block: Block) -> bool:
+def _fits(target: Target, block: RoadElement) -> bool:
     seen = block.seen
     if seen is None:
         return False
@@ -143,7 +143,9 @@ def _fits(target: Target, block: Block) -> bool:
     return True
 
 
-def _placed(place: Place, found: Sequence[Block], blocks: Blocks, many: bool) -> list[Block]:
+def _placed(
+    place: Place, found: Sequence[RoadElement], blocks: RoadElements, many: bool
+) -> list[RoadElement]:
     assert place.target is not None
     at = {block.name: index for index, block in enumerate(blocks)}
     marks = [at[block.name] for block in pointed(_named(place.target), blocks, "length")]
@@ -164,7 +166,7 @@ def _named(target: Target) -> Target:
     return replace(target, noun="turn") if target.noun is None else target
 
 
-def _chosen(target: Target, found: Sequence[Block], noun: str) -> list[Block]:
+def _chosen(target: Target, found: Sequence[RoadElement], noun: str) -> list[RoadElement]:
     """By number, by superlative, or all; one alone where one was meant."""
     told = _told(target, noun)
     if not found:
@@ -202,7 +204,7 @@ def _missing(number: int, count: int, told: str) -> str:
     return f"there is no {what}; the road has {many if count != 1 else 'one'}"
 
 
-def _measure(block: Block, measure: str) -> float:
+def _measure(block: RoadElement, measure: str) -> float:
     seen = block.seen
     assert seen is not None
     if measure == "sharp":

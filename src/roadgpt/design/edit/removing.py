@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 from math import sqrt
 
-from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.edit.room import HIDDEN, SEPARATE
 from roadgpt.design.edit.steps import Become, Step, Stretch, straight
 from roadgpt.design.edit.ways import Way
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import Segment
 
 
-def ways_to_remove(gone: Sequence[Block], blocks: Blocks) -> tuple[Way, ...]:
+def ways_to_remove(gone: Sequence[RoadElement], blocks: RoadElements) -> tuple[Way, ...]:
     """All ways to take turns or straights away: nothing, or a straight, in their place."""
     if len(gone) == len([b for b in blocks if b.segments]):
         raise EditError("then no road would be left; remove fewer")
@@ -25,7 +25,7 @@ def ways_to_remove(gone: Sequence[Block], blocks: Blocks) -> tuple[Way, ...]:
     return tuple(out)
 
 
-def _without(block: Block, blocks: Blocks, filler: float) -> Step:
+def _without(block: RoadElement, blocks: RoadElements, filler: float) -> Step:
     at = blocks.index(block)
     if block.kind == "gap":
         bends = tuple(s for s in block.segments if s.turn_degrees)
@@ -38,7 +38,7 @@ def _without(block: Block, blocks: Blocks, filler: float) -> Step:
     return Become(block, kept)
 
 
-def _chord(block: Block) -> float:
+def _chord(block: RoadElement) -> float:
     seen = block.seen
     assert seen is not None
     return max(0.7 * block.length, sqrt(2) * min(seen.radius, 60.0))

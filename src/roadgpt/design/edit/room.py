@@ -3,26 +3,26 @@
 from itertools import pairwise
 
 from roadgpt.brief.model import Side
-from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.edit.steps import straight
+from roadgpt.design.road_elements import RoadElement, RoadElements
 
 SEPARATE = 18.0  # m between turns of one hand, so that they are seen as two
 HIDDEN = 9.0  # m, measured: turns of one hand with so much between them are two, but no straight is seen
 
 
-def gap(name: str, length: float, incline: float) -> Block:
+def gap(name: str, length: float, incline: float) -> RoadElement:
     """A straight that is new."""
-    return Block(name, "gap", (straight(length, incline),))
+    return RoadElement(name, "gap", (straight(length, incline),))
 
 
-def with_room(blocks: Blocks, before: Blocks) -> Blocks:
+def with_room(blocks: RoadElements, before: RoadElements) -> RoadElements:
     """Straights between new neighbours of one hand, so that they are not seen as one turn.
 
     Turns that were neighbours before, on the same sides, are two already.
     """
     known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
-    out: list[Block] = []
-    last: Block | None = None
+    out: list[RoadElement] = []
+    last: RoadElement | None = None
     metres = 0.0
     for block in blocks:
         if block.kind == "turn":
@@ -36,5 +36,5 @@ def with_room(blocks: Blocks, before: Blocks) -> Blocks:
     return tuple(out)
 
 
-def _pair(one: Block, other: Block) -> tuple[str, Side | None, str, Side | None]:
+def _pair(one: RoadElement, other: RoadElement) -> tuple[str, Side | None, str, Side | None]:
     return one.name, one.side, other.name, other.side

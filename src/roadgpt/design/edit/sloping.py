@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.edit.steps import Aims, Goal, changed, with_incline
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.road import World
 
 
@@ -13,7 +13,7 @@ from roadgpt.road import World
 class Slope:
     """Another grade of one turn or straight, percent as measured."""
 
-    block: Block
+    block: RoadElement
     grade: float
     low: float
     high: float
@@ -25,12 +25,12 @@ class Slope:
             return ()
         return (Goal(self.block.name, "grade", self.grade, self.low, self.high),)
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Inclines in proportion where they all go the same way, else all alike."""
         limit = 100 * world.max_grade - 0.2
         aim = float(np.clip(aims.get((self.block.name, "grade"), self.grade), -limit, limit))
 
-        def sloped(block: Block) -> Block:
+        def sloped(block: RoadElement) -> RoadElement:
             inclines = np.array([s.incline for s in block.segments])
             mean = block.incline
             if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
@@ -61,7 +61,7 @@ class SlopeOfAll:
         """None: inclines of many segments measure as they are written."""
         return ()
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Every segment by itself."""
         limit = 100 * world.max_grade - 0.2
 

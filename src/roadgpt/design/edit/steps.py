@@ -11,8 +11,8 @@ from math import ceil, floor, radians
 from typing import Literal, Protocol
 
 from roadgpt.brief.model import Side
-from roadgpt.design.edit.anatomy import Block, Blocks
 from roadgpt.design.elements import cut, turn_element
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN
 
@@ -43,12 +43,12 @@ class Step(Protocol):
         """What must be measured afterwards."""
         ...
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """The blocks with the change."""
         ...
 
 
-def changed(blocks: Blocks, name: str, change: Callable[[Block], Block]) -> Blocks:
+def changed(blocks: RoadElements, name: str, change: Callable[[RoadElement], RoadElement]) -> RoadElements:
     """The blocks, of which the one of that name is changed."""
     return tuple(change(block) if block.name == name else block for block in blocks)
 
@@ -57,7 +57,7 @@ def changed(blocks: Blocks, name: str, change: Callable[[Block], Block]) -> Bloc
 class Bend:
     """Another angle, radius or length of a turn; what is None stays as it is."""
 
-    block: Block
+    block: RoadElement
     degrees: float | None = None
     radius: float | None = None
     length: float | None = None
@@ -79,7 +79,7 @@ class Bend:
             out.append(Goal(self.block.name, "length", self.length, low, high))
         return tuple(out)
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Angles, lengths and radii scaled alike; more segments where one would turn too far."""
         seen, name = self.block.seen, self.block.name
         assert seen is not None
@@ -122,7 +122,7 @@ def straight(length: float, incline: float) -> Segment:
     return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
 
 
-def rewritten(block: Block, degrees: float, radius: float) -> Block:
+def rewritten(block: RoadElement, degrees: float, radius: float) -> RoadElement:
     """A turn of a block's side and slope that is written anew."""
     ramps = [s.transition for s in block.segments if s.transition]
     ramp = ramps[0] if ramps else RAMP_SHARE * radius * radians(degrees)
@@ -142,7 +142,7 @@ def turn_segments(
 class Stretch:
     """Another length of a straight, metres as measured."""
 
-    block: Block
+    block: RoadElement
     length: float
     slack: float = 1.0
 
@@ -155,7 +155,7 @@ class Stretch:
             Goal(self.block.name, "length", self.length, self.length - self.slack, self.length + self.slack),
         )
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """The longest segment longer, or all straight ones shorter."""
         seen = self.block.seen
         before = seen.length if seen else self.block.length
@@ -163,7 +163,7 @@ class Stretch:
         return changed(blocks, self.block.name, lambda b: stretched(b, more))
 
 
-def stretched(block: Block, more: float) -> Block:
+def stretched(block: RoadElement, more: float) -> RoadElement:
     """A gap with so many metres more of straight road."""
     straight = [i for i, s in enumerate(block.segments) if not s.turn_degrees]
     if not straight:
@@ -196,15 +196,15 @@ def with_incline(segment: Segment, incline: float) -> Segment:
 class Flip:
     """A turn to the other side."""
 
-    block: Block
+    block: RoadElement
     goals: tuple[Goal, ...] = ()
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """All that bends, bends the other way."""
         return changed(blocks, self.block.name, flipped)
 
 
-def flipped(block: Block) -> Block:
+def flipped(block: RoadElement) -> RoadElement:
     """The mirror image of a block."""
     return replace(block, side=OTHER.get(block.side), segments=tuple(_mirrored(s) for s in block.segments))
 
@@ -222,7 +222,7 @@ class FlipAll:
 
     goals: tuple[Goal, ...] = ()
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Every turn, and what bends between them."""
         return tuple(flipped(block) for block in blocks)
 
@@ -231,11 +231,11 @@ class FlipAll:
 class Become:
     """A block becomes a gap of these segments, or vanishes."""
 
-    block: Block
+    block: RoadElement
     segments: Sequence[Segment] = ()
     goals: tuple[Goal, ...] = ()
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Turns turn into gaps."""
         return changed(
             blocks,
@@ -249,14 +249,14 @@ class Insert:
     """New blocks before the block of that name, or at the end where it is empty."""
 
     before: str
-    blocks: Blocks
+    blocks: RoadElements
     goals: tuple[Goal, ...] = ()
     split: str = ""
     """The gap that is split in two first; its second half is what the new blocks stand before."""
     index: int = 0
     """Segments of its first half; 0 halves the longest one."""
 
-    def apply(self, blocks: Blocks, aims: Aims, world: World) -> Blocks:
+    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
         """The new blocks in their place, on the slope that is aimed at."""
         new = tuple(self._aimed(block, aims) for block in self.blocks)
         if self.split:
@@ -267,7 +267,7 @@ class Insert:
         at = names.index(self.before) if self.before else len(blocks)
         return (*blocks[:at], *new, *blocks[at:])
 
-    def _aimed(self, block: Block, aims: Aims) -> Block:
+    def _aimed(self, block: RoadElement, aims: Aims) -> RoadElement:
         length, aim = aims.get((block.name, "length")), aims.get((block.name, "grade"))
         if length is not None:
             block = block.with_segments(_with_distance(s, length) for s in block.segments)
@@ -275,7 +275,7 @@ class Insert:
             return block
         return block.with_segments(with_incline(s, min(max(aim, -14.8), 14.8)) for s in block.segments)
 
-    def _halves(self, block: Block, new: Blocks) -> Blocks:
+    def _halves(self, block: RoadElement, new: RoadElements) -> RoadElements:
         segments, at = list(block.segments), self.index
         if not at:
             longest = max(range(len(segments)), key=lambda i: segments[i].distance)

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from roadgpt.check.measures import MeasuredFeature, Measures
-from roadgpt.design.edit.anatomy import Block, Blocks, blocks_of
 from roadgpt.design.edit.trying import Made, seen_as
+from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road
 from roadgpt.road import Design, Geometry
 
 MOVED = 0.005  # m
@@ -12,7 +12,7 @@ FADING = 12.0  # m that a straight gains at most from turns that fade into it
 AGAIN = ("start ", "turned ", "theta ")  # what a repair says of the road as a whole, which is measured here
 
 
-def sentences(before: Design, blocks: Blocks, found: Measures, made: Made) -> tuple[str, ...]:
+def sentences(before: Design, blocks: RoadElements, found: Measures, made: Made) -> tuple[str, ...]:
     """One for every turn and straight that is not as it was, and for the road as a whole."""
     besides = [said for said in made.besides if not said.startswith(AGAIN)]
     if besides:
@@ -23,7 +23,7 @@ def sentences(before: Design, blocks: Blocks, found: Measures, made: Made) -> tu
 
 def between(before: Design, after: Design, geometry: Geometry) -> tuple[str, ...]:
     """What is different about another design, turn by turn where there are as many as before."""
-    (blocks, found), (new, measured) = blocks_of(before, geometry), blocks_of(after, geometry)
+    (blocks, found), (new, measured) = elements_on_road(before, geometry), elements_on_road(after, geometry)
     made = Made(after, new, measured)
     same = [block.name for block in blocks] == [block.name for block in new]
     things = tuple(_things(blocks, made)) if same else _counted(found, measured)
@@ -36,7 +36,7 @@ def _counted(before: Measures, after: Measures) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _things(before: Blocks, made: Made) -> Iterator[str]:
+def _things(before: RoadElements, made: Made) -> Iterator[str]:
     after = {block.name: block for block in made.blocks}
     names = _names(before)
     for block in before:
@@ -58,7 +58,7 @@ def _things(before: Blocks, made: Made) -> Iterator[str]:
             yield f"a straight of {length:.0f} m is new, {block.incline:+.1f} %"
 
 
-def _names(blocks: Sequence[Block]) -> dict[str, str]:
+def _names(blocks: Sequence[RoadElement]) -> dict[str, str]:
     """What a person calls every block."""
     out, turns, straights = dict[str, str](), 0, 0
     for block in blocks:
@@ -76,7 +76,7 @@ def _turn(seen: MeasuredFeature) -> str:
     return f"{seen.degrees:.0f} degrees to the {seen.side}, radius {seen.radius:.0f} m, {seen.grade:+.1f} %"
 
 
-def _gone(block: Block, name: str, now: Block | None) -> str:
+def _gone(block: RoadElement, name: str, now: RoadElement | None) -> str:
     seen = block.seen
     if block.kind == "turn" and seen:
         instead = f", in its place {now.length:g} m straight" if now and now.segments else ""
@@ -84,7 +84,7 @@ def _gone(block: Block, name: str, now: Block | None) -> str:
     return f"{name} is gone"
 
 
-def _other(block: Block, now: Block, name: str, made: Made) -> Iterator[str]:
+def _other(block: RoadElement, now: RoadElement, name: str, made: Made) -> Iterator[str]:
     """What is different about a block that stayed."""
     was, seen = block.seen, seen_as(block.name, made.blocks, made.found)
     if not now.segments or (was is not None and seen is None and now.length < was.length):

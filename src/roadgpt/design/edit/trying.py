@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 from roadgpt import check
 from roadgpt.check.measures import MeasuredFeature, Measures, measure
-from roadgpt.design.edit.anatomy import Block, Blocks, joined
 from roadgpt.design.edit.room import with_room
 from roadgpt.design.edit.steps import FlipAll, Goal, Quantity, Step
 from roadgpt.design.edit.ways import Way
 from roadgpt.design.repair import repair
+from roadgpt.design.road_elements import RoadElement, RoadElements, joined
 from roadgpt.design.vertical import EASES, Pace, changed_joints, widened
 from roadgpt.design.vertical import joined as joined_slopes
 from roadgpt.errors import UsageError
@@ -36,7 +36,7 @@ class Made(NamedTuple):
     """A road with the changes, how it measures, and what had to be changed besides."""
 
     design: Design
-    blocks: Blocks
+    blocks: RoadElements
     found: Measures
     besides: tuple[str, ...] = ()
 
@@ -52,7 +52,7 @@ class Tried(NamedTuple):
 
 
 def tried(
-    design: Design, blocks: Blocks, changes: Sequence[Sequence[Way]], world: World, geometry: Geometry
+    design: Design, blocks: RoadElements, changes: Sequence[Sequence[Way]], world: World, geometry: Geometry
 ) -> Tried:
     """The first way that makes a valid road; else the objection to the preferred one.
 
@@ -105,7 +105,7 @@ def _eases(steps: Sequence[Step]) -> tuple[tuple[float, bool], ...]:
 
 def _one(
     design: Design,
-    blocks: Blocks,
+    blocks: RoadElements,
     steps: Sequence[Step],
     world: World,
     geometry: Geometry,
@@ -116,7 +116,7 @@ def _one(
     aims: Aims = {(goal.block, goal.quantity): goal.aim for goal in goals}
     objection, draft = "", None
     for _ in range(CORRECTIONS):
-        after: Blocks = blocks
+        after: RoadElements = blocks
         for step in steps:
             after = step.apply(after, aims, world)
         after = with_room(after, blocks)
@@ -168,7 +168,9 @@ def _placed(design: Design, world: World) -> Design:
     return repair(design, None, world, "place").design
 
 
-def _started(design: Design, after: Blocks, before: Blocks, world: World, is_mirrored: bool) -> Design:
+def _started(
+    design: Design, after: RoadElements, before: RoadElements, world: World, is_mirrored: bool
+) -> Design:
     """The design with other segments; where something new stands in front, the rest stays where it was."""
     segments = joined(after)
     x, y, z = design.starting_point
@@ -195,7 +197,7 @@ def _started(design: Design, after: Blocks, before: Blocks, world: World, is_mir
     )
 
 
-def _unlike(blocks: Blocks, found: Measures) -> str:
+def _unlike(blocks: RoadElements, found: Measures) -> str:
     """Where the finished road does not show the turns that it should: what is wrong."""
     wanted = [block.side for block in blocks if block.kind == "turn"]
     shown = [turn.side for turn in found.turns]
@@ -206,12 +208,12 @@ def _unlike(blocks: Blocks, found: Measures) -> str:
     return "a turn would be seen to the wrong side"
 
 
-def seen_as(name: str, blocks: Blocks, found: Measures) -> MeasuredFeature | None:
+def seen_as(name: str, blocks: RoadElements, found: Measures) -> MeasuredFeature | None:
     """How a block measures on the finished road; None where it is not seen by itself."""
     turns = [block.name for block in blocks if block.kind == "turn"]
     if name in turns:
         return found.turns[turns.index(name)]
-    behind, alone = 0, dict[int, list[Block]]()
+    behind, alone = 0, dict[int, list[RoadElement]]()
     for block in blocks:
         if block.kind == "turn":
             behind += 1
@@ -225,7 +227,7 @@ def seen_as(name: str, blocks: Blocks, found: Measures) -> MeasuredFeature | Non
     return None
 
 
-def _value(goal: Goal, blocks: Blocks, found: Measures) -> float:
+def _value(goal: Goal, blocks: RoadElements, found: Measures) -> float:
     if not goal.block:
         return found.length
     seen = seen_as(goal.block, blocks, found)
@@ -259,7 +261,7 @@ def _mended(draft: Made, steps: Sequence[Step], world: World) -> Made | None:
         return None
     found = measure(road.centreline())
     sizes = [len(block.segments) for block in draft.blocks]
-    segments, at, blocks = mended.design.segments, 0, list[Block]()
+    segments, at, blocks = mended.design.segments, 0, list[RoadElement]()
     for block, size in zip(draft.blocks, sizes, strict=True):
         blocks.append(block.with_segments(segments[at : at + size]))
         at += size

@@ -9,12 +9,12 @@ from math import radians
 
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures
-from roadgpt.design.edit.anatomy import Block, is_turn
 from roadgpt.design.edit.bounding import is_beyond, within
 from roadgpt.design.edit.grading import ways_to_slope, ways_to_slope_all
 from roadgpt.design.edit.growing import ways_to_stretch_the_road
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.steps import OTHER, Become, Bend, Flip, Step, Stretch, straight
+from roadgpt.design.road_elements import RoadElement, is_turn
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -55,7 +55,9 @@ MOST_ANGLE = 210.0
 SEEN = 10.6  # m: the shortest straight that is seen
 
 
-def ways_to_change(change: Change, blocks: Sequence[Block], found: Measures, world: World) -> tuple[Way, ...]:
+def ways_to_change(
+    change: Change, blocks: Sequence[RoadElement], found: Measures, world: World
+) -> tuple[Way, ...]:
     """All ways, the preferred one first; empty where everything is as it was asked for already.
 
     Args:
@@ -91,16 +93,16 @@ def ways_to_change(change: Change, blocks: Sequence[Block], found: Measures, wor
             return _each(blocks, _straightened)
 
 
-def ways_to_alternate(blocks: Sequence[Block], world: World) -> tuple[Way, ...]:
+def ways_to_alternate(blocks: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
     """Turns to the one and to the other side by turns, as the first one begins; empty where they are so."""
-    side, wrong = blocks[0].side, list[Block]()
+    side, wrong = blocks[0].side, list[RoadElement]()
     for block in blocks:
         wrong += [block] if block.side != side else []
         side = OTHER[side]
     return _flipped(wrong, world) if wrong else ()
 
 
-def _each(blocks: Sequence[Block], ways: Callable[[Block], Sequence[Step]]) -> tuple[Way, ...]:
+def _each(blocks: Sequence[RoadElement], ways: Callable[[RoadElement], Sequence[Step]]) -> tuple[Way, ...]:
     """All blocks alike: the first way of each, the second way of each, ..."""
     rows = [row for row in (list(ways(block)) for block in blocks) if row]
     if not rows:
@@ -108,7 +110,7 @@ def _each(blocks: Sequence[Block], ways: Callable[[Block], Sequence[Step]]) -> t
     return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
 
 
-def _bends(change: Change, block: Block, world: World) -> list[Step]:
+def _bends(change: Change, block: RoadElement, world: World) -> list[Step]:
     seen = block.seen
     if block.kind != "turn" or seen is None:
         raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
@@ -149,7 +151,7 @@ def _aim(change: Change, now: float) -> float | None:
     return None if change.times is None else now * change.times
 
 
-def _angles(change: Change, block: Block) -> list[tuple[float, float]]:
+def _angles(change: Change, block: RoadElement) -> list[tuple[float, float]]:
     seen = block.seen
     assert seen is not None
     aim = _aim(change, seen.degrees)
@@ -173,7 +175,7 @@ def _angles(change: Change, block: Block) -> list[tuple[float, float]]:
     return out
 
 
-def _radii(change: Change, block: Block, world: World) -> list[tuple[float, float]]:
+def _radii(change: Change, block: RoadElement, world: World) -> list[tuple[float, float]]:
     seen = block.seen
     assert seen is not None
     aim = _aim(change, seen.radius)
@@ -195,7 +197,7 @@ def _radii(change: Change, block: Block, world: World) -> list[tuple[float, floa
     return [(seen.degrees * a, seen.radius * (1 + (r - 1) * min(change.dose, 1.4))) for a, r in pairs]
 
 
-def _shapes(change: Change, block: Block, least: float) -> list[tuple[float, float]]:
+def _shapes(change: Change, block: RoadElement, least: float) -> list[tuple[float, float]]:
     """Angles and radii that a hairpin, or a gentle turn, may have; empty where it is one."""
     seen = block.seen
     assert seen is not None
@@ -230,7 +232,7 @@ def _shapes(change: Change, block: Block, least: float) -> list[tuple[float, flo
     return [(min(angle, most), wide) for most in (115.0, 70.0, 50.0, 35.0, 25.0, 20.0)]
 
 
-def _lengths(change: Change, block: Block, world: World) -> list[Step]:
+def _lengths(change: Change, block: RoadElement, world: World) -> list[Step]:
     seen = block.seen
     before = seen.length if seen else block.length
     if change.to is not None:
@@ -266,7 +268,7 @@ def _lengths(change: Change, block: Block, world: World) -> list[Step]:
     return [Stretch(block, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
 
 
-def _flipped(blocks: Sequence[Block], world: World) -> tuple[Way, ...]:
+def _flipped(blocks: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
     """The mirror image of each; where that finds no room, turned a little less or more as well."""
     flips = tuple(Flip(block) for block in blocks)
     least = world.min_radius * OVER_LEAST_RADIUS
@@ -284,7 +286,7 @@ def _flipped(blocks: Sequence[Block], world: World) -> tuple[Way, ...]:
     return tuple(out)
 
 
-def _straightened(block: Block) -> list[Step]:
+def _straightened(block: RoadElement) -> list[Step]:
     """A straight in the place of a turn: as long as the turn was, or as long as its chord."""
     if block.kind != "turn" or block.seen is None:
         return []

@@ -8,6 +8,7 @@
 What cannot be repaired comes back placed at best; ``check.inspect`` says what is still wrong with it.
 """
 
+from collections.abc import Sequence
 from math import ceil, floor
 from typing import Literal, NamedTuple
 
@@ -15,17 +16,17 @@ import numpy as np
 
 from roadgpt import check
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.outline import Outline
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.repair.changes import changes_between
 from roadgpt.design.repair.figure import figure_of
 from roadgpt.design.repair.limits import MARGINS, Margins, limits_of
 from roadgpt.design.repair.placing import placed
-from roadgpt.design.repair.proposal import Part, mean_incline, parts_of, shows, turns_of
 from roadgpt.design.repair.slopes import sloped
 from roadgpt.design.repair.solving import Aim, solved
-from roadgpt.design.repair.wishes import wishes_of
+from roadgpt.design.repair.wishes import with_wishes
+from roadgpt.design.road_elements import RoadElement, RoadElements, elements_as_proposed, shows, shows_turns
 from roadgpt.design.writing import ABOVE_GROUND, start_height
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
@@ -58,17 +59,18 @@ def repair(design: Design, brief: Brief | None, world: World, how: How = "none")
         return Repaired(design, ())
     try:
         after = _in_place(design, world)
-        if how == "full" and not _is_fine(after, design, brief, world):
-            after = _mended(design, brief, world) or after
+        elements = elements_as_proposed(design.segments)
+        if how == "full" and not _is_fine(after, elements, brief, world):
+            after = _mended(design, elements, brief, world) or after
     except (UsageError, ValueError, np.linalg.LinAlgError):  # of no such geometry a road can be built
         return Repaired(design, ())
     return Repaired(after, changes_between(design, after))
 
 
-def _is_fine(design: Design, proposed: Design, brief: Brief | None, world: World) -> bool:
+def _is_fine(design: Design, proposed: Sequence[RoadElement], brief: Brief | None, world: World) -> bool:
     """Is the road valid, true to its Brief, and does it show what was proposed?"""
     road = build(design)
-    return not check.inspect(road, brief, world) and shows(measure(road.centreline()), proposed.segments)
+    return not check.inspect(road, brief, world) and shows(measure(road.centreline()), proposed)
 
 
 def _in_place(design: Design, world: World) -> Design:
@@ -84,33 +86,31 @@ def _in_place(design: Design, world: World) -> Design:
 
 
 class _Aims(NamedTuple):
-    """What a proposal is held to: its parts, what was asked of each and of the whole, and the Brief."""
+    """What a proposal is held to: its elements with what was asked of each, of the whole, and the Brief."""
 
-    parts: tuple[Part, ...]
-    wishes: tuple[Feature | None, ...]
+    elements: RoadElements
     outline: Outline
     brief: Brief | None
 
 
-def _mended(design: Design, brief: Brief | None, world: World) -> Design | None:
+def _mended(design: Design, elements: RoadElements, brief: Brief | None, world: World) -> Design | None:
     """The design with the smallest change of its measures; None where none was found."""
     if len(design.segments) > MOST_SEGMENTS:
         return None
-    parts = parts_of(design.segments)
-    held_to = [_Aims(parts, (None,) * len(parts), promises_of(Brief(), world), None)]
+    held_to = [_Aims(elements, promises_of(Brief(), world), None)]
     if brief:
         outline = promises_of(brief, world)
-        wishes = wishes_of(parts, [mean_incline(part, design.segments) for part in parts], outline)
-        if wishes:  # else it has not the turns that were asked for, and is made valid only
-            held_to.insert(0, _Aims(parts, wishes.features, outline, brief))
+        asked = with_wishes(elements, outline)
+        if asked:  # else it has not the turns that were asked for, and is made valid only
+            held_to.insert(0, _Aims(asked, outline, brief))
     best: Design | None = None
     for aims in held_to:
         for margins in MARGINS:
             mended = _with_margins(design, aims, world, margins)
             if mended is None:  # there is no such road; with wider margins even less
                 break
-            if _is_fine(mended, design, aims.brief, world):
-                return _restored(mended, design, aims.brief, world)
+            if _is_fine(mended, elements, aims.brief, world):
+                return _restored(mended, design, aims, world)
             best = best or _second_best(mended, aims, world)
         if best:
             break
@@ -122,8 +122,7 @@ def _second_best(mended: Design, aims: _Aims, world: World) -> Design | None:
     road = build(mended)
     if check.inspect(road, aims.brief, world):
         return None
-    sides = [turn.side for turn in turns_of(aims.parts)]
-    return mended if [turn.side for turn in measure(road.centreline()).turns] == sides else None
+    return mended if shows_turns(measure(road.centreline()), aims.elements) else None
 
 
 def _with_margins(design: Design, aims: _Aims, world: World, margins: Margins) -> Design | None:
@@ -131,7 +130,7 @@ def _with_margins(design: Design, aims: _Aims, world: World, margins: Margins) -
     if segments is None:
         return None
     planned = design.model_copy(update={"segments": segments})
-    return _in_place(sloped(planned, design.segments, aims.parts, aims.wishes, aims.outline, world), world)
+    return _in_place(sloped(planned, design.segments, aims.elements, aims.outline, world), world)
 
 
 def _solved(
@@ -143,7 +142,7 @@ def _solved(
     now: tuple[Segment, ...] | None = None
     for _ in range(ROUNDS):
         figure = figure_of(now or proposed)
-        rows, most = limits_of(proposed, aims.parts, aims.wishes, figure, aims.outline, world, margins)
+        rows, most = limits_of(proposed, aims.elements, figure, aims.outline, world, margins)
         found = solved(Aim(lengths, turns, figure, rows, most, world, margins))
         if found is None:
             break
@@ -188,7 +187,7 @@ def _rounded(value: float, before: float) -> float:
     return before if abs(value - before) <= 0.005 * abs(before) else round(value * TENTH) / TENTH
 
 
-def _restored(mended: Design, design: Design, brief: Brief | None, world: World) -> Design:
+def _restored(mended: Design, design: Design, aims: _Aims, world: World) -> Design:
     """With all that need not have changed put back as it was proposed, the smallest changes first."""
     trials: list[tuple[float, int, str]] = []
     for index, (one, other) in enumerate(zip(design.segments, mended.segments, strict=True)):
@@ -202,7 +201,7 @@ def _restored(mended: Design, design: Design, brief: Brief | None, world: World)
         segments[index] = segments[index].model_copy(update={name: getattr(design.segments[index], name)})
         tried = design.model_copy(update={"segments": tuple(segments)})
         tried = _in_place(tried, world)
-        if _is_fine(tried, design, brief, world):
+        if _is_fine(tried, aims.elements, aims.brief, world):
             mended = tried
     return mended
 

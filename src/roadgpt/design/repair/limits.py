@@ -15,7 +15,7 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import LEAST_TURN
 from roadgpt.design.repair.figure import Figure
-from roadgpt.design.repair.proposal import Part
+from roadgpt.design.road_elements import RoadElement
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World
 
@@ -87,8 +87,7 @@ class Rows:
 
 def limits_of(
     segments: Sequence[Segment],
-    parts: Sequence[Part],
-    wishes: Sequence[Feature | None],
+    elements: Sequence[RoadElement],
     figure: Figure,
     outline: Outline,
     world: World,
@@ -104,12 +103,11 @@ def limits_of(
             turn = abs(radians(segment.turn_degrees))
             rows.add({}, {index: -METRES_PER_RADIAN}, -METRES_PER_RADIAN * SHARE_KEPT * turn)
             rows.add({index: -1.0}, {index: radius * min(figure.peak[index], shortest)}, 0.0)
-    for number, part in enumerate(parts):
-        _part(rows, segments, part, figure, margins)
-        wish = wishes[number]
-        if wish:
-            _wish(rows, part, wish, figure, margins)
-    _separate(rows, parts, margins)
+    for element in elements:
+        _seen(rows, element, figure, margins)
+        if element.asked:
+            _wish(rows, element, element.asked, figure, margins)
+    _separate(rows, elements, margins)
     whole = range(len(segments))
     rows.within(whole, Range(world.min_length + 2.0))
     if outline.length:
@@ -120,26 +118,27 @@ def limits_of(
     return rows.done()
 
 
-def _part(rows: Rows, segments: Sequence[Segment], part: Part, figure: Figure, margins: Margins) -> None:
+def _seen(rows: Rows, element: RoadElement, figure: Figure, margins: Margins) -> None:
     """A turn stays one that is seen, and whole; a slighter bend stays slight."""
-    members = list(part.members)
-    if not part.degrees:
+    members = list(element.members)
+    if not element.degrees:
         return
-    if not part.is_turn:
-        rows.turned(members, Range(0, max(SLIGHT_BEND, abs(part.degrees))))
+    if not element.is_turn:
+        rows.turned(members, Range(0, max(SLIGHT_BEND, abs(element.degrees))))
         return
     least = LEAST_TURN + 0.4 * (margins.seen - LEAST_TURN)  # of a turn that was proposed with hardly as many
-    rows.turned(members, Range(max(min(abs(part.degrees), margins.seen), least)))
-    tightest = max(members, key=lambda i: abs(segments[i].turn_degrees) / segments[i].distance)
+    rows.turned(members, Range(max(min(abs(element.degrees), margins.seen), least)))
+    bends = [abs(segment.turn_degrees) / segment.distance for segment in element.segments]
+    tightest = members[bends.index(max(bends))]
     for index in {*members[1:-1], tightest}:
         peak = figure.peak[index] if index == tightest else 1.0
         rows.add({index: 1.0}, {index: -peak * CLEARLY}, 0.0)
 
 
-def _wish(rows: Rows, part: Part, wish: Feature, figure: Figure, margins: Margins) -> None:
-    members = list(part.members)
+def _wish(rows: Rows, element: RoadElement, wish: Feature, figure: Figure, margins: Margins) -> None:
+    members = list(element.members)
     length = _drawn_in(wish.length, margins.promise) if wish.length else None
-    if not part.degrees:
+    if not element.degrees:
         rows.within(members, Range(length.lo + 3.0, length.hi) if length and length.lo > 0 else length)
         return
     rows.within(members, Range(length.lo + 2.0, length.hi) if length else None)
@@ -163,10 +162,9 @@ def _drawn_in(span: Range, share: float) -> Range:
     return Range(low, span.hi - min(share * span.hi, most) if span.hi < inf else inf)
 
 
-def _separate(rows: Rows, parts: Sequence[Part], margins: Margins) -> None:
+def _separate(rows: Rows, elements: Sequence[RoadElement], margins: Margins) -> None:
     """Between two turns of one hand lies so much that they are seen as two."""
-    turns = [i for i, part in enumerate(parts) if part.is_turn]
+    turns = [element for element in elements if element.is_turn]
     for one, other in pairwise(turns):
-        if parts[one].side == parts[other].side:
-            between = [index for part in parts[one + 1 : other] for index in part.members]
-            rows.within(between, Range(margins.apart))
+        if one.side == other.side:
+            rows.within(range(one.members.stop, other.first), Range(margins.apart))

@@ -10,11 +10,11 @@ from math import inf
 
 import numpy as np
 
-from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.outline import Outline
 from roadgpt.brief.words import Range, overlap
 from roadgpt.check.measures import LEVEL, measure, way
 from roadgpt.design.heights import Windows
-from roadgpt.design.repair.proposal import Part, mean_incline
+from roadgpt.design.road_elements import RoadElement
 from roadgpt.design.vertical import SEEN, Pace, made_to_fit, runs_of, too_abrupt, widened
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
@@ -37,19 +37,13 @@ CLASSES = {
 def sloped(
     design: Design,
     proposed: Sequence[Segment],
-    parts: Sequence[Part],
-    wishes: Sequence[Feature | None],
+    elements: Sequence[RoadElement],
     outline: Outline,
     world: World,
 ) -> Design:
     """The design with inclines that keep the slopes; plan and start stay as they are."""
-    windows = [
-        _window(part, wish, proposed, outline, world) for part, wish in zip(parts, wishes, strict=True)
-    ]
-    own = [
-        next(w for w, part in zip(windows, parts, strict=True) if i in part.members)
-        for i in range(len(proposed))
-    ]
+    windows = [_window(element, outline, world) for element in elements]
+    own = [window for window, element in zip(windows, elements, strict=True) for _ in element.segments]
     segments = list(design.segments)
     loose = [_loose(segment, window, world) for segment, window in zip(proposed, own, strict=True)]
     grades = np.array([np.clip(s.incline, r.lo, r.hi) for s, r in zip(proposed, loose, strict=True)])
@@ -60,7 +54,7 @@ def sloped(
     pace = Pace.of(design, world)
     lengths, inclines = [s.distance for s in segments], [s.incline for s in proposed]
     most = 100 * world.max_grade
-    unseen = {i for part in parts if not _is_seen(part, proposed) for i in part.members}
+    unseen = {i for element in elements if not _is_seen(element) for i in element.members}
     runs = runs_of(inclines, unseen)
     bounds = [(-most, most) if i in unseen else (room.lo, room.hi) for i, room in enumerate(loose)]
     for roomier in ROOMIER:
@@ -71,7 +65,7 @@ def sloped(
                 now = np.array(made_to_fit(now.tolist(), lengths, runs, bounds, pace, roomier))
                 tried = widened(with_inclines(segments, now), pace)
             points[:, 2] = elevation_of(tried, 0.0).height(stations)
-            missing = _missing(points, tried, parts, windows)
+            missing = _missing(points, elements, windows)
             if not missing.any():
                 break
             now = _moved(now, missing, loose)
@@ -80,9 +74,9 @@ def sloped(
     return design.model_copy(update={"segments": tried})
 
 
-def _is_seen(part: Part, proposed: Sequence[Segment]) -> bool:
+def _is_seen(element: RoadElement) -> bool:
     """Is it long enough for its slope to be looked for?"""
-    return part.is_turn or sum(proposed[i].distance for i in part.members) >= SEEN
+    return element.is_turn or element.length >= SEEN
 
 
 def with_inclines(segments: Sequence[Segment], grades: Array) -> list[Segment]:
@@ -99,14 +93,12 @@ def _plain(grade: float, segment: Segment) -> float:
     return segment.incline if abs(grade - segment.incline) < 0.05 else grade
 
 
-def _window(
-    part: Part, wish: Feature | None, proposed: Sequence[Segment], outline: Outline, world: World
-) -> Range:
-    """Percent that the measured slope of a part must lie in: its class as proposed, and what was promised."""
-    class_ = CLASSES[way(mean_incline(part, proposed))]
+def _window(element: RoadElement, outline: Outline, world: World) -> Range:
+    """Percent that the measured slope must lie in: its class as proposed, and what was promised."""
+    class_ = CLASSES[way(element.incline)]
     try:
         promised = Windows(outline, world)
-        asked = promised.of(wish) if wish else promised.base
+        asked = promised.of(element.asked) if element.asked else promised.base
     except DesignError:  # the Brief contradicts itself: then the rules say so
         asked = None
     meets = overlap(class_, asked) or class_
@@ -148,16 +140,14 @@ def _climbing(grades: Array, segments: Sequence[Segment], loose: Sequence[Range]
     return np.asarray(np.clip(grades + up, low, high))
 
 
-def _missing(
-    points: Array, segments: Sequence[Segment], parts: Sequence[Part], windows: Sequence[Range]
-) -> Array:
+def _missing(points: Array, elements: Sequence[RoadElement], windows: Sequence[Range]) -> Array:
     """Percentage points that the slope of every segment's turn is away from its window."""
-    out = np.zeros(len(segments))
-    turns = [(part, window) for part, window in zip(parts, windows, strict=True) if part.is_turn]
+    out = np.zeros(elements[-1].members.stop)
+    turns = [pair for pair in zip(elements, windows, strict=True) if pair[0].is_turn]
     found = measure(points).turns
     if len(found) != len(turns):
         return out
-    for stretch, (part, window) in zip(found, turns, strict=True):
+    for stretch, (element, window) in zip(found, turns, strict=True):
         by = max(window.lo - stretch.grade, 0.0) + min(window.hi - stretch.grade, 0.0)
         # the measure's own edge of a class, where nothing narrower was promised
         if (
@@ -165,7 +155,7 @@ def _missing(
             and window in CLASSES.values()
         ):
             by = 0.0
-        out[list(part.members)] = by + np.copysign(SURPLUS, by) if by else 0.0
+        out[list(element.members)] = by + np.copysign(SURPLUS, by) if by else 0.0
     return out
 
 

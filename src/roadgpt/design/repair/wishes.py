@@ -1,40 +1,31 @@
-"""Which part of a proposal answers which wish of the Brief."""
+"""Which element of a proposal answers which wish of the Brief."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import combinations, islice, pairwise
-from typing import NamedTuple
 
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.words import Range
 from roadgpt.design.order import OTHER, both
-from roadgpt.design.repair.proposal import Part
+from roadgpt.design.road_elements import RoadElement, RoadElements
 
 MOST_WAYS = 2000  # of letting straights answer wishes that are looked at
 FREE_TURN = Feature("turn", "turn")
 
 
-class Wishes(NamedTuple):
-    """For every part, what was asked of it; None where nothing was."""
+def with_wishes(elements: Sequence[RoadElement], outline: Outline) -> RoadElements | None:
+    """Returns the elements of a proposal, each with what was asked of it.
 
-    features: tuple[Feature | None, ...]
-
-
-def wishes_of(parts: Sequence[Part], inclines: Sequence[float], outline: Outline) -> Wishes | None:
-    """What was asked of every part; None where the proposal has not the turns that were asked for.
-
-    Args:
-        parts: of the proposal.
-        inclines: of every part, percent.
-        outline: what was asked for.
+    Returns None where the proposal has not the turns that were asked for.
     """
-    turns = [i for i, part in enumerate(parts) if part.is_turn]
-    left = sum(parts[i].side == "left" for i in turns)
+    turns = [i for i, element in enumerate(elements) if element.is_turn]
+    left = sum(elements[i].side == "left" for i in turns)
     if len(turns) not in outline.turns or left not in outline.left or len(turns) - left not in outline.right:
         return None
     for rows in _shared_out(outline, len(turns)):
-        out = _matched(parts, inclines, turns, rows, outline)
+        out = _matched(elements, turns, rows, outline)
         if out is not None:
-            return Wishes(out)
+            return tuple(replace(element, asked=wish) for element, wish in zip(elements, out, strict=True))
     return None
 
 
@@ -80,7 +71,7 @@ def _sided(feature: Feature, side: str) -> Feature:
 
 
 def _answering(
-    parts: Sequence[Part], straights: Sequence[int], wanted: Sequence[Feature], inclines: Sequence[float]
+    elements: Sequence[RoadElement], straights: Sequence[int], wanted: Sequence[Feature]
 ) -> Sequence[int]:
     """Which straights answer the wishes, in order: those whose slopes are nearest to what was asked."""
     if len(wanted) >= len(straights):
@@ -88,8 +79,8 @@ def _answering(
     ways = combinations(straights, len(wanted))
 
     def away(way: Sequence[int]) -> tuple[float, int]:
-        slopes = [_beyond(inclines[i], wish.grade) for i, wish in zip(way, wanted, strict=True)]
-        return sum(slopes), -sum(len(parts[i].members) for i in way)
+        slopes = [_beyond(elements[i].incline, wish.grade) for i, wish in zip(way, wanted, strict=True)]
+        return sum(slopes), -sum(len(elements[i].segments) for i in way)
 
     return min(islice(ways, MOST_WAYS), key=away)
 
@@ -99,37 +90,37 @@ def _beyond(incline: float, asked: Range | None) -> float:
 
 
 def _matched(
-    parts: Sequence[Part], inclines: Sequence[float], turns: Sequence[int], row: Row, outline: Outline
+    elements: Sequence[RoadElement], turns: Sequence[int], row: Row, outline: Outline
 ) -> tuple[Feature | None, ...] | None:
     features, gaps = row
-    out: list[Feature | None] = [None] * len(parts)
+    out: list[Feature | None] = [None] * len(elements)
     for index, feature in zip(turns, features, strict=True):
-        if feature.side not in (None, parts[index].side):
+        if feature.side not in (None, elements[index].side):
             return None
         out[index] = both(feature, outline.each_turn)
-    marks = [-1, *turns, len(parts)]
+    marks = [-1, *turns, len(elements)]
     for (a, b), wanted in zip(pairwise(marks), gaps, strict=True):
-        straights = [i for i in range(a + 1, b) if not parts[i].degrees]
+        straights = [i for i in range(a + 1, b) if not elements[i].degrees]
         if wanted and not straights:
             return None
-        for index, wish in zip(_answering(parts, straights, wanted, inclines), wanted, strict=False):
+        for index, wish in zip(_answering(elements, straights, wanted), wanted, strict=False):
             before = out[index]
             out[index] = both(before, wish) if before else wish
-    return tuple(out) if _with_ends(parts, turns, outline, out) else None
+    return tuple(out) if _with_ends(elements, turns, outline, out) else None
 
 
 def _with_ends(
-    parts: Sequence[Part], turns: Sequence[int], outline: Outline, out: list[Feature | None]
+    elements: Sequence[RoadElement], turns: Sequence[int], outline: Outline, out: list[Feature | None]
 ) -> bool:
     """Adds what the road must start and end with; False where the proposal does otherwise."""
     for wish, end in ((outline.starts, 0), (outline.ends, -1)):
         if wish is None:
             continue
-        among = turns if wish.kind == "turn" else range(len(parts))
+        among = turns if wish.kind == "turn" else range(len(elements))
         if not among:
             return False
-        part, before = parts[among[end]], out[among[end]]
-        if bool(part.degrees) != (wish.kind == "turn") or wish.side not in (None, part.side):
+        element, before = elements[among[end]], out[among[end]]
+        if bool(element.degrees) != (wish.kind == "turn") or wish.side not in (None, element.side):
             return False
         out[among[end]] = both(before, wish) if before else wish
     return True

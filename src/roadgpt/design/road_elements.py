@@ -1,0 +1,169 @@
+"""The turns and straights of a road that stands: which of its segments make the second turn.
+
+    gap 0 | turn 1 | gap 1 | turn 2 | ... | turn n | gap n
+
+They are found in two ways. ``elements_on_road`` takes the turns that a person sees on the finished geometry
+(``check.measures``): segments of one hand that run into each other are one turn, and what bends too little
+belongs to a gap. ``elements_as_proposed`` takes what a segment list says: segments of one hand in a row are
+one turn, as RoadGPT's prompt asks of turns beyond 70 degrees, and straight ones are one element as long as
+they all go up, down or level.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+
+from roadgpt.brief.model import Side
+from roadgpt.brief.outline import Feature
+from roadgpt.check.measures import LEAST_TURN, MeasuredFeature, Measures, measure, way
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Design, Geometry, Segment, build
+
+SEEN = 1.5  # m of a segment within a turn, at least, for it to be a part of the turn
+
+
+@dataclass(frozen=True, slots=True)
+class RoadElement:
+    """Segments that are one turn, or lie between two."""
+
+    name: str
+    """Of the element, whatever is added or removed around it."""
+    kind: Literal["turn", "gap"]
+    segments: tuple[Segment, ...]
+    side: Side | None = None
+    """Of a turn."""
+    first: int = 0
+    """Index of its first segment on the road on which it was found."""
+    seen: MeasuredFeature | None = None
+    """As it was measured before a change; None of what is new, not measured, or too short to be seen."""
+    asked: Feature | None = None
+    """What was asked of it; None where nothing was."""
+
+    @property
+    def length(self) -> float:
+        """Metres, as written."""
+        return sum(segment.distance for segment in self.segments)
+
+    @property
+    def incline(self) -> float:
+        """Percent, as written, on average."""
+        return sum(s.distance * s.incline for s in self.segments) / max(self.length, 1e-9)
+
+    @property
+    def degrees(self) -> float:
+        """Change of heading as written, left positive; 0 of a straight."""
+        return sum(segment.turn_degrees for segment in self.segments)
+
+    @property
+    def members(self) -> range:
+        """Indices of its segments on the road on which it was found."""
+        return range(self.first, self.first + len(self.segments))
+
+    @property
+    def is_turn(self) -> bool:
+        """Whether it turns far enough to be seen as a turn."""
+        return self.kind == "turn"
+
+    def with_segments(self, segments: Iterable[Segment]) -> "RoadElement":
+        """Returns the same element, made of other segments."""
+        return replace(self, segments=tuple(segments))
+
+
+RoadElements = tuple[RoadElement, ...]
+
+
+def measured(design: Design, geometry: Geometry) -> Measures:
+    """Returns what a person sees on the road that grows from a design."""
+    return measure(build(design, geometry).centreline())
+
+
+def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
+    """Returns the turns and gaps that are seen on the road of a design, and what was measured."""
+    found = measured(design, geometry)
+    joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
+    scale = (
+        joints[-1] / found.length
+    )  # the measure's chords, and a spline's bends, are not as long as written
+    marks: list[tuple[int, int]] = []
+    for turn in found.turns:
+        first, end = _members(design.segments, joints, turn, scale)
+        least = marks[-1][1] if marks else 0
+        marks.append((max(first, least), max(end, least)))
+    out: list[RoadElement] = []
+    edges = [0, *(index for mark in marks for index in mark), len(design.segments)]
+    straights = [next((f for f in gap if f.kind == "straight"), None) for gap in found.gaps]
+    for number, (first, end) in enumerate(pairwise(edges)):
+        own = design.segments[first:end]
+        if number % 2:
+            turn = found.turns[number // 2]
+            out.append(RoadElement(f"turn {number // 2 + 1}", "turn", own, turn.side, first, turn))
+        else:
+            out.append(RoadElement(f"gap {number // 2}", "gap", own, None, first, straights[number // 2]))
+    return tuple(out), found
+
+
+def _members(
+    segments: Sequence[Segment], joints: Array, turn: MeasuredFeature, scale: float
+) -> tuple[int, int]:
+    """First segment of a turn, and the one behind its last."""
+    low, high = turn.start * scale, turn.end * scale
+    hand = 1 if turn.side == "left" else -1
+    shared = np.minimum(joints[1:], high) - np.maximum(joints[:-1], low)
+    bends = np.array([s.turn_degrees * hand > 0 for s in segments])
+    lengths = np.diff(joints)
+    inside = bends & (shared > np.minimum(SEEN, 0.5 * lengths))
+    if not inside.any():
+        inside = np.arange(len(segments)) == int(np.argmax(np.where(bends, shared, -np.inf)))
+    which = np.flatnonzero(inside)
+    return int(which[0]), int(which[-1]) + 1
+
+
+def elements_as_proposed(segments: Sequence[Segment]) -> RoadElements:
+    """Returns the turns and straights that a segment list says, in driving order."""
+    rows: list[list[int]] = []
+    for index, segment in enumerate(segments):
+        last = segments[rows[-1][-1]] if rows else None
+        if (
+            last
+            and np.sign(last.turn_degrees) == np.sign(segment.turn_degrees)
+            and (segment.turn_degrees or way(last.incline) == way(segment.incline))
+        ):
+            rows[-1].append(index)
+        else:
+            rows.append([index])
+    out: list[RoadElement] = []
+    for number, row in enumerate(rows):
+        own = tuple(segments[i] for i in row)
+        degrees = sum(segment.turn_degrees for segment in own)
+        side: Side = "left" if degrees > 0 else "right"
+        if is_turn(degrees):
+            out.append(RoadElement(f"part {number}", "turn", own, side, row[0]))
+        else:
+            out.append(RoadElement(f"part {number}", "gap", own, None, row[0]))
+    return tuple(out)
+
+
+def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:
+    """Tells whether a measured road has the turns of the elements, each to its side."""
+    return [turn.side for turn in found.turns] == [one.side for one in elements if one.is_turn]
+
+
+def shows(found: Measures, elements: Sequence[RoadElement]) -> bool:
+    """Tells whether a measured road has the turns of the elements, each to its side and on its slope."""
+    if not shows_turns(found, elements):
+        return False
+    turns = (one for one in elements if one.is_turn)
+    return all(way(turn.grade) == way(one.incline) for turn, one in zip(found.turns, turns, strict=True))
+
+
+def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:
+    """Returns all segments in driving order."""
+    return tuple(segment for element in elements for segment in element.segments)
+
+
+def is_turn(degrees: float) -> bool:
+    """Tells whether so many degrees would be seen as a turn."""
+    return abs(degrees) >= LEAST_TURN
