@@ -1,6 +1,6 @@
 """Edits: changes a Design by words, and leaves alone the rest. Verbs: ``read_request``, ``edit``.
 
-    words --read_request--> Request --pointed--> blocks --ways--> trials --measured, inspected--> Edited
+    words --read_request--> Request --pointed--> elements --ways--> trials --measured, inspected--> Edited
 
 Places are those that a person sees on the finished road (``check.measures``), numbered as they are before the
 edit. Segments that nobody spoke of keep every number; the road as a whole may be moved or turned, so that it
@@ -76,24 +76,24 @@ def _by_rules(design: Design, request: Request, world: World, geometry: Geometry
         raise EditError(
             f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
         )
-    blocks, found = elements_on_road(design, geometry)
+    elements, found = elements_on_road(design, geometry)
     rows: list[tuple[Change, Sequence[Way]]] = []
     idle: list[Change] = []
     for number, change in enumerate(_folded(request.changes), 1):
-        ways = _ways(change, blocks, found, world, number)
+        ways = _ways(change, elements, found, world, number)
         if ways:
             rows.append((change, ways))
         else:
             idle.append(change)
     if not rows:
         raise EditError(f"nothing is to be changed: '{idle[0].words}' is so already")
-    result = tried(design, blocks, _agreed(rows), world, geometry)
+    result = tried(design, elements, _agreed(rows), world, geometry)
     if result.made is None:
         said = " and ".join(dict.fromkeys(f"'{change.words}'" for change, _ in rows))
         raise EditError(f"{said} cannot be done on this road: {result.objection}; ask for less, or elsewhere")
     if result.made.design.segments == design.segments and not _is_mirror(request):
         raise EditError(f"nothing is to be changed: '{rows[0][0].words}' is so already")
-    told = sentences(design, blocks, found, result.made)
+    told = sentences(design, elements, found, result.made)
     told += tuple(f"'{change.words}' was so already" for change in idle)
     return Edited(result.made.design, told, request.unused)
 
@@ -103,11 +103,11 @@ def _agreed(rows: Sequence[tuple[Change, Sequence[Way]]]) -> list[Sequence[Way]]
     said: dict[What, set[str]] = {"angle": set(), "radius": set()}
     for change, ways in rows:
         if change.what in said and (change.to or change.by or change.times):
-            said[change.what] |= {step.block.name for step in ways[0] if isinstance(step, Bend)}
+            said[change.what] |= {step.element.name for step in ways[0] if isinstance(step, Bend)}
     both = said["angle"] & said["radius"]
 
     def own(step: Step, what: What) -> Step:
-        if not isinstance(step, Bend) or step.block.name not in both or what not in said:
+        if not isinstance(step, Bend) or step.element.name not in both or what not in said:
             return step
         return replace(step, radius=None) if what == "angle" else replace(step, degrees=None)
 
@@ -119,20 +119,20 @@ def _is_mirror(request: Request) -> bool:
 
 
 def _ways(
-    change: Change, blocks: RoadElements, found: Measures, world: World, number: int
+    change: Change, elements: RoadElements, found: Measures, world: World, number: int
 ) -> tuple[Way, ...]:
     if change.what == "mirror":
-        if not any(block.kind == "turn" for block in blocks):
+        if not any(element.kind == "turn" for element in elements):
             raise EditError("the road has no turn, so its mirror image is the same")
         return ((FlipAll(),),)
     if change.what == "add":
-        return ways_to_add(change, blocks, world, number)
+        return ways_to_add(change, elements, world, number)
     assert change.target is not None
-    meant = pointed(change.target, blocks, change.what)
+    meant = pointed(change.target, elements, change.what)
     if change.what == "alternate":
         return ways_to_alternate(meant, world)
     if change.what == "remove":
-        return ways_to_remove(meant, blocks)
+        return ways_to_remove(meant, elements)
     return ways_to_change(change, meant, found, world)
 
 

@@ -9,12 +9,12 @@ from roadgpt.design.edit.steps import Step
 from roadgpt.design.road_elements import RoadElement
 
 
-def is_beyond(change: Change, block: RoadElement, found: Measures) -> bool:
-    """Is a block on the wrong side of what a change bounds?"""
+def is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
+    """Is a element on the wrong side of what a change bounds?"""
     assert change.to is not None
-    seen = block.seen
+    seen = element.seen
     if change.what == "slope":
-        slopes = [abs(segment.incline) for segment in block.segments]
+        slopes = [abs(segment.incline) for segment in element.segments]
         return any((now - change.to) * change.bound < 0 for now in slopes)
     if seen is None:
         return False
@@ -25,11 +25,11 @@ def is_beyond(change: Change, block: RoadElement, found: Measures) -> bool:
     return (now - change.to) * change.bound < 0
 
 
-def within(change: Change, blocks: Sequence[RoadElement]) -> tuple[tuple[Step, ...], ...]:
-    """Slopes of blocks that keep the bound: what is beyond is as steep as it says."""
+def within(change: Change, elements: Sequence[RoadElement]) -> tuple[tuple[Step, ...], ...]:
+    """Slopes of elements that keep the bound: what is beyond is as steep as it says."""
     assert change.to is not None
-    names = frozenset(block.name for block in blocks)
+    names = frozenset(element.name for element in elements)
     if change.bound < 0:
         return ((SlopeOfAll(names, low=-change.to, high=change.to),),)
-    up = sum(block.incline * block.length for block in blocks) >= 0
+    up = sum(element.incline * element.length for element in elements) >= 0
     return ((SlopeOfAll(names, way=1 if up else -1, low=change.to),),)

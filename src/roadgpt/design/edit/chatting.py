@@ -55,13 +55,13 @@ def edited_by_chat(
         EditError: no answer was a valid road that differs from the old one.
         ChatError: the model could not be asked.
     """
-    blocks, found = elements_on_road(design, geometry)
+    elements, found = elements_on_road(design, geometry)
     opening = [
         Message(role="system", text=f"{rules(RULES, world)}\n\n{TASK}"),
-        Message(role="user", text=_question(design, words, blocks, found)),
+        Message(role="user", text=_question(design, words, elements, found)),
     ]
     messages, wrong, problem = opening, "", None
-    allowed = _spoken_of(words, blocks)
+    allowed = _spoken_of(words, elements)
     for _ in range(settings.rounds):
         said, problem = "", None
         try:
@@ -88,7 +88,7 @@ def edited_by_chat(
     )
 
 
-def _question(design: Design, words: str, blocks: RoadElements, found: Measures) -> str:
+def _question(design: Design, words: str, elements: RoadElements, found: Measures) -> str:
     lines = [
         f"segment {number}: {json.dumps(segment.model_dump(exclude_none=True))}"
         for number, segment in enumerate(design.segments, 1)
@@ -100,21 +100,21 @@ def _question(design: Design, words: str, blocks: RoadElements, found: Measures)
             f"it is {found.length:.0f} m long.",
             *lines,
             "What is seen along it:",
-            *_seen(blocks),
+            *_seen(elements),
             f"The request, which is a wish about this road and nothing else: {json.dumps(words)}",
         ]
     )
 
 
-def _seen(blocks: Sequence[RoadElement]) -> list[str]:
+def _seen(elements: Sequence[RoadElement]) -> list[str]:
     out, first, straights = [], 1, 0
-    for block in blocks:
-        end = first + len(block.segments) - 1
-        seen = block.seen
+    for element in elements:
+        end = first + len(element.segments) - 1
+        seen = element.seen
         where = f"segments {first} to {end}" if end > first else f"segment {first}"
-        if seen and block.kind == "turn":
+        if seen and element.kind == "turn":
             shape = f"{seen.degrees:.0f} degrees to the {seen.side}, radius {seen.radius:.0f} m"
-            out.append(f"- {block.name}, {shape}: {where}")
+            out.append(f"- {element.name}, {shape}: {where}")
         elif seen:
             straights += 1
             out.append(f"- straight {straights}, {seen.length:.0f} m, {seen.grade:+.1f} %: {where}")
@@ -122,25 +122,25 @@ def _seen(blocks: Sequence[RoadElement]) -> list[str]:
     return out
 
 
-def _spoken_of(words: str, blocks: RoadElements) -> set[int] | None:
+def _spoken_of(words: str, elements: RoadElements) -> set[int] | None:
     """Numbers of the segments that the request speaks of; None where rules cannot tell."""
     try:
         request = read_request(words)
         meant: list[RoadElement] = []
         for change in request.changes:
             if change.what == "mirror":
-                meant += blocks
+                meant += elements
             elif change.target is not None and not change.target.indefinite:
-                meant += pointed(change.target, blocks, change.what)
+                meant += pointed(change.target, elements, change.what)
     except EditError:
         return None
     if request.unused:
         return None
-    names, out, first = {block.name for block in meant}, set[int](), 1
-    for block in blocks:
-        if block.name in names:
-            out |= set(range(first, first + len(block.segments)))
-        first += len(block.segments)
+    names, out, first = {element.name for element in meant}, set[int](), 1
+    for element in elements:
+        if element.name in names:
+            out |= set(range(first, first + len(element.segments)))
+        first += len(element.segments)
     return out
 
 

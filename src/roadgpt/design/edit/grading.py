@@ -17,9 +17,9 @@ LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
 STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 
 
-def ways_to_slope(change: Change, block: RoadElement, found: Measures, world: World) -> list[Step]:
+def ways_to_slope(change: Change, element: RoadElement, found: Measures, world: World) -> list[Step]:
     """Grades of one turn or straight."""
-    now = block.seen.grade if block.seen else block.incline
+    now = element.seen.grade if element.seen else element.incline
     limit = 100 * world.max_grade
     sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
         1 if now >= LEVEL else -1 if now <= -LEVEL else 0
@@ -29,37 +29,37 @@ def ways_to_slope(change: Change, block: RoadElement, found: Measures, world: Wo
         raise EditError(f"{change.to:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
     if change.to is not None and change.way != "flat":
         aim = sign * change.to
-        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+        return [Slope(element, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
     if change.by is not None:
         aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
         if abs(aim) > limit:
             raise EditError(
                 f"{abs(aim):.1f} % is steeper than the {limit:g} % that the rules allow; ask for less"
             )
-        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+        return [Slope(element, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
     if change.times is not None:
         aim = now * change.times
-        return [Slope(block, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+        return [Slope(element, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
     if change.way == "flat":
-        if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in block.segments):
+        if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in element.segments):
             return []
-        return [Slope(block, 0.0, -slack, slack) for slack in (0.5, CLEARLY_LEVEL)]
+        return [Slope(element, 0.0, -slack, slack) for slack in (0.5, CLEARLY_LEVEL)]
     if change.way and not change.more:
         if way(now) == change.way:
             return []
         aims = [tuple(sorted((sign * low, sign * high))) + (sign * aim,) for aim, low, high in UPHILL]
-        return [Slope(block, aim, low, high) for low, high, aim in aims]
+        return [Slope(element, aim, low, high) for low, high, aim in aims]
     if change.more > 0 and change.way and way(now) != change.way:
-        return [Slope(block, sign * 6.0, *sorted((sign * 3.0, sign * 12.0)))]
-    return _steeper(change, block, now, sign, limit)
+        return [Slope(element, sign * 6.0, *sorted((sign * 3.0, sign * 12.0)))]
+    return _steeper(change, element, now, sign, limit)
 
 
-def _steeper(change: Change, block: RoadElement, now: float, sign: int, limit: float) -> list[Step]:
+def _steeper(change: Change, element: RoadElement, now: float, sign: int, limit: float) -> list[Step]:
     if change.more < 0:
         if abs(now) < LEVEL:
             return []
         return [
-            Slope(block, now * share, *sorted((now * (share - 0.3), now * min(share + 0.15, 0.9))))
+            Slope(element, now * share, *sorted((now * (share - 0.3), now * min(share + 0.15, 0.9))))
             for share in FLATTER
         ]
     out: list[Step] = []
@@ -68,17 +68,17 @@ def _steeper(change: Change, block: RoadElement, now: float, sign: int, limit: f
         aim = min(aim if abs(now) >= LEVEL else STEEP_FROM * times / 1.5, limit - 0.3)
         if aim > abs(now) + 0.4:
             low, high = min(abs(now) + 0.4, aim - 0.2), min(aim + 1.5, limit)
-            out.append(Slope(block, sign * aim, *sorted((sign * low, sign * high))))
+            out.append(Slope(element, sign * aim, *sorted((sign * low, sign * high))))
     if not out:
         raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
     return out
 
 
 def ways_to_slope_all(
-    change: Change, blocks: Sequence[RoadElement], found: Measures, world: World
+    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[tuple[Step, ...], ...]:
     """Grades of the whole road, or of all that lies behind a place."""
-    names = frozenset(block.name for block in blocks)
+    names = frozenset(element.name for element in elements)
     limit = 100 * world.max_grade - 0.3
     sign = {"up": 1, "down": -1}.get(change.way or "", 0)
     if change.to is not None and change.to > limit + 0.3:
@@ -95,13 +95,13 @@ def ways_to_slope_all(
     if change.times is not None:
         return ((SlopeOfAll(names, times=change.times),),)
     if sign and not change.more:
-        inclines = [s.incline * sign for block in blocks for s in block.segments]
+        inclines = [s.incline * sign for element in elements for s in element.segments]
         if inclines and min(inclines) >= 1.5:
             return ()
         return tuple((SlopeOfAll(names, way=sign, low=low, high=12.0),) for low in (4.0, 3.0))
     if change.more < 0:
         return tuple((SlopeOfAll(names, times=share),) for share in FLATTER)
-    if all(abs(s.incline) < LEVEL for block in blocks for s in block.segments):
+    if all(abs(s.incline) < LEVEL for element in elements for s in element.segments):
         return ((SlopeOfAll(names, way=sign or 1, low=STEEP_FROM),),)
     return tuple(
         (SlopeOfAll(names, times=1 + (times - 1) * change.dose, low=-limit, high=limit),)

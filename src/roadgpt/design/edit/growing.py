@@ -28,20 +28,20 @@ class WholeLength:
         """Of the whole road, whose name is empty."""
         return (Goal("", "length", self.length, self.length - self.slack, self.length + self.slack),)
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """The blocks as they are."""
-        return blocks
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
+        """The elements as they are."""
+        return elements
 
 
 def ways_to_stretch_the_road(
-    change: Change, blocks: Sequence[RoadElement], found: Measures, world: World
+    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[tuple[Step, ...], ...]:
     """All ways, the preferred one first.
 
     Raises:
         EditError: so short a road is none.
     """
-    own = sum(b.length for b in blocks)
+    own = sum(b.length for b in elements)
     if change.to is not None:
         lengths = [change.to]
     elif change.by is not None:
@@ -56,19 +56,19 @@ def ways_to_stretch_the_road(
     out: list[tuple[Step, ...]] = []
     for length in lengths:
         slack = max(2.0, SLACK * length)
-        out += [(*way, WholeLength(length, slack)) for way in _ways(blocks, length - own, world) if way]
+        out += [(*way, WholeLength(length, slack)) for way in _ways(elements, length - own, world) if way]
     return tuple(out)
 
 
-def _ways(blocks: Sequence[RoadElement], more: float, world: World) -> list[tuple[Step, ...]]:
-    gaps = [block for block in blocks if block.kind == "gap" and block.seen is not None]
+def _ways(elements: Sequence[RoadElement], more: float, world: World) -> list[tuple[Step, ...]]:
+    gaps = [element for element in elements if element.kind == "gap" and element.seen is not None]
     out = []
     if gaps:
         out.append(_straights(gaps, more))
         if more > 0:
             out += [_straights(gaps[-1:], more), _straights(gaps[:1], more)]
             out += [_straights([gap], more) for gap in gaps[1:-1]]
-    out.append(_everything(blocks, more, world))
+    out.append(_everything(elements, more, world))
     return out
 
 
@@ -90,11 +90,11 @@ def _straights(gaps: Sequence[RoadElement], more: float) -> tuple[Step, ...]:
     )
 
 
-def _everything(blocks: Sequence[RoadElement], more: float, world: World) -> tuple[Step, ...]:
+def _everything(elements: Sequence[RoadElement], more: float, world: World) -> tuple[Step, ...]:
     """Turns with other radii, as far as they may, and the rest on straights."""
-    turns = [block for block in blocks if block.kind == "turn" and block.seen is not None]
-    gaps = [block for block in blocks if block.kind == "gap" and block.seen is not None]
-    share = 1 + more / max(sum(block.length for block in blocks), 1.0)
+    turns = [element for element in elements if element.kind == "turn" and element.seen is not None]
+    gaps = [element for element in elements if element.kind == "gap" and element.seen is not None]
+    share = 1 + more / max(sum(element.length for element in elements), 1.0)
     least = world.min_radius * OVER_LEAST_RADIUS
     out: list[Step] = []
     for turn in turns:

@@ -37,57 +37,57 @@ SHARPNESS = {
 }
 
 
-def ways_to_add(change: Change, blocks: RoadElements, world: World, number: int) -> tuple[Way, ...]:
+def ways_to_add(change: Change, elements: RoadElements, world: World, number: int) -> tuple[Way, ...]:
     """All ways to add what a change asks for.
 
     Args:
         change: what, and where.
-        blocks: of the road before the edit.
+        elements: of the road before the edit.
         world: limits.
-        number: of the change, for the names of new blocks.
+        number: of the change, for the names of new elements.
 
     Raises:
         EditError: the place does not exist, or no turn can be like that.
     """
-    before, splits = _place(change, blocks)
+    before, splits = _place(change, elements)
     if change.target is not None and change.target.noun == "straight":
-        return _straight_ways(change, blocks, before, splits, number)
+        return _straight_ways(change, elements, before, splits, number)
     out: list[Way] = []
     # first all places with the first measures, then all with the second, ...
     for spare in SPARE:
         for measures in _measures(change, world):
-            for sides in _sides(change, blocks, before):
+            for sides in _sides(change, elements, before):
                 for split in splits:
-                    out.append((_turns(change, blocks, before, split, sides, measures, spare, number),))
+                    out.append((_turns(change, elements, before, split, sides, measures, spare, number),))
     return tuple(out)
 
 
-def _place(change: Change, blocks: RoadElements) -> tuple[str, list[tuple[str, int]]]:
-    """The block to stand before (empty: none), and gaps that may be split instead, with their segment."""
+def _place(change: Change, elements: RoadElements) -> tuple[str, list[tuple[str, int]]]:
+    """The element to stand before (empty: none), and gaps that may be split instead, with their segment."""
     place = change.place
     how = place.how if place else "end"
     if how == "end":
         return "", [("", 0)]
     if how == "start":
-        return blocks[0].name, [("", 0)]
+        return elements[0].name, [("", 0)]
     if how == "middle" or place is None or place.target is None:
-        gap, index = _middle(blocks)
+        gap, index = _middle(elements)
         return gap.name, [(gap.name, index)]
     noun = place.target.noun or "turn"
-    mark = pointed(replace(place.target, noun=noun), blocks, "length")
+    mark = pointed(replace(place.target, noun=noun), elements, "length")
     if how == "on":
         if mark[0].kind == "turn":
             raise EditError("a turn cannot be added within a turn; say: after the second turn")
         return mark[0].name, [(mark[0].name, 0)]
     if how == "before" and mark[0].name != "":
         return mark[0].name, [("", 0)]
-    at = blocks.index(mark[-1])
-    after = blocks[at + 1].name if at + 1 < len(blocks) else ""
+    at = elements.index(mark[-1])
+    after = elements[at + 1].name if at + 1 < len(elements) else ""
     if how == "between":
         splits: list[tuple[str, int]] = []
         if place.other is not None:
-            stop = blocks.index(
-                pointed(replace(place.other, noun=place.other.noun or "turn"), blocks, "length")[0]
+            stop = elements.index(
+                pointed(replace(place.other, noun=place.other.noun or "turn"), elements, "length")[0]
             )
             if stop < at:
                 raise EditError(
@@ -96,10 +96,10 @@ def _place(change: Change, blocks: RoadElements) -> tuple[str, list[tuple[str, i
             if stop == at:
                 raise EditError("between a turn and itself is no place; name two turns")
             if place.other.words == place.target.words and any(
-                b.kind == "turn" for b in blocks[at + 1 : stop]
+                b.kind == "turn" for b in elements[at + 1 : stop]
             ):
                 raise EditError(f"between '{place.other.words}' are several places; name two turns")
-        gap = blocks[at + 1] if at + 1 < len(blocks) else blocks[at]
+        gap = elements[at + 1] if at + 1 < len(elements) else elements[at]
         for index in range(1, len(gap.segments)):
             left = sum(s.distance for s in gap.segments[:index])
             if min(left, gap.length - left) >= SEPARATE:
@@ -108,21 +108,21 @@ def _place(change: Change, blocks: RoadElements) -> tuple[str, list[tuple[str, i
     return after, [("", 0)]
 
 
-def _middle(blocks: RoadElements) -> tuple[RoadElement, int]:
+def _middle(elements: RoadElements) -> tuple[RoadElement, int]:
     """The gap nearest to the road's middle, and its nearest joint; 0: halve its longest segment."""
-    whole, at = sum(block.length for block in blocks), 0.0
-    best, found = float("inf"), (blocks[0], 0)
-    for block in blocks:
-        if block.kind == "gap" and block.segments:
+    whole, at = sum(element.length for element in elements), 0.0
+    best, found = float("inf"), (elements[0], 0)
+    for element in elements:
+        if element.kind == "gap" and element.segments:
             joint = at
-            for index, segment in enumerate(block.segments):
+            for index, segment in enumerate(element.segments):
                 if index and abs(joint - whole / 2) < best:
-                    best, found = abs(joint - whole / 2), (block, index)
+                    best, found = abs(joint - whole / 2), (element, index)
                 joint += segment.distance
-            centre = at + block.length / 2
+            centre = at + element.length / 2
             if abs(centre - whole / 2) < best:
-                best, found = abs(centre - whole / 2), (block, 0)
-        at += block.length
+                best, found = abs(centre - whole / 2), (element, 0)
+        at += element.length
     return found
 
 
@@ -148,11 +148,11 @@ def _measures(change: Change, world: World) -> list[tuple[float, float]]:
     return out
 
 
-def _sides(change: Change, blocks: RoadElements, before: str) -> list[list[Side]]:
+def _sides(change: Change, elements: RoadElements, before: str) -> list[list[Side]]:
     """Sides of the new turns: as said, else away from the turn before."""
     count = change.count * (2 if change.kind in ("s_bend", "chicane") else 1)
     alternates = change.kind in ("s_bend", "chicane") or (count > 1 and change.side is None)
-    firsts: list[Side] = [change.side] if change.side else _away(blocks, before)
+    firsts: list[Side] = [change.side] if change.side else _away(elements, before)
     out = []
     for side in firsts:
         row: list[Side] = [side]
@@ -162,16 +162,16 @@ def _sides(change: Change, blocks: RoadElements, before: str) -> list[list[Side]
     return out
 
 
-def _away(blocks: RoadElements, before: str) -> list[Side]:
-    names = [block.name for block in blocks]
-    at = names.index(before) if before else len(blocks)
-    last = next((b.side for b in reversed(blocks[:at]) if b.kind == "turn"), None) or "right"
+def _away(elements: RoadElements, before: str) -> list[Side]:
+    names = [element.name for element in elements]
+    at = names.index(before) if before else len(elements)
+    last = next((b.side for b in reversed(elements[:at]) if b.kind == "turn"), None) or "right"
     return [OTHER[last], "left" if last == "left" else "right"]
 
 
 def _turns(
     change: Change,
-    blocks: RoadElements,
+    elements: RoadElements,
     before: str,
     split: tuple[str, int],
     sides: Sequence[Side],
@@ -179,16 +179,16 @@ def _turns(
     spare: tuple[float, float],
     number: int,
 ) -> Step:
-    names = [block.name for block in blocks]
-    at = names.index(before) if before else len(blocks)
-    gap_before, turn_before = _behind(blocks[:at])
-    gap_after, turn_after = _behind(tuple(reversed(blocks[at:])))
+    names = [element.name for element in elements]
+    at = names.index(before) if before else len(elements)
+    gap_before, turn_before = _behind(elements[:at])
+    gap_after, turn_after = _behind(tuple(reversed(elements[at:])))
     if split[0]:
-        own = blocks[at].segments
+        own = elements[at].segments
         index = split[1]
-        first = sum(s.distance for s in own[:index]) if index else blocks[at].length / 2
+        first = sum(s.distance for s in own[:index]) if index else elements[at].length / 2
         gap_before, gap_after = gap_before + first, gap_after - first
-    incline = _incline(blocks, at)
+    incline = _incline(elements, at)
     new: list[RoadElement] = []
     goals: list[Goal] = []
     lead = _lead(turn_before, sides[0], gap_before) + spare[0]
@@ -228,13 +228,13 @@ def _goals(change: Change, name: str, degrees: float, radius: float) -> list[Goa
     return out
 
 
-def _behind(blocks: RoadElements) -> tuple[float, RoadElement | None]:
+def _behind(elements: RoadElements) -> tuple[float, RoadElement | None]:
     """Metres since the last turn, and that turn."""
     metres = 0.0
-    for block in reversed(blocks):
-        if block.kind == "turn":
-            return metres, block
-        metres += block.length
+    for element in reversed(elements):
+        if element.kind == "turn":
+            return metres, element
+        metres += element.length
     return metres, None
 
 
@@ -244,27 +244,27 @@ def _lead(turn: RoadElement | None, side: Side, gap: float) -> float:
     return round(needed - gap, 1) if gap < needed - 0.5 else 0.0
 
 
-def _incline(blocks: RoadElements, at: int) -> float:
+def _incline(elements: RoadElements, at: int) -> float:
     """Percent, of what stands next to a place."""
-    before = [s for block in blocks[:at] for s in block.segments]
-    after = [s for block in blocks[at:] for s in block.segments]
+    before = [s for element in elements[:at] for s in element.segments]
+    after = [s for element in elements[at:] for s in element.segments]
     return before[-1].incline if before else after[0].incline
 
 
 def _straight_ways(
-    change: Change, blocks: RoadElements, before: str, splits: Sequence[tuple[str, int]], number: int
+    change: Change, elements: RoadElements, before: str, splits: Sequence[tuple[str, int]], number: int
 ) -> tuple[Way, ...]:
-    names = [block.name for block in blocks]
-    at = names.index(before) if before else len(blocks)
+    names = [element.name for element in elements]
+    at = names.index(before) if before else len(elements)
     lengths = [change.length] if change.length is not None else [NEW_STRAIGHT, 30.0, 60.0, 22.0]
     if lengths[0] < 10:
         raise EditError(f"a straight of {lengths[0]:g} m is not seen as one; ask for 10 m or more")
-    incline = _incline(blocks, at)
+    incline = _incline(elements, at)
     if change.grade is not None:
         incline = change.grade
     elif change.way:
         incline = {"up": 5.0, "down": -5.0, "flat": 0.0}[change.way]
-    beside = blocks[at] if before and blocks[at].kind == "gap" else blocks[at - 1]
+    beside = elements[at] if before and elements[at].kind == "gap" else elements[at - 1]
     if change.is_whole and change.length is not None and beside.kind == "gap" and beside.seen is not None:
         return ((Stretch(beside, change.length),),)
     stands_alone = beside.kind == "gap" and beside.seen is None

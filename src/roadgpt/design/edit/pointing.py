@@ -1,4 +1,4 @@
-"""Finds the blocks of a road that a name means: 'the second left turn', 'the straight after it'."""
+"""Finds the elements of a road that a name means: 'the second left turn', 'the straight after it'."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,12 +14,12 @@ OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "stra
 KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
 
 
-def pointed(target: Target, blocks: RoadElements, what: What) -> list[RoadElement]:
-    """The blocks that are meant, in driving order.
+def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
+    """The elements that are meant, in driving order.
 
     Args:
         target: as it was read.
-        blocks: of the road as it is before the edit.
+        elements: of the road as it is before the edit.
         what: is to be changed; a name without a noun, and the ends of a road, depend on it.
 
     Raises:
@@ -27,70 +27,70 @@ def pointed(target: Target, blocks: RoadElements, what: What) -> list[RoadElemen
     """
     match target.noun:
         case "end" | "start":
-            return [_end(blocks, what, last=target.noun == "end")]
+            return [_end(elements, what, last=target.noun == "end")]
         case "road":
-            return _road(target, blocks, what)
+            return _road(target, elements, what)
         case "straight":
-            found, noun = straights(blocks), "straight"
+            found, noun = straights(elements), "straight"
         case _:
-            found, noun = turns(blocks), "turn"
+            found, noun = turns(elements), "turn"
             if target.noun is None and what == "length" and not target.side:
-                found = found or straights(blocks)
-    chosen = _chosen(target, _among(target, found, blocks), noun)
-    return _spared(target, chosen, blocks) if target.numbers else chosen  # 'turns 1 to 4 except turn 2'
+                found = found or straights(elements)
+    chosen = _chosen(target, _among(target, found, elements), noun)
+    return _spared(target, chosen, elements) if target.numbers else chosen  # 'turns 1 to 4 except turn 2'
 
 
-def turns(blocks: RoadElements) -> list[RoadElement]:
+def turns(elements: RoadElements) -> list[RoadElement]:
     """All turns."""
-    return [block for block in blocks if block.kind == "turn"]
+    return [element for element in elements if element.kind == "turn"]
 
 
-def straights(blocks: RoadElements) -> list[RoadElement]:
+def straights(elements: RoadElements) -> list[RoadElement]:
     """All straights that are seen."""
-    return [block for block in blocks if block.kind == "gap" and block.seen is not None]
+    return [element for element in elements if element.kind == "gap" and element.seen is not None]
 
 
-def _road(target: Target, blocks: RoadElements, what: What) -> list[RoadElement]:
-    found = list(blocks)
+def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
+    found = list(elements)
     if target.half:
-        found = _half(blocks, target.half)
+        found = _half(elements, target.half)
     place = target.place
     if place and place.target and place.how in ("after", "before", "between"):
-        marks = [blocks.index(b) for b in pointed(_single(place.target), blocks, what)]
+        marks = [elements.index(b) for b in pointed(_single(place.target), elements, what)]
         if place.how == "after":
             found = found[marks[-1] + 1 :]
         elif place.how == "before":
             found = found[: marks[0]]
         elif place.other:
-            stop = blocks.index(pointed(_single(place.other), blocks, what)[0])
+            stop = elements.index(pointed(_single(place.other), elements, what)[0])
             found = found[marks[-1] + 1 : stop]
     if target.but:
-        gone = {block.name for block in pointed(_named(target.but), blocks, what)}
-        found = [block for block in found if block.name not in gone]
+        gone = {element.name for element in pointed(_named(target.but), elements, what)}
+        found = [element for element in found if element.name not in gone]
     if what in OF_TURNS:
-        found = [block for block in found if block.kind == "turn"]
-    return [block for block in found if block.segments]
+        found = [element for element in found if element.kind == "turn"]
+    return [element for element in found if element.segments]
 
 
-def _half(blocks: RoadElements, half: int) -> list[RoadElement]:
-    """The blocks whose middle lies in the first or in the second half of the road."""
-    whole, at, out = sum(block.length for block in blocks), 0.0, list[RoadElement]()
-    for block in blocks:
-        if (at + block.length / 2 < whole / 2) == (half == 1):
-            out.append(block)
-        at += block.length
+def _half(elements: RoadElements, half: int) -> list[RoadElement]:
+    """The elements whose middle lies in the first or in the second half of the road."""
+    whole, at, out = sum(element.length for element in elements), 0.0, list[RoadElement]()
+    for element in elements:
+        if (at + element.length / 2 < whole / 2) == (half == 1):
+            out.append(element)
+        at += element.length
     return out
 
 
-def _end(blocks: RoadElements, what: What, last: bool) -> RoadElement:
+def _end(elements: RoadElements, what: What, last: bool) -> RoadElement:
     if what in OF_TURNS:
-        found = turns(blocks)
+        found = turns(elements)
         if not found:
             raise EditError("there is no turn on this road; add one: add a left turn at the end")
         return found[-1 if last else 0]
-    seen = [block for block in blocks if block.seen is not None]
+    seen = [element for element in elements if element.seen is not None]
     if not seen:
-        return max(blocks, key=lambda block: block.length)
+        return max(elements, key=lambda element: element.length)
     return seen[-1 if last else 0]
 
 
@@ -98,32 +98,32 @@ def _single(target: Target) -> Target:
     return replace(target, place=None) if target.noun == "road" else target
 
 
-def _among(target: Target, found: Sequence[RoadElement], blocks: RoadElements) -> list[RoadElement]:
+def _among(target: Target, found: Sequence[RoadElement], elements: RoadElements) -> list[RoadElement]:
     """Those that are as they were said to be, and where."""
-    out = [block for block in found if _fits(target, block)]
+    out = [element for element in found if _fits(target, element)]
     if target.half:
-        there = {block.name for block in _half(blocks, target.half)}
-        out = [block for block in out if block.name in there]
+        there = {element.name for element in _half(elements, target.half)}
+        out = [element for element in out if element.name in there]
     place = target.place
     if place and place.target:
-        out = _placed(place, out, blocks, many=target.every or bool(target.numbers))
-    return out if target.numbers else _spared(target, out, blocks)
+        out = _placed(place, out, elements, many=target.every or bool(target.numbers))
+    return out if target.numbers else _spared(target, out, elements)
 
 
-def _spared(target: Target, found: list[RoadElement], blocks: RoadElements) -> list[RoadElement]:
+def _spared(target: Target, found: list[RoadElement], elements: RoadElements) -> list[RoadElement]:
     """Without those that 'except' names."""
     if target.but is None:
         return found
     but = replace(target.but, noun=target.but.noun or target.noun)
-    gone = {block.name for block in pointed(but, blocks, "length")}
-    return [block for block in found if block.name not in gone]
+    gone = {element.name for element in pointed(but, elements, "length")}
+    return [element for element in found if element.name not in gone]
 
 
-def _fits(target: Target, block: RoadElement) -> bool:
-    seen = block.seen
+def _fits(target: Target, element: RoadElement) -> bool:
+    seen = element.seen
     if seen is None:
         return False
-    if target.side and block.side != target.side:
+    if target.side and element.side != target.side:
         return False
     if target.way and way(seen.grade) != target.way:
         return False
@@ -144,22 +144,22 @@ def _fits(target: Target, block: RoadElement) -> bool:
 
 
 def _placed(
-    place: Place, found: Sequence[RoadElement], blocks: RoadElements, many: bool
+    place: Place, found: Sequence[RoadElement], elements: RoadElements, many: bool
 ) -> list[RoadElement]:
     assert place.target is not None
-    at = {block.name: index for index, block in enumerate(blocks)}
-    marks = [at[block.name] for block in pointed(_named(place.target), blocks, "length")]
+    at = {element.name: index for index, element in enumerate(elements)}
+    marks = [at[element.name] for element in pointed(_named(place.target), elements, "length")]
     if place.how == "after":
-        out = [block for block in found if at[block.name] > marks[-1]]
+        out = [element for element in found if at[element.name] > marks[-1]]
         return out if many else out[:1]
     if place.how == "before":
-        out = [block for block in found if at[block.name] < marks[0]]
+        out = [element for element in found if at[element.name] < marks[0]]
         return out if many else out[-1:]
     if place.how == "between" and place.other:
-        stop = at[pointed(_named(place.other), blocks, "length")[0].name]
+        stop = at[pointed(_named(place.other), elements, "length")[0].name]
         low, high = min(marks[-1], stop), max(marks[-1], stop)
-        return [block for block in found if low < at[block.name] < high]
-    return [block for block in found if at[block.name] in marks]
+        return [element for element in found if low < at[element.name] < high]
+    return [element for element in found if at[element.name] in marks]
 
 
 def _named(target: Target) -> Target:
@@ -173,8 +173,8 @@ def _chosen(target: Target, found: Sequence[RoadElement], noun: str) -> list[Roa
         raise EditError(f"there is no {told} on this road")
     if target.most:
         measure, sign = target.most
-        ranked = sorted(found, key=lambda block: -sign * _measure(block, measure))[: target.count or 1]
-        return [block for block in found if block in ranked]
+        ranked = sorted(found, key=lambda element: -sign * _measure(element, measure))[: target.count or 1]
+        return [element for element in found if element in ranked]
     if target.middle:
         if len(found) % 2 == 0:
             n = len(found)
@@ -189,7 +189,7 @@ def _chosen(target: Target, found: Sequence[RoadElement], noun: str) -> list[Roa
             if not 0 <= index < len(found):
                 raise EditError(_missing(number, len(found), told))
             out.append(found[index])
-        return [block for block in found if block in out]
+        return [element for element in found if element in out]
     if len(found) > 1 and not target.every:
         names = " and ".join(("the " + _ordinal(n)) for n in range(1, min(len(found), 2) + 1))
         raise EditError(
@@ -204,11 +204,11 @@ def _missing(number: int, count: int, told: str) -> str:
     return f"there is no {what}; the road has {many if count != 1 else 'one'}"
 
 
-def _measure(block: RoadElement, measure: str) -> float:
-    seen = block.seen
+def _measure(element: RoadElement, measure: str) -> float:
+    seen = element.seen
     assert seen is not None
     if measure == "sharp":
-        return -seen.radius + seen.degrees / 1000 if block.kind == "turn" else 0.0
+        return -seen.radius + seen.degrees / 1000 if element.kind == "turn" else 0.0
     return seen.length if measure == "long" else abs(seen.grade)
 
 

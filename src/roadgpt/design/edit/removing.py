@@ -11,34 +11,36 @@ from roadgpt.errors import EditError
 from roadgpt.road import Segment
 
 
-def ways_to_remove(gone: Sequence[RoadElement], blocks: RoadElements) -> tuple[Way, ...]:
+def ways_to_remove(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[Way, ...]:
     """All ways to take turns or straights away: nothing, or a straight, in their place."""
-    if len(gone) == len([b for b in blocks if b.segments]):
+    if len(gone) == len([b for b in elements if b.segments]):
         raise EditError("then no road would be left; remove fewer")
     fillers = (0.0, SEPARATE, 1.0, 45.0)
     out: list[Way] = []
     for filler in fillers:
         steps: list[Step] = []
-        for block in gone:
-            steps.append(_without(block, blocks, filler))
+        for element in gone:
+            steps.append(_without(element, elements, filler))
         out.append(tuple(steps))
     return tuple(out)
 
 
-def _without(block: RoadElement, blocks: RoadElements, filler: float) -> Step:
-    at = blocks.index(block)
-    if block.kind == "gap":
-        bends = tuple(s for s in block.segments if s.turn_degrees)
-        sides = [b.side for b in (*blocks[max(at - 1, 0) : at], *blocks[at + 1 : at + 2]) if b.kind == "turn"]
+def _without(element: RoadElement, elements: RoadElements, filler: float) -> Step:
+    at = elements.index(element)
+    if element.kind == "gap":
+        bends = tuple(s for s in element.segments if s.turn_degrees)
+        sides = [
+            b.side for b in (*elements[max(at - 1, 0) : at], *elements[at + 1 : at + 2]) if b.kind == "turn"
+        ]
         if len(sides) == 2 and sides[0] == sides[1]:
-            return Stretch(block, HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), 0.6)
-        return Become(block, bends)
-    length = {0.0: 0.0, 1.0: _chord(block)}.get(filler, filler)
-    kept: tuple[Segment, ...] = (straight(length, block.incline),) if length else ()
-    return Become(block, kept)
+            return Stretch(element, HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), 0.6)
+        return Become(element, bends)
+    length = {0.0: 0.0, 1.0: _chord(element)}.get(filler, filler)
+    kept: tuple[Segment, ...] = (straight(length, element.incline),) if length else ()
+    return Become(element, kept)
 
 
-def _chord(block: RoadElement) -> float:
-    seen = block.seen
+def _chord(element: RoadElement) -> float:
+    seen = element.seen
     assert seen is not None
-    return max(0.7 * block.length, sqrt(2) * min(seen.radius, 60.0))
+    return max(0.7 * element.length, sqrt(2) * min(seen.radius, 60.0))

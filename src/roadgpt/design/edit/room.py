@@ -15,7 +15,7 @@ def gap(name: str, length: float, incline: float) -> RoadElement:
     return RoadElement(name, "gap", (straight(length, incline),))
 
 
-def with_room(blocks: RoadElements, before: RoadElements) -> RoadElements:
+def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
     """Straights between new neighbours of one hand, so that they are not seen as one turn.
 
     Turns that were neighbours before, on the same sides, are two already.
@@ -24,15 +24,15 @@ def with_room(blocks: RoadElements, before: RoadElements) -> RoadElements:
     out: list[RoadElement] = []
     last: RoadElement | None = None
     metres = 0.0
-    for block in blocks:
-        if block.kind == "turn":
-            is_new = last is not None and last.side == block.side and _pair(last, block) not in known
+    for element in elements:
+        if element.kind == "turn":
+            is_new = last is not None and last.side == element.side and _pair(last, element) not in known
             if is_new and metres < SEPARATE - 2:
-                out.append(gap(f"room before {block.name}", round(SEPARATE - metres, 1), block.incline))
-            last, metres = block, 0.0
+                out.append(gap(f"room before {element.name}", round(SEPARATE - metres, 1), element.incline))
+            last, metres = element, 0.0
         else:
-            metres += block.length
-        out.append(block)
+            metres += element.length
+        out.append(element)
     return tuple(out)
 
 

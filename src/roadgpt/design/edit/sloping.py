@@ -13,40 +13,40 @@ from roadgpt.road import World
 class Slope:
     """Another grade of one turn or straight, percent as measured."""
 
-    block: RoadElement
+    element: RoadElement
     grade: float
     low: float
     high: float
 
     @property
     def goals(self) -> tuple[Goal, ...]:
-        """The grade, where the block is seen."""
-        if self.block.seen is None:
+        """The grade, where the element is seen."""
+        if self.element.seen is None:
             return ()
-        return (Goal(self.block.name, "grade", self.grade, self.low, self.high),)
+        return (Goal(self.element.name, "grade", self.grade, self.low, self.high),)
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Inclines in proportion where they all go the same way, else all alike."""
         limit = 100 * world.max_grade - 0.2
-        aim = float(np.clip(aims.get((self.block.name, "grade"), self.grade), -limit, limit))
+        aim = float(np.clip(aims.get((self.element.name, "grade"), self.grade), -limit, limit))
 
-        def sloped(block: RoadElement) -> RoadElement:
-            inclines = np.array([s.incline for s in block.segments])
-            mean = block.incline
+        def sloped(element: RoadElement) -> RoadElement:
+            inclines = np.array([s.incline for s in element.segments])
+            mean = element.incline
             if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
                 wanted = np.clip(inclines * aim / mean, -limit, limit)
             else:
                 wanted = np.full(len(inclines), aim)
-            return block.with_segments(
-                with_incline(s, g) for s, g in zip(block.segments, wanted, strict=True)
+            return element.with_segments(
+                with_incline(s, g) for s, g in zip(element.segments, wanted, strict=True)
             )
 
-        return changed(blocks, self.block.name, sloped)
+        return changed(elements, self.element.name, sloped)
 
 
 @dataclass(frozen=True, slots=True)
 class SlopeOfAll:
-    """Another slope of many blocks: every incline times a factor, and so much more; then within bounds."""
+    """Another slope of many elements: every incline times a factor, and so much more; then within bounds."""
 
     names: frozenset[str]
     times: float = 1.0
@@ -61,7 +61,7 @@ class SlopeOfAll:
         """None: inclines of many segments measure as they are written."""
         return ()
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Every segment by itself."""
         limit = 100 * world.max_grade - 0.2
 
@@ -80,5 +80,5 @@ class SlopeOfAll:
             b.with_segments(with_incline(s, one(s.incline)) for s in b.segments)
             if b.name in self.names
             else b
-            for b in blocks
+            for b in elements
         )

@@ -1,4 +1,4 @@
-"""Steps: small changes of blocks, each with what must be measured afterwards.
+"""Steps: small changes of elements, each with what must be measured afterwards.
 
 A step is given ``aims``: the values to write so that the wished ones are measured. They start as the wish
 itself and are corrected by what the finished road shows, as a short turn between other slopes, or one with
@@ -26,9 +26,9 @@ OTHER: dict[Side | None, Side] = {"left": "right", "right": "left"}
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What must be measured of a block afterwards: the value to aim at, and what is good enough."""
+    """What must be measured of a element afterwards: the value to aim at, and what is good enough."""
 
-    block: str
+    element: str
     quantity: Quantity
     aim: float
     low: float
@@ -36,28 +36,28 @@ class Goal:
 
 
 class Step(Protocol):
-    """A change of blocks."""
+    """A change of elements."""
 
     @property
     def goals(self) -> tuple[Goal, ...]:
         """What must be measured afterwards."""
         ...
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """The blocks with the change."""
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
+        """The elements with the change."""
         ...
 
 
-def changed(blocks: RoadElements, name: str, change: Callable[[RoadElement], RoadElement]) -> RoadElements:
-    """The blocks, of which the one of that name is changed."""
-    return tuple(change(block) if block.name == name else block for block in blocks)
+def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], RoadElement]) -> RoadElements:
+    """The elements, of which the one of that name is changed."""
+    return tuple(change(element) if element.name == name else element for element in elements)
 
 
 @dataclass(frozen=True, slots=True)
 class Bend:
     """Another angle, radius or length of a turn; what is None stays as it is."""
 
-    block: RoadElement
+    element: RoadElement
     degrees: float | None = None
     radius: float | None = None
     length: float | None = None
@@ -70,28 +70,30 @@ class Bend:
         off, wide, long = self.slack
         out = []
         if self.degrees is not None:
-            out.append(Goal(self.block.name, "degrees", self.degrees, self.degrees - off, self.degrees + off))
+            out.append(
+                Goal(self.element.name, "degrees", self.degrees, self.degrees - off, self.degrees + off)
+            )
         if self.radius is not None:
             low, high = self.radius * (1 - wide), self.radius * (1 + wide)
-            out.append(Goal(self.block.name, "radius", self.radius, low, high))
+            out.append(Goal(self.element.name, "radius", self.radius, low, high))
         if self.length is not None:
             low, high = self.length * (1 - long), self.length * (1 + long)
-            out.append(Goal(self.block.name, "length", self.length, low, high))
+            out.append(Goal(self.element.name, "length", self.length, low, high))
         return tuple(out)
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Angles, lengths and radii scaled alike; more segments where one would turn too far."""
-        seen, name = self.block.seen, self.block.name
+        seen, name = self.element.seen, self.element.name
         assert seen is not None
-        turn = abs(sum(s.turn_degrees for s in self.block.segments))
+        turn = abs(sum(s.turn_degrees for s in self.element.segments))
         more = 1.0 if self.degrees is None else (turn + aims[name, "degrees"] - seen.degrees) / turn
         wider = 1.0 if self.radius is None else aims[name, "radius"] / seen.radius
         if self.length is not None:
             wider *= aims[name, "length"] / seen.length
-        least = max((abs(s.turn_degrees) for s in self.block.segments), default=0.0)
+        least = max((abs(s.turn_degrees) for s in self.element.segments), default=0.0)
         if least * more > MAX_TURN >= least:
-            return changed(blocks, name, lambda b: rewritten(b, turn * more, seen.radius * wider))
-        return changed(blocks, name, lambda b: b.with_segments(scaled(s, more, wider) for s in b.segments))
+            return changed(elements, name, lambda b: rewritten(b, turn * more, seen.radius * wider))
+        return changed(elements, name, lambda b: b.with_segments(scaled(s, more, wider) for s in b.segments))
 
 
 def scaled(segment: Segment, more: float, wider: float) -> Segment:
@@ -122,12 +124,12 @@ def straight(length: float, incline: float) -> Segment:
     return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
 
 
-def rewritten(block: RoadElement, degrees: float, radius: float) -> RoadElement:
-    """A turn of a block's side and slope that is written anew."""
-    ramps = [s.transition for s in block.segments if s.transition]
+def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
+    """A turn of a element's side and slope that is written anew."""
+    ramps = [s.transition for s in element.segments if s.transition]
     ramp = ramps[0] if ramps else RAMP_SHARE * radius * radians(degrees)
-    segments = turn_segments(degrees, 1 if block.side == "left" else -1, radius, ramp, block.incline)
-    return block.with_segments(segments)
+    segments = turn_segments(degrees, 1 if element.side == "left" else -1, radius, ramp, element.incline)
+    return element.with_segments(segments)
 
 
 def turn_segments(
@@ -142,34 +144,36 @@ def turn_segments(
 class Stretch:
     """Another length of a straight, metres as measured."""
 
-    block: RoadElement
+    element: RoadElement
     length: float
     slack: float = 1.0
 
     @property
     def goals(self) -> tuple[Goal, ...]:
         """The length; a straight that was not to be seen is not measured."""
-        if self.length < 10.0 or (self.block.seen is None and self.block.segments):
+        if self.length < 10.0 or (self.element.seen is None and self.element.segments):
             return ()
         return (
-            Goal(self.block.name, "length", self.length, self.length - self.slack, self.length + self.slack),
+            Goal(
+                self.element.name, "length", self.length, self.length - self.slack, self.length + self.slack
+            ),
         )
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """The longest segment longer, or all straight ones shorter."""
-        seen = self.block.seen
-        before = seen.length if seen else self.block.length
-        more = aims.get((self.block.name, "length"), self.length) - before
-        return changed(blocks, self.block.name, lambda b: stretched(b, more))
+        seen = self.element.seen
+        before = seen.length if seen else self.element.length
+        more = aims.get((self.element.name, "length"), self.length) - before
+        return changed(elements, self.element.name, lambda b: stretched(b, more))
 
 
-def stretched(block: RoadElement, more: float) -> RoadElement:
+def stretched(element: RoadElement, more: float) -> RoadElement:
     """A gap with so many metres more of straight road."""
-    straight = [i for i, s in enumerate(block.segments) if not s.turn_degrees]
+    straight = [i for i, s in enumerate(element.segments) if not s.turn_degrees]
     if not straight:
         new = Segment(distance=max(round(more * TENTH) / TENTH, LEAST), direction="straight")
-        return block.with_segments((*block.segments, new))
-    segments = list(block.segments)
+        return element.with_segments((*element.segments, new))
+    segments = list(element.segments)
     longest = max(straight, key=lambda i: segments[i].distance)
     if segments[longest].distance + more >= max(0.5 * segments[longest].distance, LEAST):
         segments[longest] = _with_distance(segments[longest], segments[longest].distance + more)
@@ -178,7 +182,7 @@ def stretched(block: RoadElement, more: float) -> RoadElement:
         share = max((whole + more) / whole, 0.02)
         for i in straight:
             segments[i] = _with_distance(segments[i], segments[i].distance * share)
-    return block.with_segments(segments)
+    return element.with_segments(segments)
 
 
 def _with_distance(segment: Segment, distance: float) -> Segment:
@@ -196,17 +200,19 @@ def with_incline(segment: Segment, incline: float) -> Segment:
 class Flip:
     """A turn to the other side."""
 
-    block: RoadElement
+    element: RoadElement
     goals: tuple[Goal, ...] = ()
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """All that bends, bends the other way."""
-        return changed(blocks, self.block.name, flipped)
+        return changed(elements, self.element.name, flipped)
 
 
-def flipped(block: RoadElement) -> RoadElement:
-    """The mirror image of a block."""
-    return replace(block, side=OTHER.get(block.side), segments=tuple(_mirrored(s) for s in block.segments))
+def flipped(element: RoadElement) -> RoadElement:
+    """The mirror image of a element."""
+    return replace(
+        element, side=OTHER.get(element.side), segments=tuple(_mirrored(s) for s in element.segments)
+    )
 
 
 def _mirrored(segment: Segment) -> Segment:
@@ -222,61 +228,61 @@ class FlipAll:
 
     goals: tuple[Goal, ...] = ()
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Every turn, and what bends between them."""
-        return tuple(flipped(block) for block in blocks)
+        return tuple(flipped(element) for element in elements)
 
 
 @dataclass(frozen=True, slots=True)
 class Become:
-    """A block becomes a gap of these segments, or vanishes."""
+    """A element becomes a gap of these segments, or vanishes."""
 
-    block: RoadElement
+    element: RoadElement
     segments: Sequence[Segment] = ()
     goals: tuple[Goal, ...] = ()
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Turns turn into gaps."""
         return changed(
-            blocks,
-            self.block.name,
+            elements,
+            self.element.name,
             lambda b: replace(b, kind="gap", side=None, seen=None, segments=tuple(self.segments)),
         )
 
 
 @dataclass(frozen=True, slots=True)
 class Insert:
-    """New blocks before the block of that name, or at the end where it is empty."""
+    """New elements before the element of that name, or at the end where it is empty."""
 
     before: str
-    blocks: RoadElements
+    elements: RoadElements
     goals: tuple[Goal, ...] = ()
     split: str = ""
-    """The gap that is split in two first; its second half is what the new blocks stand before."""
+    """The gap that is split in two first; its second half is what the new elements stand before."""
     index: int = 0
     """Segments of its first half; 0 halves the longest one."""
 
-    def apply(self, blocks: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """The new blocks in their place, on the slope that is aimed at."""
-        new = tuple(self._aimed(block, aims) for block in self.blocks)
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
+        """The new elements in their place, on the slope that is aimed at."""
+        new = tuple(self._aimed(element, aims) for element in self.elements)
         if self.split:
             return tuple(
-                part for b in blocks for part in (self._halves(b, new) if b.name == self.split else (b,))
+                part for b in elements for part in (self._halves(b, new) if b.name == self.split else (b,))
             )
-        names = [block.name for block in blocks]
-        at = names.index(self.before) if self.before else len(blocks)
-        return (*blocks[:at], *new, *blocks[at:])
+        names = [element.name for element in elements]
+        at = names.index(self.before) if self.before else len(elements)
+        return (*elements[:at], *new, *elements[at:])
 
-    def _aimed(self, block: RoadElement, aims: Aims) -> RoadElement:
-        length, aim = aims.get((block.name, "length")), aims.get((block.name, "grade"))
+    def _aimed(self, element: RoadElement, aims: Aims) -> RoadElement:
+        length, aim = aims.get((element.name, "length")), aims.get((element.name, "grade"))
         if length is not None:
-            block = block.with_segments(_with_distance(s, length) for s in block.segments)
+            element = element.with_segments(_with_distance(s, length) for s in element.segments)
         if aim is None:
-            return block
-        return block.with_segments(with_incline(s, min(max(aim, -14.8), 14.8)) for s in block.segments)
+            return element
+        return element.with_segments(with_incline(s, min(max(aim, -14.8), 14.8)) for s in element.segments)
 
-    def _halves(self, block: RoadElement, new: RoadElements) -> RoadElements:
-        segments, at = list(block.segments), self.index
+    def _halves(self, element: RoadElement, new: RoadElements) -> RoadElements:
+        segments, at = list(element.segments), self.index
         if not at:
             longest = max(range(len(segments)), key=lambda i: segments[i].distance)
             half = round(segments[longest].distance / 2 * MILLIMETRE) / MILLIMETRE
@@ -288,7 +294,7 @@ class Insert:
             ]
             at = longest + 1
         first, second = (
-            block.with_segments(segments[:at]),
-            replace(block, name=f"{block.name} rest", seen=None),
+            element.with_segments(segments[:at]),
+            replace(element, name=f"{element.name} rest", seen=None),
         )
         return (first, *new, second.with_segments(segments[at:]))

@@ -12,21 +12,21 @@ FADING = 12.0  # m that a straight gains at most from turns that fade into it
 AGAIN = ("start ", "turned ", "theta ")  # what a repair says of the road as a whole, which is measured here
 
 
-def sentences(before: Design, blocks: RoadElements, found: Measures, made: Made) -> tuple[str, ...]:
+def sentences(before: Design, elements: RoadElements, found: Measures, made: Made) -> tuple[str, ...]:
     """One for every turn and straight that is not as it was, and for the road as a whole."""
     besides = [said for said in made.besides if not said.startswith(AGAIN)]
     if besides:
         besides = [f"to keep it valid: {'; '.join(besides)}"]
-    things, whole = _things(blocks, made), _whole(found, made.found)
+    things, whole = _things(elements, made), _whole(found, made.found)
     return (*things, *whole, *_placing(before, made.design), *besides)
 
 
 def between(before: Design, after: Design, geometry: Geometry) -> tuple[str, ...]:
     """What is different about another design, turn by turn where there are as many as before."""
-    (blocks, found), (new, measured) = elements_on_road(before, geometry), elements_on_road(after, geometry)
+    (elements, found), (new, measured) = elements_on_road(before, geometry), elements_on_road(after, geometry)
     made = Made(after, new, measured)
-    same = [block.name for block in blocks] == [block.name for block in new]
-    things = tuple(_things(blocks, made)) if same else _counted(found, measured)
+    same = [element.name for element in elements] == [element.name for element in new]
+    things = tuple(_things(elements, made)) if same else _counted(found, measured)
     return (*things, *_whole(found, measured), *_placing(before, after))
 
 
@@ -37,38 +37,38 @@ def _counted(before: Measures, after: Measures) -> tuple[str, ...]:
 
 
 def _things(before: RoadElements, made: Made) -> Iterator[str]:
-    after = {block.name: block for block in made.blocks}
+    after = {element.name: element for element in made.elements}
     names = _names(before)
-    for block in before:
-        now = after.get(block.name)
-        if now is None or (now.kind != block.kind):
-            yield _gone(block, names[block.name], now)
-        elif now.segments != block.segments:
-            yield from _other(block, now, names[block.name], made)
-    numbers = _names(made.blocks)
-    for block in made.blocks:
-        if block.name in names or block.name.endswith(" rest"):
+    for element in before:
+        now = after.get(element.name)
+        if now is None or (now.kind != element.kind):
+            yield _gone(element, names[element.name], now)
+        elif now.segments != element.segments:
+            yield from _other(element, now, names[element.name], made)
+    numbers = _names(made.elements)
+    for element in made.elements:
+        if element.name in names or element.name.endswith(" rest"):
             continue
-        seen = seen_as(block.name, made.blocks, made.found)
-        if block.kind == "turn" and seen:
-            yield f"{numbers[block.name]} is new: {_turn(seen)}"
-        elif block.kind == "gap":
-            is_alone = seen is not None and abs(seen.length - block.length) < FADING
-            length = seen.length if seen and is_alone else block.length
-            yield f"a straight of {length:.0f} m is new, {block.incline:+.1f} %"
+        seen = seen_as(element.name, made.elements, made.found)
+        if element.kind == "turn" and seen:
+            yield f"{numbers[element.name]} is new: {_turn(seen)}"
+        elif element.kind == "gap":
+            is_alone = seen is not None and abs(seen.length - element.length) < FADING
+            length = seen.length if seen and is_alone else element.length
+            yield f"a straight of {length:.0f} m is new, {element.incline:+.1f} %"
 
 
-def _names(blocks: Sequence[RoadElement]) -> dict[str, str]:
-    """What a person calls every block."""
+def _names(elements: Sequence[RoadElement]) -> dict[str, str]:
+    """What a person calls every element."""
     out, turns, straights = dict[str, str](), 0, 0
-    for block in blocks:
-        if block.kind == "turn":
+    for element in elements:
+        if element.kind == "turn":
             turns += 1
-            out[block.name] = f"turn {turns}"
+            out[element.name] = f"turn {turns}"
         else:
-            straights += block.seen is not None
+            straights += element.seen is not None
             behind = f"the road behind turn {turns}" if turns else "the road"
-            out[block.name] = f"straight {straights}" if block.seen is not None else behind
+            out[element.name] = f"straight {straights}" if element.seen is not None else behind
     return out
 
 
@@ -76,17 +76,17 @@ def _turn(seen: MeasuredFeature) -> str:
     return f"{seen.degrees:.0f} degrees to the {seen.side}, radius {seen.radius:.0f} m, {seen.grade:+.1f} %"
 
 
-def _gone(block: RoadElement, name: str, now: RoadElement | None) -> str:
-    seen = block.seen
-    if block.kind == "turn" and seen:
+def _gone(element: RoadElement, name: str, now: RoadElement | None) -> str:
+    seen = element.seen
+    if element.kind == "turn" and seen:
         instead = f", in its place {now.length:g} m straight" if now and now.segments else ""
         return f"{name} is gone ({seen.degrees:.0f} degrees to the {seen.side}){instead}"
     return f"{name} is gone"
 
 
-def _other(block: RoadElement, now: RoadElement, name: str, made: Made) -> Iterator[str]:
-    """What is different about a block that stayed."""
-    was, seen = block.seen, seen_as(block.name, made.blocks, made.found)
+def _other(element: RoadElement, now: RoadElement, name: str, made: Made) -> Iterator[str]:
+    """What is different about a element that stayed."""
+    was, seen = element.seen, seen_as(element.name, made.elements, made.found)
     if not now.segments or (was is not None and seen is None and now.length < was.length):
         short = f"{name}: {now.length:g} m as written, too short to be seen"
         yield short if now.segments else f"{name} is gone"
@@ -105,11 +105,11 @@ def _other(block: RoadElement, now: RoadElement, name: str, made: Made) -> Itera
             said.append(f"radius {was.radius:.0f} -> {seen.radius:.0f} m")
         if abs(was.length - seen.length) >= 1 and (was.kind == "straight" or not said):
             said.append(f"length {was.length:.0f} -> {seen.length:.0f} m")
-    if abs(block.incline - now.incline) >= 0.05:
-        one, other = (was.grade, seen.grade) if was and seen else (block.incline, now.incline)
+    if abs(element.incline - now.incline) >= 0.05:
+        one, other = (was.grade, seen.grade) if was and seen else (element.incline, now.incline)
         said.append(f"grade {one:+.1f} -> {other:+.1f} %")
-    if not (was and seen) and abs(block.length - now.length) >= 0.05:
-        said.append(f"length {block.length:.0f} -> {now.length:.0f} m")
+    if not (was and seen) and abs(element.length - now.length) >= 0.05:
+        said.append(f"length {element.length:.0f} -> {now.length:.0f} m")
     if said:
         yield f"{name}: {', '.join(said)}"
 

@@ -27,7 +27,7 @@ CORRECTIONS = 6
 REPAIRED = 2  # ways that are repaired in full where none is valid as it is
 LARGEST = 12  # doses of one change that are combined with others
 HUNDREDTH = 100.0
-COUNTED = 25.0  # m: what is written for a block that is not seen may be measured as so much less
+COUNTED = 25.0  # m: what is written for a element that is not seen may be measured as so much less
 
 Aims = dict[tuple[str, Quantity], float]
 
@@ -36,7 +36,7 @@ class Made(NamedTuple):
     """A road with the changes, how it measures, and what had to be changed besides."""
 
     design: Design
-    blocks: RoadElements
+    elements: RoadElements
     found: Measures
     besides: tuple[str, ...] = ()
 
@@ -52,13 +52,13 @@ class Tried(NamedTuple):
 
 
 def tried(
-    design: Design, blocks: RoadElements, changes: Sequence[Sequence[Way]], world: World, geometry: Geometry
+    design: Design, elements: RoadElements, changes: Sequence[Sequence[Way]], world: World, geometry: Geometry
 ) -> Tried:
     """The first way that makes a valid road; else the objection to the preferred one.
 
     Args:
         design: before the edit.
-        blocks: of that design.
+        elements: of that design.
         changes: for every change, its ways, the preferred one first.
         world: map and limits.
         geometry: what a design becomes.
@@ -68,7 +68,7 @@ def tried(
     for steps in islice(_combined(changes), MOST_TRIALS):
         draft: Made | None = None
         for ease, beside in _eases(steps):
-            one = _one(design, blocks, steps, world, geometry, ease, beside)
+            one = _one(design, elements, steps, world, geometry, ease, beside)
             if one.made:
                 return one
             if first is None or one.closeness > first.closeness:
@@ -105,7 +105,7 @@ def _eases(steps: Sequence[Step]) -> tuple[tuple[float, bool], ...]:
 
 def _one(
     design: Design,
-    blocks: RoadElements,
+    elements: RoadElements,
     steps: Sequence[Step],
     world: World,
     geometry: Geometry,
@@ -113,18 +113,18 @@ def _one(
     beside: bool,
 ) -> Tried:
     goals = [goal for step in steps for goal in step.goals]
-    aims: Aims = {(goal.block, goal.quantity): goal.aim for goal in goals}
+    aims: Aims = {(goal.element, goal.quantity): goal.aim for goal in goals}
     objection, draft = "", None
     for _ in range(CORRECTIONS):
-        after: RoadElements = blocks
+        after: RoadElements = elements
         for step in steps:
             after = step.apply(after, aims, world)
-        after = with_room(after, blocks)
+        after = with_room(after, elements)
         segments = joined(after)
         if not 1 <= len(segments) <= MAX_SEGMENTS:
             return Tried(None, f"the road would have {len(segments)} segments")
         try:
-            new = _started(design, after, blocks, world, any(isinstance(s, FlipAll) for s in steps))
+            new = _started(design, after, elements, world, any(isinstance(s, FlipAll) for s in steps))
             new = _rounded_off(new, design, world, ease, beside)
             found = measure(build(new, geometry).centreline())
         except UsageError as error:
@@ -177,12 +177,12 @@ def _started(
     if is_mirrored:
         theta = (180 - design.theta) % 360
         return Design(starting_point=(world.map_size - x, y, z), theta=round(theta, 6), segments=segments)
-    old = {block.name for block in before}
+    old = {element.name for element in before}
     front: list[Segment] = []
-    for block in after:
-        if block.name in old:
+    for element in after:
+        if element.name in old:
             break
-        front += block.segments
+        front += element.segments
     if not front:
         return design.model_copy(update={"segments": segments})
     lead = build(Design(starting_point=(0.0, 0.0, 0.0), theta=0.0, segments=tuple(front)))
@@ -197,9 +197,9 @@ def _started(
     )
 
 
-def _unlike(blocks: RoadElements, found: Measures) -> str:
+def _unlike(elements: RoadElements, found: Measures) -> str:
     """Where the finished road does not show the turns that it should: what is wrong."""
-    wanted = [block.side for block in blocks if block.kind == "turn"]
+    wanted = [element.side for element in elements if element.kind == "turn"]
     shown = [turn.side for turn in found.turns]
     if wanted == shown:
         return ""
@@ -208,40 +208,40 @@ def _unlike(blocks: RoadElements, found: Measures) -> str:
     return "a turn would be seen to the wrong side"
 
 
-def seen_as(name: str, blocks: RoadElements, found: Measures) -> MeasuredFeature | None:
-    """How a block measures on the finished road; None where it is not seen by itself."""
-    turns = [block.name for block in blocks if block.kind == "turn"]
+def seen_as(name: str, elements: RoadElements, found: Measures) -> MeasuredFeature | None:
+    """How a element measures on the finished road; None where it is not seen by itself."""
+    turns = [element.name for element in elements if element.kind == "turn"]
     if name in turns:
         return found.turns[turns.index(name)]
     behind, alone = 0, dict[int, list[RoadElement]]()
-    for block in blocks:
-        if block.kind == "turn":
+    for element in elements:
+        if element.kind == "turn":
             behind += 1
-        elif block.segments:
-            alone.setdefault(behind, []).append(block)
+        elif element.segments:
+            alone.setdefault(behind, []).append(element)
     for number, own in alone.items():
-        if name in [block.name for block in own]:
-            longest = max(own, key=lambda block: block.length)
+        if name in [element.name for element in own]:
+            longest = max(own, key=lambda element: element.length)
             straights = [f for f in found.gaps[number] if f.kind == "straight"]
             return straights[0] if straights and longest.name == name else None
     return None
 
 
-def _value(goal: Goal, blocks: RoadElements, found: Measures) -> float:
-    if not goal.block:
+def _value(goal: Goal, elements: RoadElements, found: Measures) -> float:
+    if not goal.element:
         return found.length
-    seen = seen_as(goal.block, blocks, found)
+    seen = seen_as(goal.element, elements, found)
     if seen is None:  # hidden between others: it is as it is written
-        block = next(block for block in blocks if block.name == goal.block)
-        return block.incline if goal.quantity == "grade" else goal.aim
+        element = next(element for element in elements if element.name == goal.element)
+        return element.incline if goal.quantity == "grade" else goal.aim
     return float(getattr(seen, goal.quantity))
 
 
 def _correct(aims: Aims, goal: Goal, value: float) -> None:
-    key = (goal.block, goal.quantity)
-    if not goal.block:
+    key = (goal.element, goal.quantity)
+    if not goal.element:
         return
-    if goal.quantity in ("radius",) or (goal.quantity == "length" and goal.block.startswith("turn")):
+    if goal.quantity in ("radius",) or (goal.quantity == "length" and goal.element.startswith("turn")):
         aims[key] *= min(max(goal.aim / max(value, 1e-6), 0.6), 1.6)
     else:
         aims[key] += goal.aim - value
@@ -249,7 +249,7 @@ def _correct(aims: Aims, goal: Goal, value: float) -> None:
 
 def _told(goal: Goal, value: float) -> str:
     units = {"degrees": "degrees", "radius": "m of radius", "length": "m", "grade": "%"}
-    what = goal.block or "the road"
+    what = goal.element or "the road"
     return f"{what} would have {value:.1f} {units[goal.quantity]} and not {goal.aim:.1f}"
 
 
@@ -260,12 +260,12 @@ def _mended(draft: Made, steps: Sequence[Step], world: World) -> Made | None:
     if check.inspect(road, None, world):
         return None
     found = measure(road.centreline())
-    sizes = [len(block.segments) for block in draft.blocks]
-    segments, at, blocks = mended.design.segments, 0, list[RoadElement]()
-    for block, size in zip(draft.blocks, sizes, strict=True):
-        blocks.append(block.with_segments(segments[at : at + size]))
+    sizes = [len(element.segments) for element in draft.elements]
+    segments, at, elements = mended.design.segments, 0, list[RoadElement]()
+    for element, size in zip(draft.elements, sizes, strict=True):
+        elements.append(element.with_segments(segments[at : at + size]))
         at += size
-    after = tuple(blocks)
+    after = tuple(elements)
     if _unlike(after, found):
         return None
     for goal in (goal for step in steps for goal in step.goals):

@@ -56,13 +56,13 @@ SEEN = 10.6  # m: the shortest straight that is seen
 
 
 def ways_to_change(
-    change: Change, blocks: Sequence[RoadElement], found: Measures, world: World
+    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[Way, ...]:
     """All ways, the preferred one first; empty where everything is as it was asked for already.
 
     Args:
         change: anything but adding, removing and mirroring.
-        blocks: those that are meant.
+        elements: those that are meant.
         found: measures of the whole road.
         world: limits.
 
@@ -70,57 +70,57 @@ def ways_to_change(
         EditError: no road can be like that.
     """
     if change.bound:
-        blocks = [block for block in blocks if is_beyond(change, block, found)]
-        if change.what == "slope" and blocks:
-            return within(change, blocks)
+        elements = [element for element in elements if is_beyond(change, element, found)]
+        if change.what == "slope" and elements:
+            return within(change, elements)
     match change.what:
         case "angle" | "radius" | "shape":
-            return _each(blocks, lambda block: _bends(change, block, world))
+            return _each(elements, lambda element: _bends(change, element, world))
         case "length":
             if change.target is not None and change.target.noun == "road":
-                return ways_to_stretch_the_road(change, blocks, found, world)
-            return _each(blocks, lambda block: _lengths(change, block, world))
+                return ways_to_stretch_the_road(change, elements, found, world)
+            return _each(elements, lambda element: _lengths(change, element, world))
         case "slope":
             if change.target is not None and change.target.noun == "road":
-                return ways_to_slope_all(change, blocks, found, world)
-            return _each(blocks, lambda block: ways_to_slope(change, block, found, world))
+                return ways_to_slope_all(change, elements, found, world)
+            return _each(elements, lambda element: ways_to_slope(change, element, found, world))
         case "side":
-            if any(block.kind != "turn" for block in blocks):
+            if any(element.kind != "turn" for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
-            wrong = [b for b in blocks if change.side is None or b.side != change.side]
+            wrong = [b for b in elements if change.side is None or b.side != change.side]
             return _flipped(wrong, world) if wrong else ()
         case _:
-            return _each(blocks, _straightened)
+            return _each(elements, _straightened)
 
 
-def ways_to_alternate(blocks: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
+def ways_to_alternate(elements: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
     """Turns to the one and to the other side by turns, as the first one begins; empty where they are so."""
-    side, wrong = blocks[0].side, list[RoadElement]()
-    for block in blocks:
-        wrong += [block] if block.side != side else []
+    side, wrong = elements[0].side, list[RoadElement]()
+    for element in elements:
+        wrong += [element] if element.side != side else []
         side = OTHER[side]
     return _flipped(wrong, world) if wrong else ()
 
 
-def _each(blocks: Sequence[RoadElement], ways: Callable[[RoadElement], Sequence[Step]]) -> tuple[Way, ...]:
-    """All blocks alike: the first way of each, the second way of each, ..."""
-    rows = [row for row in (list(ways(block)) for block in blocks) if row]
+def _each(elements: Sequence[RoadElement], ways: Callable[[RoadElement], Sequence[Step]]) -> tuple[Way, ...]:
+    """All elements alike: the first way of each, the second way of each, ..."""
+    rows = [row for row in (list(ways(element)) for element in elements) if row]
     if not rows:
         return ()
     return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
 
 
-def _bends(change: Change, block: RoadElement, world: World) -> list[Step]:
-    seen = block.seen
-    if block.kind != "turn" or seen is None:
+def _bends(change: Change, element: RoadElement, world: World) -> list[Step]:
+    seen = element.seen
+    if element.kind != "turn" or seen is None:
         raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
     least = world.min_radius * OVER_LEAST_RADIUS
     if change.what == "shape":
-        pairs = _shapes(change, block, least)
+        pairs = _shapes(change, element, least)
     elif change.what == "angle":
-        pairs = _angles(change, block)
+        pairs = _angles(change, element)
     else:
-        pairs = _radii(change, block, world)
+        pairs = _radii(change, element, world)
     is_said = change.by is not None or change.to is not None or change.times is not None
     free = change.what == "angle" and is_said
     out: list[Step] = []
@@ -135,7 +135,7 @@ def _bends(change: Change, block: RoadElement, world: World) -> list[Step]:
         slack = (1.0, 0.25 if free else 0.05, 0.1) if is_said else (3.0, 0.12, 0.1)
         if change.what == "radius" and is_said:
             slack = (4.0, 0.05, 0.1)
-        out.append(Bend(block, degrees, radius, slack=slack))
+        out.append(Bend(element, degrees, radius, slack=slack))
     if not out and pairs:
         where = f"the turn of {seen.degrees:.0f} degrees with a radius of {seen.radius:.0f} m"
         raise EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
@@ -151,8 +151,8 @@ def _aim(change: Change, now: float) -> float | None:
     return None if change.times is None else now * change.times
 
 
-def _angles(change: Change, block: RoadElement) -> list[tuple[float, float]]:
-    seen = block.seen
+def _angles(change: Change, element: RoadElement) -> list[tuple[float, float]]:
+    seen = element.seen
     assert seen is not None
     aim = _aim(change, seen.degrees)
     if aim is not None:
@@ -175,8 +175,8 @@ def _angles(change: Change, block: RoadElement) -> list[tuple[float, float]]:
     return out
 
 
-def _radii(change: Change, block: RoadElement, world: World) -> list[tuple[float, float]]:
-    seen = block.seen
+def _radii(change: Change, element: RoadElement, world: World) -> list[tuple[float, float]]:
+    seen = element.seen
     assert seen is not None
     aim = _aim(change, seen.radius)
     if aim is not None:
@@ -197,9 +197,9 @@ def _radii(change: Change, block: RoadElement, world: World) -> list[tuple[float
     return [(seen.degrees * a, seen.radius * (1 + (r - 1) * min(change.dose, 1.4))) for a, r in pairs]
 
 
-def _shapes(change: Change, block: RoadElement, least: float) -> list[tuple[float, float]]:
+def _shapes(change: Change, element: RoadElement, least: float) -> list[tuple[float, float]]:
     """Angles and radii that a hairpin, or a gentle turn, may have; empty where it is one."""
-    seen = block.seen
+    seen = element.seen
     assert seen is not None
     d, r = seen.degrees, seen.radius
     if change.kind in ("hairpin", "u_turn", "switchback"):
@@ -232,9 +232,9 @@ def _shapes(change: Change, block: RoadElement, least: float) -> list[tuple[floa
     return [(min(angle, most), wide) for most in (115.0, 70.0, 50.0, 35.0, 25.0, 20.0)]
 
 
-def _lengths(change: Change, block: RoadElement, world: World) -> list[Step]:
-    seen = block.seen
-    before = seen.length if seen else block.length
+def _lengths(change: Change, element: RoadElement, world: World) -> list[Step]:
+    seen = element.seen
+    before = seen.length if seen else element.length
     if change.to is not None:
         lengths, slack = [change.to], 1.0
     elif change.by is not None:
@@ -247,7 +247,7 @@ def _lengths(change: Change, block: RoadElement, world: World) -> list[Step]:
         if change.more > 0:
             lengths[0] = max(lengths[0], before + 15)
         slack = 2.5
-    if block.kind == "turn":
+    if element.kind == "turn":
         assert seen is not None
         tight = world.min_radius * OVER_LEAST_RADIUS
         out: list[Step] = []
@@ -255,9 +255,11 @@ def _lengths(change: Change, block: RoadElement, world: World) -> list[Step]:
             radius = seen.radius * length / before
             if radius < tight:  # then it also turns less far
                 degrees = seen.degrees * max(length / before / (tight / seen.radius), 0.3)
-                out.append(Bend(block, degrees, max(tight, min(seen.radius, radius)), slack=(4.0, 0.12, 0.1)))
+                out.append(
+                    Bend(element, degrees, max(tight, min(seen.radius, radius)), slack=(4.0, 0.12, 0.1))
+                )
             else:
-                out.append(Bend(block, seen.degrees, None, length, slack=(2.0, 0.1, 0.06)))
+                out.append(Bend(element, seen.degrees, None, length, slack=(2.0, 0.1, 0.06)))
         return out
     if change.to is None and change.by is None and change.times is None:
         lengths = [max(length, min(SEEN + 1, before)) for length in lengths]
@@ -265,31 +267,31 @@ def _lengths(change: Change, block: RoadElement, world: World) -> list[Step]:
         raise EditError(
             f"a straight of {max(lengths[0], 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
         )
-    return [Stretch(block, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
+    return [Stretch(element, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
 
 
-def _flipped(blocks: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
+def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
     """The mirror image of each; where that finds no room, turned a little less or more as well."""
-    flips = tuple(Flip(block) for block in blocks)
+    flips = tuple(Flip(element) for element in elements)
     least = world.min_radius * OVER_LEAST_RADIUS
     out: list[Way] = [flips]
     for more, wider in FLIPPED:
         bends: list[Step] = []
-        for block in blocks:
-            seen = block.seen
+        for element in elements:
+            seen = element.seen
             assert seen is not None
             degrees, radius = seen.degrees * more, seen.radius * wider
             if is_turn(degrees - 3) and degrees <= MOST_ANGLE and radius >= min(least, seen.radius):
-                bends.append(Bend(block, degrees, radius, slack=(3.0, 0.12, 0.1)))
-        if len(bends) == len(blocks):
+                bends.append(Bend(element, degrees, radius, slack=(3.0, 0.12, 0.1)))
+        if len(bends) == len(elements):
             out.append((*flips, *bends))
     return tuple(out)
 
 
-def _straightened(block: RoadElement) -> list[Step]:
+def _straightened(element: RoadElement) -> list[Step]:
     """A straight in the place of a turn: as long as the turn was, or as long as its chord."""
-    if block.kind != "turn" or block.seen is None:
+    if element.kind != "turn" or element.seen is None:
         return []
-    chord = 2 * block.seen.radius * abs(radians(min(block.seen.degrees, 180)) / 2) * 0.8
-    lengths = [block.length, chord, 25.0, 60.0]
-    return [Become(block, (straight(length, block.incline),)) for length in lengths]
+    chord = 2 * element.seen.radius * abs(radians(min(element.seen.degrees, 180)) / 2) * 0.8
+    lengths = [element.length, chord, 25.0, 60.0]
+    return [Become(element, (straight(length, element.incline),)) for length in lengths]
