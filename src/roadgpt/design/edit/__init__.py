@@ -20,7 +20,7 @@ from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.removing import ways_to_remove
 from roadgpt.design.edit.request import Change, Request, What
-from roadgpt.design.edit.steps import Bend, FlipAll, Step
+from roadgpt.design.edit.steps import Adjust, FlipAll, Step
 from roadgpt.design.edit.telling import sentences
 from roadgpt.design.edit.trying import tried
 from roadgpt.design.edit.ways import Way, ways_to_alternate, ways_to_change
@@ -103,13 +103,13 @@ def _agreed(rows: Sequence[tuple[Change, Sequence[Way]]]) -> list[Sequence[Way]]
     said: dict[What, set[str]] = {"angle": set(), "radius": set()}
     for change, ways in rows:
         if change.what in said and (change.to or change.by or change.times):
-            said[change.what] |= {step.element.name for step in ways[0] if isinstance(step, Bend)}
+            said[change.what] |= {step.element.name for step in ways[0] if isinstance(step, Adjust)}
     both = said["angle"] & said["radius"]
 
     def own(step: Step, what: What) -> Step:
-        if not isinstance(step, Bend) or step.element.name not in both or what not in said:
+        if not isinstance(step, Adjust) or step.element.name not in both or what not in said:
             return step
-        return replace(step, radius=None) if what == "angle" else replace(step, degrees=None)
+        return step.without("radius" if what == "angle" else "degrees")
 
     return [[tuple(own(step, change.what) for step in way) for way in ways] for change, ways in rows]
 

@@ -1,12 +1,11 @@
 """Another length of the whole road: its straights first, at its ends alone, or everything alike."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import Aims, Bend, Goal, Step, Stretch
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.edit.steps import Step, bend, stretch
+from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -14,23 +13,7 @@ LONGER, SHORTER = (1.3, 1.2, 1.45, 1.12), (0.75, 0.82, 0.65, 0.9)
 KEPT = 17.5  # m of a straight that others are shortened to
 OVER_LEAST_RADIUS = 1.055
 SLACK = 0.02  # of the length of a road
-
-
-@dataclass(frozen=True, slots=True)
-class WholeLength:
-    """No change, but the whole road must have a length, metres."""
-
-    length: float
-    slack: float
-
-    @property
-    def goals(self) -> tuple[Goal, ...]:
-        """Of the whole road, whose name is empty."""
-        return (Goal("", "length", self.length, self.length - self.slack, self.length + self.slack),)
-
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """The elements as they are."""
-        return elements
+WHOLE_ROAD = RoadElement("", "gap", ())  # changes nothing, and is measured
 
 
 def ways_to_stretch_the_road(
@@ -56,7 +39,9 @@ def ways_to_stretch_the_road(
     out: list[tuple[Step, ...]] = []
     for length in lengths:
         slack = max(2.0, SLACK * length)
-        out += [(*way, WholeLength(length, slack)) for way in _ways(elements, length - own, world) if way]
+        out += [
+            (*way, stretch(WHOLE_ROAD, length, slack)) for way in _ways(elements, length - own, world) if way
+        ]
     return tuple(out)
 
 
@@ -77,14 +62,14 @@ def _straights(gaps: Sequence[RoadElement], more: float) -> tuple[Step, ...]:
     lengths = [gap.seen.length if gap.seen else gap.length for gap in gaps]
     if more >= 0:
         return tuple(
-            Stretch(gap, length + more * length / sum(lengths), 3.0)
+            stretch(gap, length + more * length / sum(lengths), 3.0)
             for gap, length in zip(gaps, lengths, strict=True)
         )
     spare = [max(length - KEPT, 0.0) for length in lengths]
     if sum(spare) < -more:
         return ()
     return tuple(
-        Stretch(gap, length + more * own / sum(spare), 3.0)
+        stretch(gap, length + more * own / sum(spare), 3.0)
         for gap, length, own in zip(gaps, lengths, spare, strict=True)
         if own
     )
@@ -102,7 +87,7 @@ def _everything(elements: Sequence[RoadElement], more: float, world: World) -> t
         wider = max(share, least / turn.seen.radius) if share < 1 else share
         if abs(wider - 1) < 0.02 or (share < 1) != (wider < 1):
             continue
-        out.append(Bend(turn, None, turn.seen.radius * wider, slack=(2.0, 0.15, 0.1)))
+        out.append(bend(turn, None, turn.seen.radius * wider, slack=(2.0, 0.15, 0.1)))
         more -= turn.length * (wider - 1)
     if gaps and abs(more) > 1:
         rest = _straights(gaps, more)
@@ -110,7 +95,7 @@ def _everything(elements: Sequence[RoadElement], more: float, world: World) -> t
             spare = sum(gap.seen.length - 12.0 for gap in gaps if gap.seen and gap.seen.length > 12)
             share = max(1 + more / max(spare, 1.0), 0.0)
             rest = tuple(
-                Stretch(gap, 12.0 + (gap.seen.length - 12.0) * share, 3.0)
+                stretch(gap, 12.0 + (gap.seen.length - 12.0) * share, 3.0)
                 for gap in gaps
                 if gap.seen and gap.seen.length > 12
             )

@@ -8,7 +8,7 @@ from roadgpt.brief.model import Side
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.room import SEPARATE, gap
-from roadgpt.design.edit.steps import OTHER, Goal, Insert, Step, Stretch, turn_segments
+from roadgpt.design.edit.steps import OTHER, Goal, Insert, Step, stretch, turn_segments
 from roadgpt.design.edit.ways import Way
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
@@ -266,7 +266,7 @@ def _straight_ways(
         incline = {"up": 5.0, "down": -5.0, "flat": 0.0}[change.way]
     beside = elements[at] if before and elements[at].kind == "gap" else elements[at - 1]
     if change.is_whole and change.length is not None and beside.kind == "gap" and beside.seen is not None:
-        return ((Stretch(beside, change.length),),)
+        return ((stretch(beside, change.length),),)
     stands_alone = beside.kind == "gap" and beside.seen is None
     name = f"new {number} straight"
     out = []

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import sqrt
 
 from roadgpt.design.edit.room import HIDDEN, SEPARATE
-from roadgpt.design.edit.steps import Become, Step, Stretch, straight
+from roadgpt.design.edit.steps import Become, Step, straight, stretch
 from roadgpt.design.edit.ways import Way
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
@@ -33,7 +33,7 @@ def _without(element: RoadElement, elements: RoadElements, filler: float) -> Ste
             b.side for b in (*elements[max(at - 1, 0) : at], *elements[at + 1 : at + 2]) if b.kind == "turn"
         ]
         if len(sides) == 2 and sides[0] == sides[1]:
-            return Stretch(element, HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), 0.6)
+            return stretch(element, HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), 0.6)
         return Become(element, bends)
     length = {0.0: 0.0, 1.0: _chord(element)}.get(filler, filler)
     kept: tuple[Segment, ...] = (straight(length, element.incline),) if length else ()

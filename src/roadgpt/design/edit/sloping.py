@@ -1,47 +1,10 @@
-"""Steps that change slopes."""
+"""A step that changes many slopes."""
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from roadgpt.design.edit.steps import Aims, Goal, changed, with_incline
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.edit.steps import Aims, Goal, with_incline
+from roadgpt.design.road_elements import RoadElements
 from roadgpt.road import World
-
-
-@dataclass(frozen=True, slots=True)
-class Slope:
-    """Another grade of one turn or straight, percent as measured."""
-
-    element: RoadElement
-    grade: float
-    low: float
-    high: float
-
-    @property
-    def goals(self) -> tuple[Goal, ...]:
-        """The grade, where the element is seen."""
-        if self.element.seen is None:
-            return ()
-        return (Goal(self.element.name, "grade", self.grade, self.low, self.high),)
-
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Inclines in proportion where they all go the same way, else all alike."""
-        limit = 100 * world.max_grade - 0.2
-        aim = float(np.clip(aims.get((self.element.name, "grade"), self.grade), -limit, limit))
-
-        def sloped(element: RoadElement) -> RoadElement:
-            inclines = np.array([s.incline for s in element.segments])
-            mean = element.incline
-            if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
-                wanted = np.clip(inclines * aim / mean, -limit, limit)
-            else:
-                wanted = np.full(len(inclines), aim)
-            return element.with_segments(
-                with_incline(s, g) for s, g in zip(element.segments, wanted, strict=True)
-            )
-
-        return changed(elements, self.element.name, sloped)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,10 @@ from dataclasses import dataclass, replace
 from math import ceil, floor, radians
 from typing import Literal, Protocol
 
+import numpy as np
+
 from roadgpt.brief.model import Side
+from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.design.elements import cut, turn_element
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.road import Segment, World
@@ -26,9 +29,10 @@ OTHER: dict[Side | None, Side] = {"left": "right", "right": "left"}
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What must be measured of a element afterwards: the value to aim at, and what is good enough."""
+    """What must be measured of an element afterwards: the value to aim at, and what is good enough."""
 
     element: str
+    """Its name; empty for the whole road."""
     quantity: Quantity
     aim: float
     low: float
@@ -54,46 +58,106 @@ def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], R
 
 
 @dataclass(frozen=True, slots=True)
-class Bend:
-    """Another angle, radius or length of a turn; what is None stays as it is."""
+class Adjust:
+    """Gives one element other measures; those that are not wanted stay as they are."""
 
     element: RoadElement
-    degrees: float | None = None
-    radius: float | None = None
-    length: float | None = None
-    slack: tuple[float, float, float] = (1.0, 0.05, 0.05)
-    """Degrees; shares of radius and length."""
+    wanted: tuple[Goal, ...]
 
     @property
     def goals(self) -> tuple[Goal, ...]:
-        """The values that were given."""
-        off, wide, long = self.slack
-        out = []
-        if self.degrees is not None:
-            out.append(
-                Goal(self.element.name, "degrees", self.degrees, self.degrees - off, self.degrees + off)
-            )
-        if self.radius is not None:
-            low, high = self.radius * (1 - wide), self.radius * (1 + wide)
-            out.append(Goal(self.element.name, "radius", self.radius, low, high))
-        if self.length is not None:
-            low, high = self.length * (1 - long), self.length * (1 + long)
-            out.append(Goal(self.element.name, "length", self.length, low, high))
-        return tuple(out)
+        """The wanted measures that can be seen on the finished road."""
+        return tuple(goal for goal in self.wanted if self._is_seen(goal))
+
+    def _is_seen(self, goal: Goal) -> bool:
+        if goal.quantity == "grade":
+            return self.element.seen is not None
+        is_hidden = self.element.seen is None and bool(self.element.segments)
+        return self.element.is_turn or (goal.aim >= LEAST_STRAIGHT and not is_hidden)
+
+    def without(self, quantity: Quantity) -> "Adjust":
+        """Returns the same with this quantity left as it is."""
+        return replace(self, wanted=tuple(goal for goal in self.wanted if goal.quantity != quantity))
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Angles, lengths and radii scaled alike; more segments where one would turn too far."""
-        seen, name = self.element.seen, self.element.name
-        assert seen is not None
-        turn = abs(sum(s.turn_degrees for s in self.element.segments))
-        more = 1.0 if self.degrees is None else (turn + aims[name, "degrees"] - seen.degrees) / turn
-        wider = 1.0 if self.radius is None else aims[name, "radius"] / seen.radius
-        if self.length is not None:
-            wider *= aims[name, "length"] / seen.length
-        least = max((abs(s.turn_degrees) for s in self.element.segments), default=0.0)
-        if least * more > MAX_TURN >= least:
-            return changed(elements, name, lambda b: rewritten(b, turn * more, seen.radius * wider))
-        return changed(elements, name, lambda b: b.with_segments(scaled(s, more, wider) for s in b.segments))
+        """Returns the elements, of which this one is bent, stretched or sloped."""
+        name = self.element.name
+        values = {goal.quantity: aims.get((name, goal.quantity), goal.aim) for goal in self.wanted}
+        grade = values.pop("grade", None)
+        if grade is not None:
+            elements = changed(elements, name, lambda e: _sloped(e, grade, world))
+        if values and self.element.is_turn:
+            return changed(elements, name, lambda e: _bent(e, self.element, values))
+        if values:
+            seen = self.element.seen
+            more = values["length"] - (seen.length if seen else self.element.length)
+            return changed(elements, name, lambda e: stretched(e, more))
+        return elements
+
+
+def bend(
+    element: RoadElement,
+    degrees: float | None = None,
+    radius: float | None = None,
+    length: float | None = None,
+    slack: tuple[float, float, float] = (1.0, 0.05, 0.05),
+) -> Adjust:
+    """Returns the step to another angle, radius or length of a turn; what is None stays as it is.
+
+    Args:
+        element: the turn.
+        degrees: as measured.
+        radius: metres, as measured.
+        length: metres, as measured.
+        slack: degrees, share of the radius and share of the length by which it may miss.
+    """
+    off, wide, long = slack
+    wanted = []
+    if degrees is not None:
+        wanted.append(Goal(element.name, "degrees", degrees, degrees - off, degrees + off))
+    if radius is not None:
+        wanted.append(Goal(element.name, "radius", radius, radius * (1 - wide), radius * (1 + wide)))
+    if length is not None:
+        wanted.append(Goal(element.name, "length", length, length * (1 - long), length * (1 + long)))
+    return Adjust(element, tuple(wanted))
+
+
+def stretch(element: RoadElement, length: float, slack: float = 1.0) -> Adjust:
+    """Returns the step to another length of a straight, metres as measured."""
+    return Adjust(element, (Goal(element.name, "length", length, length - slack, length + slack),))
+
+
+def slope(element: RoadElement, grade: float, low: float, high: float) -> Adjust:
+    """Returns the step to another grade of one turn or straight, percent as measured."""
+    return Adjust(element, (Goal(element.name, "grade", grade, low, high),))
+
+
+def _bent(element: RoadElement, before: RoadElement, values: Mapping[Quantity, float]) -> RoadElement:
+    """Angles, lengths and radii scaled alike; more segments where one would turn too far."""
+    seen = before.seen
+    assert seen is not None
+    turn = abs(before.degrees)
+    more = (turn + values["degrees"] - seen.degrees) / turn if "degrees" in values else 1.0
+    wider = values["radius"] / seen.radius if "radius" in values else 1.0
+    if "length" in values:
+        wider *= values["length"] / seen.length
+    least = max((abs(s.turn_degrees) for s in before.segments), default=0.0)
+    if least * more > MAX_TURN >= least:
+        return rewritten(element, turn * more, seen.radius * wider)
+    return element.with_segments(scaled(s, more, wider) for s in element.segments)
+
+
+def _sloped(element: RoadElement, grade: float, world: World) -> RoadElement:
+    """Inclines in proportion where they all go the same way, else all alike."""
+    limit = 100 * world.max_grade - 0.2
+    aim = float(np.clip(grade, -limit, limit))
+    inclines = np.array([s.incline for s in element.segments])
+    mean = element.incline
+    if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
+        wanted = np.clip(inclines * aim / mean, -limit, limit)
+    else:
+        wanted = np.full(len(inclines), aim)
+    return element.with_segments(with_incline(s, g) for s, g in zip(element.segments, wanted, strict=True))
 
 
 def scaled(segment: Segment, more: float, wider: float) -> Segment:
@@ -138,33 +202,6 @@ def turn_segments(
     """A turn as the planner writes it."""
     turn = turn_element(degrees, hand, radius, ramp)
     return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
-
-
-@dataclass(frozen=True, slots=True)
-class Stretch:
-    """Another length of a straight, metres as measured."""
-
-    element: RoadElement
-    length: float
-    slack: float = 1.0
-
-    @property
-    def goals(self) -> tuple[Goal, ...]:
-        """The length; a straight that was not to be seen is not measured."""
-        if self.length < 10.0 or (self.element.seen is None and self.element.segments):
-            return ()
-        return (
-            Goal(
-                self.element.name, "length", self.length, self.length - self.slack, self.length + self.slack
-            ),
-        )
-
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """The longest segment longer, or all straight ones shorter."""
-        seen = self.element.seen
-        before = seen.length if seen else self.element.length
-        more = aims.get((self.element.name, "length"), self.length) - before
-        return changed(elements, self.element.name, lambda b: stretched(b, more))
 
 
 def stretched(element: RoadElement, more: float) -> RoadElement:

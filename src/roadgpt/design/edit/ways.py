@@ -13,7 +13,7 @@ from roadgpt.design.edit.bounding import is_beyond, within
 from roadgpt.design.edit.grading import ways_to_slope, ways_to_slope_all
 from roadgpt.design.edit.growing import ways_to_stretch_the_road
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import OTHER, Become, Bend, Flip, Step, Stretch, straight
+from roadgpt.design.edit.steps import OTHER, Become, Flip, Step, bend, straight, stretch
 from roadgpt.design.road_elements import RoadElement, is_turn
 from roadgpt.errors import EditError
 from roadgpt.road import World
@@ -135,7 +135,7 @@ def _bends(change: Change, element: RoadElement, world: World) -> list[Step]:
         slack = (1.0, 0.25 if free else 0.05, 0.1) if is_said else (3.0, 0.12, 0.1)
         if change.what == "radius" and is_said:
             slack = (4.0, 0.05, 0.1)
-        out.append(Bend(element, degrees, radius, slack=slack))
+        out.append(bend(element, degrees, radius, slack=slack))
     if not out and pairs:
         where = f"the turn of {seen.degrees:.0f} degrees with a radius of {seen.radius:.0f} m"
         raise EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
@@ -256,10 +256,10 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[Step]:
             if radius < tight:  # then it also turns less far
                 degrees = seen.degrees * max(length / before / (tight / seen.radius), 0.3)
                 out.append(
-                    Bend(element, degrees, max(tight, min(seen.radius, radius)), slack=(4.0, 0.12, 0.1))
+                    bend(element, degrees, max(tight, min(seen.radius, radius)), slack=(4.0, 0.12, 0.1))
                 )
             else:
-                out.append(Bend(element, seen.degrees, None, length, slack=(2.0, 0.1, 0.06)))
+                out.append(bend(element, seen.degrees, None, length, slack=(2.0, 0.1, 0.06)))
         return out
     if change.to is None and change.by is None and change.times is None:
         lengths = [max(length, min(SEEN + 1, before)) for length in lengths]
@@ -267,7 +267,7 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[Step]:
         raise EditError(
             f"a straight of {max(lengths[0], 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
         )
-    return [Stretch(element, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
+    return [stretch(element, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
 
 
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
@@ -282,7 +282,7 @@ def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
             assert seen is not None
             degrees, radius = seen.degrees * more, seen.radius * wider
             if is_turn(degrees - 3) and degrees <= MOST_ANGLE and radius >= min(least, seen.radius):
-                bends.append(Bend(element, degrees, radius, slack=(3.0, 0.12, 0.1)))
+                bends.append(bend(element, degrees, radius, slack=(3.0, 0.12, 0.1)))
         if len(bends) == len(elements):
             out.append((*flips, *bends))
     return tuple(out)
