@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 Side = Literal["left", "right"]
+OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
 Sharpness = Literal["gentle", "sweeping", "sharp"]
 Size = Literal["long", "short"]
 Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"]

@@ -10,14 +10,13 @@ from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import KINDS, SHARPNESS, Range, overlap
 from roadgpt.check.measures import LEAST_TURN
-from roadgpt.design.elements import MOST_TRANSITION, segments_of_turn, turn_element
+from roadgpt.design.elements import MOST_TRANSITION, least_radius, segments_of_turn, turn_element
 from roadgpt.errors import DesignError
 from roadgpt.road import World
 
 ANY_TURN = Range(25, 120)  # degrees, where nothing is said: the table in brief.words
 AIMS = {meaning.said[0]: meaning.aim for meaning in KINDS.values() if meaning.aim}
 SHARPNESS_AIMS = {meaning.degrees: meaning.aim for meaning in SHARPNESS.values() if meaning.aim}
-OVER_LEAST_RADIUS = 1.055  # of the world's least: a spline through control points 2 m apart loses 3 %
 WIDEST = 115.0  # m, of a radius that nobody asked for
 LONGEST_TURN = 170.0  # m along the curve
 SEEN_ARC = 6.5  # m: a shorter arc is not measured with its own radius, which is averaged over some 9 m
@@ -55,7 +54,7 @@ def turn_rooms(turns: Sequence[Feature], outline: Outline, world: World) -> list
 
 
 def _turn_room(turn: Feature, outline: Outline, world: World) -> TurnRoom:
-    least = max(world.min_radius * OVER_LEAST_RADIUS, 0.8 * world.road_width)
+    least = max(least_radius(world), 0.8 * world.road_width)
     promised = overlap(turn.radius, outline.each_turn.radius)
     radius = overlap(_inside(promised, 0.04), Range(least, inf)) if promised else Range(least, inf)
     assert radius is not None

@@ -13,7 +13,7 @@ from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.elements import TENTH
 from roadgpt.design.order import is_hairpin
 from roadgpt.design.ramps import eased
-from roadgpt.design.softening import held, one_way, softened_values, steep_kept
+from roadgpt.design.softening import climbing, held, one_way, softened_values, steep_kept
 from roadgpt.design.vertical import COMFORT, Pace
 from roadgpt.errors import DesignError
 from roadgpt.road import World
@@ -35,7 +35,6 @@ HILL = 34.0  # m: the shortest climb or fall of a hilly road
 HILL_GRADES = (4.0, 8.5)  # percent
 CREST = (2.5, 4.5)  # percent up to a bend of a hard road, and down in it
 STEADY_SHARE = (0.75, 1.25)  # of one grade, that of the places of a road with hairpins
-BISECTIONS = 40
 
 
 class Windows:
@@ -331,13 +330,7 @@ def _with_climb(
     low = climb.lo if climb.lo > -inf else climb.hi - max(0.3 * abs(climb.hi), 2.0)
     high = climb.hi if climb.hi < inf else climb.lo + max(0.3 * abs(climb.lo), 2.0)
     target = low + (0.3 + 0.4 * rng.random()) * (high - low)
-    least, most = np.array([r.lo for r in limits]), np.array([r.hi for r in limits])
-    down, up = -40.0, 40.0
-    for _ in range(BISECTIONS):
-        middle = (down + up) / 2
-        climbed = float(np.clip(known + middle, least, most) @ lengths) / 100
-        down, up = (middle, up) if climbed < target else (down, middle)
-    return np.asarray(np.clip(known + down, least, most))
+    return climbing(known, lengths, limits, target)
 
 
 def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:

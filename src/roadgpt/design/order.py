@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.model import Side
+from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range, overlap
 from roadgpt.errors import DesignError
@@ -21,7 +21,6 @@ WIDE = 100.0  # degrees: turns of so many or more would coil up, so they mostly 
 SWITCH_WIDE = 0.9
 SMALL, LARGE = 27.0, 105.0  # degrees of usual turns, by which a number of them turns as far as was asked for
 ROUNDS = 60  # of drawing sides until left and right are as many as asked for
-OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
 
 class Turn(NamedTuple):
@@ -194,7 +193,7 @@ def _drawn_sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generat
     sides: list[Side] = []
     for turn in turns:
         if sides and (turn.switches or outline.alternating):
-            side = OTHER[sides[-1]]
+            side = OTHER_SIDE[sides[-1]]
             if turn.side not in (None, side) and not turn.switches:
                 return None
         else:
@@ -215,4 +214,4 @@ def _free_side(
     if not sides:
         return "left" if rng.random() < 0.5 else "right"
     wide = turn.feature.degrees is not None and turn.feature.degrees.lo >= WIDE
-    return OTHER[sides[-1]] if rng.random() < (SWITCH_WIDE if wide else SWITCH) else sides[-1]
+    return OTHER_SIDE[sides[-1]] if rng.random() < (SWITCH_WIDE if wide else SWITCH) else sides[-1]

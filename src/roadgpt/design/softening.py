@@ -11,6 +11,8 @@ from roadgpt.brief.words import Range, overlap
 from roadgpt.design.vertical import Pace, softened
 
 SEEN = 1.8  # percent: the least slope of a climb or fall that is to be seen as one
+MOST_SHIFT = 40.0  # percentage points
+BISECTIONS = 50
 HELD = 0.5  # percentage points that a grade that was asked for over some metres may be softened by
 
 
@@ -57,3 +59,14 @@ def softened_values(
         values[known].tolist(), own.tolist(), radii, [r.lo for r in rooms], [r.hi for r in rooms]
     )
     return out
+
+
+def climbing(grades: np.ndarray, lengths: np.ndarray, limits: Sequence[Range], metres: float) -> np.ndarray:
+    """Returns grades shifted alike, each as far as its limits allow, until they climb so many metres."""
+    least, most = np.array([r.lo for r in limits]), np.array([r.hi for r in limits])
+    down, up = -MOST_SHIFT, MOST_SHIFT
+    for _ in range(BISECTIONS):
+        middle = (down + up) / 2
+        climbed = float(np.clip(grades + middle, least, most) @ lengths) / 100
+        down, up = (middle, up) if climbed < metres else (down, middle)
+    return np.asarray(np.clip(grades + down, least, most))

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.steps import Step, bend, stretch
+from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
 LONGER, SHORTER = (1.3, 1.2, 1.45, 1.12), (0.75, 0.82, 0.65, 0.9)
 KEPT = 17.5  # m of a straight that others are shortened to
-OVER_LEAST_RADIUS = 1.055
 SLACK = 0.02  # of the length of a road
 WHOLE_ROAD = RoadElement("", "gap", ())  # changes nothing, and is measured
 
@@ -80,7 +80,7 @@ def _everything(elements: Sequence[RoadElement], more: float, world: World) -> t
     turns = [element for element in elements if element.kind == "turn" and element.seen is not None]
     gaps = [element for element in elements if element.kind == "gap" and element.seen is not None]
     share = 1 + more / max(sum(element.length for element in elements), 1.0)
-    least = world.min_radius * OVER_LEAST_RADIUS
+    least = least_radius(world)
     out: list[Step] = []
     for turn in turns:
         assert turn.seen is not None

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import radians
 
-from roadgpt.brief.model import Side
+from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.room import SEPARATE, gap
-from roadgpt.design.edit.steps import OTHER, Goal, Insert, Step, stretch, turn_segments
+from roadgpt.design.edit.steps import Goal, Insert, Step, stretch, turn_segments
 from roadgpt.design.edit.ways import Way
+from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
@@ -17,7 +18,6 @@ from roadgpt.road import World
 JOINT = 8.0  # m between turns of either hand
 LEAD = 17.0  # m before the first turn and behind the last
 NEW_STRAIGHT = 40.0  # m of one whose length was not said
-OVER_LEAST_RADIUS = 1.055
 SPARE = ((0.0, 0.0), (20.0, 0.0), (0.0, 20.0), (25.0, 25.0), (45.0, 0.0), (0.0, 45.0))
 """Metres of straight road before and behind a new turn, besides what it needs: where it would meet others."""
 RAMP_SHARE = 0.22  # of the arc
@@ -132,7 +132,7 @@ def _measures(change: Change, world: World) -> list[tuple[float, float]]:
         pairs = KINDS[change.kind]
     elif change.sharpness in SHARPNESS:
         pairs = SHARPNESS[change.sharpness]
-    least = world.min_radius * OVER_LEAST_RADIUS
+    least = least_radius(world)
     if change.radius is not None and change.radius < world.min_radius:
         raise EditError(
             f"a radius of {change.radius:g} m is tighter than the {world.min_radius:.1f} m that the rules "
@@ -157,7 +157,7 @@ def _sides(change: Change, elements: RoadElements, before: str) -> list[list[Sid
     for side in firsts:
         row: list[Side] = [side]
         while len(row) < count:
-            row.append(OTHER[row[-1]] if alternates else side)
+            row.append(OTHER_SIDE[row[-1]] if alternates else side)
         out.append(row)
     return out
 
@@ -166,7 +166,7 @@ def _away(elements: RoadElements, before: str) -> list[Side]:
     names = [element.name for element in elements]
     at = names.index(before) if before else len(elements)
     last = next((b.side for b in reversed(elements[:at]) if b.kind == "turn"), None) or "right"
-    return [OTHER[last], "left" if last == "left" else "right"]
+    return [OTHER_SIDE[last], "left" if last == "left" else "right"]
 
 
 def _turns(

@@ -12,7 +12,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from roadgpt.brief.model import Side
+from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.words import LEAST_STRAIGHT
 from roadgpt.design.elements import cut, turn_element
 from roadgpt.design.road_elements import RoadElement, RoadElements
@@ -24,7 +24,6 @@ Aims = Mapping[tuple[str, Quantity], float]
 MILLIMETRE, CENTIMETRE, TENTH = 1000.0, 100.0, 10.0
 LEAST = 1.0  # m that a straight segment keeps
 RAMP_SHARE = 0.3  # of the arc, of a turn that is written anew without a transition of its own
-OTHER: dict[Side | None, Side] = {"left": "right", "right": "left"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,14 +247,16 @@ class Flip:
 def flipped(element: RoadElement) -> RoadElement:
     """The mirror image of a element."""
     return replace(
-        element, side=OTHER.get(element.side), segments=tuple(_mirrored(s) for s in element.segments)
+        element,
+        side=element.side and OTHER_SIDE[element.side],
+        segments=tuple(_mirrored(s) for s in element.segments),
     )
 
 
 def _mirrored(segment: Segment) -> Segment:
-    if not segment.turn_degrees:
+    if not segment.turn_degrees or segment.direction == "straight":
         return segment
-    side = OTHER[segment.direction if segment.direction != "straight" else None]
+    side = OTHER_SIDE[segment.direction]
     return segment.model_copy(update={"direction": side, "turn_degrees": -segment.turn_degrees})
 
 

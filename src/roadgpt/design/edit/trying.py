@@ -15,7 +15,7 @@ from roadgpt.design.edit.room import with_room
 from roadgpt.design.edit.steps import FlipAll, Goal, Quantity, Step
 from roadgpt.design.edit.ways import Way
 from roadgpt.design.repair import repair
-from roadgpt.design.road_elements import RoadElement, RoadElements, joined
+from roadgpt.design.road_elements import RoadElement, RoadElements, joined, shows_turns
 from roadgpt.design.vertical import EASES, Pace, changed_joints, widened
 from roadgpt.design.vertical import joined as joined_slopes
 from roadgpt.errors import UsageError
@@ -144,7 +144,8 @@ def _one(
             _correct(aims, goal, value)
     else:
         return Tried(None, objection)
-    placed = repair(new, None, world, "place").design if geometry == "arcs" else _placed(new, world)
+    # a design that becomes a spline is placed as if it were built of arcs, which lie close by
+    placed = repair(new, None, world, "place").design
     road = build(placed, geometry)
     findings = check.inspect(road, None, world)
     draft = Made(placed, after, found)
@@ -161,11 +162,6 @@ def _rounded_off(new: Design, before: Design, world: World, ease: float, beside:
     pace = Pace.of(new, world)
     segments = joined_slopes(new.segments, pace, ease, opened) if opened else new.segments
     return new.model_copy(update={"segments": widened(segments, pace) if beside else segments})
-
-
-def _placed(design: Design, world: World) -> Design:
-    """A spline's design is placed as if it were built of arcs, which lie close by."""
-    return repair(design, None, world, "place").design
 
 
 def _started(
@@ -199,12 +195,11 @@ def _started(
 
 def _unlike(elements: RoadElements, found: Measures) -> str:
     """Where the finished road does not show the turns that it should: what is wrong."""
-    wanted = [element.side for element in elements if element.kind == "turn"]
-    shown = [turn.side for turn in found.turns]
-    if wanted == shown:
+    if shows_turns(found, elements):
         return ""
-    if len(wanted) != len(shown):
-        return f"{len(shown)} turns would be seen and not {len(wanted)}, as some run into each other"
+    wanted, shown = sum(element.is_turn for element in elements), len(found.turns)
+    if wanted != shown:
+        return f"{shown} turns would be seen and not {wanted}, as some run into each other"
     return "a turn would be seen to the wrong side"
 
 

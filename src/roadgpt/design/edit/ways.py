@@ -7,13 +7,15 @@ the radius of a turn whose angle was.
 from collections.abc import Callable, Sequence
 from math import radians
 
+from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.bounding import is_beyond, within
 from roadgpt.design.edit.grading import ways_to_slope, ways_to_slope_all
 from roadgpt.design.edit.growing import ways_to_stretch_the_road
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import OTHER, Become, Flip, Step, bend, straight, stretch
+from roadgpt.design.edit.steps import Become, Flip, Step, bend, straight, stretch
+from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, is_turn
 from roadgpt.errors import EditError
 from roadgpt.road import World
@@ -48,7 +50,6 @@ FLIPPED = (
 RADII = (1.0, 0.85, 1.2, 0.7, 1.4, 0.55, 1.7)  # where the angle was said, and the radius was not
 LONGER, SHORTER = (1.4, 1.25, 1.6, 1.2, 1.9), (0.65, 0.75, 0.55, 0.8, 0.88)
 LEAST_STEP = 10.0  # degrees that 'sharper' adds at least
-OVER_LEAST_RADIUS = 1.055  # of the world's least: see design.draw
 WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
 LEAST_ANGLE = 13.0  # degrees: a turn that is gentler yet would not be seen
 MOST_ANGLE = 210.0
@@ -98,7 +99,7 @@ def ways_to_alternate(elements: Sequence[RoadElement], world: World) -> tuple[Wa
     side, wrong = elements[0].side, list[RoadElement]()
     for element in elements:
         wrong += [element] if element.side != side else []
-        side = OTHER[side]
+        side = side and OTHER_SIDE[side]
     return _flipped(wrong, world) if wrong else ()
 
 
@@ -114,7 +115,7 @@ def _bends(change: Change, element: RoadElement, world: World) -> list[Step]:
     seen = element.seen
     if element.kind != "turn" or seen is None:
         raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
-    least = world.min_radius * OVER_LEAST_RADIUS
+    least = least_radius(world)
     if change.what == "shape":
         pairs = _shapes(change, element, least)
     elif change.what == "angle":
@@ -183,7 +184,7 @@ def _radii(change: Change, element: RoadElement, world: World) -> list[tuple[flo
         if aim < world.min_radius:
             raise EditError(
                 f"a radius of {aim:.1f} m is tighter than the {world.min_radius:.1f} m that the rules allow; "
-                f"ask for {world.min_radius * OVER_LEAST_RADIUS:.0f} m or more"
+                f"ask for {least_radius(world):.0f} m or more"
             )
         if aim > WIDEST:
             raise EditError(
@@ -191,7 +192,7 @@ def _radii(change: Change, element: RoadElement, world: World) -> list[tuple[flo
             )
         return [(seen.degrees * share, aim) for share in (1.0, 0.96, 1.04)]
     pairs = TIGHTER if change.more < 0 else WIDER
-    least = world.min_radius * OVER_LEAST_RADIUS
+    least = least_radius(world)
     if change.more < 0 and seen.radius * 0.93 < least:  # as tight as may be: then it turns further
         return [(seen.degrees * more, seen.radius) for more in (1.25, 1.15, 1.1)]
     return [(seen.degrees * a, seen.radius * (1 + (r - 1) * min(change.dose, 1.4))) for a, r in pairs]
@@ -249,7 +250,7 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[Step]:
         slack = 2.5
     if element.kind == "turn":
         assert seen is not None
-        tight = world.min_radius * OVER_LEAST_RADIUS
+        tight = least_radius(world)
         out: list[Step] = []
         for length in lengths:
             radius = seen.radius * length / before
@@ -273,7 +274,7 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[Step]:
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
     """The mirror image of each; where that finds no room, turned a little less or more as well."""
     flips = tuple(Flip(element) for element in elements)
-    least = world.min_radius * OVER_LEAST_RADIUS
+    least = least_radius(world)
     out: list[Way] = [flips]
     for more, wider in FLIPPED:
         bends: list[Step] = []

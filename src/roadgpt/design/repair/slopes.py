@@ -15,6 +15,7 @@ from roadgpt.brief.words import Range, overlap
 from roadgpt.check.measures import LEVEL, measure, way
 from roadgpt.design.heights import Windows
 from roadgpt.design.road_elements import RoadElement
+from roadgpt.design.softening import climbing
 from roadgpt.design.vertical import SEEN, Pace, made_to_fit, runs_of, too_abrupt, widened
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
@@ -127,17 +128,10 @@ def _class_of(incline: float) -> Range:
 def _climbing(grades: Array, segments: Sequence[Segment], loose: Sequence[Range], climb: Range) -> Array:
     """All grades shifted alike, each as far as it may, until the road climbs what was asked."""
     lengths = np.array([s.distance for s in segments])
-    low, high = np.array([r.lo for r in loose]), np.array([r.hi for r in loose])
     margin = min(0.3, 0.2 * (climb.hi - climb.lo))
-    target = float(np.clip(grades @ lengths / 100, climb.lo + margin, climb.hi - margin))
-    down, up = -40.0, 40.0
-    if abs(target - grades @ lengths / 100) < 1e-9:
-        return grades
-    for _ in range(50):
-        middle = (down + up) / 2
-        climbed = float(np.clip(grades + middle, low, high) @ lengths) / 100
-        down, up = (middle, up) if climbed < target else (down, middle)
-    return np.asarray(np.clip(grades + up, low, high))
+    now = grades @ lengths / 100
+    target = float(np.clip(now, climb.lo + margin, climb.hi - margin))
+    return grades if abs(target - now) < 1e-9 else climbing(grades, lengths, loose, target)
 
 
 def _missing(points: Array, elements: Sequence[RoadElement], windows: Sequence[Range]) -> Array:

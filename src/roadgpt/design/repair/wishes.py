@@ -4,9 +4,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations, islice, pairwise
 
+from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.words import Range
-from roadgpt.design.order import OTHER, both
+from roadgpt.design.order import both
 from roadgpt.design.road_elements import RoadElement, RoadElements
 
 MOST_WAYS = 2000  # of letting straights answer wishes that are looked at
@@ -61,7 +62,7 @@ def _in_order(
     for many in range(group.lo, min(room, room if group.hi is None else group.hi) + 1):
         own = [group.feature] * many
         if group.alternating and group.feature.side:
-            sides = [group.feature.side, OTHER[group.feature.side]]
+            sides = [group.feature.side, OTHER_SIDE[group.feature.side]]
             own = [_sided(group.feature, sides[i % 2]) for i in range(many)]
         yield from _in_order(rest, count, turns + own, gaps + [[] for _ in range(many)])
 
