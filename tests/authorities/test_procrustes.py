@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import orthogonal_procrustes
 
-from roadgpt.design.variety import POINTS, STEP, Shape, apart, apart_by_metres, shape_of
+from roadgpt.design.variety import POINTS, STEP, PlanShape, apart, apart_by_metres, shape_of
 
 
 def random_line(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -32,7 +32,7 @@ def at(line: tuple[np.ndarray, np.ndarray], stations: np.ndarray) -> np.ndarray:
 def test_distances_agree(seed: int) -> None:
     rng = np.random.default_rng(seed)
     own, *others = (random_line(rng) for _ in range(5))
-    shapes = Shape(*(np.array(column) for column in zip(*(shape_of(*o) for o in others), strict=True)))
+    shapes = PlanShape(*(np.array(column) for column in zip(*(shape_of(*o) for o in others), strict=True)))
     by_share, by_metres = apart(shape_of(*own), shapes), apart_by_metres(shape_of(*own), shapes)
     for i, other in enumerate(others):
         pair = [at(line, np.linspace(0, line[0][-1], POINTS)) for line in (own, other)]

@@ -24,7 +24,7 @@ from roadgpt.campaign.archive import SAMPLES, Archive
 from roadgpt.campaign.behaviour import bounds_of, cell_of
 from roadgpt.campaign.boundary_pairs import distance, paired
 from roadgpt.campaign.variation import Candidate
-from roadgpt.design.variety import Shape, apart, shape_of
+from roadgpt.design.variety import PlanShape, apart, shape_of
 from roadgpt.road import Design, Segment
 
 AXES = ("MAX_CURV", "STD_SA")
@@ -129,7 +129,7 @@ def test_what_has_no_place_is_left_out() -> None:
 DESIGN = Design(starting_point=(0, 0, 0), theta=0, segments=(Segment(distance=50, direction="straight"),))
 
 
-def line(bend: float) -> Shape:
+def line(bend: float) -> PlanShape:
     """A road of 100 m with that curvature."""
     s = np.linspace(0.0, 100.0, 101)
     return shape_of(s, np.concatenate([[0j], np.cumsum(np.exp(1j * bend * s[:-1]))]))

@@ -12,7 +12,7 @@ from roadgpt.campaign.behaviour import BOUNDS, behaviour_of, bounds_of, cell_of,
 from roadgpt.campaign.mutation import mirrored
 from roadgpt.design import draft
 from roadgpt.design.elements import elements_of
-from roadgpt.design.layout import Place
+from roadgpt.design.layout import MapPose
 from roadgpt.design.writing import design_of
 from roadgpt.road import Design, Segment, World, build
 
@@ -70,7 +70,7 @@ def test_a_straight_road_goes_one_way() -> None:
 @pytest.mark.parametrize("seed", range(6))
 def test_a_mirror_swaps_left_and_right_and_nothing_else(seed: int) -> None:
     elements = elements_of(draft(read("a winding road", reader="grammar"), WORLD, seed=seed).segments)
-    place = Place(120.0, 120.0, 30.0)
+    place = MapPose(120.0, 120.0, 30.0)
     one = behaviour_of(build(design_of(elements, place, WORLD)), None)
     rng = np.random.default_rng(0)
     other = behaviour_of(build(design_of(mirrored(elements, rng, WORLD), place, WORLD)), None)

@@ -23,7 +23,7 @@ from roadgpt.campaign.variation import (
 )
 from roadgpt.check import sbft_verdict
 from roadgpt.design.elements import as_written, elements_of
-from roadgpt.design.layout import Place
+from roadgpt.design.layout import MapPose
 from roadgpt.design.writing import design_of, segments_of
 from roadgpt.road import Design, Road, Segment, World, build
 
@@ -141,13 +141,13 @@ def test_a_road_is_seen_again_as_it_was_seen_first() -> None:
 def test_elements_give_the_road_back(number: int, words: str) -> None:
     design = drafts(words)[number % len(drafts(words))].design
     x, y, _ = design.starting_point
-    again = design_of(elements_of(design.segments), Place(x, y, design.theta), WORLD)
+    again = design_of(elements_of(design.segments), MapPose(x, y, design.theta), WORLD)
     one, other = build(design), build(again)
     assert other.length == pytest.approx(one.length, abs=0.05)
     share = np.linspace(0, 1, 50)
     apart = np.hypot(*(one.at(share * one.length) - other.at(share * other.length))[:, :2].T)
     assert apart.max() < 0.05
-    third = design_of(elements_of(again.segments), Place(x, y, design.theta), WORLD)
+    third = design_of(elements_of(again.segments), MapPose(x, y, design.theta), WORLD)
     assert elements_of(again.segments) == elements_of(third.segments)
 
 
@@ -167,7 +167,7 @@ def test_designs_of_other_hands_have_elements_too() -> None:
     assert sum(as_written(element).length for element in elements) == pytest.approx(130, abs=0.5)
     assert elements[1].incline == 3
     assert elements[3].radius == 25
-    one, other = build(plain), build(design_of(elements, Place(50, 50, 0), WORLD))
+    one, other = build(plain), build(design_of(elements, MapPose(50, 50, 0), WORLD))
     assert np.hypot(*(one.at(130.0) - other.at(other.length))[:2]) < 1.5
 
 

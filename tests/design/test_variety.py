@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from roadgpt.brief.model import Brief, exactly
 from roadgpt.design import variety
 from roadgpt.design.designers.planner import Planner
-from roadgpt.design.variety import ENOUGH, Shape, Shapes, apart, apart_by_metres, nearest, shape_of
+from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, apart, apart_by_metres, nearest, shape_of
 from roadgpt.road import Design, World, build, read_design
 
 
@@ -23,8 +23,8 @@ def lines(seed: int, count: int) -> list[tuple[np.ndarray, np.ndarray]]:
     return out
 
 
-def stacked(shapes: list[Shape]) -> Shape:
-    return Shape(*(np.array(column) for column in zip(*shapes, strict=True)))
+def stacked(shapes: list[PlanShape]) -> PlanShape:
+    return PlanShape(*(np.array(column) for column in zip(*shapes, strict=True)))
 
 
 def moved(z: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -60,8 +60,8 @@ def test_a_campaign_never_repeats_itself() -> None:
         earlier.append(planner.draft(Brief(), World(), (), earlier, seed))
     shapes = Shapes().of(earlier)
     for i in range(1, len(earlier)):
-        own = Shape(*(column[i] for column in shapes))
-        before = Shape(*(column[:i] for column in shapes))
+        own = PlanShape(*(column[i] for column in shapes))
+        before = PlanShape(*(column[:i] for column in shapes))
         by_share, by_metres = apart(own, before), apart_by_metres(own, before)
         assert by_share.min() > 5
         assert by_metres.min() > 5
@@ -105,7 +105,7 @@ def test_the_nearest_is_found_among_few_of_many(seed: int, by_metres: bool) -> N
     s, z = many[0]
     shapes = stacked([shape_of(*line) for line in many[1:]])
     own = shape_of(s, moved(z, rng) + rng.uniform(0, 6) * np.sin(s / rng.uniform(5, 40)))
-    shapes = stacked([*(Shape(*(column[i] for column in shapes)) for i in range(39)), shape_of(s, z)])
+    shapes = stacked([*(PlanShape(*(column[i] for column in shapes)) for i in range(39)), shape_of(s, z)])
     known = [apart(own, shapes).min(), *([apart_by_metres(own, shapes).min()] if by_metres else [])]
     found = nearest(own, shapes, by_metres)
     if min(known) < ENOUGH:

@@ -17,7 +17,7 @@ from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
 from roadgpt.design.elements import elements_of
-from roadgpt.design.layout import Place
+from roadgpt.design.layout import MapPose
 from roadgpt.design.repair import repair
 from roadgpt.design.vertical import softened
 from roadgpt.design.writing import design_of
@@ -145,7 +145,7 @@ def test_elements_keep_vertical_radii_and_variations_the_rule() -> None:
     brief = read("an uphill road with 3 turns")
     design = draft(brief, WORLD, seed=4)
     assert any(segment.vertical_radius for segment in design.segments)
-    place = Place(*design.starting_point[:2], design.theta)
+    place = MapPose(*design.starting_point[:2], design.theta)
     assert design_of(elements_of(design.segments), place, WORLD).segments == design.segments
     setting = VariationContext(brief, WORLD)
     found = [make_candidate(VariationTask("vary", (design,), "", (n,), setting)) for n in range(20)]

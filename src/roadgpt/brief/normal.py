@@ -20,7 +20,7 @@
 
 from math import inf
 
-from roadgpt.brief.model import Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly
+from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly
 from roadgpt.brief.sides import as_clause, forced_side, with_other_side
 from roadgpt.brief.words import KINDS
 
@@ -30,7 +30,6 @@ SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", 
 """The kinds of turns whose sharpness is not fixed by their kind."""
 MOST_SINGLE = 60
 MOST_STEPS = 8  # one step may enable another; contradictory Briefs need the most steps
-OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 PLAIN: dict[Slope, Slope] = {
     "steeply_up": "up",
     "steeply_down": "down",
@@ -168,7 +167,7 @@ def _singles(clause: Clause) -> list[Clause]:
     alternates = clause.alternating or KINDS[clause.kind].alternating
     if clause.kind in SINGLE and alternates and clause.side and 1 < number <= MOST_SINGLE:
         one = clause.model_copy(update={"count": exactly(1), "alternating": False})
-        sides = [clause.side if at % 2 == 0 else OTHER[clause.side] for at in range(number)]
+        sides = [clause.side if at % 2 == 0 else OTHER_SIDE[clause.side] for at in range(number)]
         return [one.model_copy(update={"side": side}) for side in sides]
     return [clause]
 

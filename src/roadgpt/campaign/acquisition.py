@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from roadgpt.campaign.model import Goal
 from roadgpt.campaign.variation import Candidate
-from roadgpt.design.variety import Shape, apart
+from roadgpt.design.variety import PlanShape, apart
 from roadgpt.geometry.curve import Array
 
 ANYWHERE = 0.05  # of a first failure in a cell: what one in a cell with many counts
@@ -67,14 +67,14 @@ def select(
     return out
 
 
-def far_from(candidates: Sequence[Candidate], shape: Shape, least: float) -> NDArray[np.bool_]:
+def far_from(candidates: Sequence[Candidate], shape: PlanShape, least: float) -> NDArray[np.bool_]:
     """Returns which candidates ``(n,)`` are at least so many metres RMS from a shape."""
     if not least or not candidates:
         return np.ones(len(candidates), bool)
     return np.asarray(apart(shape, stacked([one.shape for one in candidates])) >= least)
 
 
-def dissimilar(candidates: Sequence[Candidate], known: Sequence[Shape], least: float) -> list[Candidate]:
+def dissimilar(candidates: Sequence[Candidate], known: Sequence[PlanShape], least: float) -> list[Candidate]:
     """Returns the candidates that are at least so many metres RMS from every known road."""
     if not known or not least:
         return list(candidates)
@@ -82,9 +82,9 @@ def dissimilar(candidates: Sequence[Candidate], known: Sequence[Shape], least: f
     return [one for one in candidates if apart(one.shape, others).min() >= least]
 
 
-def stacked(shapes: Sequence[Shape]) -> Shape:
-    """Combines shapes into one Shape whose arrays have a first axis more."""
-    return Shape._make(np.stack(columns) for columns in zip(*shapes, strict=True))
+def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
+    """Combines shapes into one PlanShape whose arrays have a first axis more."""
+    return PlanShape._make(np.stack(columns) for columns in zip(*shapes, strict=True))
 
 
 def spread_out(candidates: Sequence[Candidate], n: int, hazard: Array) -> list[Candidate]:

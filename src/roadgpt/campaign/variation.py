@@ -20,8 +20,8 @@ from roadgpt.campaign.mutation import crossed_over, interpolated, mutated
 from roadgpt.campaign.surrogate_features import surrogate_features_of
 from roadgpt.design import draft
 from roadgpt.design.elements import as_written, elements_of
-from roadgpt.design.layout import Place, keeps_clear, place, walk
-from roadgpt.design.variety import Shape, shape_of
+from roadgpt.design.layout import MapPose, keeps_clear, place, walk
+from roadgpt.design.variety import PlanShape, shape_of
 from roadgpt.design.writing import design_of
 from roadgpt.errors import DesignError, RoadGPTError
 from roadgpt.geometry.curve import Array
@@ -68,7 +68,7 @@ class Candidate(NamedTuple):
     features: dict[str, float]
     """Of the road: what no drive is needed for."""
     surrogate_features: Array
-    shape: Shape
+    shape: PlanShape
 
 
 def make_candidate(task: VariationTask) -> Candidate | None:
@@ -161,10 +161,10 @@ def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
     return described(design, build(design), "", setting)
 
 
-def _place_between(one: Design, other: Design, share: float) -> Place:
+def _place_between(one: Design, other: Design, share: float) -> MapPose:
     (x0, y0, _), (x1, y1, _) = one.starting_point, other.starting_point
     turned = (other.theta - one.theta + 180) % 360 - 180
-    return Place(
+    return MapPose(
         round(x0 + share * (x1 - x0), 2),
         round(y0 + share * (y1 - y0), 2),
         round((one.theta + share * turned) % 360, 1) % 360,

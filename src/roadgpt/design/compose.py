@@ -15,7 +15,7 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, inside, turn_rooms
 from roadgpt.design.heights import Windows
-from roadgpt.design.order import Order, is_hairpin
+from roadgpt.design.sequence import TurnSequence, is_hairpin
 from roadgpt.road import World
 
 LEAD_MEAN = 26.0  # m more than the least, of lead-in and lead-out
@@ -46,7 +46,12 @@ FEWEST_METRES = 1.0  # of a straight that is squeezed to make the whole length r
 
 
 def composed(
-    order: Order, outline: Outline, windows: Windows, world: World, rng: np.random.Generator, haste: float
+    order: TurnSequence,
+    outline: Outline,
+    windows: Windows,
+    world: World,
+    rng: np.random.Generator,
+    haste: float,
 ) -> list[Element] | None:
     """The elements of a draft in driving order; None where they cannot have the length that was asked for."""
     rooms = [

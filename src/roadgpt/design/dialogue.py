@@ -25,7 +25,7 @@ MOST_MENDED = 4  # segments that are fitted in by changing others; then there is
 MOST_LEFT_OUT = 2  # segments in a row that could not be placed; then the road ends
 
 
-class Task(NamedTuple):
+class DesignTask(NamedTuple):
     """What is to be designed, and under which settings."""
 
     brief: Brief
@@ -52,7 +52,7 @@ class Outcome(NamedTuple):
     model: str = ""
 
 
-def whole(chat: Chat, task: Task) -> Outcome:
+def whole(chat: Chat, task: DesignTask) -> Outcome:
     """One road per question, until nothing is wrong with it or all rounds are spent; the best one of them.
 
     Raises:
@@ -89,7 +89,7 @@ def whole(chat: Chat, task: Task) -> Outcome:
     raise DesignError(f"no answer of the model was a road: {problem}; try again, or use another model")
 
 
-def _outcome(answer: AnswerRoad, task: Task, number: int, model: str) -> Outcome:
+def _outcome(answer: AnswerRoad, task: DesignTask, number: int, model: str) -> Outcome:
     proposed, remarks = design_of(answer, answer.segments)
     build(proposed)  # of lengths beyond all measure there is no road
     design = repair(proposed, task.brief, task.world, task.settings.repair).design
@@ -108,7 +108,7 @@ def _compact(answer: BaseModel) -> str:
     return json.dumps(answer.model_dump(), separators=(",", ":"))[:MOST_SHOWN]
 
 
-def stepwise(chat: Chat, task: Task) -> Outcome:
+def stepwise(chat: Chat, task: DesignTask) -> Outcome:
     """One segment per question, each looked at before the next is asked for.
 
     A segment that will not do is asked for again, at most ``rounds`` times, and then left out; so the run
@@ -124,7 +124,7 @@ def stepwise(chat: Chat, task: Task) -> Outcome:
 class _Steps:
     """The road so far, and the conversation about it."""
 
-    def __init__(self, chat: Chat, task: Task) -> None:
+    def __init__(self, chat: Chat, task: DesignTask) -> None:
         self.chat, self.task = chat, task
         self.questions = 0
         self.model = ""
@@ -274,4 +274,4 @@ class _Steps:
         return Outcome(design, proposed, self.questions, wrong, (*remarks, *self.remarks), self.model)
 
 
-__all__ = ["Outcome", "Task", "stepwise", "whole"]
+__all__ = ["DesignTask", "Outcome", "stepwise", "whole"]

@@ -19,8 +19,8 @@ from roadgpt.brief.words import Range
 from roadgpt.design.compose import asked_length, gap_between
 from roadgpt.design.draw import TurnRoom, drawn_turn, longest_turn, turn_rooms
 from roadgpt.design.heights import Windows
-from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, Complex, Line, Place, walk
-from roadgpt.design.order import Order
+from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, Complex, MapPose, PlanLine, walk
+from roadgpt.design.sequence import TurnSequence
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
@@ -44,8 +44,8 @@ class Grown(NamedTuple):
     """A plan and where it lies."""
 
     elements: list[Element]
-    line: Line
-    place: Place
+    line: PlanLine
+    place: MapPose
 
 
 class _Way(NamedTuple):
@@ -58,7 +58,7 @@ class _Way(NamedTuple):
     end: complex
     heading: complex
 
-    def with_(self, elements: Sequence[Element], line: Line) -> "_Way":
+    def with_(self, elements: Sequence[Element], line: PlanLine) -> "_Way":
         every = max(1, round(COARSE / float(line.s[1])))
         z = self.end + self.heading * line.z
         turned = np.exp(
@@ -75,7 +75,7 @@ class _Way(NamedTuple):
 
 
 def grown(
-    order: Order, outline: Outline, windows: Windows, world: World, rng: np.random.Generator
+    order: TurnSequence, outline: Outline, windows: Windows, world: World, rng: np.random.Generator
 ) -> Grown | None:
     """A road of the length that was asked for; None where it ran out of room, or where none was asked for.
 
@@ -99,7 +99,7 @@ class _Growth:
 
     def __init__(
         self,
-        order: Order,
+        order: TurnSequence,
         outline: Outline,
         windows: Windows,
         world: World,
@@ -127,7 +127,7 @@ class _Growth:
         if way is None or way.length not in self.asked:
             return None
         theta = round(float(np.degrees(np.angle(heading))) % 360, 1) % 360
-        place = Place(round(start.real, 2), round(start.imag, 2), theta)
+        place = MapPose(round(start.real, 2), round(start.imag, 2), theta)
         return Grown(list(way.elements), walk(way.elements), place)
 
     def _grown(self, start: _Way) -> _Way | None:
@@ -219,7 +219,7 @@ class _Growth:
                 return way.with_(longer, line)
         return None
 
-    def _is_free(self, way: _Way, line: Line, ahead: float) -> bool:
+    def _is_free(self, way: _Way, line: PlanLine, ahead: float) -> bool:
         """Does a piece, with some metres straight on, stay on the map and off the road so far?"""
         every = max(1, round(COARSE / float(line.s[1])))
         s, z = line.s[::every], line.z[::every]

@@ -11,8 +11,8 @@ from roadgpt.brief.words import STEEPEST, Range, overlap
 from roadgpt.check.measures import LEVEL
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.elements import TENTH
-from roadgpt.design.order import is_hairpin
-from roadgpt.design.ramps import eased
+from roadgpt.design.grade_transitions import eased
+from roadgpt.design.sequence import is_hairpin
 from roadgpt.design.softening import climbing, held, one_way, softened_values, steep_kept
 from roadgpt.design.vertical import COMFORT, Pace
 from roadgpt.errors import DesignError

@@ -31,14 +31,14 @@ HEADINGS = 72  # that are tried on a map where the first one does not fit
 Complex = NDArray[np.complex128]
 
 
-class Line(NamedTuple):
+class PlanLine(NamedTuple):
     """A walked centre line that starts at the origin along +x: stations, and points as x + iy."""
 
     s: Array
     z: Complex
 
 
-class Place(NamedTuple):
+class MapPose(NamedTuple):
     """Where a line lies on the map: start in metres, heading in degrees."""
 
     x: float
@@ -46,12 +46,12 @@ class Place(NamedTuple):
     theta: float
 
 
-def walk(elements: Sequence[Element]) -> Line:
+def walk(elements: Sequence[Element]) -> PlanLine:
     """Returns the centre line of elements, in steps of about a metre."""
     knots, bends, length = bends_of(elements)
     s = np.linspace(0.0, length, max(2, round(length / STEP)) + 1)
     steps = np.exp(1j * _headings(s[:-1] + s[1] / 2, knots, bends)) * s[1]
-    return Line(s, np.concatenate([[0j], np.cumsum(steps)]))
+    return PlanLine(s, np.concatenate([[0j], np.cumsum(steps)]))
 
 
 def bends_of(elements: Sequence[Element]) -> tuple[Array, Array, float]:
@@ -77,7 +77,7 @@ def _headings(s: Array, knots: Array, bends: Array) -> Array:
     return np.asarray(reached[i] + u * (bends[i] + u * slopes[i] / 2))
 
 
-def keeps_clear(line: Line, world: World, with_verges: bool) -> bool:
+def keeps_clear(line: PlanLine, world: World, with_verges: bool) -> bool:
     """Do parts of the road stay off each other: carriageways at least, and off each other's verges?"""
     z = line.z[::COARSE]
     spacing = COARSE * (line.s[1] - line.s[0])
@@ -93,7 +93,7 @@ def keeps_clear(line: Line, world: World, with_verges: bool) -> bool:
     return not np.triu(near, first).any()
 
 
-def place(line: Line, world: World, rng: np.random.Generator) -> Place | None:
+def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | None:
     """A random place on the map where the ribbon fits, at a random heading; None where there is none."""
     room = world.map_size - world.road_width - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
@@ -110,7 +110,7 @@ def place(line: Line, world: World, rng: np.random.Generator) -> Place | None:
     border = world.road_width / 2 + EDGE
     x = border - left + rng.random() * max(room - width, 0.0)
     y = border - low + rng.random() * max(room - height, 0.0)
-    return Place(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)
+    return MapPose(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)
 
 
 def _may_fit(z: Complex, thetas: Array, room: float) -> bool:
@@ -119,7 +119,7 @@ def _may_fit(z: Complex, thetas: Array, room: float) -> bool:
     return every < 2 or _extent(z[::every], thetas, room) is not None
 
 
-def _is_straight(line: Line) -> bool:
+def _is_straight(line: PlanLine) -> bool:
     return not line.z.imag.any()
 
 
@@ -135,7 +135,7 @@ def _extent(z: Complex, thetas: Array, room: float) -> tuple[float, float, float
     return float(thetas[i]), float(left[i]), float(low[i]), float(width[i]), float(height[i])
 
 
-def smallest_box(line: Line) -> float:
+def smallest_box(line: PlanLine) -> float:
     """Side of the smallest square that holds the line at some heading, metres."""
     turned = np.exp(1j * np.radians(np.arange(0, 90, 5)))[:, None] * line.z[:: max(1, len(line.z) // MANY)]
     return float(np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1)).min())

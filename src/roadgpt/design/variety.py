@@ -25,7 +25,7 @@ FIRST_ROOM = 64  # designs for which there is room at first
 Complex = NDArray[np.complex128]
 
 
-class Shape(NamedTuple):
+class PlanShape(NamedTuple):
     """A plan, or many: points as x + iy, and what comparing them needs time and again."""
 
     shares: Complex
@@ -42,7 +42,7 @@ class Shape(NamedTuple):
     """Of the first 1, 2, ... of ``metres``: root mean square of their distances from that."""
 
 
-def shape_of(s: Array, line: Complex) -> Shape:
+def shape_of(s: Array, line: Complex) -> PlanShape:
     """The shape of a line ``x + iy`` that was sampled at stations ``s`` (metres, from 0)."""
     shares = _at(s, line, np.linspace(0.0, float(s[-1]), POINTS))
     shares -= shares.mean()
@@ -54,7 +54,7 @@ def shape_of(s: Array, line: Complex) -> Shape:
     centres = np.cumsum(metres) / first
     squares = np.cumsum(np.abs(metres) ** 2) / first - np.abs(centres) ** 2
     spread = np.sqrt((np.abs(shares) ** 2).mean())
-    return Shape(shares, spread, metres, np.array(reach), centres, np.sqrt(np.maximum(squares, 0.0)))
+    return PlanShape(shares, spread, metres, np.array(reach), centres, np.sqrt(np.maximum(squares, 0.0)))
 
 
 def _at(s: Array, line: Complex, stations: Array) -> Complex:
@@ -62,7 +62,7 @@ def _at(s: Array, line: Complex, stations: Array) -> Complex:
     return np.asarray(x + 1j * y, complex)
 
 
-def nearest(shape: Shape, others: Shape, by_metres: bool) -> float:
+def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
     """Metres to the nearest of other shapes, infinite where none is alike.
 
     Two lines are at least as far apart as their spreads, so most need not be laid onto each other.
@@ -87,7 +87,7 @@ def nearest(shape: Shape, others: Shape, by_metres: bool) -> float:
     return least if least < ENOUGH else inf
 
 
-def _at_least_by_metres(shape: Shape, others: Shape) -> Array:
+def _at_least_by_metres(shape: PlanShape, others: PlanShape) -> Array:
     """A lower bound of the distances at equal distances: from all that both have, and from its first half."""
     n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
     half = (n + 1) // 2
@@ -96,7 +96,7 @@ def _at_least_by_metres(shape: Shape, others: Shape) -> Array:
     return np.asarray(np.maximum(whole, start))
 
 
-def apart(shape: Shape, others: Shape) -> Array:
+def apart(shape: PlanShape, others: PlanShape) -> Array:
     """RMS distances in metres ``(m,)`` at equal shares, after the best shift, turn and mirror."""
     own, many = shape.shares, others.shares
     sizes = others.spread**2 + shape.spread**2
@@ -106,7 +106,7 @@ def apart(shape: Shape, others: Shape) -> Array:
     return np.asarray(np.sqrt(np.maximum(sizes - 2 * alike / POINTS, 0.0)))
 
 
-def apart_by_metres(shape: Shape, others: Shape) -> Array:
+def apart_by_metres(shape: PlanShape, others: PlanShape) -> Array:
     """The same at equal distances, as far as both roads go."""
     n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
     own, centre = shape.centres[n - 1], others.centres[row, n - 1]
@@ -121,11 +121,11 @@ class Shapes:
     """Shapes of designs, remembered from draft to draft: always those of the roads that grow from them."""
 
     def __init__(self) -> None:
-        self._known: dict[int, tuple[Design, Shape]] = {}
+        self._known: dict[int, tuple[Design, PlanShape]] = {}
         self._row: list[Design] = []
         self._stack = _room_for(FIRST_ROOM)
 
-    def of(self, designs: Sequence[Design]) -> Shape:
+    def of(self, designs: Sequence[Design]) -> PlanShape:
         """Shapes of designs, in their order, stacked; a row that only grows is not stacked anew."""
         if len(self._known) > REMEMBERED + len(designs):
             own = {id(design) for design in designs}
@@ -141,23 +141,23 @@ class Shapes:
             for rows, row in zip(self._stack, self._shape(designs[number]), strict=True):
                 rows[number] = row
         self._row[same:] = designs[same:]
-        return Shape._make(rows[: len(designs)] for rows in self._stack)
+        return PlanShape._make(rows[: len(designs)] for rows in self._stack)
 
     def remember(self, design: Design, road: Road) -> None:
         """Keeps the shape of the road that grew from a design, where it is at hand."""
         samples = road.sample()
         self._known[id(design)] = (design, shape_of(samples.s, samples.x + 1j * samples.y))
 
-    def _shape(self, design: Design) -> Shape:
+    def _shape(self, design: Design) -> PlanShape:
         # by identity: hashing a whole design takes longer than all the rest, and the entry keeps it alive
         if id(design) not in self._known:
             self.remember(design, build(design))
         return self._known[id(design)][1]
 
 
-def _room_for(designs: int) -> Shape:
+def _room_for(designs: int) -> PlanShape:
     some = shape_of(np.array([0.0, 1.0]), np.array([0j, 1 + 0j]))
-    return Shape._make(np.zeros((designs, *np.shape(column)), column.dtype) for column in some)
+    return PlanShape._make(np.zeros((designs, *np.shape(column)), column.dtype) for column in some)
 
 
 def _alike(one: Sequence[Design], other: Sequence[Design]) -> int:

@@ -9,7 +9,7 @@ from roadgpt.brief.element import Element
 from roadgpt.check.extremes import lowest
 from roadgpt.design.elements import as_written, cut
 from roadgpt.design.heights import rounded
-from roadgpt.design.layout import Place
+from roadgpt.design.layout import MapPose
 from roadgpt.design.vertical import SEEN, Pace, joined, made_to_fit, runs_of, too_abrupt, widened
 from roadgpt.road import Design, Segment, World
 from roadgpt.road.design import MAX_INCLINE
@@ -45,12 +45,12 @@ def _cut(written: Sequence[Element], grades: Sequence[float]) -> list[Segment]:
     return [segment for element in sloped for segment in cut(element)]
 
 
-def design_of(elements: Sequence[Element], place: Place, world: World) -> Design:
+def design_of(elements: Sequence[Element], place: MapPose, world: World) -> Design:
     """Returns the design of elements whose lowest point lies a little above the ground."""
     return design_at(place, segments_of(elements, world), max(0.0, world.z_floor) + ABOVE_GROUND)
 
 
-def design_at(place: Place, segments: tuple[Segment, ...], ground: float) -> Design:
+def design_at(place: MapPose, segments: tuple[Segment, ...], ground: float) -> Design:
     """Returns the design of segments whose lowest point lies at that height in metres."""
     return Design(
         starting_point=(place.x, place.y, start_height(segments, ground)),

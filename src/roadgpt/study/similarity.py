@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.check.measures import MeasuredFeature, measure
-from roadgpt.design.variety import ENOUGH, POINTS, Shape, shape_of
+from roadgpt.design.variety import ENOUGH, POINTS, PlanShape, shape_of
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
 from roadgpt.run.sparseness import distances, steps_of
@@ -71,7 +71,7 @@ class Likeness:
     """Left turns, right turns and straights as the letters L, R and S, in driving order."""
     sides: str
     """The turns alone."""
-    shape: Shape
+    shape: PlanShape
     grades: Array
     """Percent, at the middle of so many equal shares of the length as a shape has points."""
     steps: Array
@@ -120,7 +120,7 @@ def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similari
     )
 
 
-def plan_apart(one: Shape, other: Shape, mirror: bool) -> float:
+def plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
     """Metres, root mean square, between two plans at equal shares, after the best shift and turn."""
     turned = float(abs(np.vdot(one.shares, other.shares)))
     if mirror:

@@ -10,8 +10,8 @@ from roadgpt.brief.grammar.phrase import WAVY, Phrase
 from roadgpt.brief.grammar.quantities import Term
 from roadgpt.brief.grammar.scope import halve, negate, select, take_some
 from roadgpt.brief.grammar.slopes import slope_of
-from roadgpt.brief.model import Amount, Brief, at_least, at_most, exactly
-from roadgpt.brief.normal import OTHER, STRAIGHT
+from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, at_least, at_most, exactly
+from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.words import HILLS, MOUNTAIN, ROAD_SIZES, SLOPES, Range
 from roadgpt.errors import BriefError
 
@@ -262,7 +262,7 @@ class _Builder:
             return False
         if not _is_pick(phrase) or sum(how_many(t) for t in self.order.things if turns(t)) < 2:
             return False
-        return select(self.order, replace(phrase, side=OTHER[before.side]), None)
+        return select(self.order, replace(phrase, side=OTHER_SIDE[before.side]), None)
 
     def _both_sides(self, phrase: Phrase) -> bool:
         last, wishes = self.order.last_turn, self.order.wishes

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from roadgpt.brief.model import Brief
 from roadgpt.chat import Chat, ChatSettings, configured, open_chat
 from roadgpt.design.asking import request, rules
-from roadgpt.design.dialogue import Outcome, Task, stepwise, whole
+from roadgpt.design.dialogue import DesignTask, Outcome, stepwise, whole
 from roadgpt.design.repair.changes import changes_between
 from roadgpt.design.report import DesignReport
 from roadgpt.design.variety import ENOUGH, Shapes, nearest, shape_of
@@ -42,7 +42,7 @@ class ChatDesigner:
         self.report = None
         chat = self._chat = self._chat or open_chat(self._settings)
         before = chat.spent
-        task = Task(
+        task = DesignTask(
             brief,
             world,
             self._settings,

@@ -25,9 +25,9 @@ from roadgpt.design.compose import composed
 from roadgpt.design.elements import cut
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
-from roadgpt.design.layout import Line, Place, keeps_clear, place, smallest_box, walk
-from roadgpt.design.order import drawn_order
-from roadgpt.design.variety import ENOUGH, Shape, Shapes, nearest, shape_of
+from roadgpt.design.layout import MapPose, PlanLine, keeps_clear, place, smallest_box, walk
+from roadgpt.design.sequence import drawn_sequence
+from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace, joined, too_abrupt
 from roadgpt.design.writing import design_at
 from roadgpt.errors import DesignError
@@ -58,9 +58,9 @@ class _Draft(NamedTuple):
     """A plan that fits on the map and keeps clear of itself."""
 
     elements: list[Element]
-    line: Line
-    place: Place
-    shape: Shape
+    line: PlanLine
+    place: MapPose
+    shape: PlanShape
 
 
 class Planner:
@@ -95,7 +95,7 @@ def fits(brief: Brief, world: World) -> bool:
 class _Search:
     """The search for one road."""
 
-    def __init__(self, brief: Brief, world: World, others: Shape, rng: np.random.Generator) -> None:
+    def __init__(self, brief: Brief, world: World, others: PlanShape, rng: np.random.Generator) -> None:
         self.brief, self.world, self.others, self.rng = brief, world, others, rng
         self.outline: Outline = promises_of(brief, world)
         if self.outline.turns.lo > self.outline.turns.hi:
@@ -163,7 +163,7 @@ class _Search:
         """A plan that has grown on the map; only where a length was asked for."""
         if self.outline.length is None:
             return None
-        order = drawn_order(self.outline, self.rng, plain=True)
+        order = drawn_sequence(self.outline, self.rng, plain=True)
         found = grown(order, self.outline, self.windows, self.world, self.rng)
         if found is None:
             self.failed["too large"] += 1
@@ -182,7 +182,7 @@ class _Search:
         return next((k for k, w in zip(limits, worlds, strict=True) if fits(self.brief, w)), None)
 
     def _plan(self, haste: float, with_verges: bool) -> _Draft | None:
-        order = drawn_order(self.outline, self.rng, plain=haste > 0.5)
+        order = drawn_sequence(self.outline, self.rng, plain=haste > 0.5)
         elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
         if elements is None:
             self.failed["longer than was asked for"] += 1
@@ -231,7 +231,7 @@ class _Search:
                 self.failed_on_heights += 1
         return None
 
-    def _broken(self, line: Line, segments: Sequence[Segment], pace: Pace) -> list[Complaint]:
+    def _broken(self, line: PlanLine, segments: Sequence[Segment], pace: Pace) -> list[Complaint]:
         """The promises that a plan with these slopes would break, and the rule for their changes."""
         if too_abrupt(segments, pace, self.bumps):
             return [Complaint(TOO_ABRUPT, on_heights=True)]

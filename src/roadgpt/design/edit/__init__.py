@@ -1,6 +1,6 @@
 """Edits: changes a Design by words, and leaves alone the rest. Verbs: ``read_request``, ``edit``.
 
-    words --read_request--> Request --pointed--> elements --ways--> trials --measured, inspected--> Edited
+    words --read_request--> EditRequest --pointed--> elements --ways--> trials --measured, inspected--> Edited
 
 Places are those that a person sees on the finished road (``check.measures``), numbered as they are before the
 edit. Segments that nobody spoke of keep every number; the road as a whole may be moved or turned, so that it
@@ -14,16 +14,16 @@ from typing import NamedTuple
 from roadgpt import plugins
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.check.measures import Measures
+from roadgpt.design.edit.candidates import EditCandidate, alternating_candidates, change_candidates
 from roadgpt.design.edit.chatting import edited_by_chat
-from roadgpt.design.edit.inserting import ways_to_add
+from roadgpt.design.edit.diff_text import sentences
+from roadgpt.design.edit.insertion import insertion_candidates
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.reading import read_request
-from roadgpt.design.edit.removing import ways_to_remove
-from roadgpt.design.edit.request import Change, Request, What
-from roadgpt.design.edit.steps import Adjust, FlipAll, Step
-from roadgpt.design.edit.telling import sentences
-from roadgpt.design.edit.trying import tried
-from roadgpt.design.edit.ways import Way, ways_to_alternate, ways_to_change
+from roadgpt.design.edit.removal import removal_candidates
+from roadgpt.design.edit.request import Change, EditRequest, What
+from roadgpt.design.edit.search import tried
+from roadgpt.design.edit.steps import Adjust, EditStep, FlipAll
 from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World
@@ -71,13 +71,13 @@ def edit(
     return _by_rules(design, read_request(words), world, geometry)
 
 
-def _by_rules(design: Design, request: Request, world: World, geometry: Geometry) -> Edited:
+def _by_rules(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:
     if len(request.changes) > MOST_CHANGES:
         raise EditError(
             f"{len(request.changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer"
         )
     elements, found = elements_on_road(design, geometry)
-    rows: list[tuple[Change, Sequence[Way]]] = []
+    rows: list[tuple[Change, Sequence[EditCandidate]]] = []
     idle: list[Change] = []
     for number, change in enumerate(_folded(request.changes), 1):
         ways = _ways(change, elements, found, world, number)
@@ -98,7 +98,7 @@ def _by_rules(design: Design, request: Request, world: World, geometry: Geometry
     return Edited(result.made.design, told, request.unused)
 
 
-def _agreed(rows: Sequence[tuple[Change, Sequence[Way]]]) -> list[Sequence[Way]]:
+def _agreed(rows: Sequence[tuple[Change, Sequence[EditCandidate]]]) -> list[Sequence[EditCandidate]]:
     """The ways of all; where one says the angle of a turn and another its radius, each keeps to its own."""
     said: dict[What, set[str]] = {"angle": set(), "radius": set()}
     for change, ways in rows:
@@ -106,7 +106,7 @@ def _agreed(rows: Sequence[tuple[Change, Sequence[Way]]]) -> list[Sequence[Way]]
             said[change.what] |= {step.element.name for step in ways[0] if isinstance(step, Adjust)}
     both = said["angle"] & said["radius"]
 
-    def own(step: Step, what: What) -> Step:
+    def own(step: EditStep, what: What) -> EditStep:
         if not isinstance(step, Adjust) or step.element.name not in both or what not in said:
             return step
         return step.without("radius" if what == "angle" else "degrees")
@@ -114,26 +114,26 @@ def _agreed(rows: Sequence[tuple[Change, Sequence[Way]]]) -> list[Sequence[Way]]
     return [[tuple(own(step, change.what) for step in way) for way in ways] for change, ways in rows]
 
 
-def _is_mirror(request: Request) -> bool:
+def _is_mirror(request: EditRequest) -> bool:
     return any(change.what == "mirror" for change in request.changes)
 
 
 def _ways(
     change: Change, elements: RoadElements, found: Measures, world: World, number: int
-) -> tuple[Way, ...]:
+) -> tuple[EditCandidate, ...]:
     if change.what == "mirror":
         if not any(element.kind == "turn" for element in elements):
             raise EditError("the road has no turn, so its mirror image is the same")
         return ((FlipAll(),),)
     if change.what == "add":
-        return ways_to_add(change, elements, world, number)
+        return insertion_candidates(change, elements, world, number)
     assert change.target is not None
     meant = pointed(change.target, elements, change.what)
     if change.what == "alternate":
-        return ways_to_alternate(meant, world)
+        return alternating_candidates(meant, world)
     if change.what == "remove":
-        return ways_to_remove(meant, elements)
-    return ways_to_change(change, meant, found, world)
+        return removal_candidates(meant, elements)
+    return change_candidates(change, meant, found, world)
 
 
 def _folded(changes: tuple[Change, ...]) -> tuple[Change, ...]:
@@ -170,4 +170,4 @@ def _with(added: Change, more: Change) -> Change:
             return added
 
 
-__all__ = ["Edited", "Request", "edit", "read_request"]
+__all__ = ["EditRequest", "Edited", "edit", "read_request"]

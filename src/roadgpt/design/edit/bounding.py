@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.sloping import SlopeOfAll
-from roadgpt.design.edit.steps import Step
+from roadgpt.design.edit.steps import EditStep
 from roadgpt.design.road_elements import RoadElement
 
 
 def is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
-    """Is a element on the wrong side of what a change bounds?"""
+    """Is an element on the wrong side of what a change bounds?"""
     assert change.to is not None
     seen = element.seen
     if change.what == "slope":
@@ -25,7 +25,7 @@ def is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
     return (now - change.to) * change.bound < 0
 
 
-def within(change: Change, elements: Sequence[RoadElement]) -> tuple[tuple[Step, ...], ...]:
+def within(change: Change, elements: Sequence[RoadElement]) -> tuple[tuple[EditStep, ...], ...]:
     """Slopes of elements that keep the bound: what is beyond is as steep as it says."""
     assert change.to is not None
     names = frozenset(element.name for element in elements)

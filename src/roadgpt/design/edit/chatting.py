@@ -15,9 +15,9 @@ from roadgpt.check.measures import Measures
 from roadgpt.design.answer import AnswerSegment, Number
 from roadgpt.design.asking import rules
 from roadgpt.design.designers.chat import RULES
+from roadgpt.design.edit.diff_text import between
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.reading import read_request
-from roadgpt.design.edit.telling import between
 from roadgpt.design.repair import repair
 from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road
 from roadgpt.errors import EditError, UsageError

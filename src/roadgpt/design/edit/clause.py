@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from roadgpt.design.edit.lexing import Lexeme
+from roadgpt.design.edit.lexing import RequestLexeme
 from roadgpt.design.edit.request import Place, Target
 
 IDLE = {"too", "make", "keep", "with", "of", "at", "as", "to", "by", "a", "the", "on", "much", "slightly"}
@@ -10,13 +10,13 @@ IDLE = {"too", "make", "keep", "with", "of", "at", "as", "to", "by", "a", "the",
 
 
 @dataclass
-class Clause:
+class RequestClause:
     """What was found in one clause."""
 
     targets: list[Target] = field(default_factory=list)
     new: list[Target] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
-    row: list[Lexeme] = field(default_factory=list)
+    row: list[RequestLexeme] = field(default_factory=list)
     """What is left: verbs, comparatives and amounts."""
     unknown: list[str] = field(default_factory=list)
     begins_unknown: bool = False

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from typing import Any
 
-from roadgpt.design.edit.lexing import Lexeme
+from roadgpt.design.edit.lexing import RequestLexeme
 
 
-class Row:
+class CountedRow:
     """Meanings in a row, and the numbers that are said in it."""
 
-    def __init__(self, row: Sequence[Lexeme]) -> None:
+    def __init__(self, row: Sequence[RequestLexeme]) -> None:
         self.row = row
 
     def name(self, at: int) -> str:

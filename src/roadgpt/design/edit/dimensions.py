@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from roadgpt.brief.model import Sharpness, Side
-from roadgpt.design.edit.clause import Clause
+from roadgpt.design.edit.clause import RequestClause
 from roadgpt.design.edit.request import Change, Way
 from roadgpt.errors import EditError
 
@@ -23,7 +23,7 @@ NEAR = 3  # words between a number and the noun that it belongs to
 
 
 @dataclass(frozen=True, slots=True)
-class Amount:
+class StatedNumber:
     """A number with what stands around it."""
 
     value: float
@@ -36,12 +36,12 @@ class Amount:
 class Dimensions:
     """What a clause says of angle, radius, length, slope and side."""
 
-    def __init__(self, clause: Clause) -> None:
+    def __init__(self, clause: RequestClause) -> None:
         self.clause, self.row, self.names = clause, clause.row, clause.names
         self.amounts = [self._amount(i) for i, x in enumerate(self.row) if x.name == "#"]
         self.dose = SLIGHTLY if "slightly" in self.names else MUCH if "much" in self.names else 1.0
 
-    def _amount(self, at: int) -> Amount:
+    def _amount(self, at: int) -> StatedNumber:
         lexeme = self.row[at]
         before = next((x.name for x in reversed(self.row[max(at - 2, 0) : at]) if x.name in PREPOSITIONS), "")
         next_to = self.row[at - 1] if at else None
@@ -68,7 +68,7 @@ class Dimensions:
             "more",
             "less",
         )
-        return Amount(lexeme.value, lexeme.unit, before, noun, after in comparatives and before != "to")
+        return StatedNumber(lexeme.value, lexeme.unit, before, noun, after in comparatives and before != "to")
 
     def has(self, *names: str) -> bool:
         """Is one of these words there?"""
@@ -111,10 +111,10 @@ class Dimensions:
             return self.has("more") - self.has("less")
         return 0
 
-    def _take(self, units: tuple[str, ...], noun: str) -> Amount | None:
+    def _take(self, units: tuple[str, ...], noun: str) -> StatedNumber | None:
         return next((a for a in self.amounts if a.unit in units and a.noun in (noun, "")), None)
 
-    def _valued(self, change: Change, amount: Amount | None) -> Change:
+    def _valued(self, change: Change, amount: StatedNumber | None) -> Change:
         """With the amount as 'by', 'to' or 'times'."""
         if amount is None:
             return change

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from roadgpt.design.edit.clause import Clause
+from roadgpt.design.edit.clause import RequestClause
 from roadgpt.design.edit.request import Change, Target
 from roadgpt.design.edit.wording import VERBS, wanted
 from roadgpt.errors import EditError
@@ -11,7 +11,7 @@ from roadgpt.errors import EditError
 ADVICE = "say what is to be different where, for example: make the second turn sharper, and the end downhill"
 
 
-def gathered(clauses: Sequence[Clause]) -> list[Change]:
+def gathered(clauses: Sequence[RequestClause]) -> list[Change]:
     """The changes that clauses ask for.
 
     Raises:
@@ -40,11 +40,11 @@ class _Gathering:
         self.changes: list[Change] = []
         self.before: tuple[Target, ...] = ()
         """What was spoken of before."""
-        self.waiting: list[Clause] = []
+        self.waiting: list[RequestClause] = []
         """Names of which it is still to be said what is wanted."""
-        self.last: Clause | None = None
+        self.last: RequestClause | None = None
 
-    def act(self, clause: Clause) -> None:
+    def act(self, clause: RequestClause) -> None:
         """A clause that says what is to be done."""
         if clause.begins_unknown and not clause.names & {
             *VERBS,
@@ -64,7 +64,7 @@ class _Gathering:
         self.last = clause
         self.before = tuple(dict.fromkeys(c.target for c in found if c.target is not None)) or self.before
 
-    def name(self, clause: Clause, is_last: bool) -> None:
+    def name(self, clause: RequestClause, is_last: bool) -> None:
         """A clause of places alone; the last one is to be as what was said before."""
         added = [index for index, change in enumerate(self.changes) if change.what == "add"]
         if self._is_side_of_new(clause):
@@ -89,18 +89,18 @@ class _Gathering:
             raise EditError(f"what is to be different about '{short(said)}' is not said; {ADVICE}")
         return self.changes
 
-    def _is_side_of_new(self, clause: Clause) -> bool:
+    def _is_side_of_new(self, clause: RequestClause) -> bool:
         """'Add an S-bend, first to the right'."""
         is_bare = bool(clause.targets) and clause.targets[0].is_bare
         return is_bare and bool(self.changes) and self.changes[-1].what == "add"
 
 
-def _is_settled(rest: Sequence[Clause]) -> bool:
+def _is_settled(rest: Sequence[RequestClause]) -> bool:
     """'The second turn is too gentle, make it sharper': does the clause behind a complaint say what to do?"""
     return bool(rest) and rest[0].is_action and all(t.noun == "it" or t.is_that for t in rest[0].targets)
 
 
-def _complains_of_it(clause: Clause) -> bool:
+def _complains_of_it(clause: RequestClause) -> bool:
     return (
         "too" in clause.names
         and bool(clause.names & TOO.keys())
@@ -119,7 +119,7 @@ TOO = {"gentle": "sharper", "sharp": "gentler", "sweeping": "tighter", "long": "
 """What is wanted of what is too long."""
 
 
-def _complains(clause: Clause) -> bool:
+def _complains(clause: RequestClause) -> bool:
     """Is something too long? Then the clause is one that wants it shorter."""
     if "too" not in clause.names or not clause.names & TOO.keys():
         return False
@@ -133,6 +133,6 @@ def _like(target: Target, before: Sequence[Target]) -> Target:
     return replace(target, noun=nouns[-1]) if target.noun is None and nouns else target
 
 
-def _not_understood(clause: Clause) -> None:
+def _not_understood(clause: RequestClause) -> None:
     told = ", ".join(f"'{word}'" for word in clause.unknown)
     raise EditError(f"{told} in '{short(clause.words)}' is not understood; {ADVICE}")

@@ -20,7 +20,7 @@ SIGNS = {",": "comma", ";": "then", ".": "stop", "!": "stop", "\n": "then", "%":
 
 
 @dataclass(frozen=True, slots=True)
-class Lexeme:
+class RequestLexeme:
     """A meaning: a name of the vocabulary, "#" for a number, "ord" for a place in a row."""
 
     name: str
@@ -59,10 +59,10 @@ def _longest() -> int:
     return max(len(phrase) for phrase in _phrases())
 
 
-def lexemes(words: str) -> list[Lexeme]:
+def lexemes(words: str) -> list[RequestLexeme]:
     """The meanings of a request in order; words without a meaning are UNKNOWN, noise is left out."""
     found = tokens(_OWNER.sub(r"\1", _ELIDED.sub(r"\1 ", words)))
-    out: list[Lexeme] = []
+    out: list[RequestLexeme] = []
     at = 0
     while at < len(found):
         token = found[at]
@@ -78,16 +78,16 @@ def lexemes(words: str) -> list[Lexeme]:
             name, value = "#", 1.0  # 'turn one'
         if name != "-":
             first, *rest = name.split() or [name]
-            out += [Lexeme(first, text, value), *(Lexeme(part, "", value) for part in rest)]
+            out += [RequestLexeme(first, text, value), *(RequestLexeme(part, "", value) for part in rest)]
     return _with_units(out)
 
 
-def _number(found: Sequence[Token], at: int, out: list[Lexeme]) -> int:
+def _number(found: Sequence[Token], at: int, out: list[RequestLexeme]) -> int:
     """A number, or an ordinal: '2nd', '2. Kurve', '2e virage'."""
     token = found[at]
     after = found[at + 1] if at + 1 < len(found) else None
     if token.sort == "ratio":
-        out.append(Lexeme("#", token.raw, token.value, "%"))
+        out.append(RequestLexeme("#", token.raw, token.value, "%"))
         return at + 1
     is_whole = token.value == int(token.value) and 1 <= token.value < 100
     beyond = found[at + 2] if at + 2 < len(found) else None
@@ -95,9 +95,9 @@ def _number(found: Sequence[Token], at: int, out: list[Lexeme]) -> int:
         glued = after.sort == "word" and after.text in _ENDINGS and after.text not in ("a", "e", "o")
         dotted = after.text == "." and beyond is not None and _is_thing(beyond)
         if glued or dotted:
-            out.append(Lexeme("ord", f"{token.raw}{after.raw}", token.value))
+            out.append(RequestLexeme("ord", f"{token.raw}{after.raw}", token.value))
             return at + 2
-    out.append(Lexeme("#", token.raw, token.value))
+    out.append(RequestLexeme("#", token.raw, token.value))
     return at + 1
 
 
@@ -155,36 +155,36 @@ UNITS = {"deg": ("deg", 1.0), "m": ("m", 1.0), "km": ("m", 1000.0), "ft": ("m", 
 UNITS["times"] = ("times", 1.0)
 
 
-def _with_units(given: Sequence[Lexeme]) -> list[Lexeme]:
+def _with_units(given: Sequence[RequestLexeme]) -> list[RequestLexeme]:
     """Numbers with the unit behind them; 'twenty five' put together; dashes that say nothing left out."""
-    out: list[Lexeme] = []
+    out: list[RequestLexeme] = []
     for lexeme in given:
         before = out[-1] if out else None
         if before and before.name == "#" and not before.unit:
             if lexeme.name in UNITS:
                 unit, factor = UNITS[lexeme.name]
-                out[-1] = Lexeme("#", f"{before.text} {lexeme.text}", before.value * factor, unit)
+                out[-1] = RequestLexeme("#", f"{before.text} {lexeme.text}", before.value * factor, unit)
                 continue
             if lexeme.name == "#" and before.value in (20, 30, 50, 90) and lexeme.value < 10:
-                out[-1] = Lexeme("#", f"{before.text} {lexeme.text}", before.value + lexeme.value)
+                out[-1] = RequestLexeme("#", f"{before.text} {lexeme.text}", before.value + lexeme.value)
                 continue
             if lexeme.name == "dash":
                 out.append(lexeme)
                 continue
         if lexeme.name in ("twice", "thrice", "half", "quarter"):
             value = {"twice": 2.0, "thrice": 3.0, "half": 0.5, "quarter": 0.25}[lexeme.name]
-            out.append(Lexeme("#", lexeme.text, value, "times"))
+            out.append(RequestLexeme("#", lexeme.text, value, "times"))
             continue
         if lexeme.name == "dash":
             continue
         if before and before.name == "dash":
             if lexeme.name == "#":
-                out[-1] = Lexeme("to", "-")
+                out[-1] = RequestLexeme("to", "-")
             else:
                 out.pop()
                 if lexeme.name in UNITS and out and out[-1].name == "#" and not out[-1].unit:
                     unit, factor = UNITS[lexeme.name]
-                    out[-1] = Lexeme("#", out[-1].text, out[-1].value * factor, unit)
+                    out[-1] = RequestLexeme("#", out[-1].text, out[-1].value * factor, unit)
                     continue
         out.append(lexeme)
     return out

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from roadgpt.design.edit.lexing import Lexeme
+from roadgpt.design.edit.lexing import RequestLexeme
 
-Row = list[Lexeme]
+Row = list[RequestLexeme]
 THINGS = {"turn", "straight", "slope_noun"}
 BOUNDS = {
     "steeper": ("at_most", "slope_noun"),
@@ -26,11 +26,11 @@ def _name(row: Row, at: int) -> str:
     return row[at].name if 0 <= at < len(row) else ""
 
 
-def _apart(lexeme: Lexeme, behind: str) -> tuple[Lexeme, ...]:
+def _apart(lexeme: RequestLexeme, behind: str) -> tuple[RequestLexeme, ...]:
     """'No slope' is level, 'no slope over 3 %' is none."""
     if lexeme.text.lower() != "no slope" or behind not in BOUNDS:
         return (lexeme,)
-    return Lexeme("not", "no"), Lexeme("slope_noun", "slope")
+    return RequestLexeme("not", "no"), RequestLexeme("slope_noun", "slope")
 
 
 def bounded(row: Row) -> Row:
@@ -43,7 +43,7 @@ def bounded(row: Row) -> Row:
         if (
             noun and _name(row, at + 2) in BOUNDS and "#" in (_name(row, at + 3), _name(row, at + 4))
         ):  # 'no straight longer than'
-            every = [Lexeme("every", "all"), replace(noun, text=f"{noun.text}s")]
+            every = [RequestLexeme("every", "all"), replace(noun, text=f"{noun.text}s")]
             out += [noun] if noun.name == "slope_noun" else every
             row = [*row[:at], row[at], *row[at + 2 :]]
         is_over = _name(row, at + 1) == "over"
@@ -52,7 +52,7 @@ def bounded(row: Row) -> Row:
         stop = at + (2 if is_over else 3)
         if bound and _name(row, stop) == "#":
             words = " ".join(x.text for x in row[at:stop])
-            out += [Lexeme(bound[0], words), *([Lexeme(bound[1], "")] if bound[1] else [])]
+            out += [RequestLexeme(bound[0], words), *([RequestLexeme(bound[1], "")] if bound[1] else [])]
             at = stop
             continue
         out.append(row[at])

@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import Any, NamedTuple, cast
 
 from roadgpt.brief.model import Kind
-from roadgpt.design.edit.counting import Row
-from roadgpt.design.edit.lexing import Lexeme
+from roadgpt.design.edit.counting import CountedRow
+from roadgpt.design.edit.lexing import RequestLexeme
 from roadgpt.design.edit.request import Measure, Noun, Place, Target
 
 TURNS: dict[str, Kind | None] = {
@@ -35,27 +35,27 @@ DEMONSTRATIVES = {"this", "that", "these", "those"}
 PLACES = {"after", "before", "between", "on"}
 
 
-class Named(NamedTuple):
+class NamedTarget(NamedTuple):
     """A target, and the index behind it."""
 
     target: Target
     stop: int
 
 
-def named(row: Sequence[Lexeme], at: int) -> Named | None:
+def named(row: Sequence[RequestLexeme], at: int) -> NamedTarget | None:
     """The target that is named from ``at`` on; None where none is."""
-    return _Reader(row).read(at)
+    return _TargetReader(row).read(at)
 
 
-def place_at(row: Sequence[Lexeme], at: int) -> tuple[int, Place | None]:
+def place_at(row: Sequence[RequestLexeme], at: int) -> tuple[int, Place | None]:
     """A place such as 'after the second turn' and the index behind it; None where none stands there."""
-    return _Reader(row).place_behind(at)
+    return _TargetReader(row).place_behind(at)
 
 
-class _Reader(Row):
+class _TargetReader(CountedRow):
     """Modifiers in any order, then a noun, then what stands behind it."""
 
-    def read(self, at: int) -> Named | None:
+    def read(self, at: int) -> NamedTarget | None:
         begun, found = at, dict[str, Any]()
         is_definite = False
         while True:
@@ -154,7 +154,7 @@ class _Reader(Row):
         elif name in ("long", "short"):
             found["size"] = name
 
-    def _noun(self, begun: int, at: int, found: dict[str, Any], is_definite: bool) -> Named | None:
+    def _noun(self, begun: int, at: int, found: dict[str, Any], is_definite: bool) -> NamedTarget | None:
         name = self.name(at)
         noun: Noun | None
         is_said = name in NOUNS or name in SIDED
@@ -171,13 +171,13 @@ class _Reader(Row):
             at += 1
         elif name in HALVES and not found.get("numbers"):
             target = Target("road", half=HALVES[name], every=True, words=f"the {self.row[at].text}")
-            return Named(target, at + 1)
+            return NamedTarget(target, at + 1)
         elif name in ("up", "down") and is_definite and self.row[at].text.lower() in SLOPES:
             noun, is_said = "straight", True  # 'the climb'
             found["way"] = name
             at += 1
         elif name == "it" and at == begun:
-            return self._that(at) or Named(Target("it", words=self.row[at].text), at + 1)
+            return self._that(at) or NamedTarget(Target("it", words=self.row[at].text), at + 1)
         elif at > begun and self.row[at - 1].text.lower() == "final":
             noun = "end"
             found["numbers"] = ()
@@ -192,7 +192,7 @@ class _Reader(Row):
             at = self.numbers(at, found)
         return self._built(begun, at, noun, found, is_definite, is_said)
 
-    def _that(self, at: int) -> Named | None:
+    def _that(self, at: int) -> NamedTarget | None:
         """'that turn'; not 'make that straight'."""
         noun = self.name(at + 1)
         leads = noun in TURNS or (noun == "straight" and bool(self.name(at + 2)))
@@ -201,7 +201,7 @@ class _Reader(Row):
             return None
         words = f"{self.row[at].text} {found.target.words}"
         is_that = not found.target.numbers
-        return Named(replace(found.target, is_that=is_that, is_definite=True, words=words), found.stop)
+        return NamedTarget(replace(found.target, is_that=is_that, is_definite=True, words=words), found.stop)
 
     def _built(
         self,
@@ -211,7 +211,7 @@ class _Reader(Row):
         found: dict[str, Any],
         is_definite: bool,
         is_said: bool,
-    ) -> Named | None:
+    ) -> NamedTarget | None:
         indefinite = bool(found.get("indefinite")) and not is_definite and not found.get("numbers")
         words = " ".join(lexeme.text for lexeme in self.row[begun:at])
         target = Target(
@@ -222,7 +222,7 @@ class _Reader(Row):
             words=words,
         )
         if indefinite:
-            return Named(target, at)  # something new: where it is to be, is read by whoever adds it
+            return NamedTarget(target, at)  # something new: where it is to be, is read by whoever adds it
         at, place = self.place_behind(at)
         if place:
             target = replace(target, place=place, words=" ".join(x.text for x in self.row[begun:at]))
@@ -231,7 +231,7 @@ class _Reader(Row):
             if other:
                 target = replace(target, but=other.target, every=True)
                 at = other.stop
-        return Named(target, at)
+        return NamedTarget(target, at)
 
     def place_behind(self, at: int) -> tuple[int, Place | None]:
         """'after the second turn', 'between the first and the second turn', where it stands here."""

@@ -1,4 +1,4 @@
-"""Reads change requests by rules: words -> Request. Verb: ``read_request``.
+"""Reads change requests by rules: words -> EditRequest. Verb: ``read_request``.
 
 The words are cut into clauses at commas and at 'and'. Each clause names a place and what is to be different
 there; what it leaves out is taken from the clause before, or from the one behind: 'make the first and the
@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from roadgpt.design.edit.clause import Clause
+from roadgpt.design.edit.clause import RequestClause
 from roadgpt.design.edit.gathering import ADVICE, gathered, short
-from roadgpt.design.edit.lexing import UNKNOWN, Lexeme, lexemes
+from roadgpt.design.edit.lexing import UNKNOWN, RequestLexeme, lexemes
 from roadgpt.design.edit.naming import NOUNS, PLACES, SIDED, named, place_at
-from roadgpt.design.edit.request import Change, Place, Request, Target
+from roadgpt.design.edit.request import Change, EditRequest, Place, Target
 from roadgpt.design.edit.rewording import reworded
 from roadgpt.errors import EditError
 
@@ -22,7 +22,7 @@ SEPARATORS = {"comma", "and", "then", "stop"}
 AT = {"at_start": "start", "at_end": "end", "at_mid": "middle"}
 
 
-def read_request(words: str) -> Request:
+def read_request(words: str) -> EditRequest:
     """What a change request asks for.
 
     Raises:
@@ -48,7 +48,7 @@ def read_request(words: str) -> Request:
     if not changes:
         told = f"'{short(words)}' is no change of a road that I know"
         raise EditError(f"{told}; {ADVICE}")
-    return Request(words, tuple(changes), unused)
+    return EditRequest(words, tuple(changes), unused)
 
 
 def _settled(changes: Sequence[Change]) -> list[Change]:
@@ -64,9 +64,9 @@ def _settled(changes: Sequence[Change]) -> list[Change]:
     return [change for change in changes if not is_said(change)]
 
 
-def _parts(row: Sequence[Lexeme]) -> list[list[Lexeme]]:
+def _parts(row: Sequence[RequestLexeme]) -> list[list[RequestLexeme]]:
     """The clauses; an 'and' within a name of places cuts nothing."""
-    out: list[list[Lexeme]] = [[]]
+    out: list[list[RequestLexeme]] = [[]]
     at = 0
     while at < len(row):
         lexeme = row[at]
@@ -87,8 +87,8 @@ def _parts(row: Sequence[Lexeme]) -> list[list[Lexeme]]:
     return [part for part in out if part]
 
 
-def _clause(row: Sequence[Lexeme]) -> Clause:
-    out = Clause(words=" ".join(x.text for x in row if x.text), begins_unknown=row[0].name == UNKNOWN)
+def _clause(row: Sequence[RequestLexeme]) -> RequestClause:
+    out = RequestClause(words=" ".join(x.text for x in row if x.text), begins_unknown=row[0].name == UNKNOWN)
     at = 0
     while at < len(row):
         lexeme = row[at]
@@ -128,25 +128,25 @@ def _clause(row: Sequence[Lexeme]) -> Clause:
     return out
 
 
-def _behind_road(row: Sequence[Lexeme], at: int) -> int:
+def _behind_road(row: Sequence[RequestLexeme], at: int) -> int:
     """'In the middle of the road' is a place, and speaks of no road."""
     found = named(row, at + 1) if at < len(row) and row[at].name in ("of", "on") else None
     return found.stop if found and found.target.noun == "road" and not found.target.half else at
 
 
-def _is_verb(row: Sequence[Lexeme]) -> bool:
+def _is_verb(row: Sequence[RequestLexeme]) -> bool:
     """'Turn the second bend left': the first word is what to do."""
     things = {*NOUNS, *SIDED, "left", "right"}
     return row[1].name in ("the", "every", "ord", "it") and any(x.name in things for x in row[1:])
 
 
-def _with_amounts(clauses: Sequence[Clause]) -> list[Clause]:
+def _with_amounts(clauses: Sequence[RequestClause]) -> list[RequestClause]:
     """'Make it shorter, 300 m in total': a number by itself belongs to what stands before it."""
-    out: list[Clause] = []
+    out: list[RequestClause] = []
     for clause in clauses:
         before = out[-1] if out else None
         if clause.is_amount and before and before.is_action and "#" not in before.names:
-            before.row += [*([] if clause.names & {"by", "to"} else [Lexeme("to", "")]), *clause.row]
+            before.row += [*([] if clause.names & {"by", "to"} else [RequestLexeme("to", "")]), *clause.row]
             before.words = f"{before.words}, {clause.words}"
         else:
             out.append(clause)

@@ -113,7 +113,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class EditRequest:
     """All that was asked for at once."""
 
     words: str

@@ -10,11 +10,11 @@ no steeper than 6 %                      slope at most 6 %
 from collections.abc import Sequence
 from dataclasses import replace
 
-from roadgpt.design.edit.lexing import Lexeme
+from roadgpt.design.edit.lexing import RequestLexeme
 from roadgpt.design.edit.limiting import bounded
-from roadgpt.design.edit.naming import Named, named
+from roadgpt.design.edit.naming import NamedTarget, named
 
-Row = list[Lexeme]
+Row = list[RequestLexeme]
 STOPS = {"comma", "then", "stop", "open", "close"}
 VERBS = {"make", "add", "remove"}
 QUALITIES = {"left", "right", "up", "down", "flat", "sharp", "gentle", "sweeping", "long", "short", "steep"}
@@ -34,7 +34,7 @@ LESS = {"deg": "gentler", "m": "shorter", "%": "flatter"}
 ONTO = {"to", "from", "on", "the", "ord", "every", "it", "at_end", "at_start", "turn", "at", "of"}
 
 
-def reworded(row: Sequence[Lexeme]) -> Row:
+def reworded(row: Sequence[RequestLexeme]) -> Row:
     """The same request, put plainly."""
     out = _by_extremes(_turning(_without_statements(_without_asides([*row]))))
     out = [lexeme for lexeme in out if lexeme.name != "is"]
@@ -53,7 +53,7 @@ def _by_extremes(row: Row) -> Row:
         begun = at - 1 if _name(row, at - 1) == "the" else at
         if most and _name(row, begun - 1) == "with" and _name(row, begun - 2) in ("turn", "straight"):
             noun = begun - 2
-            return [*row[:noun], Lexeme(most, lexeme.text), row[noun], *_by_extremes(row[at + 2 :])]
+            return [*row[:noun], RequestLexeme(most, lexeme.text), row[noun], *_by_extremes(row[at + 2 :])]
     return row
 
 
@@ -106,7 +106,7 @@ def _pairs(row: Row) -> Row:
     if at < 0 or row[at].name == row[at + 1].name:
         return row
     behind = at + 2 + (_name(row, at + 2) == "turn")
-    return [*row[:at], row[at], Lexeme("s_bend", row[at + 1].text), *row[behind:]]
+    return [*row[:at], row[at], RequestLexeme("s_bend", row[at + 1].text), *row[behind:]]
 
 
 def _apart(row: Row) -> Row:
@@ -115,8 +115,8 @@ def _apart(row: Row) -> Row:
     found = named(row, at + 1) if at >= 0 else None
     if found is None:
         return row
-    straight = [Lexeme("add", "apart"), Lexeme("a", "a"), Lexeme("straight", "straight")]
-    return [*row[:at], *straight, Lexeme("between", "between"), *row[at + 1 :]]
+    straight = [RequestLexeme("add", "apart"), RequestLexeme("a", "a"), RequestLexeme("straight", "straight")]
+    return [*row[:at], *straight, RequestLexeme("between", "between"), *row[at + 1 :]]
 
 
 def _followed(row: Row) -> Row:
@@ -132,7 +132,7 @@ def _followed(row: Row) -> Row:
     else:
         place, new = row[begun:at], row[at + 1 : stop]
     place, new = [x for x in place if x.name not in VERBS], [x for x in new if x.name not in ("with", "by")]
-    return [*row[:begun], Lexeme("add", ""), *new, Lexeme(how, how), *place, *row[stop:]]
+    return [*row[:begun], RequestLexeme("add", ""), *new, RequestLexeme(how, how), *place, *row[stop:]]
 
 
 def _instead(row: Row) -> Row:
@@ -151,12 +151,12 @@ def _instead(row: Row) -> Row:
     if found and _is_replaced(found, new):
         kept = [x for x in new if x.name not in VERBS]
         rest = row[stop:] if at > begun else row[end:]
-        middle = [Lexeme("make", ""), *row[at + 1 : found.stop], *kept]
+        middle = [RequestLexeme("make", ""), *row[at + 1 : found.stop], *kept]
         return [*row[:begun], *middle, *_instead(rest)]
     return [*row[:at], *_instead(row[stop:])]
 
 
-def _is_replaced(found: Named, new: Row) -> bool:
+def _is_replaced(found: NamedTarget, new: Row) -> bool:
     is_known = found.target.noun in ("turn", "straight") and found.target.is_definite
     first = next((i for i, x in enumerate(new) if x.name not in VERBS), len(new))
     return is_known and not found.target.is_bare and _name(new, first) == "a"
@@ -212,22 +212,26 @@ def _by_amounts(row: Row) -> Row:
     for at, lexeme in enumerate(row):
         unit_ = row[at + 1].unit if _name(row, at + 1) == "#" else ""
         if lexeme.name == "plus" and unit_ in ("deg", "m"):  # 'turn 1 +15 degrees'
-            out += [replace(lexeme, name=MORE[unit_]), Lexeme("by", "")]
+            out += [replace(lexeme, name=MORE[unit_]), RequestLexeme("by", "")]
             continue
         if lexeme.name == "plus" and unit_ == "%":  # 'to +5 %'
             out.append(replace(lexeme, name="up"))
             continue
         if lexeme.name == "#" and lexeme.value < 0 and lexeme.unit in ("deg", "m"):
-            out += [Lexeme(LESS[lexeme.unit], ""), Lexeme("by", ""), replace(lexeme, value=-lexeme.value)]
+            out += [
+                RequestLexeme(LESS[lexeme.unit], ""),
+                RequestLexeme("by", ""),
+                replace(lexeme, value=-lexeme.value),
+            ]
             continue
         is_extra = lexeme.name == "a" and lexeme.text.lower() in EXTRA and unit_ in MORE
         if is_extra and not _is_new(row, at):  # 'give it another 30 m'
-            out += [replace(lexeme, name=MORE[unit_]), Lexeme("by", "")]
+            out += [replace(lexeme, name=MORE[unit_]), RequestLexeme("by", "")]
             continue
         if lexeme.name == "remove" and _is_slope_of(row, at + 1):  # 'remove the slope from turn 1'
             out.append(replace(lexeme, name="flat"))
             gone = 1 + (_name(row, at + 1) == "the")
-            row[at + 1 : at + 1 + gone] = [Lexeme("at", "")] * gone
+            row[at + 1 : at + 1 + gone] = [RequestLexeme("at", "")] * gone
             continue
         step = at + 1
         while _name(row, step) in ("a", "more", "by"):
@@ -238,7 +242,7 @@ def _by_amounts(row: Row) -> Row:
             if unit in MORE and _name(row, step + 1) in ONTO and not _is_new(row, step):
                 row[step] = replace(number, unit=unit)
                 is_more = lexeme.name in ("add", "more")
-                out += [replace(lexeme, name=(MORE if is_more else LESS)[unit]), Lexeme("by", "")]
+                out += [replace(lexeme, name=(MORE if is_more else LESS)[unit]), RequestLexeme("by", "")]
                 continue
         out.append(lexeme)
     return out

@@ -38,7 +38,7 @@ class Goal:
     high: float
 
 
-class Step(Protocol):
+class EditStep(Protocol):
     """A change of elements."""
 
     @property
@@ -188,7 +188,7 @@ def straight(length: float, incline: float) -> Segment:
 
 
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
-    """A turn of a element's side and slope that is written anew."""
+    """A turn of an element's side and slope that is written anew."""
     ramps = [s.transition for s in element.segments if s.transition]
     ramp = ramps[0] if ramps else RAMP_SHARE * radius * radians(degrees)
     segments = turn_segments(degrees, 1 if element.side == "left" else -1, radius, ramp, element.incline)
@@ -245,7 +245,7 @@ class Flip:
 
 
 def flipped(element: RoadElement) -> RoadElement:
-    """The mirror image of a element."""
+    """The mirror image of an element."""
     return replace(
         element,
         side=element.side and OTHER_SIDE[element.side],

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, cast
 
-from roadgpt.design.edit.clause import Clause
+from roadgpt.design.edit.clause import RequestClause
 from roadgpt.design.edit.dimensions import ADJECTIVES, LONG, SHORT, Dimensions
 from roadgpt.design.edit.request import Change, Place, Target
 from roadgpt.errors import EditError
@@ -31,7 +31,7 @@ ENDINGS = {
 """First words of 'end with' and its like; the last one is of turns that are to lie apart."""
 
 
-def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
+def wanted(clause: RequestClause, before: tuple[Target, ...]) -> list[Change]:
     """The changes of one clause; empty where nothing was said that is known.
 
     Args:
@@ -83,13 +83,13 @@ def wanted(clause: Clause, before: tuple[Target, ...]) -> list[Change]:
     return [change for change in out if change is not None]
 
 
-def _is_new_shape(clause: Clause) -> bool:
+def _is_new_shape(clause: RequestClause) -> bool:
     """Is something new to stand in the place of what is there?"""
     described = any(t.kind or t.side or t.sharpness or t.degrees for t in clause.new)
     return "swap" in clause.names and described
 
 
-def _of_turns(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
+def _of_turns(clause: RequestClause, before: tuple[Target, ...]) -> list[Target]:
     """All turns, where none were named."""
     named = [t for t in _targets(clause, before) if t.noun in ("turn", None) and not t.is_bare]
     return [replace(target, every=True) for target in named] or [
@@ -97,12 +97,12 @@ def _of_turns(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
     ]
 
 
-def _speaks_of_it(clause: Clause, before: tuple[Target, ...]) -> bool:
+def _speaks_of_it(clause: RequestClause, before: tuple[Target, ...]) -> bool:
     """'Make it a hairpin' and 'turn it into a left turn' change what was named before."""
     return bool(before) and "make" in clause.names
 
 
-def _targets(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
+def _targets(clause: RequestClause, before: tuple[Target, ...]) -> list[Target]:
     out: list[Target] = []
     for target in clause.targets:
         if target.noun == "it":
@@ -131,7 +131,7 @@ def _targets(clause: Clause, before: tuple[Target, ...]) -> list[Target]:
     return out or list(before)
 
 
-def _is_of_this_road(clause: Clause) -> None:
+def _is_of_this_road(clause: RequestClause) -> None:
     """EditError for what no change of a design is, though its words are known."""
     words = {x.text.lower() for x in clause.row}
     if any(target.noun == "road" for target in clause.new):
@@ -162,7 +162,7 @@ def _without_it(target: Target, before: tuple[Target, ...]) -> Target:
     return target
 
 
-def _into_a_straight(clause: Clause) -> bool:
+def _into_a_straight(clause: RequestClause) -> bool:
     turns = any(t.noun in ("turn", None) for t in clause.targets)
     straight = any(t.noun == "straight" for t in clause.new) or (
         len(clause.targets) > 1 and clause.targets[-1].words == "straight"
@@ -173,7 +173,7 @@ def _into_a_straight(clause: Clause) -> bool:
     return False
 
 
-def _removed(clause: Clause, targets: Sequence[Target]) -> list[Change]:
+def _removed(clause: RequestClause, targets: Sequence[Target]) -> list[Change]:
     if clause.new and not targets:
         raise EditError(
             f"which one is to be removed in '{clause.words}' is not said; say: remove the second turn"
@@ -183,7 +183,7 @@ def _removed(clause: Clause, targets: Sequence[Target]) -> list[Change]:
     return [Change("remove", target, words=clause.words) for target in targets]
 
 
-def _added(clause: Clause, before: tuple[Target, ...]) -> Change:
+def _added(clause: RequestClause, before: tuple[Target, ...]) -> Change:
     things = clause.new or [t for t in clause.targets if t.noun in ("turn", "straight")]
     if not things:
         raise EditError(
@@ -222,7 +222,7 @@ def _added(clause: Clause, before: tuple[Target, ...]) -> Change:
     )
 
 
-def _at(clause: Clause) -> Place:
+def _at(clause: RequestClause) -> Place:
     """Where it is to be added: also 'to the start', which reads like a target."""
     for target in clause.targets:
         if target.noun in ("start", "end"):
@@ -230,7 +230,9 @@ def _at(clause: Clause) -> Place:
     return Place("end")
 
 
-def _on(target: Target | None, change: Change, found: Sequence[Change], clause: Clause) -> Change | None:
+def _on(
+    target: Target | None, change: Change, found: Sequence[Change], clause: RequestClause
+) -> Change | None:
     """The change for one target; where none was named, for what such changes are usually meant."""
     is_side = target is not None and target.is_bare and target.side and not clause.new
     if target is not None and is_side and all(c.what == "side" for c in found):
@@ -255,7 +257,7 @@ def _on(target: Target | None, change: Change, found: Sequence[Change], clause: 
     return replace(change, target=target)
 
 
-def _is_filter(found: Sequence[Change], clause: Clause) -> bool:
+def _is_filter(found: Sequence[Change], clause: RequestClause) -> bool:
     """'Le virage à gauche plus serré': the side says which turn, as something else is to be changed."""
     abroad = any(x.name in ("left", "right") and set(x.text.lower().split()) & ABROAD for x in clause.row)
     return abroad and any(c.what != "side" for c in found)

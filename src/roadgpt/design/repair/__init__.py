@@ -20,9 +20,9 @@ from roadgpt.brief.outline import Outline
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.repair.changes import changes_between
-from roadgpt.design.repair.figure import figure_of
 from roadgpt.design.repair.limits import MARGINS, Margins, limits_of
 from roadgpt.design.repair.placing import placed
+from roadgpt.design.repair.polyline import polyline_of
 from roadgpt.design.repair.slopes import sloped
 from roadgpt.design.repair.solving import Aim, solved
 from roadgpt.design.repair.wishes import with_wishes
@@ -141,7 +141,7 @@ def _solved(
     turns = np.radians([s.turn_degrees for s in proposed])
     now: tuple[Segment, ...] | None = None
     for _ in range(ROUNDS):
-        figure = figure_of(now or proposed)
+        figure = polyline_of(now or proposed)
         rows, most = limits_of(proposed, aims.elements, figure, aims.outline, world, margins)
         found = solved(Aim(lengths, turns, figure, rows, most, world, margins))
         if found is None:

@@ -14,7 +14,7 @@ import numpy as np
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import LEAST_TURN
-from roadgpt.design.repair.figure import Figure
+from roadgpt.design.repair.polyline import PlanPolyline
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World
@@ -88,7 +88,7 @@ class Rows:
 def limits_of(
     segments: Sequence[Segment],
     elements: Sequence[RoadElement],
-    figure: Figure,
+    figure: PlanPolyline,
     outline: Outline,
     world: World,
     margins: Margins,
@@ -118,7 +118,7 @@ def limits_of(
     return rows.done()
 
 
-def _seen(rows: Rows, element: RoadElement, figure: Figure, margins: Margins) -> None:
+def _seen(rows: Rows, element: RoadElement, figure: PlanPolyline, margins: Margins) -> None:
     """A turn stays one that is seen, and whole; a slighter bend stays slight."""
     members = list(element.members)
     if not element.degrees:
@@ -135,7 +135,7 @@ def _seen(rows: Rows, element: RoadElement, figure: Figure, margins: Margins) ->
         rows.add({index: 1.0}, {index: -peak * CLEARLY}, 0.0)
 
 
-def _wish(rows: Rows, element: RoadElement, wish: Feature, figure: Figure, margins: Margins) -> None:
+def _wish(rows: Rows, element: RoadElement, wish: Feature, figure: PlanPolyline, margins: Margins) -> None:
     members = list(element.members)
     length = _drawn_in(wish.length, margins.promise) if wish.length else None
     if not element.degrees:

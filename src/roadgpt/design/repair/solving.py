@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.design.repair.figure import Complex, Figure
 from roadgpt.design.repair.limits import Margins
+from roadgpt.design.repair.polyline import Complex, PlanPolyline
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 
@@ -48,7 +48,7 @@ class Aim(NamedTuple):
     lengths: Array
     turns: Array
     """Radians, left positive."""
-    figure: Figure
+    figure: PlanPolyline
     rows: Array
     most: Array
     world: World

@@ -7,8 +7,8 @@ from itertools import combinations, islice, pairwise
 from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.words import Range
-from roadgpt.design.order import both
 from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.sequence import both
 
 MOST_WAYS = 2000  # of letting straights answer wishes that are looked at
 FREE_TURN = Feature("turn", "turn")

@@ -11,16 +11,16 @@ from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.bounding import is_beyond, within
-from roadgpt.design.edit.grading import ways_to_slope, ways_to_slope_all
-from roadgpt.design.edit.growing import ways_to_stretch_the_road
+from roadgpt.design.edit.length_candidates import road_length_candidates
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import Become, Flip, Step, bend, straight, stretch
+from roadgpt.design.edit.slope_candidates import road_slope_candidates, slope_candidates
+from roadgpt.design.edit.steps import Become, EditStep, Flip, bend, straight, stretch
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, is_turn
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
-Way = tuple[Step, ...]
+EditCandidate = tuple[EditStep, ...]
 
 SHARPER = (
     (1.25, 0.75),
@@ -56,9 +56,9 @@ MOST_ANGLE = 210.0
 SEEN = 10.6  # m: the shortest straight that is seen
 
 
-def ways_to_change(
+def change_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
-) -> tuple[Way, ...]:
+) -> tuple[EditCandidate, ...]:
     """All ways, the preferred one first; empty where everything is as it was asked for already.
 
     Args:
@@ -79,12 +79,12 @@ def ways_to_change(
             return _each(elements, lambda element: _bends(change, element, world))
         case "length":
             if change.target is not None and change.target.noun == "road":
-                return ways_to_stretch_the_road(change, elements, found, world)
+                return road_length_candidates(change, elements, found, world)
             return _each(elements, lambda element: _lengths(change, element, world))
         case "slope":
             if change.target is not None and change.target.noun == "road":
-                return ways_to_slope_all(change, elements, found, world)
-            return _each(elements, lambda element: ways_to_slope(change, element, found, world))
+                return road_slope_candidates(change, elements, found, world)
+            return _each(elements, lambda element: slope_candidates(change, element, found, world))
         case "side":
             if any(element.kind != "turn" for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
@@ -94,7 +94,7 @@ def ways_to_change(
             return _each(elements, _straightened)
 
 
-def ways_to_alternate(elements: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
+def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
     """Turns to the one and to the other side by turns, as the first one begins; empty where they are so."""
     side, wrong = elements[0].side, list[RoadElement]()
     for element in elements:
@@ -103,7 +103,9 @@ def ways_to_alternate(elements: Sequence[RoadElement], world: World) -> tuple[Wa
     return _flipped(wrong, world) if wrong else ()
 
 
-def _each(elements: Sequence[RoadElement], ways: Callable[[RoadElement], Sequence[Step]]) -> tuple[Way, ...]:
+def _each(
+    elements: Sequence[RoadElement], ways: Callable[[RoadElement], Sequence[EditStep]]
+) -> tuple[EditCandidate, ...]:
     """All elements alike: the first way of each, the second way of each, ..."""
     rows = [row for row in (list(ways(element)) for element in elements) if row]
     if not rows:
@@ -111,7 +113,7 @@ def _each(elements: Sequence[RoadElement], ways: Callable[[RoadElement], Sequenc
     return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
 
 
-def _bends(change: Change, element: RoadElement, world: World) -> list[Step]:
+def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]:
     seen = element.seen
     if element.kind != "turn" or seen is None:
         raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
@@ -124,7 +126,7 @@ def _bends(change: Change, element: RoadElement, world: World) -> list[Step]:
         pairs = _radii(change, element, world)
     is_said = change.by is not None or change.to is not None or change.times is not None
     free = change.what == "angle" and is_said
-    out: list[Step] = []
+    out: list[EditStep] = []
     for degrees, radius in pairs:
         radius = max(radius, min(least, seen.radius)) if not is_said or free else max(radius, least)
         radius = min(radius, max(WIDEST, seen.radius))
@@ -233,7 +235,7 @@ def _shapes(change: Change, element: RoadElement, least: float) -> list[tuple[fl
     return [(min(angle, most), wide) for most in (115.0, 70.0, 50.0, 35.0, 25.0, 20.0)]
 
 
-def _lengths(change: Change, element: RoadElement, world: World) -> list[Step]:
+def _lengths(change: Change, element: RoadElement, world: World) -> list[EditStep]:
     seen = element.seen
     before = seen.length if seen else element.length
     if change.to is not None:
@@ -251,7 +253,7 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[Step]:
     if element.kind == "turn":
         assert seen is not None
         tight = least_radius(world)
-        out: list[Step] = []
+        out: list[EditStep] = []
         for length in lengths:
             radius = seen.radius * length / before
             if radius < tight:  # then it also turns less far
@@ -271,13 +273,13 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[Step]:
     return [stretch(element, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
 
 
-def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
+def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
     """The mirror image of each; where that finds no room, turned a little less or more as well."""
     flips = tuple(Flip(element) for element in elements)
     least = least_radius(world)
-    out: list[Way] = [flips]
+    out: list[EditCandidate] = [flips]
     for more, wider in FLIPPED:
-        bends: list[Step] = []
+        bends: list[EditStep] = []
         for element in elements:
             seen = element.seen
             assert seen is not None
@@ -289,7 +291,7 @@ def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[Way, ...]:
     return tuple(out)
 
 
-def _straightened(element: RoadElement) -> list[Step]:
+def _straightened(element: RoadElement) -> list[EditStep]:
     """A straight in the place of a turn: as long as the turn was, or as long as its chord."""
     if element.kind != "turn" or element.seen is None:
         return []

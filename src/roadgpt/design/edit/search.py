@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from roadgpt import check
 from roadgpt.check.measures import MeasuredFeature, Measures, measure
-from roadgpt.design.edit.room import with_room
-from roadgpt.design.edit.steps import FlipAll, Goal, Quantity, Step
-from roadgpt.design.edit.ways import Way
+from roadgpt.design.edit.candidates import EditCandidate
+from roadgpt.design.edit.spacing import with_room
+from roadgpt.design.edit.steps import EditStep, FlipAll, Goal, Quantity
 from roadgpt.design.repair import repair
 from roadgpt.design.road_elements import RoadElement, RoadElements, joined, shows_turns
 from roadgpt.design.vertical import EASES, Pace, changed_joints, widened
@@ -27,7 +27,7 @@ CORRECTIONS = 6
 REPAIRED = 2  # ways that are repaired in full where none is valid as it is
 LARGEST = 12  # doses of one change that are combined with others
 HUNDREDTH = 100.0
-COUNTED = 25.0  # m: what is written for a element that is not seen may be measured as so much less
+COUNTED = 25.0  # m: what is written for an element that is not seen may be measured as so much less
 
 Aims = dict[tuple[str, Quantity], float]
 
@@ -52,7 +52,11 @@ class Tried(NamedTuple):
 
 
 def tried(
-    design: Design, elements: RoadElements, changes: Sequence[Sequence[Way]], world: World, geometry: Geometry
+    design: Design,
+    elements: RoadElements,
+    changes: Sequence[Sequence[EditCandidate]],
+    world: World,
+    geometry: Geometry,
 ) -> Tried:
     """The first way that makes a valid road; else the objection to the preferred one.
 
@@ -85,7 +89,7 @@ def tried(
     return first
 
 
-def _combined(changes: Sequence[Sequence[Way]]) -> Iterator[tuple[Step, ...]]:
+def _combined(changes: Sequence[Sequence[EditCandidate]]) -> Iterator[tuple[EditStep, ...]]:
     """Ways of all changes together, those nearest to the preferred ones first."""
     some = [list(ways)[: LARGEST if len(changes) > 1 else None] for ways in changes]
     rows = product(*(range(len(ways)) for ways in some))
@@ -93,7 +97,7 @@ def _combined(changes: Sequence[Sequence[Way]]) -> Iterator[tuple[Step, ...]]:
         yield tuple(step for ways, index in zip(some, row, strict=True) for step in ways[index])
 
 
-def _eases(steps: Sequence[Step]) -> tuple[tuple[float, bool], ...]:
+def _eases(steps: Sequence[EditStep]) -> tuple[tuple[float, bool], ...]:
     """Shares of comfort for new changes of slope, and whether they are written into segments that stay.
 
     The parabola in front of a segment that nobody spoke of is left as it was, as long as that will do.
@@ -106,7 +110,7 @@ def _eases(steps: Sequence[Step]) -> tuple[tuple[float, bool], ...]:
 def _one(
     design: Design,
     elements: RoadElements,
-    steps: Sequence[Step],
+    steps: Sequence[EditStep],
     world: World,
     geometry: Geometry,
     ease: float,
@@ -204,7 +208,7 @@ def _unlike(elements: RoadElements, found: Measures) -> str:
 
 
 def seen_as(name: str, elements: RoadElements, found: Measures) -> MeasuredFeature | None:
-    """How a element measures on the finished road; None where it is not seen by itself."""
+    """How an element measures on the finished road; None where it is not seen by itself."""
     turns = [element.name for element in elements if element.kind == "turn"]
     if name in turns:
         return found.turns[turns.index(name)]
@@ -248,7 +252,7 @@ def _told(goal: Goal, value: float) -> str:
     return f"{what} would have {value:.1f} {units[goal.quantity]} and not {goal.aim:.1f}"
 
 
-def _mended(draft: Made, steps: Sequence[Step], world: World) -> Made | None:
+def _mended(draft: Made, steps: Sequence[EditStep], world: World) -> Made | None:
     """The draft repaired in full, where it still shows what was asked for."""
     mended = repair(draft.design, None, world, "full")
     road = build(mended.design)

@@ -32,7 +32,7 @@ class Turn(NamedTuple):
     """Must it go the other way than the one before?"""
 
 
-class Order(NamedTuple):
+class TurnSequence(NamedTuple):
     """Turns with their sides, and the straights asked for before each of them and after the last."""
 
     turns: tuple[Feature, ...]
@@ -44,7 +44,7 @@ def is_hairpin(feature: Feature) -> bool:
     return feature.name in HAIRPINS
 
 
-def drawn_order(outline: Outline, rng: np.random.Generator, plain: bool) -> Order:
+def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
     """Draws what the Outline leaves open.
 
     Args:
@@ -59,7 +59,7 @@ def drawn_order(outline: Outline, rng: np.random.Generator, plain: bool) -> Orde
     _with_ends(outline, turns, gaps)
     sides = _sides(turns, outline, rng)
     features = tuple(replace(turn.feature, side=side) for turn, side in zip(turns, sides, strict=True))
-    return Order(features, tuple(map(tuple, gaps)))
+    return TurnSequence(features, tuple(map(tuple, gaps)))
 
 
 def _listed(

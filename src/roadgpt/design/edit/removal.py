@@ -3,29 +3,29 @@
 from collections.abc import Sequence
 from math import sqrt
 
-from roadgpt.design.edit.room import HIDDEN, SEPARATE
-from roadgpt.design.edit.steps import Become, Step, straight, stretch
-from roadgpt.design.edit.ways import Way
+from roadgpt.design.edit.candidates import EditCandidate
+from roadgpt.design.edit.spacing import HIDDEN, SEPARATE
+from roadgpt.design.edit.steps import Become, EditStep, straight, stretch
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import Segment
 
 
-def ways_to_remove(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[Way, ...]:
+def removal_candidates(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[EditCandidate, ...]:
     """All ways to take turns or straights away: nothing, or a straight, in their place."""
     if len(gone) == len([b for b in elements if b.segments]):
         raise EditError("then no road would be left; remove fewer")
     fillers = (0.0, SEPARATE, 1.0, 45.0)
-    out: list[Way] = []
+    out: list[EditCandidate] = []
     for filler in fillers:
-        steps: list[Step] = []
+        steps: list[EditStep] = []
         for element in gone:
             steps.append(_without(element, elements, filler))
         out.append(tuple(steps))
     return tuple(out)
 
 
-def _without(element: RoadElement, elements: RoadElements, filler: float) -> Step:
+def _without(element: RoadElement, elements: RoadElements, filler: float) -> EditStep:
     at = elements.index(element)
     if element.kind == "gap":
         bends = tuple(s for s in element.segments if s.turn_degrees)

@@ -23,7 +23,7 @@ MOST_STEPS = 500  # of a road beyond all measure, about
 Complex = NDArray[np.complex128]
 
 
-class Figure(NamedTuple):
+class PlanPolyline(NamedTuple):
     """Steps of a plan."""
 
     owner: NDArray[np.intp]
@@ -58,7 +58,7 @@ class Figure(NamedTuple):
         return by_length, by_turn
 
 
-def figure_of(segments: Sequence[Segment]) -> Figure:
+def polyline_of(segments: Sequence[Segment]) -> PlanPolyline:
     """The figure of the plan that is built from these segments."""
     pieces = pieces_of(segments)
     curve = PieceCurve(0.0, 0.0, 0.0, joined(pieces))
@@ -80,4 +80,4 @@ def figure_of(segments: Sequence[Segment]) -> Figure:
             peak[index] = bent * segment.distance / abs(turn)
             first += 5
         at += segment.distance
-    return Figure(np.array(owner), np.concatenate(share), peak)
+    return PlanPolyline(np.array(owner), np.concatenate(share), peak)

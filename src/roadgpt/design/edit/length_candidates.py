@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import Step, bend, stretch
+from roadgpt.design.edit.steps import EditStep, bend, stretch
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
@@ -16,9 +16,9 @@ SLACK = 0.02  # of the length of a road
 WHOLE_ROAD = RoadElement("", "gap", ())  # changes nothing, and is measured
 
 
-def ways_to_stretch_the_road(
+def road_length_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
-) -> tuple[tuple[Step, ...], ...]:
+) -> tuple[tuple[EditStep, ...], ...]:
     """All ways, the preferred one first.
 
     Raises:
@@ -36,7 +36,7 @@ def ways_to_stretch_the_road(
         lengths = [own * (1 + (share - 1) * change.dose) for share in shares]
     if lengths[0] < world.min_length:
         raise EditError(f"a road of {lengths[0]:.0f} m is too short; ask for {world.min_length:g} m or more")
-    out: list[tuple[Step, ...]] = []
+    out: list[tuple[EditStep, ...]] = []
     for length in lengths:
         slack = max(2.0, SLACK * length)
         out += [
@@ -45,7 +45,7 @@ def ways_to_stretch_the_road(
     return tuple(out)
 
 
-def _ways(elements: Sequence[RoadElement], more: float, world: World) -> list[tuple[Step, ...]]:
+def _ways(elements: Sequence[RoadElement], more: float, world: World) -> list[tuple[EditStep, ...]]:
     gaps = [element for element in elements if element.kind == "gap" and element.seen is not None]
     out = []
     if gaps:
@@ -57,7 +57,7 @@ def _ways(elements: Sequence[RoadElement], more: float, world: World) -> list[tu
     return out
 
 
-def _straights(gaps: Sequence[RoadElement], more: float) -> tuple[Step, ...]:
+def _straights(gaps: Sequence[RoadElement], more: float) -> tuple[EditStep, ...]:
     """All of them in proportion; none where they would get too short."""
     lengths = [gap.seen.length if gap.seen else gap.length for gap in gaps]
     if more >= 0:
@@ -75,13 +75,13 @@ def _straights(gaps: Sequence[RoadElement], more: float) -> tuple[Step, ...]:
     )
 
 
-def _everything(elements: Sequence[RoadElement], more: float, world: World) -> tuple[Step, ...]:
+def _everything(elements: Sequence[RoadElement], more: float, world: World) -> tuple[EditStep, ...]:
     """Turns with other radii, as far as they may, and the rest on straights."""
     turns = [element for element in elements if element.kind == "turn" and element.seen is not None]
     gaps = [element for element in elements if element.kind == "gap" and element.seen is not None]
     share = 1 + more / max(sum(element.length for element in elements), 1.0)
     least = least_radius(world)
-    out: list[Step] = []
+    out: list[EditStep] = []
     for turn in turns:
         assert turn.seen is not None
         wider = max(share, least / turn.seen.radius) if share < 1 else share

@@ -5,11 +5,11 @@ from dataclasses import replace
 from math import radians
 
 from roadgpt.brief.model import OTHER_SIDE, Side
+from roadgpt.design.edit.candidates import EditCandidate
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.room import SEPARATE, gap
-from roadgpt.design.edit.steps import Goal, Insert, Step, stretch, turn_segments
-from roadgpt.design.edit.ways import Way
+from roadgpt.design.edit.spacing import SEPARATE, gap
+from roadgpt.design.edit.steps import EditStep, Goal, Insert, stretch, turn_segments
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
@@ -37,7 +37,9 @@ SHARPNESS = {
 }
 
 
-def ways_to_add(change: Change, elements: RoadElements, world: World, number: int) -> tuple[Way, ...]:
+def insertion_candidates(
+    change: Change, elements: RoadElements, world: World, number: int
+) -> tuple[EditCandidate, ...]:
     """All ways to add what a change asks for.
 
     Args:
@@ -52,7 +54,7 @@ def ways_to_add(change: Change, elements: RoadElements, world: World, number: in
     before, splits = _place(change, elements)
     if change.target is not None and change.target.noun == "straight":
         return _straight_ways(change, elements, before, splits, number)
-    out: list[Way] = []
+    out: list[EditCandidate] = []
     # first all places with the first measures, then all with the second, ...
     for spare in SPARE:
         for measures in _measures(change, world):
@@ -178,7 +180,7 @@ def _turns(
     measures: tuple[float, float],
     spare: tuple[float, float],
     number: int,
-) -> Step:
+) -> EditStep:
     names = [element.name for element in elements]
     at = names.index(before) if before else len(elements)
     gap_before, turn_before = _behind(elements[:at])
@@ -253,7 +255,7 @@ def _incline(elements: RoadElements, at: int) -> float:
 
 def _straight_ways(
     change: Change, elements: RoadElements, before: str, splits: Sequence[tuple[str, int]], number: int
-) -> tuple[Way, ...]:
+) -> tuple[EditCandidate, ...]:
     names = [element.name for element in elements]
     at = names.index(before) if before else len(elements)
     lengths = [change.length] if change.length is not None else [NEW_STRAIGHT, 30.0, 60.0, 22.0]

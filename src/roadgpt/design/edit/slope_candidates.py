@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.sloping import SlopeOfAll
-from roadgpt.design.edit.steps import Step, slope
+from roadgpt.design.edit.steps import EditStep, slope
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
 from roadgpt.road import World
@@ -17,7 +17,7 @@ LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
 STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 
 
-def ways_to_slope(change: Change, element: RoadElement, found: Measures, world: World) -> list[Step]:
+def slope_candidates(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
     """Grades of one turn or straight."""
     now = element.seen.grade if element.seen else element.incline
     limit = 100 * world.max_grade
@@ -54,7 +54,7 @@ def ways_to_slope(change: Change, element: RoadElement, found: Measures, world: 
     return _steeper(change, element, now, sign, limit)
 
 
-def _steeper(change: Change, element: RoadElement, now: float, sign: int, limit: float) -> list[Step]:
+def _steeper(change: Change, element: RoadElement, now: float, sign: int, limit: float) -> list[EditStep]:
     if change.more < 0:
         if abs(now) < LEVEL:
             return []
@@ -62,7 +62,7 @@ def _steeper(change: Change, element: RoadElement, now: float, sign: int, limit:
             slope(element, now * share, *sorted((now * (share - 0.3), now * min(share + 0.15, 0.9))))
             for share in FLATTER
         ]
-    out: list[Step] = []
+    out: list[EditStep] = []
     for times, more in STEEPER:
         aim = max(abs(now) * (1 + (times - 1) * change.dose), abs(now) + more * change.dose)
         aim = min(aim if abs(now) >= LEVEL else STEEP_FROM * times / 1.5, limit - 0.3)
@@ -74,9 +74,9 @@ def _steeper(change: Change, element: RoadElement, now: float, sign: int, limit:
     return out
 
 
-def ways_to_slope_all(
+def road_slope_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
-) -> tuple[tuple[Step, ...], ...]:
+) -> tuple[tuple[EditStep, ...], ...]:
     """Grades of the whole road, or of all that lies behind a place."""
     names = frozenset(element.name for element in elements)
     limit = 100 * world.max_grade - 0.3

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from roadgpt.check.measures import MeasuredFeature, Measures
-from roadgpt.design.edit.trying import Made, seen_as
+from roadgpt.design.edit.search import Made, seen_as
 from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road
 from roadgpt.road import Design, Geometry
 
@@ -85,7 +85,7 @@ def _gone(element: RoadElement, name: str, now: RoadElement | None) -> str:
 
 
 def _other(element: RoadElement, now: RoadElement, name: str, made: Made) -> Iterator[str]:
-    """What is different about a element that stayed."""
+    """What is different about an element that stayed."""
     was, seen = element.seen, seen_as(element.name, made.elements, made.found)
     if not now.segments or (was is not None and seen is None and now.length < was.length):
         short = f"{name}: {now.length:g} m as written, too short to be seen"
