@@ -374,8 +374,8 @@ def _many(amount: Amount, noun: str) -> str:
 
 
 def _noun(clause: Clause) -> str:
-    return KINDS[clause.kind].said[0]
+    return KINDS[clause.kind].names[0]
 
 
 def _said(slope: str) -> str:
-    return SLOPES[slope].said[0]  # type: ignore[index]
+    return SLOPES[slope].names[0]  # type: ignore[index]

@@ -194,7 +194,7 @@ def _turn(clause: Clause, roomy: bool, angle_is_free: bool = False) -> Feature:
     if clause.radius:
         radius = _near(clause.radius, lambda m: LENGTH_SLACK * m)
     length = _near(clause.length, lambda m: LENGTH_SLACK * m)
-    name = meaning.said[0]
+    name = meaning.names[0]
     return Feature("turn", name, clause.side, degrees, radius, length, _grade(clause.slope, clause.incline))
 
 

@@ -46,7 +46,7 @@ class Conversation:
         try:
             return from_responses(client.respond({**body, "input": _input(asked), "conversation": self.name}))
         except RequestError as fault:
-            if not any(word in fault.said for word in FULL):
+            if not any(word in fault.details for word in FULL):
                 raise
             self.name = None  # it has grown too long: start a new one
             self._begin(client, quirks)

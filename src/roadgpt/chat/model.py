@@ -158,15 +158,16 @@ class ChatSettings(ChatValue):
     def essence(self) -> Self:
         """Returns the settings without those that may change when a campaign is resumed.
 
-        These are the limits, the time-outs and retries, and the folders of recordings.
+        These are the limits of tokens and money, the price, the time-out, the retries and the folders of
+        recordings.
         """
         usual = type(self)()
         spare = ("timeout", "retries", "max_tokens", "max_cost", "price", "record", "replay")
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
 
     def came_with(self, file: object) -> Self:
-        """Returns settings from a file that may be somebody else's: without folders, and no key for its
-        server.
+        """Returns settings from a file that may be somebody else's: no folders, and its server gets no
+        key.
         """
         if self.base_url:
             SERVERS.came_with(str(origin_of(self.base_url)), file)

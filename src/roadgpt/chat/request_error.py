@@ -18,7 +18,7 @@ class RequestError(Exception):
 
     sentence: str
     status: int | None = None
-    said: str = ""
+    details: str = ""
     """The server's own error message in lower case."""
     parameter: str = ""
     wait: float | None = None

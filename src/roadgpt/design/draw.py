@@ -15,7 +15,7 @@ from roadgpt.errors import DesignError
 from roadgpt.road import World
 
 ANY_TURN = Range(25, 120)  # degrees, where nothing is said: the table in brief.words
-AIMS = {meaning.said[0]: meaning.aim for meaning in KINDS.values() if meaning.aim}
+AIMS = {meaning.names[0]: meaning.aim for meaning in KINDS.values() if meaning.aim}
 SHARPNESS_AIMS = {meaning.degrees: meaning.aim for meaning in SHARPNESS.values() if meaning.aim}
 WIDEST = 115.0  # m, of a radius that nobody asked for
 LONGEST_TURN = 170.0  # m along the curve

@@ -58,10 +58,10 @@ def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
         return None
     said = [word for word in slotted(pair.text).words if word.text == counts[0]]
     numbers = [word for word in slotted(pair.text).words if word.text.isdigit()]
-    if len(said) != 1 or len(numbers) != 1 or pair.text.count(said[0].said) != 1:
+    if len(said) != 1 or len(numbers) != 1 or pair.text.count(said[0].written) != 1:
         return None
     new = int(rng.integers(2, 10))
-    word = said[0].said
+    word = said[0].written
     if not (
         word.isdigit()
         or plain(word) == plain(spell(int(counts[0]), pair.lang if pair.lang in LANGUAGES else "en"))

@@ -34,8 +34,8 @@ def card(
             "# Model card: the trained reader",
             "",
             "Reads a description of a road in English, German, French, Spanish or Italian and writes a plan:"
-            " the Brief on one line. Encoder: MiniLM, 6 layers, fine-tuned; decoder: 3 layers, from chance;"
-            " both in int8.",
+            " the Brief on one line. Encoder: MiniLM, 6 layers, fine-tuned; decoder: 3 layers, trained"
+            " from random weights; both in int8.",
             "",
             *_files(weights),
             *_data(data),
@@ -76,8 +76,9 @@ def _scores(found: Sequence[Reading], others: Mapping[str, Sequence[Reading]]) -
     languages = [its.row(f"model, {name}") for name, its in by(found, lambda pair: pair.lang).items()]
     families = [its.row(f"model, {name}") for name, its in by(found, lambda pair: pair.family).items()]
     text = (
-        "Percent on the test split: hand-written, in families of phrasing of which none was in training."
-        " Whole means equal in normal form; turns, slope, order and side are of those that ask for a road."
+        "Percentages on the test split: hand-written descriptions, in families of phrasing that do not occur"
+        " in training. A Brief is exact if its normal form is that of the label. The columns for turns,"
+        " slope, order and side count only descriptions that ask for a road."
     )
     return ["## How well it reads", "", text, "", HEAD, *rows, *languages, *families, ""]
 
@@ -88,7 +89,7 @@ def _confusions(found: Sequence[Reading]) -> list[str]:
         for (wanted, got), times in confusion(found).most_common(MOST_CONFUSIONS)
     ]
     head = ["| wanted | written | times |", "|---|---|---|"]
-    return ["## What it takes for what", "", "In the validation split.", "", *head, *rows, ""]
+    return ["## Confusions", "", "On the validation split.", "", *head, *rows, ""]
 
 
 def _misses(found: Sequence[Reading]) -> list[str]:
@@ -99,7 +100,7 @@ def _misses(found: Sequence[Reading]) -> list[str]:
     ]
     head = ["| description | wanted | written | confidence |", "|---|---|---|---|"]
     text = (
-        "Wrong, and most sure of it; of the validation split, since a test whose misses are shown is none"
-        " any more."
+        "The wrong readings with the highest confidence, from the validation split, since a test split whose"
+        " misses are published cannot serve as a test any more."
     )
     return ["## The worst misses", "", text, "", *head, *rows, ""]

@@ -168,12 +168,12 @@ class OpenAI:
         if fault.status not in (400, 422):
             return False
         quirks = self._quirks
-        said = f"{fault.parameter} {fault.said}"
+        said = f"{fault.parameter} {fault.details}"
         for name in SAMPLING:
             if name in said and name not in quirks.dropped and getattr(self._settings, name) is not None:
                 quirks.dropped.add(name)
                 return True
-        if quirks.caps and (quirks.caps[0] == fault.parameter or quirks.caps[0] in fault.said):
+        if quirks.caps and (quirks.caps[0] == fault.parameter or quirks.caps[0] in fault.details):
             quirks.caps = quirks.caps[1:]
             return True
         return False
@@ -216,9 +216,9 @@ class FormatFallback:
 
 def _is_about_format(fault: RequestError) -> bool:
     """True if the response format may be the cause; a plain 400 says too little to exclude it."""
-    if fault.status not in OTHER_WAY or any(word in fault.said for word in FULL):
+    if fault.status not in OTHER_WAY or any(word in fault.details for word in FULL):
         return False
-    names_it = any(word in f"{fault.parameter} {fault.said}" for word in ABOUT_FORMAT)
+    names_it = any(word in f"{fault.parameter} {fault.details}" for word in ABOUT_FORMAT)
     return names_it or fault.status in (400, 422)
 
 

@@ -35,7 +35,7 @@ MOST_COUNTS = 8
 def with_checked_counts(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief with its counts corrected to follow from the numbers in the text."""
     words = {word.text for word in text.words}
-    said = [int(word.text) for word in text.words if word.text.isdecimal() and word.said]
+    said = [int(word.text) for word in text.words if word.text.isdecimal() and word.written]
     brief = _without_more(brief, words)
     sides = _sides_summed(brief, [*said, 1] if words & ONE else said, words)
     return _total_kept(_counts_summed(sides, said, words), text, {*said, 1})
@@ -135,7 +135,7 @@ def _total_kept(brief: Brief, text: SlottedText, said: set[int]) -> Brief:
 def _before_turns(text: SlottedText) -> Iterator[int]:
     """Yields the numbers that stand right before a word for turns."""
     for word, after in pairwise(text.words):
-        if word.text.isdecimal() and word.said and after.text in TURNS:
+        if word.text.isdecimal() and word.written and after.text in TURNS:
             yield int(word.text)
 
 

@@ -31,12 +31,12 @@ class Coverage:
         slot = 0
         has_side = bool(TRACES & {*tokens})
         for word in text.words:
-            if word.text.startswith("[unused") and word.said:
+            if word.text.startswith("[unused") and word.written:
                 if slot < len(text.slots) and SLOT_TOKENS[slot] not in tokens:
-                    out.append(word.said)
+                    out.append(word.written)
                 slot += 1
-            elif word.said and (self._is_strange(word.text) or (word.text in SIDES and not has_side)):
-                out.append(word.said)
+            elif word.written and (self._is_strange(word.text) or (word.text in SIDES and not has_side)):
+                out.append(word.written)
         return tuple(dict.fromkeys(out))
 
     def _is_strange(self, word: str) -> bool:

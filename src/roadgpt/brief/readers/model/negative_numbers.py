@@ -30,7 +30,7 @@ def negative_number(text: SlottedText) -> str | None:
         if not _is_number(word) or not _is_below_nothing(words, at):
             continue
         after = words[at + 1 : at + 3]
-        said = text.words[at].said
+        said = text.words[at].written
         noun = next((word for word in after if word in COUNTED | ONE_TURN), None)
         if noun:
             return f"minus {said} {noun}"

@@ -39,12 +39,12 @@ def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
     counts: dict[str, str] = {}
     out: list[Word] = []
     for at, word in enumerate(text.words):
-        if word.text in MARKS and not word.said:
+        if word.text in MARKS and not word.written:
             continue
         count = _large_count(text, at)
         if count and free:
             counts[free[0]] = count
-            out.append(Word(free.pop(0), word.said))
+            out.append(Word(free.pop(0), word.written))
         else:
             out.append(word)
     return OrdinaryNumbers(SlottedText(tuple(out), text.slots), counts)

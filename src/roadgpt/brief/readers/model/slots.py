@@ -51,10 +51,10 @@ THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of the description, as the model sees it (``text``) and as it was written (``said``)."""
+    """A word of the description, as the model sees it (``text``) and as it was written (``written``)."""
 
     text: str
-    said: str
+    written: str
 
 
 @dataclass(frozen=True, slots=True)

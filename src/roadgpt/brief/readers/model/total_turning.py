@@ -65,5 +65,5 @@ def total_turning(words: str) -> TotalTurning | None:
     amount = (at_least if is_least else at_most if is_most else exactly)(slot.value)
     first = line[: found.start()].count(" ")
     last = first + found[0].count(" ") + 1
-    rest = [word.said for word in (*text.words[:first], *text.words[last:]) if word.said]
+    rest = [word.written for word in (*text.words[:first], *text.words[last:]) if word.written]
     return TotalTurning(amount, " ".join(rest))
