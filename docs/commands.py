@@ -1,41 +1,63 @@
-"""Writes docs/reference/commands.md from the commands' own help."""
+"""Writes docs/reference/commands.md from the commands' own help, in the order of the headings."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
 
-from roadgpt.cli.app import COMMANDS, app
+from roadgpt.cli.app import app
+from roadgpt.cli.command_table import EARLIER, EARLIER_OPTIONS, EARLIER_VALUES, HEADINGS
+from roadgpt.cli.option_groups import ALL
 
 PAGE = Path(__file__).parent / "reference" / "commands.md"
 
 
 def help_of(command: click.Command, name: str, parent: click.Context | None = None) -> str:
-    """The help of a command as a person sees it."""
+    """Returns the help of a command as ``--help-all`` prints it."""
     settings = command.context_settings | {"terminal_width": 100, "max_content_width": 100}
-    return f"```\n{command.get_help(click.Context(command, parent, name, **settings))}\n```\n"
+    context = click.Context(command, parent, name, **settings)
+    context.meta[ALL] = True
+    return f"```\n{command.get_help(context)}\n```\n"
 
 
 def page() -> str:
-    """The whole page."""
-    parts = ["# Commands\n", "Written by `make docs` from the commands' own help.\n", help_of(app, "roadgpt")]
+    """Returns the whole page."""
+    parts = [
+        "# Commands\n",
+        "Written by `make docs` from the commands' own help. `--help` lists the options that are used often, "
+        "`--help-all` all of those\nbelow.\n",
+        help_of(app, "roadgpt"),
+    ]
     group = click.Context(app, info_name="roadgpt", **app.context_settings)
-    for name in COMMANDS:
-        command = app.get_command(group, name)
-        if command is not None:
-            parts += [f"## roadgpt {name}\n", help_of(command, name, group)]
-        if isinstance(command, click.Group):
-            parts += inside(command, click.Context(command, group, name))
-    return "\n".join(parts)
+    for heading, commands in HEADINGS.items():
+        parts.append(f"## {heading}\n")
+        for name in commands:
+            command = app.get_command(group, name)
+            assert command is not None
+            parts += [f"### roadgpt {name}\n", help_of(command, name, group)]
+            if isinstance(command, click.Group):
+                parts += inside(command, click.Context(command, group, name))
+    return "\n".join([*parts, *earlier()])
 
 
 def inside(command: click.Group, context: click.Context) -> list[str]:
-    """The help of all commands in a group, groups in it included."""
+    """Returns the help of all commands in a group, groups in it included."""
     parts: list[str] = []
     for own, its in command.commands.items():
         parts.append(help_of(its, own, context))
         if isinstance(its, click.Group):
             parts += inside(its, click.Context(its, context, own))
     return parts
+
+
+def earlier() -> Iterator[str]:
+    """Yields the table of names that commands and options had before."""
+    yield "## Earlier names\n"
+    yield "They still work, and say the present name in one line on standard error.\n"
+    rows = [(f"roadgpt {' '.join(words)}", f"roadgpt {now.shown}") for words, now in EARLIER.items()]
+    rows += [*EARLIER_OPTIONS.items(), *EARLIER_VALUES.items()]
+    table = ["| earlier | now |", "|---|---|", *(f"| `{old}` | `{new}` |" for old, new in rows)]
+    yield "\n".join(table) + "\n"
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """A generator for the SBFT tool competition: a random walk in curvature.
 
 cd examples/sbft
-roadgpt sbft --module-name curvature_walk --class-name CurvatureWalk --test-budget 50
+roadgpt compete sbft --module-name curvature_walk --class-name CurvatureWalk --test-budget 50
 """
 
 import math

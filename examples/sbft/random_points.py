@@ -3,7 +3,7 @@
 Works in the competition's own pipeline and in ours:
 
     cd examples/sbft
-    roadgpt sbft --module-name random_points --class-name RandomPoints --test-budget 50
+    roadgpt compete sbft --module-name random_points --class-name RandomPoints --test-budget 50
 """
 
 import os

@@ -3,7 +3,7 @@
 A road's fitness is the largest share of the car that was outside its lane.
 
     cd examples/sbft
-    roadgpt sbft --module-name simple_ga --class-name SimpleGA --test-budget 200
+    roadgpt compete sbft --module-name simple_ga --class-name SimpleGA --test-budget 200
 """
 
 import math

@@ -166,7 +166,7 @@ def test_a_page_a_film_pictures_and_a_summary_of_what_is_named() -> None:
     assert f"plots/two-{worst.replace('/', '-000')}/birds_eye.png" in drawn
     told = lines("show", f"two/{worst}")
     assert told[0].startswith("FAIL: ")
-    assert f"  again     roadgpt redrive two/{worst}" in told
+    assert f"  again     roadgpt drive --again two/{worst}" in told
     assert lines("show", "two", "--worst")[0] == told[0]
     listed = lines("show", "two", "--failures")
     assert [line.split()[0] for line in listed] == [f"two/{name}" for name in names("two", "failures")]

@@ -86,7 +86,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "edit": ("edit", "run/runs/0001", "make it 20 m longer", "--no-plot", "--out", "edited"),
     "faults of a run": ("faults", "run/runs/0001", "--repeat", "1", "--no-plot", "-j", "2"),
     "faults of a campaign": ("faults", "done", "--repeat", "1", "--no-plot"),
-    "redrive": ("redrive", "done", "1", "--no-plot"),
+    "drive": ("drive", "--again", "done", "1", "--no-plot"),
     "resume": ("resume", "begun", "-q"),
     "resume with workers": ("resume", "begun", "-q", "-j", "2"),
     "plan": ("campaign", "plan.toml", "--out", "new", "-q"),
@@ -128,7 +128,7 @@ def test_the_users_own_copy_is_run_where_the_folder_names_another_place(shared: 
     own = shared / "own"
     own.mkdir()
     (own / "mine.py").write_text(DRIVER.format(str(shared / "own ran")))
-    result = invoke(*COMMANDS["redrive"], "--driver", str(own / "mine.py:Mine"))
+    result = invoke(*COMMANDS["drive"], "--driver", str(own / "mine.py:Mine"))
     assert result.exit_code == 0, result.output
     assert (shared / "own ran").exists()
     assert not (shared / "ran").exists()
@@ -185,7 +185,7 @@ def at_a_terminal(words: list[str], answer: bytes) -> tuple[int, str]:
 @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals")
 @pytest.mark.parametrize(("answer", "status"), [(b"y\n", 0), (b"n\n", 2), (b"\n", 2)])
 def test_at_a_terminal_the_user_is_asked(shared: Path, answer: bytes, status: int) -> None:
-    ended, said = at_a_terminal([*COMMANDS["redrive"]], answer)
+    ended, said = at_a_terminal([*COMMANDS["drive"]], answer)
     assert "names the driver" in said
     assert "Run the code in that file? [y/N]" in said
     assert ended == status, said

@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from roadgpt.cli import app, crash
-from roadgpt.cli.commands import parts
+from roadgpt.cli import app, crash, installed_plugins
 
 
 def broken() -> None:
@@ -14,9 +13,9 @@ def broken() -> None:
 
 
 def test_the_traceback_goes_to_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parts, "installed", broken)
+    monkeypatch.setattr(installed_plugins, "installed", broken)
     monkeypatch.setattr(crash, "_folder", [tmp_path])
-    result = CliRunner().invoke(app, ["parts"])
+    result = CliRunner().invoke(app, ["config", "plugins"])
     assert result.exit_code == 70
     (file,) = tmp_path.iterdir()
     assert str(file) in result.stderr
@@ -29,9 +28,9 @@ def test_where_no_file_can_be_written_the_traceback_is_shown(monkeypatch: pytest
     def full(text: str) -> Path:
         raise OSError("the disk is full")
 
-    monkeypatch.setattr(parts, "installed", broken)
+    monkeypatch.setattr(installed_plugins, "installed", broken)
     monkeypatch.setattr(crash, "_write", full)
-    result = CliRunner().invoke(app, ["parts"])
+    result = CliRunner().invoke(app, ["config", "plugins"])
     assert result.exit_code == 70
     assert "in broken" in result.stderr
 
@@ -46,11 +45,11 @@ def test_a_folder_that_cannot_be_written_to_is_passed_over(
             raise PermissionError(13, "Permission denied")
         return whole(*args, **more)
 
-    monkeypatch.setattr(parts, "installed", broken)
+    monkeypatch.setattr(installed_plugins, "installed", broken)
     monkeypatch.setattr(crash, "_folder", [tmp_path.parent])
     monkeypatch.setattr(crash.tempfile, "gettempdir", lambda: str(tmp_path))
     monkeypatch.setattr(crash.tempfile, "NamedTemporaryFile", only_here)
-    result = CliRunner().invoke(app, ["parts"])
+    result = CliRunner().invoke(app, ["config", "plugins"])
     (file,) = tmp_path.iterdir()
     assert str(file) in result.stderr
     assert len(result.stderr.splitlines()) == 1

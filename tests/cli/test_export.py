@@ -121,7 +121,7 @@ def test_a_folder_without_a_road_is_told_of(words: list[str], here: Path) -> Non
     result = said(*words, "empty")
     assert result.exit_code == 2
     assert result.stderr.startswith("roadgpt: empty is a folder without a road; give ")
-    assert "roadgpt redrive" in result.stderr
+    assert "roadgpt drive --again" in result.stderr
 
 
 def test_a_format_that_nobody_writes_is_told_of_before_any_work(here: Path) -> None:

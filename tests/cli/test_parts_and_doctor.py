@@ -1,4 +1,4 @@
-"""`roadgpt parts` and `roadgpt doctor`."""
+"""`roadgpt config plugins` and `roadgpt doctor`."""
 
 import json
 from importlib.metadata import entry_points
@@ -7,17 +7,17 @@ import pytest
 from click.testing import CliRunner
 
 from roadgpt import plugins
-from roadgpt.cli import app
-from roadgpt.cli.commands import doctor, parts
+from roadgpt.cli import app, installed_plugins
+from roadgpt.cli.commands import doctor
 from roadgpt.errors import PartError
 
 
 def test_parts_lists_every_registered_part_with_a_sentence() -> None:
-    listed = json.loads(CliRunner().invoke(app, ["parts", "--json"]).stdout)
+    listed = json.loads(CliRunner().invoke(app, ["config", "plugins", "--json"]).stdout)
     registered = {(s, p.name) for s in plugins.KINDS for p in entry_points(group=f"roadgpt.{s}")}
     assert {(part["shelf"], part["name"]) for part in listed} == registered
     assert all(part["about"] and part["origin"] and part["works"] for part in listed)
-    plain = CliRunner().invoke(app, ["parts"]).stdout
+    plain = CliRunner().invoke(app, ["config", "plugins"]).stdout
     assert all(part["name"] in plain and part["about"] in plain for part in listed)
 
 
@@ -26,7 +26,7 @@ def test_a_part_that_cannot_be_loaded_is_listed_with_the_reason(monkeypatch: pyt
         raise PartError(f"the {name} lacks a library")
 
     monkeypatch.setattr(plugins, "find", find)
-    found = parts.installed()
+    found = installed_plugins.installed()
     assert not any(part.works for part in found)
     assert found[0].about.endswith("lacks a library")
     result = CliRunner().invoke(app, ["doctor"])
@@ -42,12 +42,14 @@ def test_the_first_sentence_may_span_lines() -> None:
         Much more.
         """
 
-    assert parts._first_sentence(Part) == "Drives as a person does"
+    assert installed_plugins._first_sentence(Part) == "Drives as a person does"
 
 
 def test_what_parts_say_has_no_marks_of_documentation() -> None:
     """Nor a formula: the line is for people who choose a part by it."""
-    assert [part.name for part in parts.installed() if "`" in part.about or "*" in part.about] == []
+    assert [
+        part.name for part in installed_plugins.installed() if "`" in part.about or "*" in part.about
+    ] == []
 
 
 def test_doctor_finds_this_installation_well() -> None:

@@ -125,7 +125,7 @@ def test_an_executor_without_a_line_says_where_it_comes_from() -> None:
         "from code_pipeline.executors import MockExecutor\n"
         "try:\n    MockExecutor('results', 200)\nexcept RuntimeError as error:\n    print(error)"
     )
-    assert "roadgpt sbft" in told(code)
+    assert "roadgpt compete sbft" in told(code)
 
 
 @pytest.mark.parametrize("values", [{"test_budget": 4}, {"time_budget": 100.0}])

@@ -14,9 +14,10 @@ somebody else.
 import os
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from difflib import get_close_matches
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from pydantic import ValidationError
@@ -54,6 +55,8 @@ class Layer(NamedTuple):
     name: str
     found: dict[str, Any]
     """Values by field, or by the name of the variable if the place is the environment."""
+    tables: Mapping[str, Any] = MappingProxyType({})
+    """All tables of a TOML file, by name; ``roadgpt.cli.configuration`` reads those other than ``[chat]``."""
 
 
 def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> ChatSettings:
@@ -79,7 +82,7 @@ def settings_with_origin(
     """
     if (flags or {}).get("base_url"):
         SERVERS.name(str(origin_of(str((flags or {})["base_url"]))))
-    places = [_looked_up(layer) for layer in ([plan] if plan else []) + _layers()]
+    places = [_looked_up(layer) for layer in ([plan] if plan else []) + layers()]
     found: dict[str, Setting] = {}
     for name in FIELDS:
         given = (flags or {}).get(name)
@@ -144,7 +147,7 @@ def key_for(base_url: str | None) -> Key | None:
         names.insert(1, "AZURE_OPENAI_API_KEY")
     keys = [
         Key(str(value), f"{layer.name} ({name})")
-        for layer in _layers()
+        for layer in layers()
         for name in (*names, KEY)
         if (value := layer.found.get(name))
     ]
@@ -179,7 +182,7 @@ def untrusted_source(base_url: str | None) -> str:
     wanted = origin_of(base_url)
     naming = [
         layer.name
-        for layer in _layers()
+        for layer in layers()
         if (said := _looked_up(layer).get("base_url")) and origin_of(str(said.value)) == wanted
     ]
     if wanted == origin_of(None) or any(name not in FOLDER for name in naming):
@@ -189,11 +192,17 @@ def untrusted_source(base_url: str | None) -> str:
     return SERVERS.stranger(str(wanted)) or next(iter(naming), "")
 
 
-def _layers() -> list[Layer]:
+def layers() -> list[Layer]:
+    """Returns every place of settings, in the order of precedence.
+
+    Raises:
+        UsageError: A file of settings cannot be read, or its table ``[chat]`` has an unknown key.
+    """
+    tables = {str(path): _toml(path) for path in (Path(PROJECT), user_file())}
     return [
         Layer("environment", {name: value for name, value in os.environ.items() if value.strip()}),
         Layer(DOTENV, _dotenv(Path(DOTENV))),
-        *(Layer(str(path), _toml(path)) for path in (Path(PROJECT), user_file())),
+        *(Layer(place, _chat_table(whole, place), whole) for place, whole in tables.items()),
     ]
 
 
@@ -249,14 +258,19 @@ def _unquoted(text: str) -> str:
 
 
 def _toml(path: Path) -> dict[str, Any]:
+    """Returns all tables of a file; none if there is no file."""
     text = _read(path)
     try:
-        whole = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         # the library's message may quote the line, which may contain a key
         place = re.search(r"at line \d+", str(error))
         where = place.group() if place else "somewhere"
         raise UsageError(f"the settings in {path} are not TOML ({where}); correct them") from None
+
+
+def _chat_table(whole: Mapping[str, Any], path: str) -> dict[str, Any]:
+    """Returns the table ``[chat]``, whose keys are checked."""
     outside = next((name for name in (*FIELDS, KEY) if name in whole), None)
     if outside:
         raise UsageError(
@@ -273,9 +287,13 @@ def _toml(path: Path) -> dict[str, Any]:
     return dict(table)
 
 
-def unknown_variables() -> list[str]:
-    """Returns the names of variables that look like settings of RoadGPT but are not, with their origin."""
-    known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS}
+def unknown_variables(others: Collection[str] = ()) -> list[str]:
+    """Returns the names of variables that look like settings of RoadGPT but are not, with their origin.
+
+    Args:
+        others: Names of variables that set options other than those of a language model.
+    """
+    known = {f"ROADGPT_{name.upper()}" for name in (*FIELDS, KEY)} | {OF_OTHERS, *others}
     places = (("the environment", os.environ), (DOTENV, _dotenv(Path(DOTENV))))
     return [
         f"{name} in {place}"

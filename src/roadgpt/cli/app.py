@@ -11,61 +11,12 @@ from typing import Any
 import click
 
 from roadgpt import __version__, stopping
+from roadgpt.cli.command_table import COMMANDS, EARLIER, HEADINGS, MISSING, renamed
 from roadgpt.cli.crash import report_crash
 from roadgpt.cli.dashes import told_of_dashes
 from roadgpt.cli.streams import OutputError, drop_output, is_coloured
 from roadgpt.errors import RoadGPTError
 from roadgpt.provenance import USER
-
-# Each command is `command` in the module of its name in roadgpt.cli.commands; its line of help stands here
-# so that `roadgpt --help` need not import it.
-COMMANDS = {
-    "run": "Design, check, drive and judge roads from a description.",
-    "read": "Say how a description is read, and how sure the reader is.",
-    "edit": "Change a road that exists, by words.",
-    "drive": "Drive roads that exist.",
-    "check": "Check roads that exist against the rules.",
-    "plot": "Draw roads that exist.",
-    "faults": "Why roads failed, how often again, and how many faults they show.",
-    "view": "Look at a road in 3-D and at its drive as a replay, in one page.",
-    "film": "Film drives: from behind the car, from its hood camera, two in a split screen.",
-    "export": "Write roads in the formats of other people's tools: OpenDRIVE and others.",
-    "import": "Take a road out of an OpenDRIVE file.",
-    "compare": "How alike two roads are, seen one above the other.",
-    "report": "Write a report on a folder of runs, a campaign or a study.",
-    "study": "Do the thesis' evaluation again, measure alignment, ask people.",
-    "campaign": "Search for failures, or make roads by the thousand, with many workers.",
-    "resume": "Go on with a campaign that was interrupted.",
-    "status": "Say how far a campaign is.",
-    "top": "Watch a campaign as it works.",
-    "redrive": "Drive tests of a campaign again, into folders of runs.",
-    "show": "Tell what is in a run, a folder of runs or a campaign.",
-    "learn": "Descriptions by hand and by the thousand; train, judge and export a reader of your own.",
-    "sbft": "Let a generator of the SBFT tool competition loose on the simulator.",
-    "sdc": "Serve the competition on choosing tests of self-driving cars.",
-    "parts": "List what is installed on each shelf.",
-    "config": "Tell which language model is asked, and where each setting comes from.",
-    "beamng": "Try out a BeamNG.tech that is installed.",
-    "doctor": "Find out whether this installation works.",
-}
-
-# What to say where an argument is missing, by the name that its help gives it.
-MISSING = {
-    "DESCRIPTION": 'Say what road you want: roadgpt run "an uphill road with 3 turns"',
-    "ROAD.json...": "Name one or more road files, or folders of runs.",
-    "RUN...": "Name the folder of a run, a folder of runs, or a campaign.",
-    "RUN|ROAD...": "Name one or more folders of runs, or road files.",
-    "FILE|RUN [FILE|RUN]": "Name a road file or the folder of a run, or two to see them side by side.",
-    "RUN [RUN]": "Name the folder of a run, or two to see them side by side.",
-    "FILE.xodr": "Name an OpenDRIVE file.",
-    "formats": "Name a format: --to opendrive; 'roadgpt parts' lists them.",
-    "RUN": "Name the folder of a run, or the file of a design.",
-    "CHANGE": 'Say what is to be different: roadgpt edit RUN "make the second turn sharper"',
-    "DESCRIPTION|FILE.toml": 'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200',
-    "CAMPAIGN [TEST...]": "Name a campaign and one or more of its tests, by their numbers in results.csv.",
-    "CAMPAIGN": "Name the folder of a campaign, as 'roadgpt campaign' told it.",
-    "OUT": "Name the folder to write into.",
-}
 
 INTERRUPTED = 130  # exit status where input was broken off; after a signal, ``stopping.status`` has it
 NO_READER = 141  # whoever read the output went away; as shells have it: 128 + SIGPIPE
@@ -86,25 +37,34 @@ class Commands(click.Group):
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """The command of that name, imported now."""
+        """Returns the command of that name, imported now; None if there is none."""
         if name not in COMMANDS:
             return None
         command: click.Command = import_module(f"roadgpt.cli.commands.{_module(name)}").command
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """The lines of help, without importing a command."""
-        with formatter.section("Commands"):
-            formatter.write_dl(list(COMMANDS.items()))
+        """Writes the lines of help under their headings, without importing a command."""
+        wide = max(map(len, COMMANDS))
+        for heading, commands in HEADINGS.items():
+            with formatter.section(heading):
+                formatter.write_dl([(f"{name:<{wide}}", line) for name, line in commands.items()])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that the first word names; words that are a description are told where they belong."""
+        """Returns the command that the words name, under its present or its earlier name.
+
+        Raises:
+            click.UsageError: There is no such command; the sentence says what to type instead.
+        """
+        args, told = renamed(args)
+        if told and not ctx.resilient_parsing:
+            click.echo(f"roadgpt: {told}", err=True)
         name = args[0]
         if name not in COMMANDS and " " in name.strip():
             raise click.UsageError(f'to make roads from a description, say: roadgpt run "{name}"', ctx)
-        near = get_close_matches(name.lower(), COMMANDS, 1)
+        near = get_close_matches(name.lower(), [*COMMANDS, *(words[0] for words in EARLIER)], 1)
         if name not in COMMANDS and near and not name.startswith("-"):
             raise click.UsageError(f"No such command '{name}'. Did you mean '{near[0]}'?", ctx)
         if name not in COMMANDS and not name.startswith("-"):

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.next_steps import lines, of_status
-from roadgpt.cli.options import Decorator, together, whole
+from roadgpt.cli.option_groups import Decorator, under
+from roadgpt.cli.options import OUTPUT, whole
 from roadgpt.cli.rows import COLOURS, metres
 from roadgpt.cli.screen import new_bar
 
@@ -24,24 +25,26 @@ HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
 LINE = "{:<6} {:>9} {:>7} {:>7} {:>7} {:>13}  {}"
 LONGEST = 60  # letters of a description, in a line of a table
 
-worker_options = together(
+worker_options = under(
+    "Workers",
     click.option(
         "-j",
         "--workers",
         type=whole(1, MOST_WORKERS, "the number of workers"),
         default=1,
         show_default=True,
-        help="Tests at a time; as many as there are cores is best.",
+        help="Tests at a time; use as many as there are cores.",
     ),
     click.option(
-        "--executor", default="processes", show_default=True, help="Where the workers are: processes, or ray."
+        "--executor", default="processes", show_default=True, help="Where workers run: processes, or ray."
     ),
-    click.option("--address", default="", help="Of a Ray cluster. [default: this machine]"),
+    click.option("--address", default="", help="Address of a Ray cluster. [default: this machine]"),
 )
 
-screen_options: Decorator = together(
-    click.option("--json", "as_json", is_flag=True, help="One JSON object at the end, on standard output."),
-    click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors."),
+screen_options: Decorator = under(
+    OUTPUT,
+    click.option("--json", "as_json", is_flag=True, help="Print one JSON object at the end."),
+    click.option("--quiet", "-q", is_flag=True, help="Print errors only."),
 )
 
 

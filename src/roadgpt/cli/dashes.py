@@ -6,6 +6,8 @@ from contextlib import contextmanager
 
 import click
 
+from roadgpt.cli.option_groups import GroupedCommand
+
 
 @contextmanager
 def told_of_dashes(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
@@ -36,7 +38,7 @@ def _description(args: Sequence[str]) -> str | None:
     return None
 
 
-class DescribedCommand(click.Command):
+class DescribedCommand(GroupedCommand):
     """A command that takes a description."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from roadgpt.cli.options import together, whole
+from roadgpt.cli.option_groups import under
+from roadgpt.cli.options import whole
 from roadgpt.cli.pool import shared
 from roadgpt.cli.progress import watched
 
@@ -19,16 +20,15 @@ if TYPE_CHECKING:
 REPEAT = 10  # disturbed drives of each fault, where nobody says how many
 DRIVES = whole(1, 1000, "drives")
 
-fault_options = together(
-    click.option(
-        "--faults", is_flag=True, help="At the end, look into the failures, as roadgpt faults does."
-    ),
-    click.option("--minimise", is_flag=True, help="The same, and look for the simplest road of each fault."),
+fault_options = under(
+    "Failures",
+    click.option("--faults", is_flag=True, help="At the end, analyse the failures as 'roadgpt faults' does."),
+    click.option("--minimise", is_flag=True, help="Also find the simplest road that still shows each fault."),
     click.option(
         "--repeat",
         type=DRIVES,
         default=None,
-        help=f"The same; disturbed drives of each fault. [default: {REPEAT}]",
+        help=f"Also set how many disturbed drives each fault gets. [default: {REPEAT}]",
     ),
 )
 

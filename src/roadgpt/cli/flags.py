@@ -7,6 +7,9 @@ from typing import Any
 
 import click
 
+from roadgpt.cli.configuration import Guard, SettableOption, designer_guard, driver_guard, reader_guard
+from roadgpt.cli.option_groups import Decorator, under
+
 
 def measure(low: float, high: float, unit: str = "", above: bool = False) -> Callable[[str], float]:
     """The type of an option that takes a finite number within bounds; above: the lower bound is excluded."""
@@ -59,6 +62,9 @@ def driver_again(value: str) -> str:
     return driver(located(value, Path.cwd()))
 
 
+DESIGN, SITE, DRIVE, MODEL = "Design and check", "World", "Drive and verdict", "Language model"
+
+
 @dataclass(frozen=True)
 class Flag:
     """One option for one field of a World, a Setup or ChatSettings; a default of False makes a switch."""
@@ -68,28 +74,53 @@ class Flag:
     default: Any
     help: str
     kind: Any = str
-    """What click makes of its value."""
+    """The type that click converts its value with."""
     unit: float | None = None
     """How many of the option's unit one unit of the field is; None where it is no number."""
+    heading: str = MODEL
+    """Where the help lists it."""
+    table: str = ""
+    """The table of a file of settings that can set it; empty for the settings of language models."""
+    key: str = ""
+    """Its name in that table, if that is not the option's own."""
+    is_rare: bool = False
+    """Rare options are listed by --help-all only, where a command has many options."""
+    guard: Guard | None = None
+    """Refuses values that a file must not give."""
 
-    def option(self) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-        """As a decorator of a command."""
+    def option(self) -> Decorator:
+        """Returns the option as a decorator of a command's function."""
+        names = [self.flag, self.field]
+        rest: dict[str, Any] = {"type": self.kind, "default": self.default, "show_default": True}
         if self.default is False:
-            return click.option(self.flag, self.field, is_flag=True, help=self.help)
-        return click.option(
-            self.flag, self.field, type=self.kind, default=self.default, show_default=True, help=self.help
-        )
+            names[0] += f"/--no-{self.flag[2:]}"
+            rest = {"is_flag": True, "default": False}
+        if self.table:
+            rest |= {"cls": SettableOption, "table": self.table, "key": self.name, "guard": self.guard}
+        return under(self.heading, click.option(*names, help=self.help, **rest), rare=self.is_rare)
+
+    @property
+    def name(self) -> str:
+        """Its name in a file of settings."""
+        return self.key or self.flag[2:].replace("-", "_")
 
     def read(self, given: Any) -> Any:
-        """The field's value for what the option was given."""
+        """Returns the field's value for what the option was given."""
         return given if self.unit is None or given is None else given / self.unit
 
-    def written(self, value: Any, usual: Any = None) -> list[str]:
-        """The words of the command line that set the field; none where it is as usual."""
-        if value is None or value == (self.read(self.default) if usual is None else usual):
+    def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
+        """Returns the words of the command line that set the field; none where it has its default.
+
+        Args:
+            value: Of the field.
+            usual: The field's default, if that is not the option's.
+            is_set: Whether a file of settings sets the option, so that its default has to be written out.
+        """
+        default = self.read(self.default) if usual is None else usual
+        if value is None or (value == default and not is_set):
             return []
-        if value is True:
-            return [self.flag]
+        if isinstance(value, bool):
+            return [self.flag if value else f"--no-{self.flag[2:]}"]
         return [self.flag, str(value) if self.unit is None else _digits(value, self.unit)]
 
 
@@ -99,138 +130,194 @@ def _digits(value: float, unit: float) -> str:
     return next((text for text in texts if float(text) / unit == value), texts[-1])
 
 
+def _of_world(flag: str, field: str, default: Any, help_: str, *rest: Any, **more: Any) -> Flag:
+    return Flag(flag, field, default, help_, *rest, **{"heading": SITE, "table": "world", **more})
+
+
+def _of_run(flag: str, field: str, default: Any, help_: str, *rest: Any, **more: Any) -> Flag:
+    return Flag(flag, field, default, help_, *rest, **{"heading": DESIGN, "table": "run", **more})
+
+
 WORLD = (
-    Flag(
-        "--map-size", "map_size", 250, "Side of the square map, metres.", measure(50, 10_000, "metres"), 1.0
+    _of_world(
+        "--map-size", "map_size", 250, "Side of the square map, m.", measure(50, 10_000, "metres"), 1.0
     ),
-    Flag("--speed-limit", "speed_limit", 70, "For the driver, km/h.", measure(5, 300, "km/h"), 3.6),
-    Flag(
+    _of_world(
+        "--speed-limit",
+        "speed_limit",
+        70,
+        "Speed limit, km/h.",
+        measure(5, 300, "km/h"),
+        3.6,
+        heading=DRIVE,
+        key="speed_limit_kmh",
+    ),
+    _of_world(
         "--oob-tolerance",
         "oob_tolerance",
         0.95,
-        "Share of the car that may be outside its lane.",
+        "Share of the car that may be out of its lane.",
         measure(0, 1, above=True),
         1.0,
+        heading=DRIVE,
     ),
-    Flag(
+    _of_world(
         "--lane-departure",
         "lane_departure",
         False,
-        "Fail, too, where the outer edge of a front tyre passes the outer edge of a lane marking (UN R157).",
+        "Also fail if a front tyre passes the lane marking.",
+        heading=DRIVE,
     ),
-    Flag(
-        "--lane-width",
-        "lane_width",
-        4,
-        "Of each of the two lanes, metres.",
-        measure(2, 10, "metres"),
-        1.0,
+    _of_world(
+        "--lane-width", "lane_width", 4, "Width of each of the two lanes, m.", measure(2, 10, "metres"), 1.0
     ),
-    Flag(
-        "--verge",
+    _of_world(
+        "--shoulder",
         "verge",
         3,
-        "Firm ground beside the road, metres; 0: a floating mesh, as in RoadGPT.",
+        "Firm ground beside the road, m; 0: none.",
         measure(0, 100, "metres"),
         1.0,
+        is_rare=True,
     ),
-    Flag(
-        "--friction",
-        "friction",
-        1.0,
-        "Of the road: dry 1.0, wet 0.6, snow 0.35.",
-        measure(0, 2, above=True),
-        1.0,
+    _of_world(
+        "--friction", "friction", 1.0, "Dry road 1.0, wet 0.6, snow 0.35.", measure(0, 2, above=True), 1.0
     ),
 )
 
 SETUP = (
-    Flag("--reader", "reader", "model", "What reads the description: model, or grammar, by rules."),
-    Flag("--designer", "designer", "planner", "What designs the roads."),
-    Flag("--driver", "driver", "beamng_like", "Who drives: a name, or FILE.py:CLASS.", driver),
-    Flag("--simulator", "simulator", "mujoco", "What simulates the car."),
-    Flag(
+    _of_run("--reader", "reader", "model", "Reads the words: model or grammar.", guard=reader_guard),
+    _of_run("--designer", "designer", "planner", "What designs the roads.", guard=designer_guard),
+    _of_run(
+        "--driver",
+        "driver",
+        "beamng_like",
+        "Name of a driver, or FILE.py:CLASS.",
+        driver,
+        heading=DRIVE,
+        guard=driver_guard,
+    ),
+    _of_run("--simulator", "simulator", "mujoco", "What simulates the car.", heading=DRIVE),
+    _of_run(
         "--keep-driving",
         "keep_driving",
         False,
-        "Go on after the car has left its lane, to the end of the road.",
+        "Drive on to the end after the car left its lane.",
+        heading=DRIVE,
     ),
-    Flag(
+    _of_run(
         "--geometry",
         "geometry",
         "arcs",
-        "What a design becomes: lines, arcs and clothoids, or RoadGPT's spline through hops.",
+        "How a design becomes a road: lines, arcs and clothoids, or RoadGPT's spline through points.",
         click.Choice(["arcs", "spline"]),
+        is_rare=True,
     ),
-    Flag(
+    _of_run(
         "--rules",
         "rules",
         "strict",
-        "Is the road sound, or what would the SBFT tool competition's validator say?",
+        "Which rules the road must keep: RoadGPT's own, or those of the SBFT tool competition.",
         click.Choice(["strict", "sbft"]),
+        is_rare=True,
     ),
 )
 
 # Where one is not given, the environment, .env or a file of settings may say it: roadgpt.chat.config.
 CHAT = (
-    Flag("--model", "model", None, "Language model, as its server calls it."),
-    Flag("--base-url", "base_url", None, "Of the server, up to /v1. [default: OpenAI's]"),
-    Flag("--provider", "provider", None, "How the server is spoken to. [default: openai]"),
+    Flag("--model", "model", None, "Name of the model on its server."),
+    Flag("--base-url", "base_url", None, "Address of the server, up to /v1. [default: OpenAI's]"),
+    Flag("--provider", "provider", None, "Protocol of the server. [default: openai]", is_rare=True),
     Flag(
         "--api",
         "api",
         None,
-        "Chat Completions, or Responses with a conversation kept by the server. [default: chat]",
+        "Chat Completions, or Responses with a conversation that the server keeps. [default: chat]",
         click.Choice(["chat", "responses"]),
+        is_rare=True,
     ),
-    Flag("--temperature", "temperature", None, "Of the model. [default: its own]", measure(0, 2), 1.0),
+    Flag(
+        "--temperature",
+        "temperature",
+        None,
+        "Sampling temperature. [default: the server's]",
+        measure(0, 2),
+        1.0,
+        is_rare=True,
+    ),
     Flag(
         "--timeout",
         "timeout",
         None,
-        "Seconds for an answer. [default: 60]",
+        "Seconds to wait for an answer. [default: 60]",
         measure(0, 86_400, "s", above=True),
         1.0,
+        is_rare=True,
     ),
-    Flag("--retries", "retries", None, "When the server fails. [default: 3]", whole(0, 20, "retries")),
+    Flag(
+        "--retries",
+        "retries",
+        None,
+        "Further attempts when the server fails. [default: 3]",
+        whole(0, 20, "retries"),
+        is_rare=True,
+    ),
     Flag(
         "--max-completion",
         "max_completion",
         None,
-        "Tokens of one answer. [default: 4096]",
+        "Most tokens of one answer. [default: 4096]",
         whole(16, 1_000_000, "tokens"),
+        is_rare=True,
     ),
     Flag(
         "--max-tokens",
         "max_tokens",
         None,
-        "Of all roads together; then it stops.",
+        "Stop after this many tokens for all roads.",
         whole(1, 10**12, "tokens"),
+        is_rare=True,
     ),
     Flag(
         "--max-cost",
         "max_cost",
         None,
-        "USD, of all roads together; then it stops.",
+        "Stop after this many USD for all roads.",
         measure(0, 1e6, "USD", above=True),
         1.0,
     ),
-    Flag("--price", "price", None, "USD per million tokens asked/answered, as 0.15/0.60. [default: a table]"),
-    Flag("--record", "record", None, "Folder in which every exchange is kept."),
-    Flag("--replay", "replay", None, "Folder whose exchanges are taken instead of asking."),
-    Flag("--rounds", "rounds", None, "Questions for one road, at most. [default: 3]", whole(1, 20, "rounds")),
+    Flag(
+        "--price",
+        "price",
+        None,
+        "USD per million tokens of questions and answers, such as 0.15/0.60. [default: from a table]",
+        is_rare=True,
+    ),
+    Flag("--record", "record", None, "Keep every exchange with the server in this folder.", is_rare=True),
+    Flag("--replay", "replay", None, "Take answers from this folder; ask no server.", is_rare=True),
+    Flag(
+        "--rounds",
+        "rounds",
+        None,
+        "Most questions for one road. [default: 3]",
+        whole(1, 20, "rounds"),
+        is_rare=True,
+    ),
     Flag(
         "--repair",
         "repair",
         None,
-        "Of the model's roads: none; move and turn them; also change lengths and angles. [default: full]",
+        "How far the model's roads may be changed to become valid: not at all; moved and turned; also "
+        "lengths and angles. [default: full]",
         click.Choice(["none", "place", "full"]),
+        is_rare=True,
     ),
     Flag(
         "--strategy",
         "strategy",
         None,
-        "Ask for the whole road, or segment by segment. [default: whole]",
+        "Ask for the whole road, or for one segment at a time. [default: whole]",
         click.Choice(["whole", "stepwise"]),
+        is_rare=True,
     ),
 )

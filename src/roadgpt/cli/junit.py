@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from roadgpt.cli.option_groups import under
 from roadgpt.cli.rows import Row, row_of
 
 if TYPE_CHECKING:
@@ -27,12 +28,15 @@ def file(value: str) -> Path:
     return path
 
 
-junit_option = click.option(
-    "--junit",
-    type=file,
-    default=None,
-    metavar="FILE.xml",
-    help="Write the tests as JUnit XML, too, for continuous integration.",
+junit_option = under(
+    "Files",
+    click.option(
+        "--junit",
+        type=file,
+        default=None,
+        metavar="FILE.xml",
+        help="Write the tests as JUnit XML too.",
+    ),
 )
 
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roadgpt.cli.options import Decorator, together
+from roadgpt.cli.option_groups import Decorator
+from roadgpt.cli.options import together
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -19,12 +20,14 @@ ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
 NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
 
 choice_options: Decorator = together(
-    click.option("--failures", is_flag=True, help="Of a folder: the roads on which the car failed."),
-    click.option("--faults", is_flag=True, help="Of a folder: a typical failure of each distinct fault."),
+    click.option("--failures", is_flag=True, help="Take from a folder the roads on which the car failed."),
+    click.option(
+        "--faults", is_flag=True, help="Take from a folder a typical failure of each distinct fault."
+    ),
     click.option(
         "--worst",
         is_flag=True,
-        help="Of a folder: the failure with the least margin, else the nearest to one.",
+        help="Take from a folder the road with the smallest margin.",
     ),
 )
 

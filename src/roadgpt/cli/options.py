@@ -1,23 +1,23 @@
 """Options that commands share, and types of values whose complaints are advice."""
 
-from collections.abc import Callable
 from functools import reduce
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.flags import CHAT, SETUP, WORLD, driver_again, measure
+from roadgpt.cli.configuration import SettableOption
+from roadgpt.cli.flags import CHAT, DRIVE, SETUP, WORLD, driver_again, measure
 from roadgpt.cli.flags import whole as whole
+from roadgpt.cli.option_groups import FIRST, LAST, Decorator, under
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.chat import ChatSettings
     from roadgpt.road import World
 
-Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
-
 MOST_ROADS = 1_000_000
+FILES, OUTPUT = "Files", LAST  # headings of help
 
 
 def folder(value: str) -> Path:
@@ -56,20 +56,21 @@ def world_of(values: dict[str, Any]) -> "World":
 
 def competition_options(oob_tolerance: float, speed_limit_kmh: float) -> Decorator:
     """The two options that all competitions of the field set, each to its own default."""
-    return together(
+    return under(
+        DRIVE,
         click.option(
             "--oob-tolerance",
             type=measure(0, 1, above=True),
             default=oob_tolerance,
             show_default=True,
-            help="Share of the car that may be outside its lane.",
+            help="Share of the car that may be out of its lane.",
         ),
         click.option(
             "--speed-limit",
             type=measure(10, 300, "km/h"),
             default=speed_limit_kmh,
             show_default=True,
-            help="For the driver, km/h.",
+            help="Speed limit, km/h.",
         ),
     )
 
@@ -80,12 +81,16 @@ def setup_options(*fields: str) -> Decorator:
     return together(*(known[field].option() for field in fields))
 
 
-driver_again_option = click.option(
-    "--driver",
-    "driver",
-    type=driver_again,
-    default=None,
-    help="The driver that it has, FILE.py:CLASS, named again: code is not run because a file names it.",
+driver_again_option = under(
+    DRIVE,
+    click.option(
+        "--driver",
+        "driver",
+        type=driver_again,
+        metavar="FILE.py:CLASS",
+        default=None,
+        help="The driver's file, named again: a folder's word alone is not enough to run code.",
+    ),
 )
 
 
@@ -128,21 +133,26 @@ def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
         return value
     names = tuple(name.strip() for name in value.split(",") if name.strip())
     if not names:
-        raise click.BadParameter("no format is named; roadgpt parts lists the exporters")
+        raise click.BadParameter("no format is named; 'roadgpt config plugins' lists the exporters")
     return names
 
 
-def formats_option(flag: str, required: bool = False) -> Decorator:
+def formats_option(flag: str, required: bool = False, is_settable: bool = False) -> Decorator:
     """Formats of road files as ``formats``: after commas, or by giving the option again."""
-    return click.option(
-        flag,
-        "formats",
-        type=formats,
-        metavar="FORMAT,...",
-        multiple=True,
-        required=required,
-        callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
-        help="Formats of road files, such as opendrive or csv; 'roadgpt parts' lists them.",
+    settable: dict[str, Any] = {"cls": SettableOption, "table": "run", "key": flag[2:]} if is_settable else {}
+    return under(
+        FILES if is_settable else FIRST,
+        click.option(
+            flag,
+            "formats",
+            type=formats,
+            metavar="FORMAT,...",
+            multiple=True,
+            required=required,
+            callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
+            help="Write road files too: opendrive, csv, ...",
+            **settable,
+        ),
     )
 
 
@@ -160,28 +170,47 @@ def picture_formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-format_option = click.option(
-    "--format",
-    "picture_formats",
-    type=picture_formats,
-    default=("png",),
-    metavar="FORMAT,...",
-    help="Of the pictures: png, svg, pdf, or several after commas. [default: png]",
+format_option = under(
+    FILES,
+    click.option(
+        "--format",
+        "picture_formats",
+        type=picture_formats,
+        default=("png",),
+        metavar="FORMAT,...",
+        help="Formats of pictures: png, svg, pdf. [default: png]",
+        cls=SettableOption,
+        table="run",
+        key="format",
+    ),
 )
 
-axes_option = click.option(
-    "--axes",
-    type=click.Choice(["equal", "thesis"]),
-    default="equal",
-    show_default=True,
-    help="Of the pictures: to scale, or RoadGPT's fixed 220 m by 220 m and 200 m by 20 m.",
+axes_option = under(
+    FILES,
+    click.option(
+        "--axes",
+        type=click.Choice(["equal", "thesis"]),
+        default="equal",
+        show_default=True,
+        help="Axes of pictures: to scale, or as in RoadGPT's thesis, 220 m by 220 m and 200 m by 20 m.",
+        cls=SettableOption,
+        table="run",
+        key="axes",
+    ),
+    rare=True,
 )
 pictures_options = together(axes_option, format_option)
+no_drive_option = under(
+    DRIVE, click.option("--no-drive", is_flag=True, help="Design and check the road; do not drive it.")
+)
+no_plot_option = under(FILES, click.option("--no-plot", is_flag=True, help="Draw no pictures."))
+quiet_option = under(OUTPUT, click.option("--quiet", "-q", is_flag=True, help="Print errors only."))
 
-screen_options = together(
-    click.option("--json", "as_json", is_flag=True, help="One JSON line per road on standard output."),
-    click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors."),
-    click.option("--verbose", "-v", is_flag=True, help="Say more: brief, versions, times."),
+screen_options = under(
+    OUTPUT,
+    click.option("--json", "as_json", is_flag=True, help="Print one JSON line per road."),
+    click.option("--quiet", "-q", is_flag=True, help="Print errors only."),
+    click.option("--verbose", "-v", is_flag=True, help="Print details: brief, versions, times."),
 )
 
-files_argument = click.argument("files", nargs=-1, required=True, metavar="ROAD.json...")
+files_argument = click.argument("files", nargs=-1, required=True, metavar="ROAD...")

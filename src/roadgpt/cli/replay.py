@@ -4,6 +4,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+from roadgpt.cli.configuration import keys_set
 from roadgpt.cli.flags import CHAT, SETUP, WORLD, Flag
 from roadgpt.run.model import Request, Run
 
@@ -44,6 +45,8 @@ def _asked(request: Request) -> list[str]:
 
 
 def _written(request: Request, flags: Sequence[Flag]) -> list[str]:
-    """What differs from the defaults."""
-    words = [word for flag in flags for word in flag.written(getattr(request.setup, flag.field))]
-    return words + [word for flag in WORLD for word in flag.written(getattr(request.world, flag.field))]
+    """Returns the options that differ from their defaults, or that a file of settings would change."""
+    told = keys_set()
+    values = [(flag, getattr(request.setup, flag.field)) for flag in flags]
+    values += [(flag, getattr(request.world, flag.field)) for flag in WORLD]
+    return [word for flag, value in values for word in flag.written(value, is_set=flag.name in told)]

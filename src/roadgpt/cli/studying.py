@@ -9,14 +9,19 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from roadgpt.cli.flags import CHAT, SETUP, WORLD
+from roadgpt.cli.configuration import SettableOption, designer_guard
+from roadgpt.cli.flags import CHAT, DESIGN, SETUP, WORLD
+from roadgpt.cli.option_groups import GroupedCommand, under
 from roadgpt.cli.options import (
+    FILES,
+    OUTPUT,
     ROADS,
     SEED,
     chat_of,
     chat_options,
     folder,
     format_option,
+    no_drive_option,
     setup_options,
     together,
     whole,
@@ -36,28 +41,37 @@ NOT_ASKED = ChatError.exit_status
 SHOWN = ("reader", "driver", "simulator", "keep_driving", "geometry")
 
 study_options = together(
-    click.option(
-        "--designer", "designers", multiple=True, default=("planner",), show_default=True,
-        help="Who designs; give it again to see designers side by side.",
+    under(
+        DESIGN,
+        click.option(
+            "--designer", "designers", multiple=True, default=("planner",), show_default=True,
+            help="What designs the roads; give it again to compare designers.",
+            cls=SettableOption, table="run", key="designer", guard=designer_guard,
+        ),
     ),
-    click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed, the same files."),
-    click.option("--out", type=folder, default=None, help="The study's. [default: one in roadgpt-runs]"),
+    click.option(
+        "--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same files.",
+    ),
+    click.option("--out", type=folder, default=None, help="Folder for the study. [default: in roadgpt-runs]"),
     click.option(
         "--workers", type=whole(1, 64, "processes"), default=2, show_default=True,
-        help="Descriptions at work at once; the files are the same.",
+        help="How many descriptions are worked on at a time; the files are the same.",
     ),
     setup_options(*SHOWN),
     world_options(),
     format_option,
-    click.option("--no-plot", is_flag=True, help="Draw no pictures of single runs."),
-    click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors, and where the report is."),
+    under(FILES, click.option("--no-plot", is_flag=True, help="Draw no pictures of single runs.")),
+    under(
+        OUTPUT,
+        click.option("--quiet", "-q", is_flag=True, help="Print only errors and where the report is."),
+    ),
     chat_options,
 )  # fmt: skip
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.option("--roads", "-n", type=ROADS, default=100, show_default=True, help="Roads of each description.")
-@click.option("--no-drive", is_flag=True, help="Design and check only.")
+@no_drive_option
 @study_options
 def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
     """Do the evaluation of RoadGPT's thesis again: validity, drives, alignment and diversity.
@@ -76,7 +90,7 @@ def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
     return _study("thesis", thesis_prompts(), "", roads, not no_drive, rest)
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("prompts", metavar="PROMPTS.jsonl", type=click.Path(path_type=Path))
 @click.option("--roads", "-n", type=ROADS, default=10, show_default=True, help="Roads of each description.")
 @click.option("--drive", "drives", is_flag=True, help="Drive the roads as well.")

@@ -11,7 +11,7 @@ from roadgpt.campaign.selection import Choice, Selection, chosen, selection_of
 from roadgpt.campaign.status import Status, status_of
 from roadgpt.campaign.table import RESULTS
 from roadgpt.chat import Spent
-from roadgpt.cli.campaigns import HEAD, LINE, cell_columns, faults_of, told
+from roadgpt.cli.campaigns import HEAD, LINE, as_line, cell_columns, faults_of, told
 from roadgpt.cli.named import Named, roads_named
 from roadgpt.cli.replay import replay_lines
 from roadgpt.cli.rows import WIDEST, metres, row_of, spending
@@ -37,6 +37,33 @@ def show(path: Path | str, choice: Choice | None = None) -> str:
         UsageError: nothing of the kind is there.
     """
     return "\n".join(_lines(path, choice))
+
+
+def progress_lines(campaign: Path, as_json: bool = False) -> Iterator[str]:
+    """Yields how far a campaign is, in lines to read or as one JSON object.
+
+    Raises:
+        UsageError: There is no campaign.
+    """
+    status = status_of(campaign)
+    found = faults_of(status)
+    yield from [as_line(status, found)] if as_json else told(status, found)
+
+
+def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
+    """Yields one JSON object about a whole campaign, or one for each road that is named.
+
+    Raises:
+        UsageError: There is nothing of that name.
+    """
+    place = selection_of(str(path))
+    if place is not None and place.is_campaign and not place.cell and choice is None:
+        yield from progress_lines(place.folder, as_json=True)
+        return
+    for named in roads_named([str(path)], choice, takes_all=True):
+        if named.run is None:
+            raise UsageError(f"{path} is the file of a road, and no run; 'roadgpt check' takes it")
+        yield row_of(named.run(), named.said).to_json()
 
 
 def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
@@ -88,7 +115,9 @@ def _run_of(named: Named) -> Iterator[str]:
     run = named.run()
     if isinstance(named.key, Path):
         return _run_lines(run, replay_lines(run, named.key))
-    return _run_lines(run, [shlex.join(["roadgpt", verb, named.said]) for verb in ("redrive", "view")])
+    return _run_lines(
+        run, [shlex.join(["roadgpt", *verb, named.said]) for verb in (("drive", "--again"), ("view",))]
+    )
 
 
 def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:

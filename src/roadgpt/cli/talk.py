@@ -9,7 +9,7 @@ from roadgpt import stopping
 from roadgpt.cli import changing
 from roadgpt.cli.options import ROADS
 from roadgpt.cli.screen import Screen
-from roadgpt.cli.work import Wish, work_off
+from roadgpt.cli.work import work_off
 from roadgpt.errors import RoadGPTError
 
 USUAL_ROADS = 3
@@ -46,8 +46,7 @@ Here all options have their usual values. Options belong to 'roadgpt run', for e
 def talk() -> None:
     """Ask, work off, show; until the user has had enough."""
     from roadgpt.brief import read
-    from roadgpt.road import World
-    from roadgpt.run import Setup
+    from roadgpt.cli.commands.run import usual_wish
 
     _enable_editing()
     click.echo(f"{HELLO}\n")
@@ -60,7 +59,7 @@ def talk() -> None:
             if roads is None:
                 break
             screen = Screen(roads)
-            work_off(Wish(words, roads, World(), Setup()), screen)
+            work_off(usual_wish(words, roads), screen)
             if not _changed(screen):
                 break
         except RoadGPTError as error:

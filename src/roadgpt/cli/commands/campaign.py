@@ -10,15 +10,18 @@ from click.core import ParameterSource
 
 from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
+from roadgpt.cli.configuration import SettableOption, driver_guard
 from roadgpt.cli.dashes import DescribedCommand
 from roadgpt.cli.failing import analyse_failures, asked, fault_options
-from roadgpt.cli.flags import CHAT, driver, driver_again, measure
+from roadgpt.cli.flags import CHAT, DRIVE, driver, driver_again, measure
 from roadgpt.cli.junit import junit_option, write_folder
+from roadgpt.cli.option_groups import under
 from roadgpt.cli.options import (
     SEED,
     chat_of,
     chat_options,
     folder,
+    no_drive_option,
     setup_options,
     whole,
     world_of,
@@ -42,30 +45,37 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "j
     "--goal",
     type=click.Choice(["failures", "coverage", "hardest", "boundary"]),
     default=None,
-    help="What to search for; without one, roads are made as they come.",
+    help="What to search for. [default: nothing; roads are made as they come]",
 )
 @click.option(
-    "--generator", default=None, help="Who thinks out tests. [default: quality_diversity, or words]"
+    "--generator", default=None, help="Test generator. [default: quality_diversity; words without a goal]"
 )
-@click.option("--seconds", type=SECONDS, default=None, help="Ask for no more tests after so long.")
+@click.option("--seconds", type=SECONDS, default=None, help="Start no more tests after this many seconds.")
 @click.option("--seed", type=SEED, default=0, show_default=True, help="The same seed gives the same table.")
 @click.option("--out", type=folder, default=None, help="Folder for the campaign. [default: a new one]")
 @worker_options
 @setup_options("reader", "designer")
-@click.option(
-    "--driver",
-    "drivers",
-    type=driver,
-    multiple=True,
-    default=("beamng_like",),
-    show_default=True,
-    help="Who drives: a name, or FILE.py:CLASS; give it again for more. Beside a FILE.toml: which "
-    "files of its drivers may be run.",
+@under(
+    DRIVE,
+    click.option(
+        "--driver",
+        "drivers",
+        type=driver,
+        multiple=True,
+        default=("beamng_like",),
+        show_default=True,
+        help="Name of a driver, or FILE.py:CLASS; give it again for more. Beside FILE.toml: a driver of that "
+        "file whose code may be run.",
+        cls=SettableOption,
+        table="run",
+        key="driver",
+        guard=driver_guard,
+    ),
 )
 @setup_options("simulator", "keep_driving")
 @world_options()
 @setup_options("geometry", "rules")
-@click.option("--no-drive", is_flag=True, help="Design and check only.")
+@no_drive_option
 @chat_options
 @beamng_options
 @fault_options
@@ -90,15 +100,14 @@ def command(
 ) -> None:
     """Search for roads that a driver fails on, or make roads by the thousand.
 
-    Give a description, or a FILE.toml that names many prompts, designers, drivers, simulators and seeds;
-    every combination is then a cell with tests of its own. The folder can be gone on with after Ctrl-C, a
-    crash or a power cut, and comes to the same table of results whatever happened and however many workers
-    there are.
+    Give a description, or a FILE.toml that lists prompts, designers, drivers, simulators and seeds; each
+    combination is then a cell with tests of its own. A campaign can be resumed after Ctrl-C, a crash or a
+    power cut. The table of results is the same whatever happened, and however many workers there are.
 
     \b
     roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7
     roadgpt campaign study.toml -j 16 --out study
-    roadgpt status study
+    roadgpt show study --watch
     """
     from roadgpt import plugins
     from roadgpt.campaign.lifecycle import begin, work

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import (
     files_argument,
     screen_options,
@@ -20,18 +21,18 @@ INVALID = 1  # exit status, so that a script can ask
 UNREADABLE = 2
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @files_argument
 @setup_options("rules")
 @world_options("map_size")
 @setup_options("geometry")
 @screen_options
 def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **rest: Any) -> int:
-    """Check roads that exist against the rules.
+    """Check roads against the rules.
 
-    ROAD.json is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a
-    table of points (.csv) or OpenDRIVE (.xodr). The exit status is 0 when all roads are valid, 1 when one is
-    not, 2 when one cannot be read.
+    ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
+    points (.csv) or OpenDRIVE (.xodr). The exit status is 0 if all roads are valid, 1 if one is not, 2 if one
+    cannot be read.
     """
     world = world_of(rest)
     screen = Screen(len(files), rest["as_json"], rest["quiet"], verbose)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import axes_option, setup_options, world_of, world_options
 from roadgpt.cli.roads import shown_run
 from roadgpt.errors import RoadGPTError, UsageError
@@ -26,16 +27,16 @@ NAMES = {
 }
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("one", metavar="A")
 @click.argument("other", metavar="B")
 @click.option(
     "--out", type=click.Path(path_type=Path), default=PICTURE, show_default=True, metavar="FILE.png",
-    help="The picture, as .png, .svg or .pdf; one of that name is replaced.",
+    help="The picture: .png, .svg or .pdf. An existing file is replaced.",
 )  # fmt: skip
 @click.option("--no-plot", is_flag=True, help="Draw no picture.")
-@click.option("--mirror", is_flag=True, help="A road and its mirror image count as alike.")
-@click.option("--json", "as_json", is_flag=True, help="One JSON object on standard output.")
+@click.option("--mirror", is_flag=True, help="Count a road and its mirror image as alike.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @axes_option
 @world_options("map_size")
 @setup_options("geometry")
@@ -50,10 +51,10 @@ def command(
     geometry: Any,
     **rest: Any,
 ) -> None:
-    """Say how alike two roads are, and draw them one above the other, as RoadGPT's thesis showed them.
+    """Measure how alike two roads are, and draw one above the other, as in RoadGPT's thesis.
 
-    A and B are folders or test files of runs, or road files. Similarities run from 0, nothing in common, to
-    1, the same; shifting and turning a road changes nothing.
+    A and B are runs, tests of campaigns or road files. A similarity is a number from 0, nothing in common, to
+    1, the same. Moving or rotating a road does not change it.
 
     \b
     roadgpt compare DIR/runs/0001 DIR/runs/0002

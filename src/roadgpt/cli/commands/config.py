@@ -1,47 +1,119 @@
-"""``roadgpt config``: which language model is asked, and which file or variable says so."""
+"""``roadgpt config``: every setting with the place that it comes from, and the plug-ins."""
 
 import json
-from typing import Any
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from roadgpt.cli.configuration import TABLES, SettableOption, layers_of, settable_options
 from roadgpt.cli.flags import CHAT
+from roadgpt.cli.installed_plugins import plugins_command
+from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.options import chat_options
 
+if TYPE_CHECKING:
+    from roadgpt.chat.config import Layer
 
-@click.group()
+DEFAULT = "default"
+
+
+@click.group(cls=CommandGroup)
 def command() -> None:
-    """Tell which language model is asked, and where each setting comes from."""
+    """Show all settings and where each comes from; list plug-ins."""
+
+
+class ShownSetting(NamedTuple):
+    """One line of ``roadgpt config show``."""
+
+    table: str
+    name: str
+    value: Any
+    origin: str
 
 
 @command.command()
-@click.option("--origin", "with_origin", is_flag=True, help="Also where each setting was found.")
-@click.option("--json", "as_json", is_flag=True, help="As one JSON object.")
+@click.option("--origin", "with_origin", is_flag=True, help="With --json: also where each setting is from.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @chat_options
 def show(with_origin: bool, as_json: bool, **values: Any) -> None:
-    """Show the settings that hold now; keys are masked.
+    """Show all settings that options, the environment or a file can make, and where each comes from.
 
-    What is given as an option counts most, then the environment (ROADGPT_MODEL and so on, OPENAI_BASE_URL,
-    OPENAI_API_KEY), then a file .env in this folder, then roadgpt.toml in this folder, then the user's own
-    roadgpt/config.toml.
+    An option on the command line counts first; then the environment, such as ROADGPT_FRICTION; then the file
+    .env in this folder; then roadgpt.toml in this folder; then your own roadgpt/config.toml. The tables of
+    these files are [run], [world], [chat] and [beamng]. Keys of servers are masked.
+
+    A folder may come from somebody else. Its files cannot name a driver's file, a program, a server that gets
+    your key, or a plug-in that asks a language model.
     """
-    from roadgpt.chat.config import key_for, settings_from, settings_with_origin, unknown_variables
+    from roadgpt.chat.config import unknown_variables
+
+    shown = [*_of_options(), *_of_chat(values)]
+    if as_json:
+        told = {
+            each.name: {"value": each.value, "origin": each.origin} if with_origin else each.value
+            for each in shown
+        }
+        click.echo(json.dumps(told, indent=2))
+        return
+    wide = max(len(each.name) for each in shown)
+    far = max(len(_text(each.value)) for each in shown)
+    for table in (*TABLES, "chat"):
+        click.secho(f"[{table}]", bold=True)
+        for each in shown:
+            if each.table == table:
+                click.echo(f"{each.name:<{wide}}  {_text(each.value):<{far}}  {each.origin}")
+    for name in unknown_variables({option.variable for option in settable_options()}):
+        click.echo(f"roadgpt: {name} is no setting; there are those above", err=True)
+
+
+def _text(value: Any) -> str:
+    return "-" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _of_options() -> list[ShownSetting]:
+    """The settings of options.
+
+    Raises:
+        UsageError: One cannot be used, or must not come from its place.
+    """
+    layers = layers_of()
+    return [_of_option(option, layers) for option in settable_options()]
+
+
+def _of_option(option: SettableOption, layers: "Sequence[Layer]") -> ShownSetting:
+    setting = option.found(layers)
+    context = click.Context(click.Command(None), resilient_parsing=True)
+    if setting is None:
+        value, origin = option.get_default(context), DEFAULT
+    else:
+        value, origin = option.converted(context, setting), setting.origin
+    return ShownSetting(option.table, option.setting_name, _plain(value), origin)
+
+
+def _plain(value: Any) -> Any:
+    """The value as JSON and a line have it."""
+    if isinstance(value, tuple):
+        return ",".join(",".join(each) if isinstance(each, tuple) else str(each) for each in value)
+    if isinstance(value, bool | int | float):
+        return value
+    return str(value) if isinstance(value, str | Path) else None
+
+
+def _of_chat(values: dict[str, Any]) -> list[ShownSetting]:
+    from roadgpt.chat.config import key_for, settings_from, settings_with_origin
 
     found = settings_with_origin({flag.field: flag.read(values[flag.field]) for flag in CHAT})
     settings = settings_from(found)
     key = key_for(settings.base_url)
-    rows = [(name, getattr(settings, name), setting.origin) for name, setting in found.items()]
-    rows.append(("api_key", str(key) if key else None, key.origin if key else "nowhere"))
-    if as_json:
-        told = {
-            name: {"value": value, "origin": origin} if with_origin else value for name, value, origin in rows
-        }
-        click.echo(json.dumps(told, indent=2))
-        return
-    wide = max(len(name) for name, _, _ in rows)
-    far = max(len(str(value)) for _, value, _ in rows)
-    for name, value, origin in rows:
-        shown = "-" if value is None else str(value)
-        click.echo(f"{name:<{wide}}  {shown:<{far}}  {origin}" if with_origin else f"{name:<{wide}}  {shown}")
-    for name in unknown_variables():
-        click.echo(f"roadgpt: {name} is no setting; there are those above", err=True)
+    shown = [
+        ShownSetting("chat", name, getattr(settings, name), setting.origin) for name, setting in found.items()
+    ]
+    return [
+        *shown,
+        ShownSetting("chat", "api_key", str(key) if key else None, key.origin if key else "nowhere"),
+    ]
+
+
+command.add_command(plugins_command)

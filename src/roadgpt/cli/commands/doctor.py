@@ -14,6 +14,8 @@ from pathlib import Path
 import click
 
 from roadgpt import __version__
+from roadgpt.cli.beamng_selftest import beamng_command
+from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.errors import RoadGPTError
 
 LIBRARIES = ("numpy", "scipy", "numba", "mujoco-core", "matplotlib", "shapely", "pydantic", "click", "rich")
@@ -52,18 +54,20 @@ def _library(name: str) -> Answer:
 
 
 def _shelves() -> Iterator[Answer]:
-    from roadgpt.cli.commands.parts import installed
+    from roadgpt.cli.installed_plugins import installed
 
     try:
         parts = installed()
     except RoadGPTError as error:
-        yield Answer("parts", False, str(error))
+        yield Answer("plug-ins", False, str(error))
         return
     for part in parts:
         if not part.works:
             yield Answer(f"{part.shelf}: {part.name}", False, part.about)
     working = sum(part.works for part in parts)
-    yield Answer("parts", working == len(parts), f"{working} of {len(parts)} can be used (roadgpt parts)")
+    yield Answer(
+        "parts", working == len(parts), f"{working} of {len(parts)} can be used (roadgpt config plugins)"
+    )
 
 
 def _model() -> Answer:
@@ -111,10 +115,16 @@ def _writable(folder: Path) -> str:
         return "can be written to"
 
 
-@click.command()
-@click.option("--json", "as_json", is_flag=True, help="As one JSON list.")
-def command(as_json: bool) -> None:
-    """Find out whether this installation works: versions, parts, compiler, a test drive, folders."""
+@click.group(cls=CommandGroup, invoke_without_command=True)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
+@click.pass_context
+def command(ctx: click.Context, /, as_json: bool) -> None:
+    """Check this installation: versions, plug-ins, compiler, a test drive, folders.
+
+    The exit status is 0 if no check finds a problem.
+    """
+    if ctx.invoked_subcommand is not None:
+        return
     answers = []
     for answer in examined():
         answers.append(answer)
@@ -128,3 +138,6 @@ def command(as_json: bool) -> None:
         raise RoadGPTError(f"{problems} of {len(answers)} looks found a problem; mend those marked above")
     if not as_json:
         click.echo("all is well")
+
+
+command.add_command(beamng_command)

@@ -1,4 +1,4 @@
-"""``roadgpt drive``: drive roads that exist."""
+"""``roadgpt drive``: drives roads that exist, and tests of campaigns again."""
 
 import sys
 from contextlib import redirect_stdout
@@ -6,12 +6,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from roadgpt.cli.beamng import beamng_options
+from roadgpt.cli.driving_again import drive_again
+from roadgpt.cli.flags import driver_again
 from roadgpt.cli.junit import Junit, junit_option
+from roadgpt.cli.named import choice_of, choice_options
+from roadgpt.cli.option_groups import GroupedCommand, under
 from roadgpt.cli.options import (
     SEED,
-    files_argument,
+    folder,
+    no_plot_option,
+    pictures_options,
     screen_options,
     setup_options,
     world_of,
@@ -20,6 +27,7 @@ from roadgpt.cli.options import (
 from roadgpt.cli.roads import blueprint_of, each_road
 from roadgpt.cli.rows import Row, row_of
 from roadgpt.cli.screen import Screen
+from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.road import World
@@ -27,33 +35,66 @@ if TYPE_CHECKING:
     from roadgpt.run.model import Setup
 
 UNREADABLE = 2  # exit status
+AGAIN = "Tests of a campaign"  # heading of help
+ONLY_AGAIN = {"out", "no_plot", "axes", "picture_formats", "failures", "faults", "worst"}
+BOTH = {"files", "again", "driver"}
 
 
-@click.command()
-@files_argument
-@click.option("--seed", type=SEED, default=1, show_default=True, help="Handed to the driver.")
+@click.command(cls=GroupedCommand)
+@click.argument("files", nargs=-1, required=True, metavar="ROAD...")
+@click.option("--seed", type=SEED, default=1, show_default=True, help="Seed for the driver.")
 @world_options()
 @setup_options("driver", "simulator", "keep_driving", "geometry", "rules")
 @beamng_options
+@under(
+    AGAIN,
+    click.option("--again", is_flag=True, help="Drive tests of a campaign again."),
+    click.option("--out", type=folder, default=None, help="Folder for the runs. [default: CAMPAIGN/again]"),
+)
+@under(AGAIN, choice_options, no_plot_option, pictures_options)
 @junit_option
 @screen_options
+@click.pass_context
 def command(
+    ctx: click.Context,
+    /,
     files: tuple[str, ...],
     seed: int,
+    again: bool,
+    out: Path | None,
+    no_plot: bool,
+    axes: Any,
+    picture_formats: Any,
     junit: Path | None,
     as_json: bool,
     quiet: bool,
     verbose: bool,
     **rest: Any,
 ) -> int:
-    """Drive roads that exist.
+    """Drive roads that exist, or drive tests of a campaign again.
 
-    ROAD.json is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a
-    table of points (.csv) or OpenDRIVE (.xodr). A road that the rules object to is driven all the same, and
-    what they say is told beside the verdict; INVALID is what cannot be driven: numbers that are not finite,
-    two points at one place, no room for a car. With --rules sbft every objection is INVALID, as in the
-    competition. The exit status is 0 when all roads could be read.
+    ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
+    points (.csv) or OpenDRIVE (.xodr). A road that breaks a rule is driven all the same, and the rule's
+    sentence stands beside the verdict. INVALID is a road that cannot be driven: it has numbers that are not
+    finite, two points at one place, or no room for a car. With --rules sbft every broken rule makes a road
+    INVALID, as in the competition. The exit status is 0 if every road could be read.
+
+    With --again, give a campaign and the numbers of its tests in results.csv, such as CAMPAIGN 17 or
+    CAMPAIGN/c02/17. Road, world, driver and seed are those of the test, so the drive should be the same byte
+    for byte; the command says so if it is not. Each test is written as a folder of a run. Looking at a test
+    needs no driving: show, view, film and export take CAMPAIGN/c02/17.
+
+    \b
+    roadgpt drive my_road.json --friction 0.6
+    roadgpt drive --again roadgpt-runs/an-uphill-road-with-3-turns-7 17
     """
+    _refuse_mixture(ctx, again)
+    choice = choice_of(rest)
+    if again:
+        is_named = ctx.get_parameter_source("driver") is ParameterSource.COMMANDLINE
+        driver = driver_again(rest["driver"]) if is_named else None
+        drive_again(files, choice, out, driver, axes, () if no_plot else picture_formats)
+        return 0
     from roadgpt.run import Request, Setup, check_parts
     from roadgpt.run.lost_drives import LostDrives
 
@@ -66,6 +107,25 @@ def command(
     losses: LostDrives[str] = LostDrives()
     each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup, losses))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
+
+
+def _refuse_mixture(ctx: click.Context, again: bool) -> None:
+    """Refuses options of files with --again, and options of --again without it.
+
+    Raises:
+        UsageError: There is such an option.
+    """
+    for parameter in ctx.command.params:
+        name = parameter.name or ""
+        is_of_again, is_of_both = name in ONLY_AGAIN, name in BOTH or not parameter.expose_value
+        if is_of_both or ctx.get_parameter_source(name) is not ParameterSource.COMMANDLINE:
+            continue
+        if again and not is_of_again:
+            raise UsageError(
+                f"a test keeps its world and its seed; leave out {parameter.opts[0]} with --again"
+            )
+        if is_of_again and not again:
+            raise UsageError(f"{parameter.opts[0]} is for tests of a campaign; say --again as well")
 
 
 def _driven(

@@ -7,12 +7,17 @@ import click
 
 from roadgpt.cli.changing import Wish, change
 from roadgpt.cli.dashes import DescribedCommand
+from roadgpt.cli.option_groups import under
 from roadgpt.cli.options import (
+    OUTPUT,
     chat_of,
     chat_options_but,
     driver_again_option,
     folder,
     format_option,
+    no_drive_option,
+    no_plot_option,
+    quiet_option,
     world_of,
     world_options,
 )
@@ -27,16 +32,16 @@ from roadgpt.cli.screen import Screen
     "--designer",
     default="planner",
     show_default=True,
-    help="Who changes the road: planner, by rules; chat, a language model.",
+    help="What changes the road: planner, by rules, or chat, a language model.",
 )
 @chat_options_but("repair", "strategy")
 @world_options("map_size")
 @driver_again_option
-@click.option("--no-drive", is_flag=True, help="Change and check only.")
-@click.option("--no-plot", is_flag=True, help="Draw no pictures.")
+@no_drive_option
+@no_plot_option
 @format_option
-@click.option("--json", "as_json", is_flag=True, help="One JSON line on standard output.")
-@click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
+@under(OUTPUT, click.option("--json", "as_json", is_flag=True, help="Print one JSON line."))
+@quiet_option
 def command(
     run: str,
     words: tuple[str, ...],
@@ -50,18 +55,18 @@ def command(
     quiet: bool,
     **rest: Any,
 ) -> None:
-    """Change a road that exists, by words.
+    """Change a road by words.
 
-    RUN is the folder of a run, a folder of runs that holds one, or a RoadGPT design. The changed road goes
-    into a new folder; what the words do not speak of stays as it was, number by number. World, driver and
-    rules are those of the run; --map-size is for a design from a file.
+    RUN is a run, a folder that holds one run, or a file with a RoadGPT design. The changed road is written
+    into a new folder. Every number that the words do not concern stays the same. World, driver and rules are
+    those of the run; --map-size is for a design from a file.
 
     \b
     roadgpt edit my-roads/runs/0001 "make the second turn sharper and the end downhill"
     roadgpt edit design.json "add a hairpin after the first turn, then remove the last straight"
 
-    The exit status is 2 when the words cannot be read, name what is not on the road, or ask for what no valid
-    road can be; then nothing is written.
+    The exit status is 2 if the words cannot be read, refer to something that is not on the road, or ask for
+    a road that cannot be valid. Nothing is written then.
     """
     chat = chat_of(rest, designer=designer)
     wish = Wish(

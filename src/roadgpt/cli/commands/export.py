@@ -9,7 +9,8 @@ from click.core import ParameterSource
 
 from roadgpt.cli.flags import WORLD
 from roadgpt.cli.named import Named, choice_of, choice_options, roads_named
-from roadgpt.cli.options import folder, formats_option, setup_options, world_of, world_options
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import folder, formats_option, quiet_option, setup_options, world_of, world_options
 from roadgpt.cli.roads import blueprint_of
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError
 
@@ -22,24 +23,23 @@ UNREADABLE = 2
 OPENDRIVE = ".xodr"
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("files", nargs=-1, required=True, metavar="RUN|ROAD...")
 @formats_option("--to", required=True)
 @choice_options
 @click.option("--out", type=folder, default=Path("exports"), show_default=True, help="Folder for the files.")
 @world_options("lane_width", "verge", "speed_limit", "friction")
 @setup_options("geometry")
-@click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
+@quiet_option
 def command(
     files: tuple[str, ...], formats: tuple[str, ...], out: Path, geometry: Any, quiet: bool, **rest: Any
 ) -> int:
-    """Write roads in the formats of other people's tools.
+    """Write roads in the formats of other tools, such as OpenDRIVE.
 
-    RUN is the folder of a run, a folder of runs, a campaign, or a test of one, as CAMPAIGN/c01/17; each
-    brings its own lanes, limits and drive. ROAD is a RoadGPT design, an SBFT test, a list of points, or an
-    OpenDRIVE file, which brings its own lanes and limits where no option says otherwise. Files are named
-    after what they are made of, those of a folder of runs or a campaign after it and the test, and replace
-    those of the same name. Prints their names.
+    RUN is a run, a folder of runs, a campaign, or a test of a campaign, such as CAMPAIGN/c01/17; it has its
+    own lanes, limits and drive. ROAD is a RoadGPT design, an SBFT test, a list of points, or an OpenDRIVE
+    file, whose own lanes and limits are kept unless an option changes them. A file is named after its RUN or
+    ROAD, and replaces a file of the same name. The names are printed.
 
     \b
     roadgpt export roadgpt-runs/hairpins-7 --to opendrive
@@ -121,7 +121,7 @@ class _Source:
 
 def _source(rest: dict[str, Any], geometry: "Geometry", is_quiet: bool) -> _Source:
     context = click.get_current_context()
-    asked = [name for name in rest if context.get_parameter_source(name) is not ParameterSource.DEFAULT]
+    asked = [name for name in rest if context.get_parameter_source(name) is ParameterSource.COMMANDLINE]
     world = world_of(rest)
     return _Source(world, {name: getattr(world, name) for name in asked}, geometry, is_quiet)
 

@@ -5,22 +5,35 @@ from pathlib import Path
 import click
 
 from roadgpt.cli.failing import DRIVES, REPEAT, Look, analyse_failures
-from roadgpt.cli.options import driver_again_option, folder, format_option, whole
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import (
+    driver_again_option,
+    folder,
+    format_option,
+    no_plot_option,
+    quiet_option,
+    whole,
+)
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("place", type=folder, metavar="DIR")
 @click.option(
     "--repeat", type=DRIVES, default=REPEAT, show_default=True, help="Disturbed drives of each fault."
 )
-@click.option("--minimise", is_flag=True, help="Also look for the simplest road that fails alike, per fault.")
+@click.option("--minimise", is_flag=True, help="Also find the simplest road that still shows each fault.")
 @click.option(
-    "-j", "workers", type=whole(1, 256, "processes"), default=1, show_default=True, help="Faults at a time."
+    "-j",
+    "workers",
+    type=whole(1, 256, "processes"),
+    default=1,
+    show_default=True,
+    help="Faults analysed at a time.",
 )
 @driver_again_option
 @format_option
-@click.option("--no-plot", is_flag=True, help="Draw no pictures.")
-@click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
+@no_plot_option
+@quiet_option
 def command(
     place: Path,
     repeat: int,
@@ -31,12 +44,13 @@ def command(
     no_plot: bool,
     quiet: bool,
 ) -> None:
-    """Tell the distinct faults in a folder of runs or a campaign: why, how often again, and how many tests.
+    """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
 
-    Failures whose 60 m of road around the departure are alike are one fault. The most typical failure of each
-    fault is driven again and again with friction, start and the age of what the driver sees off a little.
-    DIR/faults gets a picture and a sentence of each, faults.csv with one line per fault, and failures.csv
-    with one per failure. What was done before is not done again, so Ctrl-C loses nothing.
+    Two failures are the same fault if the 60 m of road around the lane departure are alike. The most typical
+    failure of each fault is driven several times with a slightly different friction, start and delay of what
+    the driver sees; the share that fails again is reported. DIR/faults gets a picture and a sentence for each
+    fault, faults.csv has a line per fault, and failures.csv a line per failure. Finished work is not
+    repeated, so Ctrl-C loses nothing.
 
     \b
     roadgpt faults roadgpt-runs/hairpins-7

@@ -1,4 +1,4 @@
-"""``roadgpt film``: drives as films, from behind the car, from a hood camera, or two in one picture."""
+"""``roadgpt film``: films of drives, from behind the car, from its hood, or of two roads side by side."""
 
 import sys
 from collections.abc import Iterator
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from roadgpt.cli.named import choice_of, choice_options, roads_named
-from roadgpt.cli.options import setup_options, world_of, world_options
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import quiet_option, setup_options, world_of, world_options
 from roadgpt.cli.roads import run_of, shown_runs
 from roadgpt.errors import UsageError
 
@@ -19,7 +20,17 @@ MOST = 2  # roads in one picture
 LONGEST = 1_000_000  # s, of a part of a drive that is asked for
 FILM, FILMS = Path("roadgpt-film.mp4"), Path("films")
 ENDINGS = (".mp4", ".m4v")
-VIEWS = ("chase", "bonnet", "both")
+VIEWS = ("chase", "hood", "both")
+MOUNTS = {"hood": "bonnet"}  # as roadgpt.report.film calls them
+
+
+def _view(value: str) -> str:
+    """The type of --view; the hood has an earlier name, which the names of files keep."""
+    if value == "bonnet":
+        click.echo("roadgpt: '--view bonnet' is now '--view hood'", err=True)
+    elif value not in VIEWS:
+        raise click.BadParameter(f"'{value}' is no view; give {', '.join(VIEWS[:-1])} or {VIEWS[-1]}")
+    return value
 
 
 def _size(value: str) -> tuple[int, int]:
@@ -47,43 +58,45 @@ def _seconds(value: str) -> tuple[float, float | None]:
     return begin, None if end is None else end - begin
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("files", nargs=-1, required=True, metavar="RUN [RUN]")
 @click.option(
-    "--view",
-    type=click.Choice(VIEWS),
-    default="chase",
-    show_default=True,
-    help="The camera: behind the car (chase), on its hood (bonnet), or both.",
-)
+    "--view", type=_view, default="chase", show_default=True, metavar=f"[{'|'.join(VIEWS)}]",
+    help="Where the camera is: behind the car, on its hood, or both.",
+)  # fmt: skip
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
     default=None,
     metavar="FILM.mp4",
-    help=f"The film, or the folder of several; one of that name is replaced. [default: {FILM}, {FILMS}]",
+    help=f"The film, or the folder for several. [default: {FILM}, {FILMS}]",
 )
-@click.option("--fps", type=click.IntRange(1, 120), default=25, show_default=True, help="Pictures a second.")
+@click.option("--fps", type=click.IntRange(1, 120), default=25, show_default=True, help="Frames per second.")
 @click.option(
-    "--size", type=_size, default="640x360", show_default=True, metavar="WxH", help="Pixels of each picture."
+    "--size",
+    type=_size,
+    default="640x360",
+    show_default=True,
+    metavar="WxH",
+    help="Width and height of a frame, pixels.",
 )
 @click.option(
     "--seconds",
     type=_seconds,
     default=None,
     metavar="N|FROM:TO",
-    help="Which seconds of the drive. [default: all, and the outcome]",
+    help="Which seconds of the drive to film. [default: all, and the outcome]",
 )
 @click.option(
     "--all",
     "is_all",
     is_flag=True,
-    help="A film of each road of a folder; those of runs are put into the runs.",
+    help="Film every road of a folder; films of runs go into the runs.",
 )
 @choice_options
 @world_options("map_size")
 @setup_options("geometry")
-@click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
+@quiet_option
 def command(
     files: tuple[str, ...],
     view: str,
@@ -96,16 +109,16 @@ def command(
     quiet: bool,
     **rest: Any,
 ) -> None:  # fmt: skip
-    """Film a drive as an MP4: from behind the car, from its hood camera, or both; two in a split screen.
+    """Film a drive as an MP4: from behind the car, from its hood, or both; or two drives side by side.
 
-    RUN is the folder of a run, DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, such as
-    CAMPAIGN/c01/17. On a road that nobody drove, the camera moves along alone. The picture shows the
-    description, the speed, the place on the road and the margin (the distance to out of bounds), and at the
-    end the outcome. Needs PyAV: python -m pip install 'roadgpt[film]'.
+    RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; a test of a campaign, such as CAMPAIGN/c01/17;
+    or a road file, along which the camera moves without a car. The film shows the description, the speed, the
+    place on the road and the margin, and at the end the outcome. An existing film of the same name is
+    replaced. Filming needs PyAV: python -m pip install 'roadgpt[film]'.
 
     \b
     roadgpt film roadgpt-runs/hairpins-7/runs/0001 --view both
-    roadgpt film DIR/runs/0001 DIR/runs/0002 --view bonnet --out compared.mp4
+    roadgpt film DIR/runs/0001 DIR/runs/0002 --view hood --out compared.mp4
     roadgpt film roadgpt-runs/hairpins-7 --all
     roadgpt film CAMPAIGN --faults --out films
     """
@@ -175,7 +188,7 @@ def _film_all(files: tuple[str, ...], view: str, out: Path | None, settings: "Se
 def _make(runs: list[Any], out: Path, view: str, settings: "Settings", quiet: bool) -> None:
     from roadgpt.report.film import write
 
-    write(runs, out, view, settings, None if quiet or not sys.stderr.isatty() else _watched)
+    write(runs, out, MOUNTS.get(view, view), settings, None if quiet or not sys.stderr.isatty() else _watched)
     if not quiet:
         click.echo(str(out))
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.flags import WORLD
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import quiet_option
 from roadgpt.errors import RoadGPTError
 
 if TYPE_CHECKING:
@@ -18,28 +20,28 @@ LARGEST_MAP = 10_000.0  # m
 ROUND = 50.0  # m, to which a map's size is rounded up
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("file", metavar="FILE.xodr", type=click.Path(path_type=Path))
 @click.option(
     "--road",
     "wanted",
     default=None,
-    help="Its id. [default: the longest with a driving lane]",
+    help="Id of the road. [default: the longest with a driving lane]",
 )
 @click.option(
     "--out",
     type=click.Path(path_type=Path, dir_okay=False),
     default=None,
-    help="Road file to write. [default: a new one named after FILE and the road]",
+    help="Road file to write. [default: named after FILE and the road]",
 )
-@click.option("--keep-place", is_flag=True, help="Leave its coordinates as they are, on the map or off it.")
-@click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
+@click.option("--keep-place", is_flag=True, help="Keep the coordinates, even if the road is off the map.")
+@quiet_option
 def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, quiet: bool) -> None:
-    """Take a road out of an OpenDRIVE file, and say in words what it is like.
+    """Read a road from an OpenDRIVE file, write it as a road file, and describe it in words.
 
-    Lines, arcs, spirals, poly3, paramPoly3, elevation and widths are read; the centre line of the road is the
-    inner edge of the lane that is driven. The road can be checked, driven and drawn like any other. Where it
-    lies off the map it is moved onto it.
+    Lines, arcs, spirals, poly3, paramPoly3, elevation and widths are read. The road's centre line is the
+    inner edge of the lane that is driven. A road that is off the map is moved onto it. The file can then be
+    checked, driven and viewed as any other road.
 
     \b
     roadgpt import town.xodr --road 12

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.options import SEED, folder, whole
 from roadgpt.errors import LearnError
 
@@ -25,13 +26,13 @@ hand_option = click.option(
     type=folder,
     default=Path("data/descriptions"),
     show_default=True,
-    help="Folder with train, validation and test: JSON lines of text, plan, family, lang.",
+    help="Folder with the hand-written pairs: train, validation, test, each of JSON lines.",
 )
 
 
-@click.group()
+@click.group(cls=CommandGroup)
 def command() -> None:
-    """Descriptions by hand and by the thousand; train, judge and export a reader of your own."""
+    """Train, evaluate and export a reader of your own."""
 
 
 @command.command()
@@ -40,7 +41,7 @@ def command() -> None:
 @click.option("--number", "-n", type=COUNT, default=100_000, show_default=True, help="Pairs to generate.")
 @click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
 def data(out: Path, hand: Path, number: int, seed: int) -> None:
-    """Check the hand-written pairs, and write generated ones into the folder OUT."""
+    """Check the hand-written pairs of descriptions and plans, and write generated ones into the folder OUT."""
     from roadgpt.learn.near_duplicates import report
 
     splits = {name: _pairs_of(hand / name) for name in SPLITS if (hand / name).is_dir()}
@@ -74,11 +75,17 @@ def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
 @click.argument("out", type=folder)
 @hand_option
 @click.option("--weights", type=folder, help="Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.")
-@click.option("--installed", is_flag=True, help="Start from the reader that is installed instead.")
+@click.option("--installed", is_flag=True, help="Start from the installed reader instead.")
 @click.option("--steps", type=COUNT, default=14_000, show_default=True, help="Batches of each process.")
 @click.option("--size", type=COUNT, default=48, show_default=True, help="Pairs in a batch.")
-@click.option("--workers", type=whole(1, 64, "processes"), default=2, show_default=True, help="One per core.")
-@click.option("--own", type=folder, help="Folder with pairs of your own, trained on too.")
+@click.option(
+    "--workers",
+    type=whole(1, 64, "processes"),
+    default=2,
+    show_default=True,
+    help="Training processes; use one per core.",
+)
+@click.option("--own", type=folder, help="Folder with pairs of your own to train on as well.")
 @click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
 def train(
     out: Path,
@@ -91,9 +98,9 @@ def train(
     own: Path | None,
     seed: int,
 ) -> None:
-    """Train, or go on training, with the checkpoint in the folder OUT.
+    """Train a reader, or continue from the checkpoint in the folder OUT.
 
-    Ctrl-C loses the batches since the last save; the same command goes on from there.
+    Ctrl-C loses the batches since the last save. The same command continues from there.
 
     \b
     roadgpt learn train runs/reader --weights MINILM
@@ -129,13 +136,13 @@ def train(
 @click.argument("out", type=folder)
 @hand_option
 @click.option(
-    "--chats", type=COUNT, default=None, help="Also write so many pairs as chats, for larger models."
+    "--chats", type=COUNT, default=None, help="Also write this many pairs as chats, for larger models."
 )
 @click.option(
-    "--seed", type=SEED, default=1, show_default=True, help="Of the pairs that words are counted in."
+    "--seed", type=SEED, default=1, show_default=True, help="Seed of the pairs in which words are counted."
 )
 def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int) -> None:
-    """Write the reader of a CHECKPOINT folder in int8 into the folder OUT, ready for use."""
+    """Write the reader of a CHECKPOINT folder, quantised to int8, into the folder OUT, ready for use."""
     try:
         from roadgpt.learn.export import export_checkpoint
     except ImportError as error:
@@ -152,9 +159,9 @@ def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int
 @click.option("--number", "-n", type=COUNT, default=1000, show_default=True, help="Pairs to write.")
 @click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same chats.")
 def chats(out: Path, number: int, seed: int) -> None:
-    """Write pairs as chats into the folder OUT, for fine-tuning any larger model.
+    """Write pairs as chats into the folder OUT, for fine-tuning a larger model.
 
-    chat-brief.jsonl goes from the description to the Brief, chat-design.jsonl to the design of a road.
+    In chat-brief.jsonl the answer is what the description asks for; in chat-design.jsonl it is a road.
     """
     out.mkdir(parents=True, exist_ok=True)
     _write_chats(out, number, seed)
@@ -175,16 +182,27 @@ def _write_chats(out: Path, number: int, seed: int) -> None:
 
 @command.command()
 @hand_option
-@click.option("--split", type=click.Choice(SPLITS), default="validation", show_default=True)
 @click.option(
-    "--reader", "names", multiple=True, default=("model", "grammar"), show_default=True, help="Repeatable."
+    "--split",
+    type=click.Choice(SPLITS),
+    default="validation",
+    show_default=True,
+    help="Which part of the pairs to evaluate on.",
 )
-@click.option("--misses", type=whole(0, 10_000, "a number"), default=0, help="Show so many of the misses.")
 @click.option(
-    "--card", type=click.Path(path_type=Path), help="Write the card of the first reader to this file."
+    "--reader",
+    "names",
+    multiple=True,
+    default=("model", "grammar"),
+    show_default=True,
+    help="Reader to evaluate; give it again for more.",
+)
+@click.option("--misses", type=whole(0, 10_000, "a number"), default=0, help="Show this many wrong readings.")
+@click.option(
+    "--card", type=click.Path(path_type=Path), help="Write the model card of the first reader to this file."
 )
 def evaluate(hand: Path, split: str, names: Sequence[str], misses: int, card: Path | None) -> None:
-    """Hold readers against hand-written labels."""
+    """Evaluate readers on hand-written pairs."""
     from roadgpt.brief import reader_of
     from roadgpt.learn.evaluate import HEAD, readings, score, worst
 

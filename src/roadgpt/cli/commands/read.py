@@ -23,9 +23,11 @@ TEMPERATURE = 1.3  # of readings beside the likeliest one
 @click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION")
 @setup_options("reader")
 @world_options("map_size")
-@click.option("--table", "as_table", is_flag=True, help="One row for each thing along the road.")
-@click.option("--json", "as_json", is_flag=True, help="The Brief as JSON, with its sentence and its plan.")
-@click.option("--alternatives", "number", type=FEW, default=1, help="Show up to so many different readings.")
+@click.option("--table", "as_table", is_flag=True, help="Print a row for each turn and straight.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was read as JSON.")
+@click.option(
+    "--alternatives", "number", type=FEW, default=1, help="Show up to this many different readings."
+)
 @chat_options_but("repair", "strategy")
 def command(
     words: tuple[str, ...],
@@ -36,7 +38,7 @@ def command(
     number: int,
     **asked: Any,
 ) -> None:
-    """Say how a description is read, how sure the reader is, and whether the map has room for it.
+    """Show how a description is read, how sure the reader is, and whether the road fits on the map.
 
     \b
     roadgpt read "uphill, 3 turns, the last one a hairpin"

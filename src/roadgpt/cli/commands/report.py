@@ -9,21 +9,23 @@ import click
 
 from roadgpt.cli.junit import junit_option, write_folder
 from roadgpt.cli.next_steps import next_steps, of_runs, of_status
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.run.card import Card
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
 @junit_option
 def command(folder: Path, opens: bool, junit: Path | None) -> None:
-    """Write DIR/report.html on runs, a campaign or a study, with report.md and its tables as CSV and LaTeX.
+    """Write a report on a folder of runs, a campaign or a study.
 
-    DIR is what roadgpt run, roadgpt campaign or roadgpt study wrote into. The page needs no network and no
-    server; its links lead to the runs beside it.
+    DIR is the folder that roadgpt run, roadgpt campaign or roadgpt study wrote. It gets report.html,
+    report.md and the tables as CSV and LaTeX. The page needs no network and no server, and links to the runs
+    in DIR.
 
     \b
     roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open

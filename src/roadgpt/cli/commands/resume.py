@@ -8,6 +8,7 @@ from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.failing import analyse_failures, asked, fault_options
 from roadgpt.cli.flags import CHAT
 from roadgpt.cli.junit import junit_option, write_folder
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import driver_again_option, together
 from roadgpt.errors import UsageError
 
@@ -15,12 +16,17 @@ LIMITS = [flag for flag in CHAT if flag.field in ("max_tokens", "max_cost")]
 SERVER = next(flag for flag in CHAT if flag.field == "base_url")
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("campaign", metavar="CAMPAIGN", type=click.Path(path_type=Path))
 @worker_options
 @together(*(flag.option() for flag in LIMITS))
 @driver_again_option
-@click.option(SERVER.flag, SERVER.field, default=None, help="The server that it asks, named again.")
+@click.option(
+    SERVER.flag,
+    SERVER.field,
+    default=None,
+    help="The server's address, named again: a folder's word alone is not enough to send it a key.",
+)
 @fault_options
 @junit_option
 @screen_options
@@ -39,9 +45,9 @@ def command(
     quiet: bool,
     **limits: float | None,
 ) -> None:
-    """Go on with a campaign that was interrupted, with as many workers as you like.
+    """Continue a campaign that was interrupted, with any number of workers.
 
-    Tests that were under way are done again; the table of results is the same as if nothing had happened.
+    Tests that had not finished are repeated. The table of results is the same as without the interruption.
 
     \b
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2

@@ -15,6 +15,8 @@ from roadgpt.cli.options import (
     chat_options,
     folder,
     formats_option,
+    no_drive_option,
+    no_plot_option,
     pictures_options,
     screen_options,
     setup_options,
@@ -33,16 +35,37 @@ from roadgpt.cli.work import Wish, work_off
 @setup_options("reader", "designer", "driver", "simulator", "keep_driving")
 @world_options()
 @setup_options("geometry", "rules")
-@click.option("--no-drive", is_flag=True, help="Design and check only.")
-@click.option("--no-plot", is_flag=True, help="Draw no pictures.")
+@no_drive_option
+@no_plot_option
 @pictures_options
-@formats_option("--export")
+@formats_option("--export", is_settable=True)
 @chat_options
 @beamng_options
 @junit_option
 @screen_options
 def command(
-    words: tuple[str, ...],
+    words: tuple[str, ...], roads: int, as_json: bool, quiet: bool, verbose: bool, **rest: Any
+) -> None:
+    """Make roads from a description: design, check, drive and judge them.
+
+    \b
+    roadgpt run "an uphill road with 3 turns" -n 5
+    roadgpt run "two hairpins, then a straight" -n 20 --seed 7 --friction 0.6
+    roadgpt run "a winding road" --designer chat --max-cost 0.50
+
+    \b
+    Exit status:
+      0  every road was worked on, whatever its outcome
+      2  something that was typed cannot be used
+      3  nothing could be designed
+      4  a language model could not be asked, or a limit was reached
+    Roads that were finished before are complete.
+    """
+    work_off(wish_of(" ".join(words), roads, **rest), Screen(roads, as_json, quiet, verbose))
+
+
+def wish_of(
+    words: str,
     roads: int,
     seed: int | None,
     out: Path | None,
@@ -52,21 +75,12 @@ def command(
     picture_formats: Any,
     formats: tuple[str, ...],
     junit: Path | None,
-    as_json: bool,
-    quiet: bool,
-    verbose: bool,
     **rest: Any,
-) -> None:
-    """Design, check, drive and judge roads from a description.
+) -> Wish:
+    """Returns what the values of the options ask for.
 
-    The exit status is 0 when all roads were worked off, whatever became of them, 2 when something that was
-    typed cannot be used, 3 when nothing could be designed, 4 when a language model could not be asked or a
-    limit of tokens or money was reached; roads before that are complete.
-
-    \b
-    roadgpt run "an uphill road with 3 turns" -n 5
-    roadgpt run "two hairpins, then a long straight" -n 20 --seed 7 --friction 0.6 --json
-    roadgpt run "a winding road" --designer chat --model gpt-5-mini --max-cost 0.50
+    Raises:
+        UsageError: The options contradict each other, or a setting cannot be used.
     """
     from roadgpt.run import Setup
 
@@ -74,5 +88,16 @@ def command(
     chat = chat_of(rest, rest["reader"], rest["designer"])
     setup = Setup(drives=not no_drive, chat=chat, **rest)
     pictures = () if no_plot else picture_formats
-    wish = Wish(" ".join(words), roads, world, setup, seed, out, axes, pictures, formats, junit)
-    work_off(wish, Screen(roads, as_json, quiet, verbose))
+    return Wish(words, roads, world, setup, seed, out, axes, pictures, formats, junit)
+
+
+def usual_wish(words: str, roads: int) -> Wish:
+    """Returns what ``roadgpt run`` would be asked for without an option: defaults and settings of files.
+
+    Raises:
+        UsageError: A setting cannot be used.
+    """
+    values = command.make_context("run", ["-n", str(roads), "--", words]).params
+    for name in ("words", "roads", "as_json", "quiet", "verbose"):
+        values.pop(name)
+    return wish_of(words, roads, **values)

@@ -1,26 +1,54 @@
-"""``roadgpt show``: what is in a run, a folder of runs or a campaign."""
+"""``roadgpt show``: what is in a run, a folder of runs or a campaign, and how far a campaign is."""
 
+from pathlib import Path
 from typing import Any
 
 import click
 
 from roadgpt.cli.named import choice_of, choice_options
+from roadgpt.cli.option_groups import GroupedCommand, under
+from roadgpt.cli.options import OUTPUT
+from roadgpt.errors import UsageError
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("folders", nargs=-1, required=True, metavar="RUN...")
 @choice_options
-def command(folders: tuple[str, ...], **rest: Any) -> None:
-    """Tell what is in a run, a folder of runs or a campaign, and how to make it again.
+@click.option("--watch", is_flag=True, help="Keep showing how far a campaign is, until it ends.")
+@under(
+    OUTPUT,
+    click.option("--json", "as_json", is_flag=True, help="Print one JSON object for each campaign or road."),
+)
+@click.option("--progress", is_flag=True, hidden=True)
+@click.option("--once", is_flag=True, hidden=True)
+def command(
+    folders: tuple[str, ...], watch: bool, as_json: bool, progress: bool, once: bool, **rest: Any
+) -> None:
+    """Summarise a run, a folder of runs or a campaign, and say how to make it again.
 
-    RUN is a folder like DIR/runs/0001, the file DIR/test.0001.json, or the folder DIR that holds them; the
-    folder of a campaign, one of its cells, as CAMPAIGN/c01, or one of its tests, as CAMPAIGN/c01/17.
+    RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; the folder DIR that holds the runs; a campaign;
+    a cell of a campaign, such as CAMPAIGN/c01; or a test of a campaign, such as CAMPAIGN/c01/17.
 
     \b
+    roadgpt show roadgpt-runs/hairpins-7
     roadgpt show CAMPAIGN --failures
+    roadgpt show CAMPAIGN --watch
     """
-    from roadgpt.cli.summary import show
+    from roadgpt.cli.summary import json_lines, progress_lines, show
+    from roadgpt.cli.watching import watch_campaign
 
     choice = choice_of(rest)
+    if (watch or progress) and choice is not None:
+        raise UsageError(f"--{choice} picks roads, and --watch shows a whole campaign; leave one of them out")
+    if watch and (as_json or len(folders) > 1):
+        raise UsageError("--watch shows one campaign on the screen; leave out --json and other folders")
+    if watch:
+        watch_campaign(Path(folders[0]), once)
+        return
     for folder in folders:
-        click.echo(show(folder, choice))
+        if progress:
+            lines = progress_lines(Path(folder), as_json)
+        else:
+            lines = json_lines(folder, choice) if as_json else iter([show(folder, choice)])
+        for line in lines:
+            click.echo(line)

@@ -4,9 +4,10 @@ import click
 
 from roadgpt.cli import studying
 from roadgpt.cli.commands import survey_
+from roadgpt.cli.option_groups import CommandGroup
 
 
-@click.group()
+@click.group(cls=CommandGroup)
 def command() -> None:
     """Studies of many roads, and of people who rate them."""
 

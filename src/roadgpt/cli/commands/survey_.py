@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from roadgpt.cli.flags import measure
+from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.options import SEED, folder, whole
 from roadgpt.errors import UsageError
 
@@ -14,7 +15,7 @@ ASK = "say who asks, which raters are told first: --asks 'Jane Roe, University o
 survey_folder = click.argument("directory", metavar="DIR", type=folder)
 
 
-@click.group("survey")
+@click.group("survey", cls=CommandGroup)
 def command() -> None:
     """Ask people how well roads match their descriptions, as RoadGPT's thesis did."""
 

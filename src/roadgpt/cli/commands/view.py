@@ -1,13 +1,25 @@
-"""``roadgpt view``: one page with the road in 3-D and the drive as a replay."""
+"""``roadgpt view``: a page with the road in 3-D and its drive as a replay, or pictures."""
 
 import webbrowser
 from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from roadgpt.cli.named import choice_of, choice_options
-from roadgpt.cli.options import setup_options, world_of, world_options
+from roadgpt.cli.option_groups import GroupedCommand, under
+from roadgpt.cli.options import (
+    FILES,
+    axes_option,
+    picture_formats,
+    quiet_option,
+    setup_options,
+    world_of,
+    world_options,
+)
+from roadgpt.cli.options import folder as folder_of
+from roadgpt.cli.plotting import PLOTS, draw_pictures
 from roadgpt.cli.roads import shown_runs
 from roadgpt.errors import UsageError
 
@@ -16,41 +28,76 @@ PAGE = Path("roadgpt-view.html")
 ENDINGS = (".html", ".htm")
 
 
-@click.command()
-@click.argument("files", nargs=-1, required=True, metavar="FILE|RUN [FILE|RUN]")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    default=PAGE,
-    show_default=True,
-    metavar="PAGE.html",
-    help="The page; one of that name is replaced.",
-)
+@click.command(cls=GroupedCommand)
+@click.argument("files", nargs=-1, required=True, metavar="ROAD|RUN...")
 @choice_options
-@click.option("--open", "opens", is_flag=True, help="Open the page in the browser.")
+@under(
+    FILES,
+    click.option(
+        "--out",
+        type=click.Path(path_type=Path),
+        default=None,
+        metavar="PATH",
+        help=f"The page, or the folder for pictures. [default: {PAGE}, {PLOTS}]",
+    ),
+    click.option("--open", "opens", is_flag=True, help="Open the page in the browser."),
+    click.option(
+        "--format",
+        "formats",
+        type=picture_formats,
+        default=None,
+        metavar="FORMAT,...",
+        help="Draw pictures instead of the page: png, svg, pdf.",
+    ),
+    axes_option,
+)
 @world_options("map_size")
 @setup_options("geometry")
-def command(files: tuple[str, ...], out: Path, opens: bool, geometry: Any, **rest: Any) -> None:
-    """Look at a road in 3-D, and at its drive as a replay; of two roads, side by side.
+@quiet_option
+@click.pass_context
+def command(
+    ctx: click.Context,
+    /,
+    files: tuple[str, ...],
+    out: Path | None,
+    opens: bool,
+    formats: Any,
+    axes: Any,
+    geometry: Any,
+    quiet: bool,
+    **rest: Any,
+) -> int | None:
+    """View a road in 3-D with a replay of its drive, or two roads side by side; or draw pictures.
 
-    FILE is a RoadGPT design, an SBFT test, a list of points or an OpenDRIVE file; RUN is the folder of a run,
-    DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, as CAMPAIGN/c01/17; it brings its drive.
-    Writes one page that needs no server and no
-    network, so it can be kept and sent, and prints its name.
+    ROAD is a RoadGPT design, an SBFT test, a list of points or an OpenDRIVE file. RUN is a run, such as
+    DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, such as CAMPAIGN/c01/17; its drive is shown.
+
+    Without --format, writes one page that needs no server and no network. With --format, draws each road from
+    above, its height, curvature and grade into a new folder OUT/NAME. Prints the names of the files.
 
     \b
     roadgpt view roadgpt-runs/hairpins-7/runs/0001 --open
     roadgpt view DIR/runs/0001 DIR/runs/0002 --out compared.html
-    roadgpt view CAMPAIGN --worst --open
+    roadgpt view CAMPAIGN --worst --format pdf
     """
+    choice, world = choice_of(rest), world_of(rest)
+    if formats:
+        if opens:
+            raise UsageError("--open is for the page; leave out --format")
+        place = folder_of(str(out)) if out is not None else PLOTS
+        return draw_pictures(files, choice, place, axes, formats, world, geometry, quiet) or None
+    if ctx.get_parameter_source("axes") is ParameterSource.COMMANDLINE:
+        raise UsageError("--axes is for pictures; say --format png as well")
+    out = out or PAGE
     if out.is_dir():
         raise UsageError(f"{out} is a folder; give the name of a page, such as {out / PAGE}")
     if out.suffix.lower() not in ENDINGS:
         raise UsageError(f"{out} would be a web page; give it a name that ends in .html")
     from roadgpt.report.view import write
 
-    runs = shown_runs(files, choice_of(rest), world_of(rest), geometry, MOST, "a page")
-    page = write(runs, out)
-    click.echo(str(page))
+    page = write(shown_runs(files, choice, world, geometry, MOST, "a page"), out)
+    if not quiet:
+        click.echo(str(page))
     if opens and not webbrowser.open(page.resolve().as_uri()):
         click.echo(f"roadgpt: no browser could be started; open {page} in one", err=True)
+    return None

@@ -1,4 +1,4 @@
-"""What ``roadgpt sbft`` starts in the generator's interpreter; plain enough for any Python to read."""
+"""What ``roadgpt compete sbft`` starts in the generator's interpreter; plain enough for any Python to read."""
 
 import sys
 

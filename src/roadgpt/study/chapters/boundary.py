@@ -65,7 +65,7 @@ def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
         return []
     rows = [_row(folder, *side) for side in pairs]
     names = [f"{pairs[0].cell}/{number}" for number in (pairs[0].pair.kept, pairs[0].pair.lost)]
-    note = f"{EXPLAINED} To see a pair: {shlex.join(['roadgpt', 'redrive', str(folder), *names])}"
+    note = f"{EXPLAINED} To see a pair: {shlex.join(['roadgpt', 'drive', '--again', str(folder), *names])}"
     heads = ["kept", "margin, m", "lost", "at, m", "distance", "what differs most, kept then lost"]
     return [Table("pairs", "Nearest pairs of a road that was kept and one that was lost", heads, rows, note)]
 

@@ -167,7 +167,7 @@ class Recorder:
     def _check_ai(self) -> None:
         if self.seat is None and self.samples[-1].s - self.samples[0].s < STUCK_WAY:
             raise SimulationError(
-                "BeamNG's AI did not set off, as if it saw no road there; run 'roadgpt beamng selftest' "
+                "BeamNG's AI did not set off, as if it saw no road there; run 'roadgpt doctor beamng' "
                 "and see what it says of the AI"
             )
 

@@ -1,7 +1,7 @@
 """The files of a level: one JSON object per line in ``items.level.json``, materials, ``info.json``, scenario.
 
 Source: BeamNG documentation, "Level format"; levels as the SBFT competition and BeamNGpy write them. No tool
-outside the game checks such files; ``roadgpt beamng selftest`` loads one in the game.
+outside the game checks such files; ``roadgpt doctor beamng`` loads one in the game.
 """
 
 import json

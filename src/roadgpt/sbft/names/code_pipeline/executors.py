@@ -18,7 +18,7 @@ from self_driving.simulation_data import SimulationDataRecord
 log = logging.getLogger(__name__)
 
 OVER = 123  # exit status with which the competition ends a generator that asks for more than its budget
-HANDED = "roadgpt sbft makes the executor and hands it to the generator; start the generator with it"
+HANDED = "roadgpt compete sbft makes the executor and hands it to the generator; start the generator with it"
 
 Tried = Tuple[str, str, List[Any]]
 

@@ -1,4 +1,4 @@
-"""Shows nothing: pictures are drawn by ``roadgpt sbft --plot`` and ``roadgpt plot``."""
+"""Shows nothing: pictures are drawn by ``roadgpt compete sbft --plot`` and ``roadgpt view --format``."""
 
 from __future__ import annotations
 

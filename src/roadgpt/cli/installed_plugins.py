@@ -1,4 +1,4 @@
-"""``roadgpt parts``: what is installed on each shelf."""
+"""``roadgpt config plugins``: the plug-ins that are installed."""
 
 import inspect
 import json
@@ -9,12 +9,13 @@ from typing import Any
 import click
 
 from roadgpt import plugins
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.errors import PartError
 
 
 @dataclass(frozen=True)
-class Part:
-    """A part on a shelf, where it comes from, and what it says about itself."""
+class InstalledPlugin:
+    """A plug-in, its kind, where it is from, and what it says about itself."""
 
     shelf: str
     name: str
@@ -23,17 +24,17 @@ class Part:
     works: bool
 
 
-def installed() -> list[Part]:
+def installed() -> list[InstalledPlugin]:
     """Every part on every shelf; one that cannot be loaded says why."""
     return [_part(shelf, name) for shelf in plugins.KINDS for name in plugins.names(shelf)]
 
 
-def _part(shelf: str, name: str) -> Part:
+def _part(shelf: str, name: str) -> InstalledPlugin:
     try:
         about, works = _first_sentence(plugins.find(shelf, name)), True
     except PartError as error:
         about, works = str(error), False
-    return Part(shelf, name, plugins.origin(shelf, name), about, works)
+    return InstalledPlugin(shelf, name, plugins.origin(shelf, name), about, works)
 
 
 def _first_sentence(part: Any) -> str:
@@ -43,10 +44,13 @@ def _first_sentence(part: Any) -> str:
     return re.split(r"(?<=[.;:]) ", paragraph)[0].rstrip(".;:")
 
 
-@click.command()
-@click.option("--json", "as_json", is_flag=True, help="As one JSON list.")
-def command(as_json: bool) -> None:
-    """List what is installed on each shelf: readers, designers, rules, exporters, simulators, drivers."""
+@click.command("plugins", cls=GroupedCommand)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
+def plugins_command(as_json: bool) -> None:
+    """List the plug-ins: readers, designers, rules, exporters, simulators, drivers and others.
+
+    Each line has the name that options take, the package that it is from, and what it does.
+    """
     parts = installed()
     if as_json:
         click.echo(json.dumps([asdict(part) for part in parts], indent=2))

@@ -1,4 +1,4 @@
-"""``roadgpt beamng``: is there a BeamNG, and does it do what RoadGPT expects of it?"""
+"""``roadgpt doctor beamng``: whether an installed BeamNG does what RoadGPT expects of it."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.beamng import beamng_options
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import folder, whole
 from roadgpt.errors import RoadGPTError
 
@@ -13,12 +14,7 @@ if TYPE_CHECKING:
     from roadgpt.drive.simulators.beamng.selftest import Check
 
 
-@click.group()
-def command() -> None:
-    """Try out a BeamNG.tech that is installed."""
-
-
-@command.command()
+@click.command("beamng", cls=GroupedCommand)
 @click.option(
     "--out",
     type=folder,
@@ -31,17 +27,18 @@ def command() -> None:
     type=whole(2, 1000, "a number of runs"),
     default=5,
     show_default=True,
-    help="Of one road, for the spread.",
+    help="Runs of one road, for their spread.",
 )
 @beamng_options
-def selftest(out: Path, repeats: int) -> None:
-    """Try with a real BeamNG what could not be tried without one, and write a report of it.
+def beamng_command(out: Path, repeats: int) -> None:
+    """Test RoadGPT with an installed BeamNG.tech, and write a report.
 
-    Connection, level, BeamNG's AI on flat, floating and steep roads, the spread of repeated runs, a driver of
-    ours, a picture of the road, a level folder. Takes some minutes. The exit status is 0 where all is fine.
+    The test covers the connection, the level, BeamNG's AI on flat, floating and steep roads, the spread of
+    repeated runs, one of RoadGPT's drivers, a picture of the road, and a level folder. It takes some minutes.
+    The exit status is 0 if no check finds a problem.
 
     \b
-    roadgpt beamng selftest --beamng-home C:\\BeamNG.tech.v0.39 --beamng-user C:\\BeamNG.user
+    roadgpt doctor beamng --beamng-home C:\\BeamNG.tech.v0.39 --beamng-user C:\\BeamNG.user
     """
     from roadgpt.drive.simulators.beamng import Settings
     from roadgpt.drive.simulators.beamng.selftest import REPORT, run

@@ -1,47 +1,41 @@
-"""``roadgpt redrive``: tests of a campaign again, as folders of runs that other commands open."""
+"""``roadgpt drive --again``: tests of a campaign again, as folders of runs that other commands open."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from roadgpt.cli.campaigns import one_line
-from roadgpt.cli.named import choice_of, choice_options
-from roadgpt.cli.options import driver_again_option, folder, pictures_options
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
+    from roadgpt.report import Format, Scale
 
 AGAIN = "again"  # folder of a campaign
 
 
-@click.command()
-@click.argument("names", nargs=-1, required=True, metavar="CAMPAIGN [TEST...]")
-@choice_options
-@click.option("--out", type=folder, default=None, help="Folder for the runs. [default: CAMPAIGN/again]")
-@click.option("--no-plot", is_flag=True, help="Draw no pictures.")
-@driver_again_option
-@pictures_options
-def command(
-    names: tuple[str, ...],
+def drive_again(
+    names: Sequence[str],
+    choice: "Choice | None",
     out: Path | None,
-    no_plot: bool,
     driver: str | None,
-    axes: Any,
-    picture_formats: Any,
-    **rest: Any,
+    axes: "Scale",
+    formats: "tuple[Format, ...]",
 ) -> None:
-    """Drive tests of a campaign again, into folders of runs, and say where one ends otherwise than it did.
+    """Drives tests of a campaign again, writes their runs, and says where one ends otherwise than it did.
 
-    TEST is the number of a test, as in results.csv, with its cell in front where there are several: c02/17.
-    The stored design and seed give the same drive, byte for byte. To look at tests, no driving is needed:
-    view, plot, film, show and export take CAMPAIGN/c02/17, and show the drive that the campaign kept.
+    Args:
+        names: A campaign and numbers of its tests, or tests with the folders of their campaigns.
+        choice: Which tests of a campaign.
+        out: Folder for the runs; None: ``again`` in the campaign's folder.
+        driver: The campaign's driver, if the user named it again.
+        axes: Of the pictures.
+        formats: Of the pictures; empty: none are drawn.
 
-    \b
-    roadgpt redrive roadgpt-runs/an-uphill-road-with-3-turns-7 17
-    roadgpt redrive roadgpt-runs/an-uphill-road-with-3-turns-7/c01/17
-    roadgpt redrive roadgpt-runs/an-uphill-road-with-3-turns-7 --faults
+    Raises:
+        UsageError: A name is wrong, or the driver is not that of the campaign.
     """
     from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.campaign.rerun import is_same, run_again
@@ -49,10 +43,10 @@ def command(
     from roadgpt.report import drawing
     from roadgpt.run import write_run
 
-    tests = _named(names, choice_of(rest))
+    tests = _named(names, choice)
     for folder_ in {place.folder for place in tests}:
         expect(driver, drivers_of(folder_), folder_)
-    draw = None if no_plot else drawing(axes, picture_formats)
+    draw = drawing(axes, formats) if formats else None
     for place in tests:
         cell, number = place.cell, place.number or 0
         run, result = run_again(place.folder, cell, number)
@@ -79,7 +73,7 @@ def _made(path: Path) -> Path:
     return path
 
 
-def _named(names: tuple[str, ...], choice: "Choice | None") -> "list[Selection]":
+def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
     """The tests that are meant: of the campaign that comes first, or each with its own."""
     from roadgpt.campaign.record import no_campaign
     from roadgpt.campaign.selection import chosen, selection_of

@@ -1,11 +1,9 @@
-"""``roadgpt top``: a campaign as it works, on the whole screen."""
+"""``roadgpt show --watch``: a campaign at work, on the whole screen."""
 
 import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import click
 
 from roadgpt.cli.campaigns import HEAD, cell_columns, duration, outcomes_line
 
@@ -19,11 +17,12 @@ GAP = 2  # between columns
 LEAST = 12  # letters of a description, below which it is left out
 
 
-@click.command()
-@click.argument("campaign", metavar="CAMPAIGN", type=click.Path(path_type=Path))
-@click.option("--once", is_flag=True, help="Show it once and end.")
-def command(campaign: Path, once: bool) -> None:
-    """Watch a campaign that another command works on; ends with it, or with Ctrl-C."""
+def watch_campaign(campaign: Path, once: bool = False) -> None:
+    """Shows a campaign that another command works on, until it ends or Ctrl-C; once if nobody watches.
+
+    Raises:
+        UsageError: There is no campaign.
+    """
     from rich.console import Console
     from rich.live import Live
 

@@ -1,4 +1,4 @@
-"""``roadgpt sbft``: a generator of the SBFT tool competition, unchanged, in our simulator."""
+"""``roadgpt compete sbft``: a generator of the SBFT tool competition, unchanged, in our simulator."""
 
 import sys
 from pathlib import Path
@@ -9,6 +9,7 @@ import click
 from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.flags import measure
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import (
     SEED,
     competition_options,
@@ -50,7 +51,7 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     ctx.exit()
 
 
-@click.command()
+@click.command("sbft", cls=GroupedCommand)
 @click.option("--module-name", required=True, help="Module of the generator, as Python imports it.")
 @click.option("--class-name", required=True, help="Its class.")
 @click.option(
@@ -109,7 +110,7 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     help="Write the one file that RoadGPT needs in the competition's environment, and do no more.",
 )
 @screen_options
-def command(
+def sbft_command(
     map_size: int,
     oob_tolerance: float,
     speed_limit: float,
@@ -133,9 +134,9 @@ def command(
     called sys.exit; all tests before that are on the disk.
 
     \b
-    roadgpt sbft --module-name my_generator --class-name MyGenerator --test-budget 100
-    roadgpt sbft --module-name src.gen --class-name Gen --module-path ~/gen --time-budget 3600 --map-size 200
-    roadgpt sbft --module-name old --class-name Old --python ~/old/venv/bin/python --test-budget 100
+    roadgpt compete sbft --module-name my_generator --class-name MyGenerator --test-budget 100
+    roadgpt compete sbft --module-name src.gen --class-name Gen --module-path ~/gen --time-budget 3600
+    roadgpt compete sbft --module-name old --class-name Old --python ~/old/venv/bin/python --test-budget 100
     """
     from roadgpt.road import World
     from roadgpt.run import Setup

@@ -1,21 +1,17 @@
-"""``roadgpt sdc``: the service of the SDC testing competition."""
+"""``roadgpt compete sdc``: the service of the SDC testing competition."""
 
 import logging
 
 import click
 
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import whole
 from roadgpt.errors import UsageError
 
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
 
 
-@click.group()
-def command() -> None:
-    """Serve the competition on choosing tests of self-driving cars."""
-
-
-@command.command()
+@click.command("sdc", cls=GroupedCommand)
 @click.option(
     "--port", type=whole(0, 65_535, "a port"), default=4545, show_default=True, help="0: one that is free."
 )
@@ -26,15 +22,15 @@ def command() -> None:
     help="Who may ask: 127.0.0.1, this machine; 0.0.0.0, all (in a container).",
 )
 @click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
-def serve(port: int, host: str, quiet: bool) -> None:
+def sdc_command(port: int, host: str, quiet: bool) -> None:
     """Select or prioritise roads by how likely the car is to leave its lane, over gRPC.
 
     How far the driver's planned line strays from its lane counts, and how the road bends; nothing is driven.
     Outcomes that the evaluator tells are learnt from. Ctrl-C ends it.
 
     \b
-    roadgpt sdc serve --port 4545
-    roadgpt sdc serve --host 0.0.0.0
+    roadgpt compete sdc --port 4545
+    roadgpt compete sdc --host 0.0.0.0
     """
     try:
         from roadgpt.sbft.sdc.service import serve as serve_on

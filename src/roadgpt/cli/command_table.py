@@ -1,0 +1,120 @@
+"""The commands under their headings, and the earlier names of commands and options that still work."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+# A line of help stands here so that `roadgpt --help` imports no command.
+HEADINGS = {
+    "Make": {
+        "run": "Make roads from a description: design, check, drive and judge them.",
+        "read": "Show how a description is read, and how sure the reader is.",
+        "edit": "Change a road by words.",
+        "drive": "Drive roads from files, or drive tests of a campaign again.",
+    },
+    "Look": {
+        "show": "Summarise a run, a folder of runs or a campaign; watch a campaign.",
+        "view": "View a road in 3-D with a replay of its drive, or draw pictures.",
+        "film": "Film drives: from behind the car, from its hood, or two side by side.",
+        "compare": "Measure how alike two roads are, and draw both.",
+    },
+    "Search": {
+        "campaign": "Search for failures, or make roads by the thousand, with workers.",
+        "resume": "Continue a campaign that was interrupted.",
+        "faults": "Group failures into distinct faults, and find why each occurs.",
+    },
+    "Evaluate": {
+        "check": "Check roads against the rules.",
+        "report": "Write a report on a folder of runs, a campaign or a study.",
+        "study": "Repeat the thesis' evaluation, measure alignment, survey people.",
+    },
+    "Exchange": {
+        "export": "Write roads for other tools: OpenDRIVE, OpenSCENARIO and others.",
+        "import": "Read a road from an OpenDRIVE file.",
+        "compete": "Run test generators of SBFT, or serve the SDC competition.",
+    },
+    "Set up": {
+        "config": "Show all settings and where each comes from; list plug-ins.",
+        "doctor": "Check this installation, or a BeamNG.tech.",
+        "learn": "Train, evaluate and export a reader of your own.",
+    },
+}
+
+COMMANDS = {name: line for commands in HEADINGS.values() for name, line in commands.items()}
+
+
+class Earlier(NamedTuple):
+    """What an earlier command is called now."""
+
+    words: tuple[str, ...]
+    """They take the place of the earlier words on the command line."""
+    shown: str
+    """How the new command is shown to the user."""
+
+
+EARLIER = {
+    ("status",): Earlier(("show", "--progress"), "show CAMPAIGN"),
+    ("top",): Earlier(("show", "--watch"), "show --watch CAMPAIGN"),
+    ("plot",): Earlier(("view", "--format", "png"), "view --format png ROAD"),
+    ("redrive",): Earlier(("drive", "--again"), "drive --again CAMPAIGN TEST"),
+    ("parts",): Earlier(("config", "plugins"), "config plugins"),
+    ("beamng", "selftest"): Earlier(("doctor", "beamng"), "doctor beamng"),
+    ("beamng",): Earlier(("doctor", "beamng", "--help"), "doctor beamng"),
+    ("sbft",): Earlier(("compete", "sbft"), "compete sbft"),
+    ("sdc", "serve"): Earlier(("compete", "sdc"), "compete sdc"),
+    ("sdc",): Earlier(("compete", "sdc", "--help"), "compete sdc"),
+}
+"""By the words of the earlier command."""
+
+EARLIER_OPTIONS = {"--verge": "--shoulder"}
+EARLIER_VALUES = {"--view bonnet": "--view hood"}
+
+MISSING = {
+    "DESCRIPTION": 'Say what road you want: roadgpt run "an uphill road with 3 turns"',
+    "ROAD...": "Name one or more road files, or folders of runs.",
+    "RUN...": "Name the folder of a run, a folder of runs, or a campaign.",
+    "RUN|ROAD...": "Name one or more folders of runs, or road files.",
+    "ROAD|RUN...": "Name a road file or the folder of a run, or two to see them side by side.",
+    "RUN [RUN]": "Name the folder of a run, or two to see them side by side.",
+    "FILE.xodr": "Name an OpenDRIVE file.",
+    "formats": "Name a format: --to opendrive; 'roadgpt config plugins' lists them.",
+    "RUN": "Name the folder of a run, or the file of a design.",
+    "CHANGE": 'Say what to change: roadgpt edit RUN "make the second turn sharper"',
+    "DESCRIPTION|FILE.toml": 'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200',
+    "CAMPAIGN": "Name the folder of a campaign, as 'roadgpt campaign' printed it.",
+    "OUT": "Name the folder to write into.",
+}
+"""What to say where an argument is missing, by the name that its help gives it."""
+
+
+def renamed(args: Sequence[str]) -> tuple[list[str], str]:
+    """Returns the words with the present name of their command, and a sentence if they had an earlier one.
+
+    Args:
+        args: The words after ``roadgpt``.
+    """
+    for words, earlier in EARLIER.items():
+        if tuple(args[: len(words)]) == words:
+            told = f"'roadgpt {' '.join(words)}' is now 'roadgpt {earlier.shown}'"
+            return [*earlier.words, *args[len(words) :]], told
+    return [*args], ""
+
+
+def renamed_options(args: Sequence[str], known: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Returns the words with the present names of options, and a sentence for each that had an earlier one.
+
+    Args:
+        args: The words after a command.
+        known: The options of the command.
+    """
+    new: list[str] = []
+    told: list[str] = []
+    for place, word in enumerate(args):
+        if word == "--":
+            return [*new, *args[place:]], told
+        name, equals, value = word.partition("=")
+        now = EARLIER_OPTIONS.get(name, name)
+        if now != name and now in known:
+            told.append(f"'{name}' is now '{now}'")
+            word = f"{now}{equals}{value}"
+        new.append(word)
+    return new, told

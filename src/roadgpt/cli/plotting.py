@@ -1,0 +1,79 @@
+"""``roadgpt view --format``: pictures of roads and drives."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from roadgpt.cli.named import roads_named
+from roadgpt.cli.roads import run_of
+from roadgpt.errors import UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.selection import Choice
+    from roadgpt.report import Format, Scale
+    from roadgpt.road import Geometry, World
+
+UNREADABLE = 2  # exit status
+PLOTS = Path("plots")
+
+
+def draw_pictures(
+    files: Sequence[str],
+    choice: "Choice | None",
+    out: Path,
+    axes: "Scale",
+    formats: "Sequence[Format]",
+    world: "World",
+    geometry: "Geometry",
+    quiet: bool,
+) -> int:
+    """Draws each road into a new folder of its name and prints the names of the pictures.
+
+    Args:
+        files, choice: As for ``roads_named``.
+        out: Holds the new folders.
+        axes: Of the pictures.
+        formats: Of the pictures: png, svg or pdf.
+        world, geometry: Of road files, which bring none.
+        quiet: Prints errors only.
+
+    Returns:
+        The exit status: 2 if a name could not be used, which does not stop the others.
+    """
+    from roadgpt.report import draw
+
+    status = 0
+
+    def complain(error: UsageError) -> None:
+        nonlocal status
+        click.echo(f"roadgpt: {error}", err=True)
+        status = UNREADABLE
+
+    for each in roads_named(files, choice, complain=complain):
+        try:
+            run = run_of(each, world, geometry)
+            place = _place(out, each.stem)
+            pictures = draw(run, place, axes, tuple(formats))
+        except UsageError as error:
+            complain(error)
+            continue
+        if not quiet:
+            click.echo("\n".join(str(picture) for picture in pictures))
+    return status
+
+
+def _place(out: Path, name: str) -> Path:
+    """A new folder for one road's pictures."""
+    number = 1
+    while True:
+        place = out / (name if number == 1 else f"{name}-{number}")
+        try:
+            place.mkdir(parents=True)
+        except FileExistsError:
+            number += 1
+        except OSError as error:
+            raise UsageError(f"cannot make a folder in {out}: {error.strerror}; say --out FOLDER") from error
+        else:
+            return place
