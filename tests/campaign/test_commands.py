@@ -114,7 +114,7 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path: Path) -> None
     assert "Traceback" not in errors + said
     gone(workers)
     assert 0 < done_in(tmp_path / "c") < 5000
-    assert "interrupted" in roadgpt("status", tmp_path / "c").output
+    assert "interrupted" in roadgpt("status", tmp_path / "c").stdout
 
 
 def done_in(folder: Path) -> int:
@@ -131,7 +131,7 @@ def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
     said = roadgpt("status", driven)
     assert "finished, 3 of 3 tests" in said.output
     assert "a road with 2 turns (beamng_like, words, seed 7)" in said.output
-    told = json.loads(roadgpt("status", driven, "--json").output)
+    told = json.loads(roadgpt("status", driven, "--json").stdout)
     assert told["is_finished"]
     assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3
     assert told["cells"][0]["name"] == "c01"

@@ -153,7 +153,7 @@ def test_status_and_screen_count_faults_before_failures(many: Path) -> None:
             f"{len(found.them)} distinct faults in {found.failures} failures: the car cut the inside" in said
         )
         assert said.index("distinct faults") < said.index(f"{found.failures} FAIL")
-    told = json.loads(roadgpt("status", many, "--json").output)["distinct"]
+    told = json.loads(roadgpt("status", many, "--json").stdout)["distinct"]
     assert told == {"faults": len(found.them), "failures": found.failures, "compared": found.failures}
 
 

@@ -55,7 +55,7 @@ def test_a_description_takes_one_line_whatever_is_in_it(hostile: Path) -> None:
 
 @pytest.mark.parametrize("width", [12, 30, 44, 60, 80, 200])
 def test_top_fits_every_screen_and_takes_no_word_for_markup(hostile: Path, width: int) -> None:
-    said = CliRunner(env={"COLUMNS": str(width)}).invoke(app, ["top", str(hostile), "--once"])
+    said = CliRunner(env={"COLUMNS": str(width)}).invoke(app, ["show", str(hostile), "--watch"])
     assert said.exit_code == 0, said.output
     lines = said.output.splitlines()
     assert max(map(len, lines)) <= width
@@ -66,7 +66,7 @@ def test_top_fits_every_screen_and_takes_no_word_for_markup(hostile: Path, width
 
 @pytest.mark.parametrize("number", ["9" * 30, "c01/" + "9" * 5000])
 def test_a_number_that_no_store_can_hold_is_no_test(hostile: Path, number: str) -> None:
-    said = roadgpt("redrive", hostile, number)
+    said = roadgpt("drive", "--again", hostile, number)
     assert said.exit_code == 2
     assert "there is no" in said.output
     assert len(said.output) < 400

@@ -17,11 +17,11 @@ from roadgpt.campaign.record import Record
 from roadgpt.cli import app
 
 COMMANDS = (
-    ("status", "c"),
+    ("show", "c", "--watch"),
     ("show", "c"),
     ("report", "c"),
     ("faults", "c", "--repeat", "1", "--no-plot"),
-    ("redrive", "c", "1", "--no-plot"),
+    ("drive", "--again", "c", "1", "--no-plot"),
     ("resume", "c", "-q"),
 )
 BEGUN = "UPDATE meta SET value = '' WHERE name = 'finished'; "
@@ -80,7 +80,7 @@ def test_a_store_of_ours_is_sound(campaign: Path) -> None:
 def test_a_store_that_is_not_as_we_wrote_it_is_told_by_its_name(campaign: Path, sql: str) -> None:
     change(campaign, sql)
     for words in COMMANDS:
-        if words[0] in ("faults", "redrive") and "plan" in sql:  # which they do not ask for
+        if words[0] in ("faults", "drive") and "plan" in sql:  # which they do not ask for
             continue
         result = invoke(*words)
         assert result.exit_code == 2, (words, result.output)
@@ -125,7 +125,7 @@ def test_flipped_bytes_end_in_a_sentence(campaign: Path) -> None:
 LINKS = {
     "tables": ("report", "c"),
     "faults": ("faults", "c", "--repeat", "1", "--no-plot"),
-    "again": ("redrive", "c", "1", "--no-plot"),
+    "again": ("drive", "--again", "c", "1", "--no-plot"),
     "campaign.lock": ("resume", "c", "-q"),
     "workers.log": ("resume", "c", "-q"),
     "traces": ("resume", "c", "-q"),

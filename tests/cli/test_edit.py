@@ -107,7 +107,7 @@ def test_a_changed_road_can_be_changed_again() -> None:
         (["design.json", "paint it blue"], "not understood"),
         (["nowhere.json", WORDS], "there is no nowhere.json"),
         (["design.json", WORDS, "--designer", "gpt"], "gpt"),
-        (["design.json"], "Say what is to be different"),
+        (["design.json"], "Say what to change"),
         ([], "Name the folder of a run"),
         (["design.json", WORDS, "--out", "full"], "not empty"),
         (["points.json", WORDS], "no design"),

@@ -112,7 +112,7 @@ def test_the_command_that_drives_an_import_can_be_typed(here: Path) -> None:
 
 @pytest.mark.parametrize(
     "words",
-    [["export", "--to", "csv"], ["check"], ["drive"], ["plot"], ["view"], ["film"]],
+    [["export", "--to", "csv"], ["check"], ["drive"], ["view", "--format", "png"], ["view"], ["film"]],
     ids=lambda w: w[0],
 )
 def test_a_folder_without_a_road_is_told_of(words: list[str], here: Path) -> None:

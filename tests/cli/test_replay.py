@@ -56,10 +56,10 @@ def test_a_line_names_only_what_differs() -> None:
     )
     line, again = replay_lines(a_run(odd), PLACE)
     assert line.startswith("roadgpt run 'a road' -n 4 --seed 2 --designer thesis --driver 'a b.py:D' ")
-    assert line.endswith(" --speed-limit 100 --verge 0 --friction 0.35")
+    assert line.endswith(" --speed-limit 100 --shoulder 0 --friction 0.35")
     assert again == (
         f"roadgpt drive {PLACE / 'road.json'} --seed 11 --driver 'a b.py:D' --keep-driving --rules sbft "
-        "--speed-limit 100 --verge 0 --friction 0.35"
+        "--speed-limit 100 --shoulder 0 --friction 0.35"
     )
 
 

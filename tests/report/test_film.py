@@ -253,7 +253,7 @@ def test_the_command_films_a_run_two_runs_and_a_campaign(
         assert done.exception is None or done.exit_code == 2, done.exception
         return f"{done.exit_code} {done.output}"
 
-    assert asked(folders[0], "--view", "bonnet") == "0 roadgpt-film.mp4\n"
+    assert asked(folders[0], "--view", "hood") == "0 roadgpt-film.mp4\n"
     assert len(read(Path("roadgpt-film.mp4"))[0]) == 5
     assert asked(*folders, "--out", "two.mp4", "-q") == "0 "
     assert read(Path("two.mp4"))[0][0].shape == (64, 128 + SEAM, 3)

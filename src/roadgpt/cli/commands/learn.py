@@ -41,7 +41,7 @@ def command() -> None:
 @click.option("--number", "-n", type=COUNT, default=100_000, show_default=True, help="Pairs to generate.")
 @click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
 def data(out: Path, hand: Path, number: int, seed: int) -> None:
-    """Check the hand-written pairs of descriptions and plans, and write generated ones into the folder OUT."""
+    """Check the hand-written pairs, and write generated pairs into the folder OUT."""
     from roadgpt.learn.near_duplicates import report
 
     splits = {name: _pairs_of(hand / name) for name in SPLITS if (hand / name).is_dir()}
