@@ -7,18 +7,18 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt import run as run_room
-from roadgpt.cli import app, talk
+from roadgpt.cli import app
+from roadgpt.cli.work import Wish
+from roadgpt.road import World
 from roadgpt.run import Setup
 
 
 @pytest.fixture(autouse=True)
 def quick_and_in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    wish = talk.Wish
     monkeypatch.setattr(
-        talk,
-        "Wish",
-        lambda words, roads, world, _: wish(words, roads, world, Setup(drives=False), pictures=()),
+        "roadgpt.cli.commands.run.usual_wish",
+        lambda words, roads: Wish(words, roads, World(), Setup(drives=False), pictures=()),
     )
 
 
