@@ -1,4 +1,4 @@
-"""What ``roadgpt compete sbft`` starts in the generator's interpreter; plain enough for any Python to read."""
+"""``roadgpt compete sbft`` starts this in the generator's interpreter, which may be as old as Python 3.8."""
 
 import sys
 

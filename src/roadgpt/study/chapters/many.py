@@ -57,7 +57,8 @@ def failures(
             ]
         )
     if rows:
-        note = f"To see one: {shlex.join(['roadgpt', 'drive', '--again', str(folder), str(rows[0][0].value)])}"
+        words = ["roadgpt", "drive", "--again", str(folder), str(rows[0][0].value)]
+        note = f"To see one: {shlex.join(words)}"
         heads = ["test", *_far_heads(drives_on), "cause", "side", "at, m", "what happened"]
         ((every,),) = record.query("SELECT count(*) FROM tests WHERE outcome = 'FAIL'")
         blocks.append(Table("failures", _caption(len(rows), every, drives_on), heads, rows, note))

@@ -20,7 +20,7 @@ KMH = 3.6
 
 
 class BeamngExecutor(AbstractTestExecutor):
-    """This end of the line to ``roadgpt compete sbft``. A deep copy is at the same end, with counts of its own."""
+    """Sends tests to ``roadgpt compete sbft``. A deep copy uses the same connection and has its own counts."""
 
     def __init__(
         self,
