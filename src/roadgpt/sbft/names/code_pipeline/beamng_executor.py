@@ -20,7 +20,7 @@ KMH = 3.6
 
 
 class BeamngExecutor(AbstractTestExecutor):
-    """Sends tests to ``roadgpt compete sbft``. A deep copy uses the same connection and has its own counts."""
+    """Sends tests to ``roadgpt compete sbft``. A deep copy shares the connection and has its own counts."""
 
     def __init__(
         self,
