@@ -18,7 +18,7 @@ from roadgpt.campaign.store import Store
 from roadgpt.design import draft
 from roadgpt.road import World
 from roadgpt.run.model import Request
-from roadgpt.study.many import write_many
+from roadgpt.study.campaign_report import write_store_report
 
 SEED_TESTS = 50  # that are written by the store itself; the others are copies with margins of their own
 WORDS = "an uphill road with 3 turns"
@@ -83,7 +83,7 @@ def main(tests: int) -> None:
                 for _ in record.results():
                     pass
 
-        report, cpu = clocked(lambda: write_many(folder))
+        report, cpu = clocked(lambda: write_store_report(folder))
         rows, rows_cpu = clocked(all_rows)
     print("| tests | store, MB | report, s (processor) | every row read, s (processor) |")
     print("|---|---|---|---|")

@@ -19,8 +19,8 @@ from roadgpt.report.rim import severities
 from roadgpt.report.view.scene import scene
 from roadgpt.road import Road
 from roadgpt.run import Run, prove, write_run
-from roadgpt.study.chapters.outside import outside_sentences, outside_table, passed_roads
-from roadgpt.study.looking import Looked
+from roadgpt.study.chapters.out_of_lane import outside_sentences, outside_table, passed_roads
+from roadgpt.study.road_record import RoadRecord
 from roadgpt.verdict import SEVERITIES, judge
 
 STRAIGHT = Road.through([[40, 100], [90, 100], [140, 100]])
@@ -111,9 +111,9 @@ def test_the_gallery_of_a_page_tells_them_apart() -> None:
 
 
 def test_reports_count_them(runs: dict[str, Run]) -> None:
-    def looked(run: Run) -> Looked:
+    def looked(run: Run) -> RoadRecord:
         assert run.verdict is not None
-        return Looked(
+        return RoadRecord(
             1, "", run.outcome, "", True, True, True, "", False, 0.0, 1.0, np.empty((0, 2)), None, {}, None,
             max_oob=run.verdict.max_oob, beyond=run.verdict.beyond,
         )  # fmt: skip

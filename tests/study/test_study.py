@@ -15,12 +15,12 @@ from roadgpt.cli import app
 from roadgpt.design.designers import thesis as thesis_designer
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup
-from roadgpt.study.chapters.significance import Count, Source, worked_out
-from roadgpt.study.plan import Plan, open_folder, read_plan
+from roadgpt.study.chapters.significance import Count, Source, chi_squared_blocks
+from roadgpt.study.execution import work
+from roadgpt.study.plan import StudyPlan, open_folder, read_plan
 from roadgpt.study.prompts import Prompt, thesis_prompts
-from roadgpt.study.reporting import keep_problems, write_campaign, write_study
+from roadgpt.study.study_report import keep_problems, write_run_report, write_study
 from roadgpt.study.truth import Truth
-from roadgpt.study.working import work
 
 GOLDEN = Path(__file__).parent / "golden"
 CLOCK = ("seconds.json", "generation_stats.csv")  # what the clock writes
@@ -33,9 +33,11 @@ def content(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def small(*words: str, roads: int = 1, **more: object) -> Plan:
+def small(*words: str, roads: int = 1, **more: object) -> StudyPlan:
     prompts = tuple(Prompt(id=str(number), prompt=prompt) for number, prompt in enumerate(words, 1))
-    plan = Plan(kind="alignment", prompts=prompts, designers=("planner",), roads=roads, seed=3, setup=QUICK)
+    plan = StudyPlan(
+        kind="alignment", prompts=prompts, designers=("planner",), roads=roads, seed=3, setup=QUICK
+    )
     return plan.model_copy(update=more)
 
 
@@ -188,7 +190,7 @@ def test_the_thesis_method_stands_beside_the_planner(tmp_path: Path, monkeypatch
     chat = FakeChat(json.dumps(sharp), json.dumps(outside))
     monkeypatch.setattr(thesis_designer, "open_chat", lambda settings: chat)
     setup = QUICK.model_copy(update={"chat": ChatSettings(model="another")})
-    plan = Plan(
+    plan = StudyPlan(
         kind="thesis",
         prompts=thesis_prompts()[:1],
         designers=("planner", "thesis"),
@@ -234,11 +236,11 @@ def test_words_that_cannot_be_read_count_as_not_kept(tmp_path: Path) -> None:
 
 def test_one_prompt_with_roads_is_not_compared_with_none() -> None:
     half = Source("ours", (Count("a", 3, 5), Count("b", 0, 0)), "ours")
-    said = worked_out(half, "left", "kept", "departures")[1]
+    said = chi_squared_blocks(half, "left", "kept", "departures")[1]
     assert "only one prompt" in str(said)
     assert "all roads" not in str(said)
     full = Source("ours", (Count("a", 5, 5), Count("b", 4, 4)), "ours")
-    assert "all roads are valid" in str(worked_out(full, "valid", "invalid", "validity")[1])
+    assert "all roads are valid" in str(chi_squared_blocks(full, "valid", "invalid", "validity")[1])
 
 
 def test_words_that_cannot_be_read_weigh_as_much_as_others(tmp_path: Path) -> None:
@@ -281,7 +283,7 @@ def test_folders_that_hold_nothing(tmp_path: Path) -> None:
     assert result.exit_code == 2
     assert "no runs, no campaign and no study" in result.stderr
     with pytest.raises(UsageError):
-        write_campaign(tmp_path)
+        write_run_report(tmp_path)
 
 
 def test_the_report_opens_with_what_a_manager_asks_and_statistics_come_after(tmp_path: Path) -> None:

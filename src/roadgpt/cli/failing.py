@@ -119,7 +119,7 @@ def _draws(has_pictures: bool) -> "FailureDrawing | None":
 
 def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
     """One row per fault: how many tests, and of a typical one how stable it is, and why it failed."""
-    from roadgpt.study.chapters.saying import plural
+    from roadgpt.study.chapters.wording import plural
 
     wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
     yield f"{'fault':>5} {'failures':>8} {'again':>7}  {'test':<{wide}}  why"

@@ -32,9 +32,9 @@ from roadgpt.errors import ChatError
 
 if TYPE_CHECKING:
     from roadgpt.report import Drawing
-    from roadgpt.study.plan import Plan
+    from roadgpt.study.execution import Problem
+    from roadgpt.study.plan import StudyPlan
     from roadgpt.study.prompts import Prompt
-    from roadgpt.study.working import Problem
 
 EVERY = 0.1  # share of the roads between two lines in a pipe
 NOT_ASKED = ChatError.exit_status
@@ -120,10 +120,10 @@ def _study(
 ) -> int:
     """Work, report, and say where the report is; the exit status."""
     from roadgpt.run import check_parts
-    from roadgpt.study.chapters.saying import plural
+    from roadgpt.study.chapters.wording import plural
+    from roadgpt.study.execution import work
     from roadgpt.study.plan import open_folder
-    from roadgpt.study.reporting import keep_problems, write_study
-    from roadgpt.study.working import work
+    from roadgpt.study.study_report import keep_problems, write_study
 
     workers, quiet = rest.pop("workers"), rest.pop("quiet")
     given = rest.pop("picture_formats")
@@ -165,18 +165,18 @@ def _plan(
     seed: int,
     drives: bool,
     rest: dict[str, Any],
-) -> "Plan":
+) -> "StudyPlan":
     from roadgpt import plugins
     from roadgpt.chat import asks_a_model
     from roadgpt.run import Setup
-    from roadgpt.study.plan import Plan
+    from roadgpt.study.plan import StudyPlan
 
     designers = tuple(dict.fromkeys(rest.pop("designers")))
     asking = [name for name in designers if asks_a_model(plugins.find("designers", name))]
     world = world_of(rest)
     chat = chat_of(rest, rest["reader"], (asking or designers)[0])
     setup = Setup(drives=drives, chat=chat, designer=designers[0], **rest)
-    return Plan(
+    return StudyPlan(
         kind=kind,
         prompts=tuple(prompts),
         designers=designers,
@@ -188,7 +188,7 @@ def _plan(
     )
 
 
-def _command(plan: "Plan", place: Path) -> str:
+def _command(plan: "StudyPlan", place: Path) -> str:
     """What makes the study again."""
     words = ["roadgpt", "study", plan.kind, *([plan.source] if plan.source else [])]
     words += ["--roads", str(plan.roads), "--seed", str(plan.seed)]

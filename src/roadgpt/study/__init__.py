@@ -1,10 +1,12 @@
-"""Studies: the thesis' evaluation on any designer, and people's own. Makes a Study. Verb: ``compare``.
+"""Evaluates many roads of many descriptions, as RoadGPT's thesis did, and compares roads. Verb: ``compare``.
 
-``working``     makes the campaigns of a Plan: descriptions, designers, so many roads of each
-``reporting``   writes what came of them as one page with its tables
-``truth``       what a description asks for, as people wrote it down; ``criteria`` holds roads against it
-``similarity``  how alike two roads are: turns, their order and sides, length, incline, shape
-``statistics``  the tests and intervals that all of these, and the survey of people, are judged by
+``plan``, ``execution``  what a study consists of; runs it: descriptions, designers, roads of each
+``road_record``          what a study reads from each run
+``study_report``         writes the report of a study; ``campaign_report`` that of a campaign; ``chapters``
+``truth``, ``criteria``  what a description asks for, as people wrote it down, and whether a road keeps it
+``similarity``           how similar two roads are: turns, their order and sides, length, incline, shape
+``statistics``           the tests and intervals of these reports and of the survey
+``survey``               asks people
 """
 
 from roadgpt.road import Road
@@ -14,12 +16,12 @@ __all__ = ["Similarity", "compare"]
 
 
 def compare(one: Road, other: Road, mirror: bool = False) -> Similarity:
-    """How alike two roads are, in the criteria of the thesis' survey.
+    """Returns how similar two roads are, in the criteria of the thesis' survey.
 
     Args:
-        one: a road, however it was made.
-        other: a road to compare it with.
-        mirror: a road and its mirror image count as alike.
+        one: a road.
+        other: the road to compare it with.
+        mirror: whether a road and its mirror image count as the same.
 
     Raises:
         UsageError: a road has no two different points.

@@ -1,4 +1,4 @@
-"""What RoadGPT's thesis counted, to stand beside what is counted here. Source: its section 6.1."""
+"""Contains the counts of RoadGPT's thesis, which reports show beside ours. Source: its section 6.1."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ ROADS = 100  # of every prompt
 
 
 class Counted(NamedTuple):
-    """Of the roads of a prompt: how many its own checks let pass, and on how many of those the car left."""
+    """Of ``ROADS`` roads of one prompt: how many are valid, and on how many of these the car left."""
 
     valid: int
     left: int
@@ -19,4 +19,4 @@ THESIS = {
     "an uphill road with 3 turns": Counted(57, 2),
     LONG: Counted(37, 5),
 }
-"""By prompt, in the order of its table."""
+"""Counts by prompt, in the order of the thesis' table."""

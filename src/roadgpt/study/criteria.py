@@ -1,13 +1,13 @@
-"""Alignment, criterion by criterion, as the thesis' survey asked people: turns, incline, order, and general.
+"""Checks which criteria a road keeps, as in the thesis' survey: turns, incline, order, and in general.
 
     turns     how many, and how many to each side
     incline   of the whole road, and of each turn and straight
-    order     sides of the turns and where the straights lie, first and last thing
+    order     sides of the turns, positions of the straights, first and last element
     extent    degrees, radii and lengths
-    general   all of the description at once
+    general   the whole description at once
 
-A criterion that a description says nothing of is left out. Order and incline of single turns can only be kept
-by a road with the right number of turns.
+A criterion that a description does not mention is left out. Only a road with the right number of turns can
+keep the order and the incline of single turns.
 """
 
 from collections.abc import Callable, Mapping
@@ -29,7 +29,7 @@ ASKED = {
     "extent": "angles, radii, lengths",
     "general": "in general: all at once",
 }
-"""What each is called in reports."""
+"""Names of the criteria in reports."""
 
 KEYS: Mapping[str, Criterion] = {
     "turns": "turns",
@@ -44,13 +44,13 @@ KEYS: Mapping[str, Criterion] = {
     "min_radius": "extent",
     "turning": "extent",
 }
-"""Of a Truth; its sequence and its ends are told apart feature by feature."""
+"""The criterion of each key of a Truth. ``sequence``, ``starts`` and ``ends`` concern several criteria."""
 
 Part = Callable[[Feature], Feature]
 
 
 def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
-    """Which criteria a measured road keeps of a truth that people wrote down."""
+    """Returns which criteria a measured road keeps, by a truth that people wrote down."""
     kept = holds(found, truth)
     out: dict[Criterion, bool] = {}
     for key, criterion in KEYS.items():
@@ -68,7 +68,7 @@ def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
 
 
 def criteria_of_outline(found: Measures, asked: Outline) -> dict[Criterion, bool]:
-    """Which criteria a measured road keeps of what a reader read, where nobody wrote down a truth."""
+    """Returns which criteria a measured road keeps, by what the reader read."""
     out: dict[Criterion, bool] = {
         "turns": not complaints(
             found, Outline(groups=(), turns=asked.turns, left=asked.left, right=asked.right)
@@ -99,7 +99,7 @@ def criteria_of_outline(found: Measures, asked: Outline) -> dict[Criterion, bool
 def _of_features(
     found: Measures, groups: tuple[Group, ...], starts: Feature | None, ends: Feature | None
 ) -> dict[Criterion, bool]:
-    """Criteria of single turns and straights: each is asked for with all else left open."""
+    """Returns the criteria of single turns and straights. Each is checked with all others left open."""
     parts: dict[Criterion, Part] = {"incline": _incline, "order": _order, "extent": _extent}
     out: dict[Criterion, bool] = {}
     for criterion, part in parts.items():
@@ -135,14 +135,14 @@ def _told(feature: Feature) -> bool:
 
 
 def _says(criterion: Criterion, group: Group) -> bool:
-    """Does a group ask for anything in this criterion? Of order, any straight does."""
+    """Returns whether a group asks for anything in a criterion; any straight asks for an order."""
     if criterion == "order" and (group.alternating or group.feature.kind == "straight"):
         return True
     return _told(group.feature)
 
 
 def _merged(groups: tuple[Group, ...]) -> tuple[Group, ...]:
-    """Straights in a row that now ask for the same are one."""
+    """Merges neighbouring straights that ask for the same."""
     out: list[Group] = []
     for group in groups:
         if group.feature.kind == "straight" and out and out[-1].feature == group.feature:

@@ -1,4 +1,4 @@
-"""What a study is asked for, and where its campaigns lie: ``study.json`` in its folder says it."""
+"""Defines a study and where its parts lie; ``study.json`` in its folder contains it."""
 
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -22,65 +22,65 @@ LETTERS = 32  # of a description, in the name of its folder
 Kind = Literal["thesis", "alignment"]
 
 
-class Part(NamedTuple):
-    """One description with one designer: one campaign."""
+class StudyPart(NamedTuple):
+    """One description with one designer."""
 
     designer: str
     number: int
-    """Of the prompt, from 1."""
+    """Number of the prompt, from 1."""
     prompt: Prompt
 
     @property
     def name(self) -> str:
-        """Folder below the study's, with forward slashes."""
+        """The part's folder, relative to the study's, with forward slashes."""
         return f"{slug(self.designer)}/{self.number:02d}-{slug(self.prompt.prompt)[:LETTERS].strip('-')}"
 
 
-class Plan(Frozen):
-    """All of a study but its results; the same Plan gives the same files."""
+class StudyPlan(Frozen):
+    """The definition of a study; the same plan gives the same files."""
 
     format: Literal[1] = 1
     kind: Kind
     prompts: tuple[Prompt, ...]
     designers: tuple[str, ...] = Field(min_length=1)
     roads: int = Field(ge=1)
-    """Of every prompt and designer."""
+    """Number of roads for each prompt and designer."""
     seed: int = 0
     world: World = World()
     setup: Setup = Setup()
-    """But for the designer; rules are always the strict ones."""
+    """Who reads, drives and checks; ``designers`` replace its designer, and its rules are the strict ones."""
     source: str = ""
-    """Name of the file of prompts."""
+    """Name of the file with the prompts."""
     command: str = ""
-    """What makes the study again."""
+    """The command that makes the study again."""
 
-    def parts(self) -> tuple[Part, ...]:
-        """All campaigns, designer by designer."""
+    def parts(self) -> tuple[StudyPart, ...]:
+        """Returns all parts, designer by designer."""
         return tuple(
-            Part(designer, number, prompt)
+            StudyPart(designer, number, prompt)
             for designer in self.designers
             for number, prompt in enumerate(self.prompts, 1)
         )
 
     def setup_of(self, designer: str) -> Setup:
-        """Who does the work, with this designer; language models only where it or the reader asks one."""
+        """Returns the setup with a designer; with a chat only if the designer or the reader asks a model."""
         asks = asks_a_model(plugins.find("designers", designer)) or asks_a_model(
             plugins.find("readers", self.setup.reader.partition(":")[0])
         )
         chat = self.setup.chat if asks else None
         return self.setup.model_copy(update={"designer": designer, "rules": "strict", "chat": chat})
 
-    def essence(self) -> "Plan":
-        """Without what may be another when an interrupted study goes on."""
+    def essence(self) -> "StudyPlan":
+        """Returns the plan without what may differ when an interrupted study is resumed."""
         chat = self.setup.chat and self.setup.chat.essence()
         return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
 
 
-def open_folder(plan: Plan, folder: Path) -> None:
-    """Make a study's folder ready, or take up the one that is there.
+def open_folder(plan: StudyPlan, folder: Path) -> None:
+    """Creates a study's folder, or checks that an existing one belongs to the same study.
 
     Raises:
-        UsageError: it holds something else, or cannot be made.
+        UsageError: the folder contains something else, or cannot be created.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -93,7 +93,7 @@ def open_folder(plan: Plan, folder: Path) -> None:
         raise UsageError(f"cannot use {folder}: {error.strerror or error}; name another folder") from error
 
 
-def _same(there: Plan, asked: Plan, folder: Path) -> None:
+def _same(there: StudyPlan, asked: StudyPlan, folder: Path) -> None:
     one, other = there.essence(), asked.essence()
     free = ("roads", "designers", "source", "command")  # more roads and more designers may join
     differs = [name for name in type(one).model_fields if getattr(one, name) != getattr(other, name)]
@@ -111,11 +111,11 @@ def _same(there: Plan, asked: Plan, folder: Path) -> None:
         )
 
 
-def read_plan(folder: Path) -> Plan:
-    """What a study's folder says that it was asked for.
+def read_plan(folder: Path) -> StudyPlan:
+    """Reads the plan from a study's folder.
 
     Raises:
-        UsageError: no study lies there, or its card cannot be read.
+        UsageError: there is no study, or its plan cannot be read.
     """
     try:
         card = read_json(folder / CARD, what="the card of a study")
@@ -124,7 +124,7 @@ def read_plan(folder: Path) -> Plan:
     except (OSError, ValueError) as error:
         raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
     try:
-        plan = Plan.model_validate(card)
+        plan = StudyPlan.model_validate(card)
         return plan.model_copy(update={"setup": plan.setup.came_with(folder / CARD)})
     except ValidationError as error:
         raise UsageError(

@@ -1,4 +1,4 @@
-"""Files of descriptions with the truth about each: JSON lines of ``id``, ``prompt`` and ``truth``."""
+"""Reads files of descriptions and their truths: JSON lines with ``id``, ``prompt`` and ``truth``."""
 
 from importlib.resources import files
 from pathlib import Path
@@ -14,19 +14,19 @@ MOST = 10_000  # prompts of a file
 
 
 class Prompt(Frozen):
-    """A description, and what it asks for where somebody wrote that down."""
+    """A description and, if somebody wrote it down, what it asks for."""
 
     id: str = Field(min_length=1, max_length=80)
     prompt: str = Field(min_length=1, max_length=10_000)
     truth: Truth | None = None
-    """None: what the reader reads is what roads are held against."""
+    """None: roads are checked against what the reader reads."""
 
 
 def read_prompts(path: Path) -> tuple[Prompt, ...]:
-    """The prompts of a file, in their order.
+    """Returns the prompts of a file in their order.
 
     Raises:
-        UsageError: it cannot be read; the sentence names the line and what is wrong with it.
+        UsageError: the file cannot be read; the message names the line and the mistake.
     """
     try:
         lines = read_text(path, 4_000_000, "a file of prompts", "utf-8-sig").splitlines()
@@ -38,7 +38,7 @@ def read_prompts(path: Path) -> tuple[Prompt, ...]:
 
 
 def thesis_prompts() -> tuple[Prompt, ...]:
-    """The three descriptions of the thesis' table of validity, then the two others of its survey."""
+    """Returns the three descriptions of the thesis' table of validity and the two others of its survey."""
     text = files("roadgpt.study").joinpath("data/thesis.jsonl").read_text(encoding="utf-8")
     return _prompts(list(enumerate(text.splitlines(), 1)), "thesis.jsonl")
 

@@ -52,7 +52,7 @@ Bounds = Annotated[Span, BeforeValidator(_pair), AfterValidator(_ordered)]
 Slope = Literal["up", "down", "flat"]
 
 
-class Wish(Frozen):
+class ExpectedElement(Frozen):
     """One turn or one straight."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
@@ -72,10 +72,10 @@ class Truth(Frozen):
     left: Bounds | None = None
     right: Bounds | None = None
     grade: Slope | None = None
-    sequence: tuple[Wish, ...] | None = None
+    sequence: tuple[ExpectedElement, ...] | None = None
     """All turns in their order, with the straights that were asked for between them."""
-    ends: Wish | None = None
-    starts: Wish | None = None
+    ends: ExpectedElement | None = None
+    starts: ExpectedElement | None = None
     alternating: Literal[True] | None = None
     max_grade: Bounds | None = None
     """Percent, the steepest 10 m, whichever way."""
@@ -93,7 +93,7 @@ class Truth(Frozen):
         return tuple(name for name in type(self).model_fields if getattr(self, name) is not None)
 
 
-def feature_of(wish: Wish | None) -> Feature | None:
+def feature_of(wish: ExpectedElement | None) -> Feature | None:
     """A wish as an Outline has it."""
     if wish is None:
         return None

@@ -15,7 +15,7 @@ from roadgpt.errors import UsageError
 from roadgpt.study.survey.analysis import analyse, collected
 from roadgpt.study.survey.answers import gathered
 from roadgpt.study.survey.questions import CHECK, MATCHES
-from roadgpt.study.survey.store import ANSWERS, Store
+from roadgpt.study.survey.store import ANSWERS, AnswerStore
 from roadgpt.study.survey.survey import Survey
 from roadgpt.study.survey.synthetic import synthetic
 from roadgpt.study.survey.tally import agreement, tally
@@ -219,7 +219,7 @@ def test_a_survey_that_nobody_answered_is_told(tmp_path: Path) -> None:
         collected(folder)
     assert collected(folder, 5).source == "synthetic"
     assert not (folder / ANSWERS).exists(), "made-up raters never come near the answers"
-    store = Store(folder / ANSWERS)
+    store = AnswerStore(folder / ANSWERS)
     rater = store.rater_of(store.add_rater())
     assert rater is not None
     with pytest.raises(UsageError, match="nobody has answered yet"):

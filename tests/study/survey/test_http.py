@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 
 from roadgpt.study.survey.app import CLOSED, FORM, JSON
 from roadgpt.study.survey.limits import MOST_ADDRESS, MOST_BYTES
-from roadgpt.study.survey.order import pages_for
+from roadgpt.study.survey.page_order import pages_for
 from roadgpt.study.survey.questions import CHECK, MATCHES, MOST_LETTERS
 from roadgpt.study.survey.server import Server
-from roadgpt.study.survey.store import Rater, Store
+from roadgpt.study.survey.store import AnswerStore, Rater
 from survey_made import EVIL, PICTURE, Client, agreed, folder_of, port_of, served, survey
 
 STATUSES = {200, 206, 303, 400, 403, 404, 405, 410, 411, 413, 414, 415, 416, 422}
@@ -410,12 +410,12 @@ def test_who_takes_no_answer_is_cut_off(tmp_path: Path, monkeypatch: pytest.Monk
 def test_an_error_of_ours_is_told_in_a_sentence(
     server: Server, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def broken(self: Store, token: str) -> None:
+    def broken(self: AnswerStore, token: str) -> None:
         raise ZeroDivisionError("a bug")
 
     other = Client(port_of(server))
     with monkeypatch.context() as patched:
-        patched.setattr(Store, "rater_of", broken)
+        patched.setattr(AnswerStore, "rater_of", broken)
         told = other.get("/r/whoever/1")
     other.close()
     assert told.status == 500
@@ -543,11 +543,11 @@ def test_a_full_disk_costs_no_confirmed_answer(
 
     token = agreed(server)
 
-    def full(self: Store, rater: Rater, answers: object) -> bool:
+    def full(self: AnswerStore, rater: Rater, answers: object) -> bool:
         raise sqlite3.OperationalError("database or disk is full")
 
     with monkeypatch.context() as patched:
-        patched.setattr(Store, "save", full)
+        patched.setattr(AnswerStore, "save", full)
         refused = client.save(token, "a1.overall", MATCHES[0])
     assert refused.status == 503
     assert "could not be saved" in json.loads(refused.body)["error"]

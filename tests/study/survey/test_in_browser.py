@@ -8,11 +8,11 @@ import pytest
 from chromium import FOUND, Page, browser
 from roadgpt.road import Design, Segment
 from roadgpt.run import Setup, prove
-from roadgpt.study.survey.order import pages_for
+from roadgpt.study.survey.page_order import pages_for
 from roadgpt.study.survey.questions import MATCHES
 from roadgpt.study.survey.server import Server
 from roadgpt.study.survey.survey import MEDIA, Medium
-from roadgpt.study.survey.views import write_view
+from roadgpt.study.survey.view_3d import write_view
 from survey_made import EVIL, PICTURE, folder_of, port_of, served, survey
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="no chromium is installed")

@@ -20,7 +20,7 @@ from roadgpt.study.survey import serving
 from roadgpt.study.survey.questions import ALIKE, MATCHES
 from roadgpt.study.survey.server import Server
 from roadgpt.study.survey.serving import LINKS, opened
-from roadgpt.study.survey.store import ANSWERS, Store, digest_of
+from roadgpt.study.survey.store import ANSWERS, AnswerStore, digest_of
 from roadgpt.study.survey.survey import read_survey
 from survey_made import Client, agreed, folder_of, port_of, served, survey
 
@@ -29,8 +29,8 @@ WITHOUT = """
 import sys
 for name in ("starlette", "uvicorn", "jinja2", "markupsafe"):
     sys.modules[name] = None  # as where it is not installed
-import roadgpt.study.reporting, roadgpt.study.working
-import roadgpt.study.survey.making, roadgpt.study.survey.analysis
+import roadgpt.study.study_report, roadgpt.study.execution
+import roadgpt.study.survey.build, roadgpt.study.survey.analysis
 from roadgpt.__main__ import main
 main()
 """
@@ -215,7 +215,7 @@ def test_only_serving_needs_the_extra(tmp_path: Path) -> None:
 
 
 def test_every_commit_waits_for_the_disk(tmp_path: Path) -> None:
-    store = Store(tmp_path / ANSWERS)
+    store = AnswerStore(tmp_path / ANSWERS)
     told = {
         name: store._file.execute(f"PRAGMA {name}").fetchone()[0]
         for name in ("journal_mode", "synchronous", "secure_delete")
@@ -225,7 +225,7 @@ def test_every_commit_waits_for_the_disk(tmp_path: Path) -> None:
 
 
 def test_answers_come_all_or_none_and_only_from_raters_who_agreed(tmp_path: Path) -> None:
-    store = Store(tmp_path / ANSWERS)
+    store = AnswerStore(tmp_path / ANSWERS)
     token = store.add_rater()
     rater = store.rater_of(token)
     assert rater is not None
@@ -262,7 +262,7 @@ def test_links_that_cannot_be_written_are_not_used_up(
     with pytest.raises(KeyboardInterrupt):
         serving.serve(folder, told.append, raters=3)
     tokens = [line.rpartition("/")[2] for line in (folder / LINKS).read_text().splitlines()]
-    store = Store(folder / ANSWERS)
+    store = AnswerStore(folder / ANSWERS)
     assert len(tokens) == store.links() == 3
     assert all(store.rater_of(token) for token in tokens)
     store.close()
@@ -290,14 +290,14 @@ def test_answers_are_for_their_owner_alone(tmp_path: Path) -> None:
     """Whatever the usual rights of new files are, and also where the file was there before."""
     before = os.umask(0)
     try:
-        store = Store(tmp_path / ANSWERS)
+        store = AnswerStore(tmp_path / ANSWERS)
         store.add_rater()
         made = [*tmp_path.iterdir()]
         assert {path.stat().st_mode & 0o777 for path in made} == {0o600}
         assert len(made) > 1  # its log is beside it
         store.close()
         (tmp_path / ANSWERS).chmod(0o666)
-        Store(tmp_path / ANSWERS).close()
+        AnswerStore(tmp_path / ANSWERS).close()
         assert (tmp_path / ANSWERS).stat().st_mode & 0o777 == 0o600
     finally:
         os.umask(before)

@@ -41,20 +41,20 @@ def command(folder: Path, opens: bool, junit: Path | None) -> None:
 def _written(folder: Path) -> Path:
     from roadgpt.campaign.record import STORE
     from roadgpt.run.card import CARD, read_card
-    from roadgpt.study import plan, reporting
+    from roadgpt.study import plan, study_report
 
     if (folder / plan.CARD).is_file():
-        return reporting.write_study(folder)
+        return study_report.write_study(folder)
     if (folder / STORE).is_file():
         from roadgpt.campaign.status import status_of
-        from roadgpt.study.many import write_many
+        from roadgpt.study.campaign_report import write_store_report
 
         quiet = of_status(status_of(folder))
-        return write_many(folder, command_of_many(folder), next_steps(quiet) if quiet else ())
+        return write_store_report(folder, command_of_many(folder), next_steps(quiet) if quiet else ())
     if (folder / CARD).is_file():
         calm = of_runs(folder)
         steps = next_steps(calm) if calm else ()
-        return reporting.write_campaign(folder, _command(read_card(folder), folder), steps)
+        return study_report.write_run_report(folder, _command(read_card(folder), folder), steps)
     raise UsageError(
         f"there are no runs, no campaign and no study in {folder}; give a folder that holds them"
     )

@@ -52,14 +52,14 @@ def new(
         raise UsageError(f"a survey is made of a {FILE} or --from folders of runs; give one of them")
     if study is not None and not (asks.strip() and contact.strip()):
         raise UsageError(ASK)
-    from roadgpt.study.survey.making import make
-    from roadgpt.study.survey.picking import picked
+    from roadgpt.study.survey.build import make_survey
     from roadgpt.study.survey.plan import plan_text, read_plan
+    from roadgpt.study.survey.sampling import plan_from_runs
 
-    plan = read_plan(file) if file else picked(study or Path(), asks, contact, seed, pairs)
+    plan = read_plan(file) if file else plan_from_runs(study or Path(), asks, contact, seed, pairs)
     if no_films:
         plan = plan.model_copy(update={"films": False})
-    survey = make(plan, file.parent if file else Path(), out, click.echo)
+    survey = make_survey(plan, file.parent if file else Path(), out, click.echo)
     if study is not None:
         (out / FILE).write_text(plan_text(plan), encoding="utf-8")
         click.echo(f"{out / FILE} says what was drawn; edit it and make the survey of it anew")

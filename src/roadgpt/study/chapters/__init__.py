@@ -1,1 +1,1 @@
-"""The sections of a study's report, one file each: values in, a Section out."""
+"""Makes the sections of a study's report, one file each. A section takes values and returns a Section."""

@@ -1,32 +1,34 @@
-"""The section on alignment: do roads keep the words, criterion by criterion."""
+"""Makes the section on alignment: whether roads keep the words, criterion by criterion."""
 
 from collections.abc import Sequence
 
 from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.forest import Share, forest
-from roadgpt.study.chapters.saying import interval_cell, percent, plural
+from roadgpt.study.chapters.wording import interval_cell, percent, plural
 from roadgpt.study.criteria import ASKED, CRITERIA, Criterion
-from roadgpt.study.looking import LookedPart
+from roadgpt.study.road_record import StudyPartRecord
 from roadgpt.study.statistics import Estimate, bootstrap, wilson
 
 MOST_NAMED = 100
 
 
-def kept(part: LookedPart, criterion: Criterion) -> list[bool]:
-    """Of every road of a part whose description asks for this: was it kept? A road that is missing keeps
-    nothing, and a prompt that makes no road counts with all that were asked for, like any other prompt."""
+def kept(part: StudyPartRecord, criterion: Criterion) -> list[bool]:
+    """Returns for each road whether it keeps a criterion; empty if the description does not ask for it.
+
+    A missing road keeps nothing: a prompt without any road counts with as many roads as were asked for.
+    """
     found = [road.kept[criterion] for road in part.roads if criterion in road.kept]
     return found if part.roads or criterion != "general" else [False] * part.wanted
 
 
-def pooled(parts: Sequence[LookedPart], designer: str, criterion: Criterion) -> Estimate:
-    """The share of all roads that keep a criterion, with the interval of drawing prompts again."""
+def pooled(parts: Sequence[StudyPartRecord], designer: str, criterion: Criterion) -> Estimate:
+    """Returns the share of roads that keep a criterion, with a bootstrap interval that resamples prompts."""
     groups = [kept(part, criterion) for part in parts if part.part.designer == designer]
     return bootstrap([[float(good) for good in group] for group in groups])
 
 
-def alignment(parts: Sequence[LookedPart], designers: Sequence[str]) -> Section:
-    """Shares by criterion and by prompt, and the roads that break a promise."""
+def alignment(parts: Sequence[StudyPartRecord], designers: Sequence[str]) -> Section:
+    """Returns the section: shares by criterion and by prompt, and the roads that break a requirement."""
     some = [designer for designer in designers if any(p.roads for p in parts if p.part.designer == designer)]
     known = sum(part.part.prompt.truth is not None for part in parts if part.part.designer == designers[0])
     prompts = sum(part.part.designer == designers[0] for part in parts)
@@ -48,7 +50,7 @@ def alignment(parts: Sequence[LookedPart], designers: Sequence[str]) -> Section:
     return Section("Alignment with the words", [*blocks, *_broken(parts)])
 
 
-def _by_criterion(parts: Sequence[LookedPart], designers: Sequence[str]) -> Figure:
+def _by_criterion(parts: Sequence[StudyPartRecord], designers: Sequence[str]) -> Figure:
     groups = []
     for criterion in CRITERIA:
         rows = []
@@ -64,7 +66,7 @@ def _by_criterion(parts: Sequence[LookedPart], designers: Sequence[str]) -> Figu
     return Figure("alignment", caption, forest(groups, list(designers), caption))
 
 
-def _pooled(parts: Sequence[LookedPart], designers: Sequence[str]) -> Table:
+def _pooled(parts: Sequence[StudyPartRecord], designers: Sequence[str]) -> Table:
     rows: list[list[TableCell]] = []
     for designer in designers:
         for criterion in CRITERIA:
@@ -96,7 +98,7 @@ def _pooled(parts: Sequence[LookedPart], designers: Sequence[str]) -> Table:
     return Table("alignment", "What was asked for and kept, by criterion", heads, rows, note)
 
 
-def _by_prompt(parts: Sequence[LookedPart], designer: str) -> Table:
+def _by_prompt(parts: Sequence[StudyPartRecord], designer: str) -> Table:
     rows = []
     for part in parts:
         if part.part.designer != designer:
@@ -119,7 +121,7 @@ def _by_prompt(parts: Sequence[LookedPart], designer: str) -> Table:
     )
 
 
-def _broken(parts: Sequence[LookedPart]) -> list[Block]:
+def _broken(parts: Sequence[StudyPartRecord]) -> list[Block]:
     lines: list[Block] = []
     for part in parts:
         for road in part.roads:

@@ -1,4 +1,4 @@
-"""The section on the boundary: roads that are nearly one, of which the car kept its lane on one only."""
+"""Makes the section on the boundary: similar roads of which the car kept its lane on only one."""
 
 import shlex
 from collections.abc import Sequence
@@ -11,8 +11,8 @@ from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
 from roadgpt.design.elements import elements_of
 from roadgpt.report.page import Block, Table, TableCell, cell
-from roadgpt.study.chapters.many import again
-from roadgpt.study.chapters.saying import decimal
+from roadgpt.study.chapters.campaign_tests import again
+from roadgpt.study.chapters.wording import decimal
 
 MOST = 1000  # tests of all cells among which pairs are looked for; first those that lie half-way between two
 NAMED = 30  # pairs of a campaign of one cell
@@ -37,7 +37,7 @@ class Side(NamedTuple):
 
 
 def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
-    """The nearest pairs of every cell, cell by cell; see ``campaign.pairs``."""
+    """Returns the nearest pairs of every cell, cell by cell; see ``campaign.boundary_pairs``."""
     out = []
     for each in cells:
         some = (each.name, MOST // len(cells))
@@ -48,7 +48,7 @@ def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
 
 
 def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
-    """A line of the summary: how near the search has come to the boundary."""
+    """Returns a sentence on the nearest pair, for the summary; empty if there is no pair."""
     if not pairs:
         return []
     best = min(pairs, key=lambda side: side.pair.distance)
@@ -60,7 +60,7 @@ def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
 
 
 def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
-    """Every pair with what differs most between its roads; nothing where there is none."""
+    """Returns a table of all pairs and of what differs most between their roads; empty if there is none."""
     if not pairs:
         return []
     rows = [_row(folder, *side) for side in pairs]

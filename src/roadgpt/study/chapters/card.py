@@ -1,4 +1,4 @@
-"""How a study was made: command, seeds, versions, and the hashes of the model that reads."""
+"""Makes the card of a report: command, seeds, versions, and the hashes of the reader's network."""
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from roadgpt.road import World
 from roadgpt.run import Setup
-from roadgpt.study.looking import LookedPart
+from roadgpt.study.road_record import StudyPartRecord
 
 DIGITS = 16  # of a hash
 UNITS = {
@@ -16,14 +16,14 @@ UNITS = {
     "friction": (1.0, ""),
     "oob_tolerance": (1.0, ""),
 }
-"""Factor and unit; metres for all others."""
+"""Factor and unit in which a field is shown; fields that are not listed are in metres."""
 WEIGHTS = (".onnx", ".npz", ".safetensors", ".bin")
 
 
 def card_of(
-    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[LookedPart]
+    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[StudyPartRecord]
 ) -> dict[str, str]:
-    """Lines of a card by their names."""
+    """Returns the lines of the card by their names."""
     out = {"command": command} if command else {}
     out |= {"seed": str(seed), "roads of each": f"{roads:,}", "made by": _designers(parts)}
     out["reader"] = setup.reader + _hashes(setup.reader)
@@ -35,20 +35,20 @@ def card_of(
     return out | {"versions": _versions(parts)}
 
 
-def _designers(parts: Sequence[LookedPart]) -> str:
+def _designers(parts: Sequence[StudyPartRecord]) -> str:
     return ", ".join(dict.fromkeys(part.part.designer for part in parts))
 
 
 def _said(name: str, value: float) -> str:
-    """A field of a World in the units in which people give it."""
+    """Returns a field of a World as a sentence shows it, in the unit in which users give it."""
     if isinstance(value, bool):
         return f"{name.replace('_', ' ')} {'counted' if value else 'not counted'}"
     factor, unit = UNITS.get(name, (1.0, " m"))
     return f"{name.replace('_', ' ')} {value * factor:.4g}{unit}"
 
 
-def _versions(parts: Sequence[LookedPart]) -> str:
-    """Of all runs; more than one of a kind where a study went on with others."""
+def _versions(parts: Sequence[StudyPartRecord]) -> str:
+    """Returns the versions of all runs; several of one library if a study was resumed with another."""
     found: dict[str, dict[str, None]] = {}
     for part in parts:
         for road in part.roads:
@@ -58,7 +58,7 @@ def _versions(parts: Sequence[LookedPart]) -> str:
 
 
 def _hashes(reader: str) -> str:
-    """Of the weights of our own reader, so that another one is noticed."""
+    """Returns the hashes of the reader's weights, which show whether two studies used the same reader."""
     name, _, folder = reader.partition(":")
     if name != "model":
         return ""

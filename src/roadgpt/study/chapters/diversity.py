@@ -1,4 +1,4 @@
-"""The section on diversity: how different the roads of one description are, and those of similar ones."""
+"""Makes the section on diversity: how different the roads of a description are, and of two descriptions."""
 
 from collections.abc import Sequence
 from itertools import combinations
@@ -7,8 +7,8 @@ import numpy as np
 
 from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.heat import AxisRange, heat, is_map
-from roadgpt.study.chapters.saying import decimal, plural
-from roadgpt.study.looking import Looked, LookedPart
+from roadgpt.study.chapters.wording import decimal, plural
+from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 from roadgpt.study.similarity import Likeness, Spread, between, spread
 
 MOST = 150  # roads of a part that are compared, each with every other
@@ -17,14 +17,14 @@ MOST_NAMED = 50
 MOST_DRAWN = 30  # parts whose distances are drawn
 
 
-def spread_of(part: LookedPart) -> tuple[list[Looked], Spread]:
-    """The roads of a part that are compared, and how different they are."""
+def spread_of(part: StudyPartRecord) -> tuple[list[RoadRecord], Spread]:
+    """Returns the roads of a part that are compared, and how different they are."""
     roads = [road for road in part.roads if road.likeness is not None][:MOST]
     return roads, spread([road.likeness for road in roads if road.likeness is not None])
 
 
-def diversity(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], Spread]]) -> Section:
-    """Distances within every part, near duplicates by name, and distances between prompts."""
+def diversity(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRecord], Spread]]) -> Section:
+    """Returns the section: distances within every part, near duplicates, and distances between prompts."""
     blocks: list[Block] = [
         "Two plans are laid onto each other by the best shift, turn and mirroring and compared at equal "
         "shares of their lengths; their distance is the root mean square in metres. Near duplicates are "
@@ -45,7 +45,7 @@ def diversity(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], S
     return Section("Diversity", blocks)
 
 
-def _within(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], Spread]]) -> Table:
+def _within(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRecord], Spread]]) -> Table:
     rows = []
     for part, (roads, own) in zip(parts, found, strict=True):
         if len(roads) < 2:
@@ -77,12 +77,12 @@ def _within(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], Spr
     return Table("diversity", "Roads of the same description", heads, rows, note)
 
 
-def _some(part: LookedPart) -> list[Likeness]:
+def _some(part: StudyPartRecord) -> list[Likeness]:
     return [road.likeness for road in part.roads if road.likeness is not None][:MOST_BETWEEN]
 
 
-def _between(parts: Sequence[LookedPart]) -> Table:
-    """Pairs of prompts of one designer; few enough to be read."""
+def _between(parts: Sequence[StudyPartRecord]) -> Table:
+    """Returns a table of pairs of prompts of one designer, limited to a readable number."""
     rows: list[list[TableCell]] = []
     for designer in dict.fromkeys(part.part.designer for part in parts):
         own = [part for part in parts if part.part.designer == designer and part.roads][:6]
@@ -103,7 +103,7 @@ def _between(parts: Sequence[LookedPart]) -> Table:
     return Table("diversity-between", "Roads of different descriptions", heads, rows, note)
 
 
-def _twins(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], Spread]]) -> list[Block]:
+def _twins(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRecord], Spread]]) -> list[Block]:
     out: list[Block] = []
     for part, (roads, own) in zip(parts, found, strict=True):
         for i, j in own.duplicates:
@@ -119,7 +119,7 @@ def _twins(parts: Sequence[LookedPart], found: Sequence[tuple[list[Looked], Spre
     return out
 
 
-def _matrix(part: LookedPart, roads: list[Looked], own: Spread) -> Figure | None:
+def _matrix(part: StudyPartRecord, roads: list[RoadRecord], own: Spread) -> Figure | None:
     if len(roads) < 3:
         return None
     lower = np.where(np.tri(len(roads), k=-1, dtype=bool), own.metres, np.nan)

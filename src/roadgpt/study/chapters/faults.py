@@ -1,4 +1,4 @@
-"""The section on distinct faults: a gallery, and all of them as a table. Nobody drives."""
+"""Makes the section on distinct faults: a gallery and a table. It simulates nothing."""
 
 import shlex
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ from roadgpt.report.page import (
 )
 from roadgpt.report.page.spot import spot, spot_of
 from roadgpt.run import Run
-from roadgpt.study.chapters.saying import percent, plural
+from roadgpt.study.chapters.wording import percent, plural
 
 SHOWN = 24  # faults with a picture
 LISTED = 300  # faults of the table
@@ -44,50 +44,50 @@ DRAWN = (
 )
 
 
-class Told(NamedTuple):
-    """What is known of a fault."""
+class FaultSummary(NamedTuple):
+    """One fault, with a typical failure and, if ``roadgpt faults`` analysed it, the analysis."""
 
     fault: Fault
     run: Run
-    """Its typical failure."""
+    """The run of a typical failure."""
     name: NumberedTest
     looked: FailureAnalysis | None
     why: FailureReason | None
-    """None where its drive is not known."""
+    """None if the drive is not known."""
 
     @property
     def reason(self) -> str:
-        """Why the car failed, in a sentence without a full stop."""
+        """Why the car failed, as a sentence without a full stop."""
         return self.why.sentence if self.why else self.run.description
 
 
-def told_of(folder: Path, found: Faults) -> list[Told]:
-    """What is known of the faults of a folder, up to the last that the page tells of.
+def fault_summaries(folder: Path, found: Faults) -> list[FaultSummary]:
+    """Returns a summary of each fault of a folder, up to ``LISTED`` faults.
 
     Raises:
-        UsageError: a run cannot be read, or what ``roadgpt faults`` has written.
+        UsageError: a run, or a file that ``roadgpt faults`` has written, cannot be read.
     """
-    return [_told(folder, fault) for fault in found.them[:LISTED]]
+    return [_summary(folder, fault) for fault in found.them[:LISTED]]
 
 
-def _told(folder: Path, fault: Fault) -> Told:
+def _summary(folder: Path, fault: Fault) -> FaultSummary:
     looked = kept_analysis(folder, fault)
     name = looked.name if looked else fault.names[0]
     run = _run_of(folder, name)
     reason = looked.reason if looked else reason_of(run) if run.drive is not None else None
-    return Told(fault, run, name, looked, reason)
+    return FaultSummary(fault, run, name, looked, reason)
 
 
 def _run_of(folder: Path, name: NumberedTest) -> Run:
-    """With its drive, or without where the file of that cannot be read: a report tells what is known."""
+    """Returns the run with its drive, or without if the drive's file cannot be read."""
     try:
         return failed_run(folder, name)
     except UsageError:
         return failed_run(folder, name, has_drive=False)
 
 
-def headline(found: Faults, told: Sequence[Told]) -> list[str]:
-    """The first lines of a page: how many faults, how stable they are, and in which ways the car failed."""
+def headline(found: Faults, told: Sequence[FaultSummary]) -> list[str]:
+    """Returns the first lines of a report: how many faults there are and how stable they are."""
     if not found.failures:
         return ["No road failed."]
     measured = [each.looked.stability.is_stable for each in told if each.looked]
@@ -96,8 +96,8 @@ def headline(found: Faults, told: Sequence[Told]) -> list[str]:
     return [first, *([f"Of the faults, {sure} fail every second time or oftener."] if sure else [])]
 
 
-def faults(folder: Path, found: Faults, told: Sequence[Told]) -> Section | None:
-    """A gallery of the faults with most failures, and a table; None where no failure was compared."""
+def faults(folder: Path, found: Faults, told: Sequence[FaultSummary]) -> Section | None:
+    """Returns the section: a gallery of the most frequent faults, and a table; None if there is no fault."""
     if not told:
         return None
     blocks: list[Block] = [f"{DEFINED} {DRAWN}"]
@@ -117,7 +117,7 @@ def faults(folder: Path, found: Faults, told: Sequence[Told]) -> Section | None:
     return Section("Distinct faults", blocks)
 
 
-def _card(folder: Path, told: Told, found: Faults) -> FigureCard:
+def _card(folder: Path, told: FaultSummary, found: Faults) -> FigureCard:
     count = len(told.fault.members)
     share = f" ({percent(count / found.compared, 0)} of failures)" if found.compared else ""
     title: Line = [
@@ -138,7 +138,7 @@ def _card(folder: Path, told: Told, found: Faults) -> FigureCard:
 
 
 def _farthest(fault: Fault) -> list[Line]:
-    """How far outside its lane the car was at most, over all failures of a fault."""
+    """Returns how far the car was outside its lane at most, over all failures of a fault."""
     share = max((each.outside or 0.0 for each in fault.members), default=0.0)
     metres = max((each.beyond or 0.0 for each in fault.members), default=0.0)
     if not share:
@@ -147,20 +147,20 @@ def _farthest(fault: Fault) -> list[Line]:
     return [f"Outside its lane at most: {percent(share, 0)} of the car{beyond}."]
 
 
-def _stable(told: Told) -> str:
+def _stable(told: FaultSummary) -> str:
     if told.looked is None:
         return "Nobody has driven it again."
     said = told.looked.stability.sentence
     return f"{said[:1].upper()}{said[1:]}."
 
 
-def _picture(folder: Path, told: Told) -> str:
-    """Address of the picture of a typical failure; empty where none was drawn."""
+def _picture(folder: Path, told: FaultSummary) -> str:
+    """Returns the address of the picture of a typical failure; empty if there is none."""
     place = "/".join(part for part in (FOLDER, told.name.cell, f"{told.name.number:04d}") if part)
     return next((f"{place}.{kind}" for kind in FORMATS if (folder / f"{place}.{kind}").is_file()), "")
 
 
-def _all(folder: Path, found: Faults, told: Sequence[Told]) -> Block:
+def _all(folder: Path, found: Faults, told: Sequence[FaultSummary]) -> Block:
     rows = []
     for each in told:
         its = each.looked.stability if each.looked else None

@@ -1,4 +1,4 @@
-"""Sections of pictures: the roads themselves, and the maps of features that they cover."""
+"""Makes the sections with pictures: all roads, and the feature maps that they cover."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ import numpy as np
 from roadgpt.report.page import Block, Figure, Section
 from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.page.heat import AxisRange, heat, is_map
-from roadgpt.study.looking import Looked, LookedPart
+from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 
 CELLS = 25  # along each side of a map
 MOST, MOST_PARTS = 100, 30  # roads in a picture, and pictures
@@ -25,11 +25,11 @@ MAPS = (
     ),
 )
 CALLED = {name: label for row in MAPS for name, label in (row[:2], row[4:6])}
-"""What features are called, with their units."""
+"""Labels of features, with their units."""
 
 
-def coverage(parts: Sequence[LookedPart]) -> Section | None:
-    """Feature maps of all roads together, by designer; None where no road has features."""
+def coverage(parts: Sequence[StudyPartRecord]) -> Section | None:
+    """Returns feature maps of all roads together, by designer; None if no road has features."""
     blocks: list[Block] = []
     for designer in dict.fromkeys(part.part.designer for part in parts):
         roads = [road for part in parts if part.part.designer == designer for road in part.roads]
@@ -43,7 +43,7 @@ def coverage(parts: Sequence[LookedPart]) -> Section | None:
 
 
 def _map(
-    designer: str, roads: Sequence[Looked], places: tuple[str, str, float, float, str, str, float, float]
+    designer: str, roads: Sequence[RoadRecord], places: tuple[str, str, float, float, str, str, float, float]
 ) -> Figure | None:
     across, across_name, x0, x1, upwards, upwards_name, y0, y1 = places
     found = [(r.features[across], r.features[upwards]) for r in roads if {across, upwards} <= {*r.features}]
@@ -59,14 +59,14 @@ def _map(
     return Figure(f"coverage-{across.lower()}", caption, picture)
 
 
-def small(part: LookedPart, road: Looked) -> Thumbnail:
-    """A road as a small map that leads to its run."""
+def small(part: StudyPartRecord, road: RoadRecord) -> Thumbnail:
+    """Returns one road as a small map that links to its run."""
     failed_at = road.failed_at if road.has_left else None
     return Thumbnail(road.index, road.outcome, road.points, failed_at, part.href(road), road.max_oob)
 
 
-def roads(parts: Sequence[LookedPart], size: float) -> Section:
-    """Every road as a small map that leads to its run."""
+def roads(parts: Sequence[StudyPartRecord], size: float) -> Section:
+    """Returns every road as a small map that links to its run."""
     blocks: list[Block] = [
         "A dot is where a road starts, a cross where the car left it; “62 %” is a PASS with so much of "
         "the car outside its lane. Each leads to its bird's-eye view; "

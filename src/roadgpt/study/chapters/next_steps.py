@@ -1,15 +1,15 @@
-"""What to try where no road failed."""
+"""Makes the section on what to try if no road failed."""
 
 from collections.abc import Sequence
 
 from roadgpt.report.page import Section, Table, cell
 
 Steps = Sequence[tuple[str, str]]
-"""What each step is, and its command."""
+"""Pairs of a description and a command."""
 
 
 def what_to_try(steps: Steps) -> list[Section]:
-    """A section with the commands; none where there are none."""
+    """Returns a section with the commands; empty if there are none."""
     if not steps:
         return []
     rows = [[cell(why), cell(command)] for why, command in steps]

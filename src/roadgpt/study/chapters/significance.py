@@ -1,17 +1,17 @@
-"""Does the description decide on a count? A table of counts worked out as the thesis does, step by step."""
+"""Tests whether a count depends on the description, by a contingency table as in the thesis."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from roadgpt.report.page import Block, Table, TableCell, cell
-from roadgpt.study.chapters.saying import decimal, p_value
+from roadgpt.study.chapters.wording import decimal, p_value
 from roadgpt.study.statistics import ChiSquared, chi_squared, exact, trend
 
 LEVEL = 0.05
 
 
 class Count(NamedTuple):
-    """Of the roads of one prompt, how many are so."""
+    """How many roads of one prompt have a property."""
 
     prompt: str
     hits: int
@@ -20,7 +20,7 @@ class Count(NamedTuple):
 
 
 class Source(NamedTuple):
-    """Who made the roads, and their counts, prompt by prompt in the order of the table."""
+    """The counts of one designer, prompt by prompt in the order of the table."""
 
     name: str
     counts: tuple[Count, ...]
@@ -37,17 +37,18 @@ class Source(NamedTuple):
         return sum(count.total for count in self.counts)
 
     def table(self) -> list[list[int]]:
-        """Counts ``(prompts, 2)``."""
+        """Returns the counts as rows ``(prompts, 2)``: roads with the property, roads without it."""
         return [[count.hits, count.total - count.hits] for count in self.counts]
 
 
-def worked_out(source: Source, hit: str, miss: str, name: str) -> list[Block]:
-    """The contingency table with expected values and terms, and what follows from it.
+def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[Block]:
+    """Returns the contingency table with expected values and terms, and a paragraph with the test results.
 
     Args:
-        source: whose counts.
-        hit, miss: what the columns are called.
-        name: of the table's files.
+        source: the counts.
+        hit: heading of the roads that have the property.
+        miss: heading of the roads that do not have it.
+        name: name of the table's files.
     """
     found = chi_squared(source.table(), LEVEL)
     return [_table(source, found, hit, miss, name), _verdict(source, found, hit, miss)]

@@ -2,8 +2,8 @@
 
     SURVEY.toml or a study --make--> a folder --serve--> answers.sqlite --analyse--> report, tables, figures
 
-plan, picking     which roads; ``read_plan`` of a file, ``picked`` out of a study
-making            ``make``: plots, films, 3-D views, survey.json
+plan, sampling    which roads: ``read_plan`` reads a file, ``plan_from_runs`` draws them from folders of runs
+build             ``make_survey``: plots, films, 3-D views, survey.json
 serving           ``serve``: links, and the server until Ctrl-C; needs the extra ``survey``
 server, limits    uvicorn, with limits on connections and requests
 app, pages        the Starlette application, and its Jinja2 pages out of ``templates``

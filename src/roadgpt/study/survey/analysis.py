@@ -6,13 +6,13 @@ from roadgpt import __version__
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.report.page import Block, Page, Section, write
 from roadgpt.run.atomic import write_whole
-from roadgpt.study.survey import sections
+from roadgpt.study.survey import report_blocks
 from roadgpt.study.survey.answers import Answers, answers_in, csv_of
-from roadgpt.study.survey.bars import about_bars, rating_bars
-from roadgpt.study.survey.store import ANSWERS, Store
+from roadgpt.study.survey.rating_charts import about_bars, rating_bars
+from roadgpt.study.survey.store import ANSWERS, AnswerStore
 from roadgpt.study.survey.survey import read_survey
 from roadgpt.study.survey.synthetic import synthetic
-from roadgpt.study.survey.tally import Tally, about_counts, tally
+from roadgpt.study.survey.tally import RatingTally, about_counts, tally
 
 FIGURES = "figures"
 TABLES = {"people": "answers.csv", "synthetic": "answers-synthetic.csv"}
@@ -38,7 +38,7 @@ def collected(
         return synthetic(survey, number, seed, agreement)
     if not (folder / ANSWERS).is_file():
         raise UsageError(f"nobody was invited yet; say: roadgpt study survey serve {folder} --raters 10")
-    store = Store(folder / ANSWERS)
+    store = AnswerStore(folder / ANSWERS)
     try:
         answers = answers_in(store, survey)
     finally:
@@ -83,7 +83,7 @@ def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
     """The report; its figures are drawn into a folder that exists."""
     is_synthetic = answers.source == "synthetic"
     match, alike = tally(answers, "alignment"), tally(answers, "similarity")
-    told = sections.Told(is_synthetic)
+    told = report_blocks.SurveyBlocks(is_synthetic)
     about = about_counts(answers)
     who: list[Block] = [told.numbers(answers)]
     if about:
@@ -102,13 +102,15 @@ def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
     return Page(
         title=f"{'SYNTHETIC: ' if is_synthetic else ''}{answers.survey.title}",
         lead=MADE_UP if is_synthetic else "What people said.",
-        summary=[*([MADE_UP] if is_synthetic else []), *sections.summary(answers, match, alike)],
+        summary=[*([MADE_UP] if is_synthetic else []), *report_blocks.summary(answers, match, alike)],
         sections=parts,
         card=_card(answers, command),
     )
 
 
-def _part(told: sections.Told, found: Tally, figures: Path, is_synthetic: bool) -> list[Block]:
+def _part(
+    told: report_blocks.SurveyBlocks, found: RatingTally, figures: Path, is_synthetic: bool
+) -> list[Block]:
     drawn = rating_bars(found, figures, is_synthetic)
     caption = "Every answer; the middle answer is centred on zero, and the numbers are raters."
     return [told.figure(drawn, caption), told.ratings(found), *told.differences(found)]

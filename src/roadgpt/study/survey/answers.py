@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from roadgpt.report.page.text import unformulated
-from roadgpt.study.survey.order import pages_for
+from roadgpt.study.survey.page_order import pages_for
 from roadgpt.study.survey.questions import CHECK, MATCHES, Part
-from roadgpt.study.survey.store import Store, code_of
+from roadgpt.study.survey.store import AnswerStore, code_of
 from roadgpt.study.survey.survey import Survey
 
 Source = Literal["people", "synthetic"]
@@ -21,7 +21,7 @@ HEADS = (
 
 
 @dataclass(frozen=True)
-class Row:
+class AnswerRow:
     """One answer of one rater."""
 
     source: Source
@@ -46,7 +46,7 @@ class Answers:
 
     survey: Survey
     source: Source
-    rows: tuple[Row, ...]
+    rows: tuple[AnswerRow, ...]
     invited: int
     agreed: int
     withdrawn: int
@@ -57,7 +57,7 @@ class Answers:
         return tuple(sorted({row.rater for row in self.rows if row.attention == "failed"}))
 
     @property
-    def used(self) -> tuple[Row, ...]:
+    def used(self) -> tuple[AnswerRow, ...]:
         """What is analysed."""
         return tuple(row for row in self.rows if row.attention != "failed")
 
@@ -78,7 +78,7 @@ class Answers:
         return sum(asked <= given for given in by_rater.values())
 
 
-def answers_in(store: Store, survey: Survey) -> Answers:
+def answers_in(store: AnswerStore, survey: Survey) -> Answers:
     """Everything that people answered and did not withdraw."""
     raters = store.raters()
     given = {rater.digest: store.answers_of(rater) for rater in raters if rater.state == "agreed"}
@@ -94,10 +94,10 @@ def gathered(
     return Answers(survey, source, tuple(rows), invited, len(given), withdrawn)
 
 
-def _rows(survey: Survey, digest: str, given: Mapping[str, str], source: Source) -> list[Row]:
+def _rows(survey: Survey, digest: str, given: Mapping[str, str], source: Source) -> list[AnswerRow]:
     attention = _attention(survey, given)
     return [
-        Row(
+        AnswerRow(
             source=source,
             rater=code_of(digest),
             attention=attention,
@@ -124,7 +124,7 @@ def _attention(survey: Survey, given: Mapping[str, str]) -> Attention:
     return "passed" if given["check"] == MATCHES[CHECK] else "failed"
 
 
-def csv_of(rows: Sequence[Row]) -> str:
+def csv_of(rows: Sequence[AnswerRow]) -> str:
     """All rows as CSV. Cells that a spreadsheet would take for a formula begin with an apostrophe."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -26,11 +26,11 @@ from starlette.routing import Route
 from starlette.types import Receive, Scope, Send
 
 from roadgpt.study.survey.limits import FRAMES, RequestGuard, refusal
-from roadgpt.study.survey.order import pages_for
+from roadgpt.study.survey.page_order import pages_for
 from roadgpt.study.survey.pages import own_answers, questionnaire, render
 from roadgpt.study.survey.questions import clean
-from roadgpt.study.survey.store import MOST_RATERS, Rater, Store
-from roadgpt.study.survey.survey import MEDIA, Page, Survey
+from roadgpt.study.survey.store import MOST_RATERS, AnswerStore, Rater
+from roadgpt.study.survey.survey import MEDIA, QuestionPage, Survey
 
 STATIC = Path(__file__).parent / "static"
 STATIC_TYPES = {"survey.css": "text/css", "survey.js": "text/javascript"}
@@ -70,7 +70,7 @@ class SurveyApp:
         shared: token of the link with which anyone may join; empty where nobody may.
     """
 
-    def __init__(self, folder: Path, survey: Survey, store: Store, shared: str = "") -> None:
+    def __init__(self, folder: Path, survey: Survey, store: AnswerStore, shared: str = "") -> None:
         self.folder, self.survey, self.store, self.shared = folder, survey, store, shared
 
         def at(path: str, answer: Answer, *methods: str) -> Route:
@@ -227,7 +227,7 @@ class SurveyApp:
         self.store.withdraw(rater)
         return self._page("deleted.html")
 
-    def _pages(self, rater: Rater) -> Sequence[Page]:
+    def _pages(self, rater: Rater) -> Sequence[QuestionPage]:
         return pages_for(self.survey, rater.digest)
 
     def _page(self, template: str, status: int = 200, **values: object) -> Response:
@@ -251,7 +251,7 @@ class SurveyApp:
         return refusal(request.scope["path"], 503, NOT_SAVED)
 
 
-def _missing(page: Page, given: Mapping[str, str]) -> list[str]:
+def _missing(page: QuestionPage, given: Mapping[str, str]) -> list[str]:
     return [question.id for question in page.questions if question.is_needed and question.id not in given]
 
 

@@ -7,7 +7,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from roadgpt.study.survey.questions import MOST_LETTERS
-from roadgpt.study.survey.survey import Page, Survey
+from roadgpt.study.survey.survey import QuestionPage, Survey
 
 TEMPLATES = Path(__file__).parent / "templates"
 HEADINGS = {
@@ -50,7 +50,7 @@ def render(template: str, survey: Survey, **values: object) -> str:
 
 def questionnaire(
     survey: Survey,
-    pages: Sequence[Page],
+    pages: Sequence[QuestionPage],
     number: int,
     base: str,
     given: Mapping[str, str],

@@ -51,7 +51,7 @@ class AboutPlan(Frozen):
     answers: Annotated[tuple[Words, ...], Field(min_length=2, max_length=20)]
 
 
-class Plan(Frozen):
+class SurveyPlan(Frozen):
     """All of a SURVEY.toml."""
 
     title: Words = "Roads from words"
@@ -85,7 +85,7 @@ class Plan(Frozen):
         )
 
 
-def read_plan(path: Path | str) -> Plan:
+def read_plan(path: Path | str) -> SurveyPlan:
     """What a SURVEY.toml says.
 
     Raises:
@@ -101,7 +101,7 @@ def read_plan(path: Path | str) -> Plan:
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{path} is no TOML ({error}); mend it") from error
     try:
-        plan = Plan.model_validate(data)
+        plan = SurveyPlan.model_validate(data)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part + 1 if isinstance(part, int) else part) for part in first["loc"])
@@ -116,7 +116,7 @@ def named(criterion: str) -> str:
     return CRITERIA.get(criterion, criterion)
 
 
-def plan_text(plan: Plan) -> str:
+def plan_text(plan: SurveyPlan) -> str:
     """A SURVEY.toml that says the same, to be edited."""
     own: dict[str, Any] = plan.model_dump(mode="json", exclude={"about", "alignment", "similarity"})
     own["purpose"] = plan.said_purpose

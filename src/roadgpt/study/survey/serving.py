@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.reading import read_text
 from roadgpt.run.atomic import write_whole
-from roadgpt.study.survey.store import ANSWERS, MOST_RATERS, Store, new_token
+from roadgpt.study.survey.store import ANSWERS, MOST_RATERS, AnswerStore, new_token
 from roadgpt.study.survey.survey import read_survey
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def opened(folder: Path | str, host: str, port: int, is_open: bool = False) -> "
         raise UsageError(f"{NEEDS}; say python -m pip install 'roadgpt[survey]'") from error
     folder = Path(folder).resolve()
     survey = read_survey(folder)
-    store = Store(folder / ANSWERS)
+    store = AnswerStore(folder / ANSWERS)
     try:
         return Server(SurveyApp(folder, survey, store, store.shared() if is_open else ""), host, port)
     except BaseException:
@@ -90,7 +90,7 @@ def serve(
         tell(f"{states.count('agreed')} of {len(states)} raters agreed so far; all answers are in {folder}")
 
 
-def _invited(folder: Path, store: Store, wanted: int, base: str) -> list[str]:
+def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[str]:
     """Links of all raters, new ones among them, written and told."""
     path = folder / LINKS
     tokens = re.findall(r"/r/([\w-]+)\s*$", read_text(path), re.M) if path.is_file() else []

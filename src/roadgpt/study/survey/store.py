@@ -63,7 +63,7 @@ def _private(path: Path) -> None:
             each.chmod(0o600)
 
 
-class Store:
+class AnswerStore:
     """The file of answers; may be used by many threads, and by several processes at once."""
 
     def __init__(self, path: Path | str) -> None:

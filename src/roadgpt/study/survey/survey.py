@@ -53,7 +53,7 @@ class Item(Frozen):
         return ask(self.id, self.criteria)
 
 
-class Page(Frozen):
+class QuestionPage(Frozen):
     """One page of the questionnaire."""
 
     part: Part
@@ -83,16 +83,17 @@ class Survey(Frozen):
         return tuple(item for item in self.items if item.part == part)
 
     @cached_property
-    def pages(self) -> tuple[Page, ...]:
+    def pages(self) -> tuple[QuestionPage, ...]:
         """Every page once, in the order of the file; raters are shown them in an order of their own."""
-        pages = [Page(part="about", questions=self.about)] if self.about else []
+        pages = [QuestionPage(part="about", questions=self.about)] if self.about else []
         for part in ("alignment", "similarity"):
             pages += [
-                Page(part=item.part, questions=item.questions, item=item) for item in self.of_part(part)
+                QuestionPage(part=item.part, questions=item.questions, item=item)
+                for item in self.of_part(part)
             ]
         if self.has_check:
-            pages.append(Page(part="check", questions=(check_question(),)))
-        return (*pages, Page(part="end", questions=(END,)))
+            pages.append(QuestionPage(part="check", questions=(check_question(),)))
+        return (*pages, QuestionPage(part="end", questions=(END,)))
 
     @cached_property
     def questions(self) -> Mapping[str, Question]:

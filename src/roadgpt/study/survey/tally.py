@@ -68,7 +68,7 @@ class Unit:
 
 
 @dataclass(frozen=True, eq=False)
-class Tally:
+class RatingTally:
     """All ratings of one part."""
 
     part: Rated
@@ -100,7 +100,7 @@ def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
     ]
 
 
-def tally(answers: Answers, part: Rated) -> Tally:
+def tally(answers: Answers, part: Rated) -> RatingTally:
     """The ratings of one part by all raters who are analysed."""
     scores = {
         (row.rater, row.question): row.score
@@ -114,7 +114,7 @@ def tally(answers: Answers, part: Rated) -> Tally:
         for question in item.questions
         if question.is_rating
     ]
-    return Tally(part, raters, tuple(units))
+    return RatingTally(part, raters, tuple(units))
 
 
 def matrix(units: Sequence[Unit]) -> Array:

@@ -20,11 +20,11 @@ from roadgpt.road import Design, Segment
 from roadgpt.run import Run, Setup, perform, prove, write_run
 from roadgpt.run.card import CARD as CAMPAIGN
 from roadgpt.run.card import Card
-from roadgpt.study.survey import films, making
-from roadgpt.study.survey.picking import picked
+from roadgpt.study.survey import build, films
+from roadgpt.study.survey.described_criteria import criteria_of
 from roadgpt.study.survey.plan import plan_text, read_plan
-from roadgpt.study.survey.plots import Axes
-from roadgpt.study.survey.spoken import criteria_of
+from roadgpt.study.survey.road_plots import Axes
+from roadgpt.study.survey.sampling import plan_from_runs
 from roadgpt.study.survey.survey import Survey, read_survey
 
 SETUP = Setup(reader="grammar", drives=False)
@@ -51,7 +51,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def made(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Survey]:
     out = tmp_path_factory.mktemp("made") / "survey"
     told: list[str] = []
-    survey = making.make(picked(runs, "Jane", "jane@x.example", 1), Path(), out, told.append)
+    survey = build.make_survey(plan_from_runs(runs, "Jane", "jane@x.example", 1), Path(), out, told.append)
     assert len(told) == 4
     return out, survey
 
@@ -76,7 +76,7 @@ def test_a_survey_drawn_from_a_study_asks_what_its_descriptions_speak_of(
     assert survey.items[0].machine == {"overall": 1.0, "number of turns": 1.0, "incline": 1.0}, (
         "the planner keeps its words"
     )
-    assert picked(runs, "Jane", "j", 1) == picked(runs, "Jane", "j", 1)
+    assert plan_from_runs(runs, "Jane", "j", 1) == plan_from_runs(runs, "Jane", "j", 1)
 
 
 def test_every_medium_is_there_and_nothing_else(made: tuple[Path, Survey]) -> None:
@@ -160,7 +160,7 @@ def test_a_file_may_name_texts_criteria_and_questions_of_its_own(runs: Path, tmp
 [[alignment]]\nrun = "{run.as_posix()}"\nprompt = "something <else>"\ncriteria = ["turns", "beauty"]\n"""
     )
     plan = read_plan(tmp_path / "S.toml")
-    survey = making.make(plan, tmp_path, tmp_path / "out")
+    survey = build.make_survey(plan, tmp_path, tmp_path / "out")
     assert [page.part for page in survey.pages] == ["about", "alignment", "end"]
     assert survey.about[0].answers == ("yes", "no")
     assert survey.items[0].criteria == ("number of turns", "beauty")
@@ -193,7 +193,7 @@ def test_the_file_in_the_guide_is_one(tmp_path: Path) -> None:
 def test_what_a_file_says_wrongly_is_told_in_a_sentence(tmp_path: Path, text: str, says: str) -> None:
     (tmp_path / "S.toml").write_text(text)
     with pytest.raises(UsageError, match=says):
-        making.make(read_plan(tmp_path / "S.toml"), tmp_path, tmp_path / "out")
+        build.make_survey(read_plan(tmp_path / "S.toml"), tmp_path, tmp_path / "out")
     with pytest.raises(UsageError, match="cannot be read"):
         read_plan(tmp_path / "nothing.toml")
 
@@ -201,16 +201,16 @@ def test_what_a_file_says_wrongly_is_told_in_a_sentence(tmp_path: Path, text: st
 def test_a_survey_to_which_people_were_invited_is_never_replaced(
     made: tuple[Path, Survey], runs: Path, tmp_path: Path
 ) -> None:
-    plan = picked(runs, "Jane", "j")
+    plan = plan_from_runs(runs, "Jane", "j")
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "answers.sqlite").write_bytes(b"answers")
     with pytest.raises(UsageError, match="people were invited"):
-        making.make(plan, Path(), tmp_path / "a")
+        build.make_survey(plan, Path(), tmp_path / "a")
     assert (tmp_path / "a" / "answers.sqlite").read_bytes() == b"answers"
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "thesis.docx").write_bytes(b"years of work")
     with pytest.raises(UsageError, match="holds something else"):
-        making.make(plan, Path(), tmp_path / "b")
+        build.make_survey(plan, Path(), tmp_path / "b")
 
 
 def test_films_are_made_once_and_where_none_can_be_that_is_said(
@@ -238,16 +238,16 @@ def test_films_are_made_once_and_where_none_can_be_that_is_said(
         made.append(path)
         path.write_bytes(view.encode())
 
-    monkeypatch.setattr(making, "are_possible", lambda: True)
-    monkeypatch.setattr(making, "make_film", record)
+    monkeypatch.setattr(build, "are_possible", lambda: True)
+    monkeypatch.setattr(build, "make_film", record)
     plan = read_plan(tmp_path / "S.toml")
-    survey = making.make(plan, tmp_path, tmp_path / "out")
+    survey = build.make_survey(plan, tmp_path, tmp_path / "out")
     assert [medium.kind for medium in survey.items[0].media] == ["picture", "picture", "film", "film", "view"]
     assert survey.lacks == ""
-    making.make(plan, tmp_path, tmp_path / "out")
+    build.make_survey(plan, tmp_path, tmp_path / "out")
     assert [path.read_bytes() for path in made] == [b"chase", b"bonnet"], "what is there is not made again"
-    monkeypatch.setattr(making, "are_possible", lambda: False)
-    without = making.make(plan, tmp_path, tmp_path / "out")
+    monkeypatch.setattr(build, "are_possible", lambda: False)
+    without = build.make_survey(plan, tmp_path, tmp_path / "out")
     assert "there are no films" in without.lacks
     assert not list((tmp_path / "out" / "media").glob("*.mp4"))
 
@@ -301,8 +301,8 @@ def test_a_survey_without_films_is_made_without_films(
     def forbidden(*_: object) -> None:
         raise AssertionError("a film was made")
 
-    monkeypatch.setattr(making, "are_possible", lambda: True)
-    monkeypatch.setattr(making, "make_film", forbidden)
+    monkeypatch.setattr(build, "are_possible", lambda: True)
+    monkeypatch.setattr(build, "make_film", forbidden)
     out = tmp_path / "s"
     words = ["new", "--from", str(runs), "--out", str(out), "--asks", "J", "--contact", "j@x.example"]
     done = CliRunner().invoke(command, [*words, "--no-films"])

@@ -14,7 +14,13 @@ from roadgpt.run.card import read_card
 from roadgpt.study.baseline import NAME
 from roadgpt.study.chapters.alignment import alignment, kept
 from roadgpt.study.chapters.card import card_of
-from roadgpt.study.chapters.counting import (
+from roadgpt.study.chapters.diversity import diversity, spread_of
+from roadgpt.study.chapters.faults import fault_summaries, faults, headline
+from roadgpt.study.chapters.maps import coverage, roads
+from roadgpt.study.chapters.next_steps import Steps, what_to_try
+from roadgpt.study.chapters.out_of_lane import outside_sentences, passed_roads
+from roadgpt.study.chapters.overview import glance
+from roadgpt.study.chapters.validity import (
     SBFT,
     STRICT,
     departures,
@@ -25,22 +31,16 @@ from roadgpt.study.chapters.counting import (
     valid_source,
     validity,
 )
-from roadgpt.study.chapters.diversity import diversity, spread_of
-from roadgpt.study.chapters.faults import faults, headline, told_of
-from roadgpt.study.chapters.glance import glance
-from roadgpt.study.chapters.maps import coverage, roads
-from roadgpt.study.chapters.next_steps import Steps, what_to_try
-from roadgpt.study.chapters.outside import outside_sentences, passed_roads
-from roadgpt.study.chapters.saying import near_and_far, percent, plural, share_of
-from roadgpt.study.looking import Looked, LookedPart, look_at_campaign, look_at_parts
-from roadgpt.study.plan import Part, Plan, read_plan
+from roadgpt.study.chapters.wording import near_and_far, percent, plural, share_of
+from roadgpt.study.execution import Problem
+from roadgpt.study.plan import StudyPart, StudyPlan, read_plan
 from roadgpt.study.prompts import Prompt
+from roadgpt.study.road_record import RoadRecord, StudyPartRecord, read_campaign, read_parts
 from roadgpt.study.similarity import Spread
-from roadgpt.study.working import Problem
 
 PROBLEMS = "problems.json"
 
-Found = Sequence[tuple[list[Looked], Spread]]
+Found = Sequence[tuple[list[RoadRecord], Spread]]
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
@@ -57,7 +57,7 @@ def write_study(folder: Path) -> Path:
         RoadGPTError: a file cannot be written.
     """
     plan = read_plan(folder)
-    parts = list(look_at_parts(plan, folder, _problems(folder)))
+    parts = list(read_parts(plan, folder, _problems(folder)))
     found = [spread_of(part) for part in parts]
     return write(page_of(plan, parts, found), folder)
 
@@ -70,7 +70,7 @@ def _problems(folder: Path) -> Mapping[str, str]:
     return {str(key): str(value) for key, value in found.items()} if isinstance(found, dict) else {}
 
 
-def page_of(plan: Plan, parts: Sequence[LookedPart], found: Found) -> Page:
+def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> Page:
     """The report of a study."""
     is_thesis = plan.kind == "thesis"
     sections = [
@@ -91,12 +91,12 @@ def page_of(plan: Plan, parts: Sequence[LookedPart], found: Found) -> Page:
     return Page(title, summary, sections, card, lead)
 
 
-def _pictures(parts: Sequence[LookedPart], size: float) -> list[Section]:
+def _pictures(parts: Sequence[StudyPartRecord], size: float) -> list[Section]:
     covered = coverage(parts)
     return [*([covered] if covered else []), roads(parts, size)]
 
 
-def _summary(plan: Plan, parts: Sequence[LookedPart], found: Found) -> list[str]:
+def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> list[str]:
     """What a reader wants to know, designer by designer."""
     is_thesis = plan.kind == "thesis"
     lines = []
@@ -116,7 +116,7 @@ def _summary(plan: Plan, parts: Sequence[LookedPart], found: Found) -> list[str]
     return lines
 
 
-def _valid_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) -> list[str]:
+def _valid_lines(designer: str, parts: Sequence[StudyPartRecord], is_thesis: bool) -> list[str]:
     strict, sbft = (valid_source(designer, parts, kind) for kind in (STRICT, SBFT))
     if not strict.total:
         return []
@@ -130,7 +130,7 @@ def _valid_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) ->
     return [f"{text}; {NAME} had {share_of(theirs.hits, theirs.total)} by its own checks."]
 
 
-def _left_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) -> list[str]:
+def _left_lines(designer: str, parts: Sequence[StudyPartRecord], is_thesis: bool) -> list[str]:
     ours = left_source(designer, parts)
     if not ours.total:
         return []
@@ -139,7 +139,7 @@ def _left_lines(designer: str, parts: Sequence[LookedPart], is_thesis: bool) -> 
     return [f"The car left its lane on {share_of(ours.hits, ours.total)} driven roads{beside}."]
 
 
-def _kept_line(parts: Sequence[LookedPart]) -> str:
+def _kept_line(parts: Sequence[StudyPartRecord]) -> str:
     good = [value for part in parts for value in kept(part, "general")]
     counts = [value for part in parts for value in kept(part, "turns")]
     text = f"{share_of(sum(good), len(good))} roads keep every word"
@@ -160,7 +160,7 @@ def _different_line(found: Found) -> str:
     )
 
 
-def write_campaign(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
+def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
     """Write the report of a campaign of ``roadgpt run`` into its folder; gives back where the page lies.
 
     Args:
@@ -175,13 +175,13 @@ def write_campaign(folder: Path, command: str = "", next_steps: Steps = ()) -> P
     card = read_card(folder)
     request, setup = card.request, card.request.setup
     words = request.words or "roads that were given"
-    part = look_at_campaign(folder, Part(setup.designer, 1, Prompt(id="1", prompt=words)))
+    part = read_campaign(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
     found = [spread_of(part)]
     first = glance([part], found, request.world.map_size)
     failed = faults_in(folder)
-    told = told_of(folder, failed)
+    told = fault_summaries(folder, failed)
     opening = [each for each in (first, faults(folder, failed, told)) if each is not None]
     sections = [*opening, *what_to_try(next_steps)]
     sections.append(validity([part], [setup.designer], has_baseline=False))
@@ -200,7 +200,7 @@ def write_campaign(folder: Path, command: str = "", next_steps: Steps = ()) -> P
     return write(page, folder)
 
 
-def _campaign_summary(part: LookedPart, setup: Setup, world: World, found: Found) -> list[str]:
+def _campaign_summary(part: StudyPartRecord, setup: Setup, world: World, found: Found) -> list[str]:
     own = setup.designer
     lines = [*_valid_lines(own, [part], is_thesis=False), *_left_lines(own, [part], is_thesis=False)]
     near, far = (_least(part.roads, outcome) for outcome in ("PASS", "FAIL"))
@@ -211,7 +211,7 @@ def _campaign_summary(part: LookedPart, setup: Setup, world: World, found: Found
     return [*lines, _different_line(found)]
 
 
-def _least(roads: Sequence[Looked], outcome: str) -> tuple[float, str] | None:
+def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | None:
     """The least margin of roads that ended so, and which that was."""
     found = [
         (road.margin, road.index) for road in roads if road.outcome == outcome and road.margin is not None

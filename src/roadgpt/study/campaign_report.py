@@ -1,4 +1,4 @@
-"""The report of a campaign of many tests, counted by its store: a million tests need no million rows."""
+"""Writes the report of a campaign; its store does the counting, so that a million tests stay in the file."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,11 +11,11 @@ from roadgpt.reading import json_of
 from roadgpt.report.page import Block, Figure, Page, Section, Table, TableCell, cell, linked, write
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
-from roadgpt.study.chapters.faults import faults, headline, told_of
-from roadgpt.study.chapters.many import coverage, failures, margins
+from roadgpt.study.chapters.campaign_tests import coverage, failures, margins
+from roadgpt.study.chapters.faults import fault_summaries, faults, headline
 from roadgpt.study.chapters.next_steps import Steps, what_to_try
-from roadgpt.study.chapters.outside import outside_sentences, outside_table, passed_tests
-from roadgpt.study.chapters.saying import (
+from roadgpt.study.chapters.out_of_lane import outside_sentences, outside_table, passed_tests
+from roadgpt.study.chapters.wording import (
     decimal,
     interval_cell,
     near_and_far,
@@ -32,16 +32,16 @@ MOST_CELLS = 12  # whose curves and shares are drawn
 TABLES = ("results.csv", "cells.csv")
 
 
-def write_many(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
-    """Write the report of the campaign in a folder; gives back where the page lies.
+def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
+    """Writes the report of a campaign and returns the path of its HTML page.
 
     Args:
-        folder: of the campaign.
-        command: that makes it again, to stand on the card.
-        next_steps: what to try where nothing failed: what it is, and its command.
+        folder: the campaign's folder.
+        command: the command that makes the report again, for the report's card.
+        next_steps: what to try if nothing failed, as pairs of a description and a command.
 
     Raises:
-        UsageError: there is no campaign, or nothing has been done.
+        UsageError: there is no campaign, or it has no finished test.
         RoadGPTError: a file cannot be written.
     """
     status = status_of(folder)
@@ -57,7 +57,7 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
     lead = f"{status.done:,} tests in {plural(len(status.cells), 'cell')}"
     lead += "" if status.is_finished else "; the campaign goes on"
     found = faults_in(folder, COMPARED)
-    told = told_of(folder, found)
+    told = fault_summaries(folder, found)
     pairs = nearest(record, [each for each in fields if each.goal == "boundary"][:MOST_CELLS])
     gallery, covered = faults(folder, found, told), coverage(record, status.done)
     sections = [gallery] if gallery else []
@@ -98,13 +98,13 @@ def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> lis
 
 
 def _drives_on(record: Record) -> bool:
-    """Do cars drive on where they have left their lane?"""
+    """Returns whether cars drive on after they have left their lane."""
     ((name,),) = record.query("SELECT name FROM cells ORDER BY name LIMIT 1")
     return record.cell(name).request.setup.keep_driving
 
 
 def _least(record: Record, outcome: str) -> tuple[float, str] | None:
-    """The least margin of tests that ended so, and where."""
+    """Returns the least margin of the tests with an outcome, in metres, and the name of that test."""
     found = record.query(
         "SELECT margin, cell, number FROM tests WHERE outcome = ? AND margin IS NOT NULL "
         "ORDER BY margin, cell, number LIMIT 1",
@@ -157,13 +157,13 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
 
 
 def _about(of: CellStatus) -> dict[str, str]:
-    """What makes a cell, by the heads of a table."""
+    """Returns the settings of a cell, by the headings of a table."""
     words = of.words or "roads that were given"
     return {"description": words, "generator": of.generator, "driver": of.driver, "seed": str(of.seed)}
 
 
 def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:
-    """The heads of what differs between cells, and a sentence with what is the same in all of them."""
+    """Returns the headings of settings that differ between cells, and a sentence with those that do not."""
     every = [_about(each) for each in cells]
     differing = [head for head in every[0] if len({about[head] for about in every}) > 1]
     same = [

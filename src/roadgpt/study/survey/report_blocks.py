@@ -7,15 +7,15 @@ from math import isfinite
 from roadgpt.report.page import Block, Details, Figure, Table, TableCell, cell
 from roadgpt.study.statistics import conover, friedman, spearman, wilcoxon
 from roadgpt.study.survey.answers import Answers
-from roadgpt.study.survey.bars import Drawn
 from roadgpt.study.survey.questions import REMARKS
-from roadgpt.study.survey.tally import Tally, Unit, agreement, matrix
+from roadgpt.study.survey.rating_charts import Drawn
+from roadgpt.study.survey.tally import RatingTally, Unit, agreement, matrix
 
 LEVEL = 0.05
 NAMES = {"alignment": "road and description", "similarity": "two roads"}
 
 
-def summary(answers: Answers, match: Tally, alike: Tally) -> list[str]:
+def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[str]:
     """What a reader wants to know, in a few lines."""
     used = len({row.rater for row in answers.used})
     lines = [
@@ -37,7 +37,7 @@ def summary(answers: Answers, match: Tally, alike: Tally) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Told:
+class SurveyBlocks:
     """Makes tables and figures; those of made-up raters say so."""
 
     is_synthetic: bool
@@ -88,7 +88,7 @@ class Told:
         table = self.table("about", "Who answered", ("question", "answer", "raters"), rows)
         return Details("The same as a table", [table])
 
-    def ratings(self, found: Tally) -> Table:
+    def ratings(self, found: RatingTally) -> Table:
         """Every road in every criterion."""
         answers = found.units[0].question.answers
         firsts = {unit.item.id: unit.question.id for unit in reversed(found.units)}
@@ -128,7 +128,7 @@ class Told:
             cell(f"{interval.lo:.0%} to {interval.hi:.0%}" if unit.number else None),
         ]
 
-    def differences(self, found: Tally) -> list[Block]:
+    def differences(self, found: RatingTally) -> list[Block]:
         """Do the items differ in general? Friedman and Conover of three or more, Wilcoxon of two."""
         units = found.overall
         if len(units) < 2 or not found.raters:
@@ -165,7 +165,7 @@ class Told:
         caption = "p of every pair after Friedman's test (Conover, corrected by Holm)"
         return [line, self.table(f"{found.part}-pairs", caption, heads, rows)]
 
-    def agreement(self, tallies: Sequence[Tally]) -> Table:
+    def agreement(self, tallies: Sequence[RatingTally]) -> Table:
         """Krippendorff's alpha, criterion by criterion."""
         rows = []
         for found in tallies:
@@ -184,7 +184,7 @@ class Told:
             "tentative conclusions.",
         )
 
-    def _agreed(self, found: Tally, criterion: str, units: Sequence[Unit]) -> list[TableCell]:
+    def _agreed(self, found: RatingTally, criterion: str, units: Sequence[Unit]) -> list[TableCell]:
         alpha = agreement(units)
         return [
             cell(NAMES[found.part]),
@@ -194,7 +194,7 @@ class Told:
             cell(_finite(alpha), _number(alpha)),
         ]
 
-    def machine(self, tallies: Sequence[Tally]) -> list[Block]:
+    def machine(self, tallies: Sequence[RatingTally]) -> list[Block]:
         """People's mean score beside what was measured, and whether the two rise together."""
         blocks: list[Block] = []
         for found in tallies:

@@ -10,13 +10,13 @@ from roadgpt.run.campaign_runs import finished
 from roadgpt.run.card import CARD
 from roadgpt.run.folder import run_folder
 from roadgpt.run.seeds import seed_of
-from roadgpt.study.survey.plan import PairPlan, Plan, RoadPlan
-from roadgpt.study.survey.spoken import criteria_of
+from roadgpt.study.survey.described_criteria import criteria_of
+from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan
 
 DEEPEST = 4  # folders below the study's in which campaigns are looked for
 
 
-def picked(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int = 2) -> Plan:
+def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int = 2) -> SurveyPlan:
     """A plan of valid roads, drawn at random out of every campaign in a folder.
 
     Args:
@@ -44,7 +44,7 @@ def picked(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int
         raise UsageError(
             f"{study} holds no runs with a valid road; make some: roadgpt run DESCRIPTION --out DIR"
         )
-    return Plan(asks=asks, contact=contact, alignment=tuple(alignment), similarity=tuple(similarity))
+    return SurveyPlan(asks=asks, contact=contact, alignment=tuple(alignment), similarity=tuple(similarity))
 
 
 def _campaigns(study: Path) -> list[Path]:

@@ -1,4 +1,4 @@
-"""What comes first: how many roads, how varied, how often the car left its lane; and three pictures."""
+"""Makes the first section of a report: counts, diversity, lane departures, and three pictures."""
 
 from collections.abc import Sequence
 
@@ -8,22 +8,22 @@ from roadgpt.report.page import Cards, FigureCard, Line, Section, Table, TableCe
 from roadgpt.report.page.gallery import gallery
 from roadgpt.study.chapters.alignment import kept
 from roadgpt.study.chapters.maps import small
-from roadgpt.study.chapters.saying import decimal, plural
-from roadgpt.study.looking import Looked, LookedPart
+from roadgpt.study.chapters.wording import decimal, plural
+from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 from roadgpt.study.similarity import Spread
 
 SHOWN = 3  # pictures
 SIDE = 3  # roads along each side of a picture
 
-Found = tuple[list[Looked], Spread]
+Found = tuple[list[RoadRecord], Spread]
 
 
-def glance(parts: Sequence[LookedPart], found: Sequence[Found], size: float) -> Section | None:
-    """Three pictures of roads and one line for each description; None where there are no roads.
+def glance(parts: Sequence[StudyPartRecord], found: Sequence[Found], size: float) -> Section | None:
+    """Returns three pictures of roads and one table row for each description; None if there are no roads.
 
     Args:
-        parts: what was made, description by description.
-        found: of each, how different its roads are.
+        parts: the parts of the study.
+        found: for each part, the compared roads and how different they are.
         size: side of the map, metres.
     """
     made = [(part, own) for part, own in zip(parts, found, strict=True) if part.roads]
@@ -33,8 +33,8 @@ def glance(parts: Sequence[LookedPart], found: Sequence[Found], size: float) -> 
     return Section("At a glance", [Cards(cards), _table(made)])
 
 
-def _card(part: LookedPart, size: float) -> FigureCard:
-    """Some roads of a description: all that the car left, as far as there is room, then the first ones."""
+def _card(part: StudyPartRecord, size: float) -> FigureCard:
+    """Returns a picture of up to nine roads: those on which the car left its lane come first."""
     first = sorted(part.roads, key=lambda road: (not road.has_left, road.index))[: SIDE * SIDE]
     chosen = sorted(first, key=lambda road: road.index)
     words = part.part.prompt.prompt
@@ -47,7 +47,7 @@ def _card(part: LookedPart, size: float) -> FigureCard:
     return FigureCard(words, picture, lines)
 
 
-def _table(made: Sequence[tuple[LookedPart, Found]]) -> Table:
+def _table(made: Sequence[tuple[StudyPartRecord, Found]]) -> Table:
     heads = [
         "description", "made by", "roads", "valid", "keep every word", "driven", "left the lane",
         "nearest two plans, m", "near duplicates",
@@ -60,7 +60,7 @@ def _table(made: Sequence[tuple[LookedPart, Found]]) -> Table:
     return Table("glance", "Roads by description", heads, rows, note)
 
 
-def _row(part: LookedPart, found: Found) -> list[TableCell]:
+def _row(part: StudyPartRecord, found: Found) -> list[TableCell]:
     roads, spread = found
     good = kept(part, "general")
     driven = part.count("is_driven")

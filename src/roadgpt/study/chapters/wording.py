@@ -1,4 +1,4 @@
-"""How reports say numbers."""
+"""Formats numbers for reports."""
 
 import math
 
@@ -7,46 +7,47 @@ from roadgpt.study.statistics import Interval, clopper_pearson, wilson
 
 
 def p_value(p: float) -> str:
-    """With two digits that count; 'p = 0.010', 'p < 1e-15'."""
+    """Formats a p-value: 'p = 0.010', 'p < 1e-15'."""
     if p < 1e-15:
         return "p < 1e-15"
     return f"p = {p:.1e}" if p < 0.001 else f"p = {p:.3f}"
 
 
 def percent(share: float, digits: int = 1) -> str:
-    """'60.7 %'; a dash where there is nothing to divide by."""
+    """Formats a share as '60.7 %'; NaN as a dash."""
     return "–" if math.isnan(share) else f"{100 * share:.{digits}f} %"
 
 
 def between(interval: Interval) -> str:
-    """'54.9 to 66.2 %'."""
+    """Formats an interval of shares as '54.9 to 66.2 %'."""
     return f"{100 * interval.lo:.1f} to {100 * interval.hi:.1f} %"
 
 
 def share_of(k: int, n: int) -> str:
-    """'182 of 300 (60.7 %)'."""
+    """Formats a count as '182 of 300 (60.7 %)'."""
     return f"{k} of {n}" + (f" ({percent(k / n)})" if n else "")
 
 
 def decimal(value: float | None, digits: int = 2, href: str = "") -> TableCell:
-    """A cell with a rounded number; a dash where there is none."""
+    """Returns a table cell with a rounded number; None and NaN become a dash."""
     if value is None or not math.isfinite(value):
         return cell(None)
     return cell(round(value, digits + 3), f"{value:z.{digits}f}".replace("-", "−"), href)
 
 
 def metres(value: float) -> str:
-    """'0.18 m'; what would be rounded to nothing is 'less than 1 cm'."""
+    """Formats metres as '0.18 m'; below 1 cm it says 'less than 1 cm'."""
     return f"{value:.2f} m" if value >= 0.01 else "less than 1 cm"
 
 
 def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) -> list[str]:
-    """What margins say of drives: how near the kept ones came, and how far out the others went.
+    """Returns sentences on the drive that came nearest to failing and on the one that went farthest out.
 
     Args:
-        near: least margin of a drive that kept its lane, in metres, and where; None: there is none.
-        far: least margin of one that left it and drove on; None: there is none, or a drive ends where it
-            leaves its lane, and then so does what can be said of it.
+        near: least margin of the drives that kept their lane, in metres, and the drive's name; None if there
+            is none.
+        far: least margin of the drives that left it and drove on, and the drive's name; None if there is none
+            or if drives end where the car leaves its lane.
     """
     out = []
     if near is not None:
@@ -59,7 +60,7 @@ def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) 
 
 
 def share_cells(k: int, n: int, href: str = "") -> list[TableCell]:
-    """k, n, share, Clopper and Pearson's interval, Wilson's."""
+    """Returns the cells k, n, share, Clopper and Pearson's interval, and Wilson's interval."""
     if not n:
         return [cell(k, href=href), cell(n), cell(None), cell(None), cell(None)]
     exact, score = clopper_pearson(k, n), wilson(k, n)
@@ -73,7 +74,7 @@ def share_cells(k: int, n: int, href: str = "") -> list[TableCell]:
 
 
 def interval_cell(interval: Interval) -> TableCell:
-    """From and to, as shares in CSV and in percent for people."""
+    """Returns an interval as a cell: shares in CSV, percent on the page."""
     return cell(f"{interval.lo:.4f} to {interval.hi:.4f}", between(interval))
 
 
@@ -81,5 +82,5 @@ SHARE_HEADS = ("of", "share", "Clopper-Pearson 95 %", "Wilson 95 %")
 
 
 def plural(n: int, word: str) -> str:
-    """'1 road', '2 roads'."""
+    """Formats a count with its noun: '1 road', '2 roads'."""
     return f"{n:,} {word}{'' if n == 1 else 's'}"

@@ -27,7 +27,7 @@ from roadgpt.report.canvas import (
 )
 from roadgpt.report.lettering import fitted
 from roadgpt.run.atomic import write_whole
-from roadgpt.study.survey.tally import Tally, Unit
+from roadgpt.study.survey.tally import RatingTally, Unit
 
 # from orange to blue, told apart by colour-blind people too; every piece has its number in it
 SHADES = ("#c2510a", "#efb184", "#c9ccd1", "#8fc1e3", "#0a69a8")
@@ -49,7 +49,7 @@ class Drawn:
 
 
 @in_our_style
-def rating_bars(found: Tally, folder: Path, is_synthetic: bool) -> Drawn:
+def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Drawn:
     """Draw all ratings of one part, item by item."""
     items = list(dict.fromkeys(unit.item.id for unit in found.units))
     high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW

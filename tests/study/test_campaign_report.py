@@ -16,8 +16,8 @@ from roadgpt.campaign.store import Store
 from roadgpt.cli import app
 from roadgpt.road import Design, Segment
 from roadgpt.run.model import Request, Seconds
-from roadgpt.study.chapters.many import _caption
-from roadgpt.study.many import write_many
+from roadgpt.study.campaign_report import write_store_report
+from roadgpt.study.chapters.campaign_tests import _caption
 
 CELLS, TESTS = ("c01", "c02"), 300
 DRIVERS = ("beamng_like", "pure_pursuit")
@@ -82,7 +82,7 @@ def rows(folder: Path, name: str) -> list[dict[str, str]]:
 
 
 def test_counts_are_those_of_the_results(campaign: Path) -> None:
-    write_many(campaign)
+    write_store_report(campaign)
     found = rows(campaign, "outcomes")
     for row in found:
         own = [result for cell, result in drawn() if cell == row["cell"]]
@@ -109,7 +109,7 @@ def test_failures_stand_in_order_and_lead_to_their_runs(campaign: Path) -> None:
     there = campaign / "again" / cell / "runs" / f"{int(number):04d}"
     there.mkdir(parents=True)
     (there / "birds_eye.png").write_bytes(b"")
-    write_many(campaign)
+    write_store_report(campaign)
     found = rows(campaign, "failures")
     assert [row["test"] for row in found] == [name for _, name in every[:30]]
     assert [float(row["outside at most"]) for row in found] == pytest.approx(
@@ -122,7 +122,7 @@ def test_failures_stand_in_order_and_lead_to_their_runs(campaign: Path) -> None:
 
 def test_a_drive_that_ended_where_it_failed_has_no_margin_to_tell(campaign: Path) -> None:
     """It ends within a step of its lane's edge, whatever would have come: a number of no meaning."""
-    write_many(campaign)
+    write_store_report(campaign)
     text = (campaign / "report.md").read_text(encoding="utf-8")
     assert not re.search(r"[-−]0\.0+\b", text)
     kept = [(r.margin, f"{c}/{r.number}") for c, r in drawn() if r.outcome == "PASS"]
@@ -135,7 +135,7 @@ def test_a_drive_that_ended_where_it_failed_has_no_margin_to_tell(campaign: Path
 
 
 def test_a_drive_that_goes_on_tells_how_far_out_it_went(tmp_path: Path) -> None:
-    write_many(written(tmp_path, goes_on=True))
+    write_store_report(written(tmp_path, goes_on=True))
     every = sorted((r.margin, f"{c}/{r.number}") for c, r in drawn(True) if r.outcome == "FAIL" and r.margin)
     found = rows(tmp_path, "failures")
     assert [row["test"] for row in found] == [name for _, name in every[:30]]
@@ -158,7 +158,7 @@ def test_the_command_writes_it(campaign: Path) -> None:
 def test_bars_and_cells_hold_every_test(campaign: Path) -> None:
     """The curve ends at all failures, and maps hold all tests that have features."""
     from roadgpt.campaign.record import Record
-    from roadgpt.study.chapters.many import _map, coverage
+    from roadgpt.study.chapters.campaign_tests import _map, coverage
 
     with Record.opened(campaign) as record:
         sums = _map(record, "MAX_CURV", "DIR_COV", 1)
@@ -209,7 +209,7 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
             )  # fmt: skip
             store.keep([("c01", FinishedTest(result, seconds=Seconds(0.01, 0.1)))], None, [], {"c01": 1.0})
         store.finish()
-    write_many(tmp_path)
+    write_store_report(tmp_path)
     assert [[*row.values()] for row in rows(tmp_path, "pairs")] == [
         ["c01/1", "0.25", "c01/4", "52.0", "2.0", "straight 2: grade 0 %, then 2 %"],
         ["c01/2", "0.25", "c01/3", "52.0", "4.0", "straight 1: length 50 m, then 90 m"],
@@ -220,7 +220,7 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
 
 
 def test_without_such_a_search_there_are_no_pairs(campaign: Path) -> None:
-    write_many(campaign)
+    write_store_report(campaign)
     assert not (campaign / "tables" / "pairs.csv").exists()
 
 
@@ -239,7 +239,7 @@ def test_failures_are_counted_as_people_count(shown: int, every: int, drives_on:
 
 
 def test_what_is_the_same_in_all_cells_takes_no_column(campaign: Path) -> None:
-    write_many(campaign)
+    write_store_report(campaign)
     row = rows(campaign, "outcomes")[0]
     assert row["driver"] == DRIVERS[0]
     assert not {"description", "generator", "seed"} & {*row}

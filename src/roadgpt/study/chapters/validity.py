@@ -1,4 +1,4 @@
-"""Sections of counts by prompt: which roads are valid, and on which of them the car left its lane."""
+"""Makes the sections that count roads by prompt: which are valid, and on which the car left its lane."""
 
 import textwrap
 from collections.abc import Callable, Sequence
@@ -7,10 +7,10 @@ from typing import NamedTuple
 from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.study.baseline import NAME, ROADS, THESIS
-from roadgpt.study.chapters.outside import outside_table, passed_roads
-from roadgpt.study.chapters.saying import SHARE_HEADS, p_value, plural, share_cells, share_of
-from roadgpt.study.chapters.significance import Count, Source, worked_out
-from roadgpt.study.looking import Looked, LookedPart
+from roadgpt.study.chapters.out_of_lane import outside_table, passed_roads
+from roadgpt.study.chapters.significance import Count, Source, chi_squared_blocks
+from roadgpt.study.chapters.wording import SHARE_HEADS, p_value, plural, share_cells, share_of
+from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 from roadgpt.study.statistics import exact, wilson
 
 MOST_NAMED = 100  # roads in a list
@@ -20,12 +20,12 @@ LONGEST = 66  # letters of a prompt in a figure
 
 
 class Kind(NamedTuple):
-    """A way to count roads as valid."""
+    """A set of rules by which roads are counted as valid."""
 
     slug: str
     name: str
     which: str
-    """Property of a Looked."""
+    """Name of the property of a RoadRecord."""
 
 
 STRICT = Kind("strict", "strict rules", "is_valid")
@@ -34,13 +34,13 @@ SBFT = Kind("sbft", "SBFT rules", "is_sbft")
 KINDS = (STRICT, SOUND, SBFT)
 
 
-def of_thesis(parts: Sequence[LookedPart]) -> list[LookedPart]:
-    """Those whose prompts stand in the thesis' table."""
+def of_thesis(parts: Sequence[StudyPartRecord]) -> list[StudyPartRecord]:
+    """Returns the parts whose prompts are in the thesis' table."""
     return [part for part in parts if part.part.prompt.prompt in THESIS]
 
 
-def valid_source(designer: str, parts: Sequence[LookedPart], kind: Kind) -> Source:
-    """Roads that are valid by one kind of rules."""
+def valid_source(designer: str, parts: Sequence[StudyPartRecord], kind: Kind) -> Source:
+    """Counts the roads of a designer that are valid by one set of rules."""
     counts = tuple(
         Count(part.part.prompt.prompt, part.count(kind.which), len(part.roads), part.overview)
         for part in parts
@@ -49,8 +49,8 @@ def valid_source(designer: str, parts: Sequence[LookedPart], kind: Kind) -> Sour
     return Source(f"{designer}, {kind.name}", counts, f"{designer}-{kind.slug}")
 
 
-def left_source(designer: str, parts: Sequence[LookedPart]) -> Source:
-    """Drives on valid roads on which the car left its lane."""
+def left_source(designer: str, parts: Sequence[StudyPartRecord]) -> Source:
+    """Counts the drives on valid roads of a designer on which the car left its lane."""
     counts = tuple(
         Count(part.part.prompt.prompt, part.count("has_left"), part.count("is_driven"), part.overview)
         for part in parts
@@ -60,19 +60,19 @@ def left_source(designer: str, parts: Sequence[LookedPart]) -> Source:
 
 
 def thesis_valid() -> Source:
-    """The thesis' table 6.1."""
+    """Returns the counts of valid roads from the thesis' table 6.1."""
     counts = tuple(Count(prompt, counted.valid, ROADS) for prompt, counted in THESIS.items())
     return Source(f"{NAME}, its own checks", counts, "thesis")
 
 
 def thesis_left() -> Source:
-    """The thesis' drives that left the lane, of its valid roads."""
+    """Returns the counts of lane departures on valid roads from the thesis."""
     counts = tuple(Count(prompt, counted.left, counted.valid) for prompt, counted in THESIS.items())
     return Source(NAME, counts, "thesis")
 
 
-def validity(parts: Sequence[LookedPart], designers: Sequence[str], has_baseline: bool) -> Section:
-    """How many roads are valid, by every kind of rules, beside the thesis' where its prompts are asked."""
+def validity(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_baseline: bool) -> Section:
+    """Returns the section on validity by every set of rules, beside the thesis' counts if asked for."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
     every = [source for source in every if source.counts] + ([thesis_valid()] if has_baseline else [])
@@ -87,20 +87,20 @@ def validity(parts: Sequence[LookedPart], designers: Sequence[str], has_baseline
         blocks += [_beside(source, every[-1]) for source in every if source.slug.endswith("-strict")]
     for source in every:
         if (source.slug.endswith("-strict") or source.slug == "thesis") and len(source.counts) > 1:
-            blocks += worked_out(source, "valid", "invalid", f"validity-{source.slug}")
+            blocks += chi_squared_blocks(source, "valid", "invalid", f"validity-{source.slug}")
     others = [s for s in every if s.slug.endswith(("-sound", "-sbft")) and len(s.counts) > 1]
     if others:
         inside: list[Block] = []
         for source in others:
-            inside += worked_out(source, "valid", "invalid", f"validity-{source.slug}")
+            inside += chi_squared_blocks(source, "valid", "invalid", f"validity-{source.slug}")
         blocks.append(Details("The same by the other rules", inside))
     return Section(
         "Validity", [*blocks, *_named(parts, "Invalid roads", lambda road: not road.is_valid, _why)]
     )
 
 
-def departures(parts: Sequence[LookedPart], designers: Sequence[str], has_baseline: bool) -> Section:
-    """On how many of the valid roads the car left its lane."""
+def departures(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_baseline: bool) -> Section:
+    """Returns the section on lane departures on valid roads."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [left_source(designer, told) for designer in designers]
     every = [source for source in every if source.total]
@@ -118,26 +118,26 @@ def departures(parts: Sequence[LookedPart], designers: Sequence[str], has_baseli
         ]
     for source in every:
         if len(source.counts) > 1:
-            blocks += worked_out(source, "left", "kept", f"departures-{source.slug}")
+            blocks += chi_squared_blocks(source, "left", "kept", f"departures-{source.slug}")
     blocks += outside_table(passed_roads([road for part in parts for road in part.roads]))
     return Section("Leaving the lane", [*blocks, *_named(parts, "Drives that left", _has_left, _says)])
 
 
-def _has_left(road: Looked) -> bool:
+def _has_left(road: RoadRecord) -> bool:
     return road.has_left
 
 
-def _says(road: Looked) -> str:
+def _says(road: RoadRecord) -> str:
     return road.says
 
 
-def _why(road: Looked) -> str:
+def _why(road: RoadRecord) -> str:
     sbft = f"; SBFT: {road.sbft_says}" if road.sbft_says else ""
     return road.says + sbft
 
 
 def _beside(source: Source, thesis: Source) -> str:
-    """Ours against theirs, all prompts together."""
+    """Compares our counts with the thesis', all prompts together."""
     table = [[each.hits, each.total - each.hits] for each in (source, thesis)]
     return (
         f"{source.name}: {share_of(source.hits, source.total)} against {share_of(thesis.hits, thesis.total)} "
@@ -188,8 +188,8 @@ def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:
     )
 
 
-def _silent(parts: Sequence[LookedPart]) -> list[Block]:
-    """Whom nobody could ask, and what could not be made."""
+def _silent(parts: Sequence[StudyPartRecord]) -> list[Block]:
+    """Lists designers that could not be run and roads that could not be made."""
     out: list[Block] = []
     for sentence in dict.fromkeys(f"{p.part.designer}: {p.problem}" for p in parts if p.problem):
         out.append(f"Not made, or not all: {sentence}.")
@@ -197,12 +197,12 @@ def _silent(parts: Sequence[LookedPart]) -> list[Block]:
 
 
 def _named(
-    parts: Sequence[LookedPart],
+    parts: Sequence[StudyPartRecord],
     title: str,
-    which: Callable[[Looked], bool],
-    says: Callable[[Looked], str],
+    which: Callable[[RoadRecord], bool],
+    says: Callable[[RoadRecord], str],
 ) -> list[Block]:
-    """The roads that are so, each with its link; nothing where there are none."""
+    """Lists roads with a property, each with a link; empty if there are none."""
     lines: list[Block] = []
     for part in parts:
         for road in part.roads:

@@ -1,4 +1,4 @@
-"""What a study looks at of each road: validity by every set of rules, the drive, the measured geometry."""
+"""Reads from each run what a study needs: validity by every set of rules, drive, measured geometry."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ from roadgpt.run.campaign_runs import finished
 from roadgpt.run.folder import run_folder
 from roadgpt.run.sbft_json import test_name
 from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth
-from roadgpt.study.plan import Part, Plan
+from roadgpt.study.plan import StudyPart, StudyPlan
 from roadgpt.study.prompts import Prompt
 from roadgpt.study.similarity import Likeness, likeness
 from roadgpt.study.truth import SHORTEST
@@ -32,115 +32,116 @@ BARE = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)  # any road:
 
 
 @dataclass(frozen=True, eq=False)
-class Looked:
+class RoadRecord:
     """One road of a study."""
 
     index: int
     folder: str
-    """Of its run, relative to the study's folder, with forward slashes."""
+    """Folder of its run, relative to the study's, with forward slashes."""
     outcome: str
     says: str
-    """The outcome in a sentence."""
+    """The outcome as a sentence."""
     is_valid: bool
-    """No strict rule objects."""
+    """Whether the road breaks no strict rule."""
     is_sound: bool
-    """No strict rule objects but for promises of the words, which RoadGPT's thesis did not check."""
+    """Whether the road breaks no strict rule but the words' requirements, which the thesis did not check."""
     is_sbft: bool
-    """The SBFT competition's validator does not object."""
+    """Whether the road passes the SBFT competition's validator."""
     sbft_says: str
     has_left: bool
-    """The car left its lane, or fell."""
+    """Whether the car left its lane or fell."""
     margin: float | None
     length: float
     points: Array
-    """Centre line ``(n, 2)``, metres; empty where there is no road."""
+    """Centre line ``(n, 2)``, metres; empty if there is no road."""
     failed_at: tuple[float, float] | None
     kept: Mapping[Criterion, bool]
-    """Criteria that the description asks for, and whether the road keeps them."""
+    """Whether the road keeps each criterion that the description asks for."""
     likeness: Likeness | None
     features: Mapping[str, float] = field(default_factory=dict)
-    """Of the competition's feature maps."""
+    """Features of the competition's feature maps."""
     versions: Mapping[str, str] = field(default_factory=dict)
     max_oob: float | None = None
-    """Largest share of the car outside its lane; None where nobody drove."""
+    """Largest share of the car outside its lane, 0 to 1; None if the road was not driven."""
     beyond: float | None = None
-    """Metres that the car reached beyond the marking, at most."""
+    """Largest distance of the car beyond the lane marking, metres."""
 
     @property
     def is_driven(self) -> bool:
-        """Did somebody drive it to a verdict?"""
+        """Whether the road was driven to a verdict."""
         return self.outcome in ("PASS", "FAIL")
 
 
 @dataclass(frozen=True, eq=False)
-class LookedPart:
+class StudyPartRecord:
     """All roads of one description by one designer."""
 
-    part: Part
-    roads: tuple[Looked, ...]
+    part: StudyPart
+    roads: tuple[RoadRecord, ...]
     home: str = ""
-    """Its folder, relative to that of the report."""
+    """The part's folder, relative to the report's."""
     problem: str = ""
-    """Why there are none, or not all."""
+    """Why roads are missing; empty if none is."""
     picture_format: str = ""
-    """Of the pictures of its roads; empty where none are drawn."""
+    """Format of the roads' pictures; empty if there are none."""
     wanted: int = 1
-    """Roads that were asked for."""
+    """Number of roads that were asked for."""
 
     def count(self, which: str) -> int:
-        """Roads with a property: is_valid, is_sound, is_sbft, has_left, is_driven."""
+        """Returns the number of roads with a property: is_valid, is_sound, is_sbft, has_left or is_driven."""
         return sum(getattr(road, which) for road in self.roads)
 
-    def href(self, road: Looked) -> str:
-        """Where a reader sees the road: its bird's-eye view, or the run itself where none is drawn."""
+    def href(self, road: RoadRecord) -> str:
+        """Returns the address of the road's bird's-eye view, or of its run if no picture was drawn."""
         is_drawn = self.picture_format and len(road.points)
         return f"{road.folder}/{f'birds_eye.{self.picture_format}' if is_drawn else 'run.json'}"
 
     @property
     def overview(self) -> str:
-        """Where a reader sees all roads."""
+        """Address of the picture or table of all roads."""
         name = f"overview.{self.picture_format}" if self.picture_format else "generation_stats.csv"
         return f"{self.home}/{name}".lstrip("/")
 
 
-def look_at_parts(plan: Plan, folder: Path, problems: Mapping[str, str]) -> Iterator[LookedPart]:
-    """Every part of a study, read from the disk.
+def read_parts(plan: StudyPlan, folder: Path, problems: Mapping[str, str]) -> Iterator[StudyPartRecord]:
+    """Yields every part of a study, read from its folder.
 
     Args:
-        plan: what was asked for.
-        folder: where it lies.
-        problems: by name of a part's folder, why roads are missing.
+        plan: the study.
+        folder: the study's folder.
+        problems: why roads are missing, by the name of a part's folder.
 
     Raises:
         UsageError: a run cannot be read.
     """
     for part in plan.parts():
-        yield _looked(folder / part.name, part, part.name, problems.get(part.name, ""), plan.roads)
+        yield _read_part(folder / part.name, part, part.name, problems.get(part.name, ""), plan.roads)
 
 
-def look_at_campaign(place: Path, part: Part) -> LookedPart:
-    """The one part that a campaign of ``roadgpt run`` is.
+def read_campaign(place: Path, part: StudyPart) -> StudyPartRecord:
+    """Returns the roads of a folder of ``roadgpt run`` as a single part.
 
     Raises:
         UsageError: a run cannot be read.
     """
-    return _looked(place, part, "", "")
+    return _read_part(place, part, "", "")
 
 
-def _looked(place: Path, part: Part, home: str, problem: str, wanted: int = 1) -> LookedPart:
+def _read_part(place: Path, part: StudyPart, home: str, problem: str, wanted: int = 1) -> StudyPartRecord:
     indices = finished(place) if place.is_dir() else []
     roads = tuple(
-        look(read_run(run_folder(place, n)), part, home, _features(place / test_name(n))) for n in indices
+        record_of(read_run(run_folder(place, n)), part, home, _features(place / test_name(n)))
+        for n in indices
     )
     drawn = next((kind for kind in FORMATS if (place / f"overview.{kind}").is_file()), "")
-    return LookedPart(part, roads, home, problem, drawn, wanted)
+    return StudyPartRecord(part, roads, home, problem, drawn, wanted)
 
 
-def look(run: Run, part: Part, home: str, features: Mapping[str, float]) -> Looked:
-    """What a study looks at of a run."""
+def record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, float]) -> RoadRecord:
+    """Returns the record of a run."""
     verdict, road = run.verdict, run.road
     sbft = inspect(road, None, run.world, "sbft") if road is not None else ()
-    return Looked(
+    return RoadRecord(
         index=run.index,
         folder=f"{home}/runs/{run.index:04d}".lstrip("/"),
         outcome=run.outcome,
@@ -164,7 +165,7 @@ def look(run: Run, part: Part, home: str, features: Mapping[str, float]) -> Look
 
 
 def kept_of(road: Road | None, prompt: Prompt, brief: Brief | None, world: World) -> dict[Criterion, bool]:
-    """Which criteria of a description a road keeps; none where there is no road."""
+    """Returns whether a road keeps each criterion of a description; all False if there is no road."""
     points = road.centreline() if road is not None else BARE
     is_road = bool(np.isfinite(points).all()) and len(points) > 1
     asked = promises_of(brief, world) if brief is not None else None

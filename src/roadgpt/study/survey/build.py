@@ -14,22 +14,22 @@ from pathlib import Path
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.run import Run, read_run
 from roadgpt.run.atomic import json_text, sweep, write_whole
+from roadgpt.study.survey.described_criteria import criteria_of
 from roadgpt.study.survey.films import WHY_NONE, are_possible, make_film
-from roadgpt.study.survey.machine import alike, match
-from roadgpt.study.survey.plan import PairPlan, Plan, RoadPlan, named
-from roadgpt.study.survey.plots import Axes, draw_plots
+from roadgpt.study.survey.measured_scores import alike, match
+from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan, named
 from roadgpt.study.survey.questions import ABOUT
-from roadgpt.study.survey.spoken import criteria_of
+from roadgpt.study.survey.road_plots import Axes, draw_plots
 from roadgpt.study.survey.store import ANSWERS
 from roadgpt.study.survey.survey import CARD, MEDIA, Item, Medium, Survey
-from roadgpt.study.survey.views import write_view
+from roadgpt.study.survey.view_3d import write_view
 
 Tell = Callable[[str], None]
 PLACES = ("top", "bottom")
 CAMERAS = {"chase": "film from behind the car", "bonnet": "film from the hood camera"}
 
 
-def make(plan: Plan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
+def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
     """Make the folder of a survey; films that are there already are kept, so it goes on where it was stopped.
 
     Args:
@@ -200,4 +200,4 @@ def _mark(runs: list[Run]) -> str:
     return hashlib.sha256(drives).hexdigest()[:10]
 
 
-__all__ = ["Tell", "make"]
+__all__ = ["Tell", "make_survey"]

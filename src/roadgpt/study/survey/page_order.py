@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from roadgpt.study.survey.survey import Page, Survey
+from roadgpt.study.survey.survey import QuestionPage, Survey
 
 
-def pages_for(survey: Survey, digest: str) -> tuple[Page, ...]:
+def pages_for(survey: Survey, digest: str) -> tuple[QuestionPage, ...]:
     """All pages in the order of one rater.
 
     About the rater first; then the roads in random order, with the attention check among them but neither
@@ -26,5 +26,5 @@ def pages_for(survey: Survey, digest: str) -> tuple[Page, ...]:
     return (*by_part["about"], *roads, *pairs, *by_part["end"])
 
 
-def _shuffled(pages: list[Page], rng: np.random.Generator) -> list[Page]:
+def _shuffled(pages: list[QuestionPage], rng: np.random.Generator) -> list[QuestionPage]:
     return [pages[i] for i in rng.permutation(len(pages))]

@@ -1,7 +1,7 @@
-"""Makes the campaigns of a study: one description after another, or several at once in processes.
+"""Makes the roads of a study: one description after another, or several at once in processes.
 
-Every campaign draws its own seeds, so the files are the same for any number of processes. A process that is
-killed leaves a campaign that goes on where it stopped.
+Every part draws its own seeds, so the files are the same for any number of processes. If a process is killed,
+its part can be resumed where it stopped.
 """
 
 import multiprocessing
@@ -18,43 +18,43 @@ from roadgpt.run import campaign
 from roadgpt.run.campaign_runs import finished
 from roadgpt.run.folder import Draw
 from roadgpt.stopping import look, shielded
-from roadgpt.study.plan import Part, Plan
+from roadgpt.study.plan import StudyPart, StudyPlan
 
 LOOK = 0.3  # s between two looks at how far processes are
 KILLED = "its process ended before its work was done; the same command goes on"
 
 Tell = Callable[[str, int], None]
-"""Told of the part at work and of how many roads of the study are finished."""
+"""Called with the name of the part at work and the number of finished roads of the study."""
 
 
 class Problem(NamedTuple):
     """Why a part has no roads, or not all."""
 
     part: str
-    """Name of its folder."""
+    """Name of the part's folder."""
     sentence: str
     is_of_chat: bool = False
-    """A language model could not be asked."""
+    """Whether a language model could not be asked."""
 
 
 def work(
-    plan: Plan, folder: Path, workers: int = 1, draw: Draw | None = None, tell: Tell | None = None
+    plan: StudyPlan, folder: Path, workers: int = 1, draw: Draw | None = None, tell: Tell | None = None
 ) -> list[Problem]:
-    """Make all campaigns of a study, or what is missing of them.
+    """Makes all roads of a study, or those that are missing.
 
     Args:
-        plan: what is asked for.
-        folder: of the study.
-        workers: processes; with more than one, the calling program must be importable, as for
+        plan: the study.
+        folder: the study's folder.
+        workers: number of processes. With more than one, the calling program must be importable, as for
             ``multiprocessing``. Designers that ask a language model work in this process, one after another.
-        draw: puts pictures into the folders of runs.
-        tell: hears how far it is.
+        draw: draws pictures into the folders of runs.
+        tell: called with the progress.
 
     Returns:
-        What could not be made; the rest is there.
+        Why roads are missing; empty if all were made.
 
     Raises:
-        RoadGPTError: a part is not installed, or the folder cannot be used.
+        RoadGPTError: a plug-in is not installed, or the folder cannot be used.
     """
     watch = _Watch(plan, folder, tell)
     alone = [part for part in plan.parts() if workers == 1 or plan.setup_of(part.designer).chat is not None]
@@ -64,15 +64,15 @@ def work(
 
 
 class _Watch:
-    """Counts the roads that are finished."""
+    """Counts the finished roads."""
 
-    def __init__(self, plan: Plan, folder: Path, tell: Tell | None) -> None:
+    def __init__(self, plan: StudyPlan, folder: Path, tell: Tell | None) -> None:
         self._folders = [folder / part.name for part in plan.parts()]
         self._done = {place: len(finished(place)) for place in self._folders}
         self._tell = tell
 
     def look(self, at: str) -> None:
-        """Count anew, and tell."""
+        """Counts again and reports the progress."""
         if self._tell is None:
             return
         for place in self._folders:
@@ -82,9 +82,9 @@ class _Watch:
 
 
 def _in_turn(
-    plan: Plan, parts: Sequence[Part], folder: Path, draw: Draw | None, watch: _Watch
+    plan: StudyPlan, parts: Sequence[StudyPart], folder: Path, draw: Draw | None, watch: _Watch
 ) -> list[Problem]:
-    """One after another, here; one meter counts what all of them ask a language model."""
+    """Makes the parts one after another in this process, with one meter for all language models."""
     problems: list[Problem] = []
     meter = Meter.of(plan.setup.chat)
     silent: dict[str, Problem] = {}
@@ -104,17 +104,17 @@ def _in_turn(
 
 
 def make(
-    plan: Plan,
-    part: Part,
+    plan: StudyPlan,
+    part: StudyPart,
     folder: Path,
     draw: Draw | None,
     meter: Meter | None = None,
     watch: _Watch | None = None,
 ) -> None:
-    """Make the campaign of one part.
+    """Makes the roads of one part.
 
     Raises:
-        RoadGPTError: as ``run.campaign`` and its iteration.
+        RoadGPTError: as ``run.campaign`` raises it.
     """
     place = folder / part.name
     place.parent.mkdir(parents=True, exist_ok=True)
@@ -129,11 +129,12 @@ def make(
 
 
 def _in_processes(
-    plan: Plan, parts: Sequence[Part], folder: Path, workers: int, draw: Draw | None, watch: _Watch
+    plan: StudyPlan, parts: Sequence[StudyPart], folder: Path, workers: int, draw: Draw | None, watch: _Watch
 ) -> list[Problem]:
-    """So many at a time, each in a new process."""
+    """Makes the parts in processes, up to ``workers`` at a time, each in a new process."""
     context = multiprocessing.get_context("spawn")
-    waiting, at_work, problems = list(parts), dict[Part, tuple[SpawnProcess, Connection]](), list[Problem]()
+    waiting, problems = list(parts), list[Problem]()
+    at_work: dict[StudyPart, tuple[SpawnProcess, Connection]] = {}
     try:
         while waiting or at_work:
             while waiting and len(at_work) < workers:
@@ -157,8 +158,8 @@ def _in_processes(
     return sorted(problems, key=lambda problem: order.index(problem.part))
 
 
-def _child(plan: Plan, part: Part, folder: Path, draw: Draw | None, end: Connection) -> None:
-    """The work of a process; what goes wrong is sent, and raised again over there where it ends the study."""
+def _child(plan: StudyPlan, part: StudyPart, folder: Path, draw: Draw | None, end: Connection) -> None:
+    """Makes one part in a process; sends errors, which the parent raises again if they end the study."""
     try:
         make(plan, part, folder, draw)
     except KeyboardInterrupt:
@@ -169,7 +170,7 @@ def _child(plan: Plan, part: Part, folder: Path, draw: Draw | None, end: Connect
         end.send(None)
 
 
-def _ended(part: Part, process: SpawnProcess, end: Connection) -> list[Problem]:
+def _ended(part: StudyPart, process: SpawnProcess, end: Connection) -> list[Problem]:
     process.join()
     try:
         error = end.recv() if end.poll() else RoadGPTError(f"{part.prompt.prompt}: {KILLED}")

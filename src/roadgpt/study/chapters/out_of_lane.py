@@ -1,4 +1,4 @@
-"""How far outside its lane the car was where it passed: a tolerance lets it pass there."""
+"""Reports how far the car was outside its lane on tests that it passed, within the tolerance."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,9 +6,9 @@ from typing import NamedTuple
 from roadgpt.campaign.record import Record
 from roadgpt.report.page import Table, cell
 from roadgpt.road import World
-from roadgpt.study.chapters.saying import decimal, share_of
-from roadgpt.study.chapters.saying import percent as shared
-from roadgpt.study.looking import Looked
+from roadgpt.study.chapters.wording import decimal, share_of
+from roadgpt.study.chapters.wording import percent as shared
+from roadgpt.study.road_record import RoadRecord
 from roadgpt.verdict import SEVERITIES, Severity, percent, severity
 from roadgpt.verdict.severity import MOSTLY
 
@@ -16,18 +16,18 @@ OLD = "An older version wrote this store without distances; the shares are there
 
 
 class Passed(NamedTuple):
-    """Tests that passed, of one severity."""
+    """Passed tests of one severity."""
 
     severity: Severity
     tests: int
     share: float
-    """Largest share of the car outside its lane."""
+    """Largest share of the car that was outside its lane, 0 to 1."""
     beyond: float | None
-    """Farthest beyond the marking, metres; None where that is not known."""
+    """Largest distance beyond the lane marking, metres; None if it is not known."""
 
 
-def passed_roads(roads: Sequence[Looked]) -> list[Passed]:
-    """By severity, of the roads of a study."""
+def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
+    """Counts the passed roads of a study by severity."""
     kept = [road for road in roads if road.outcome == "PASS" and road.max_oob is not None]
     found = []
     for name in SEVERITIES:
@@ -39,7 +39,7 @@ def passed_roads(roads: Sequence[Looked]) -> list[Passed]:
 
 
 def passed_tests(record: Record) -> list[Passed]:
-    """By severity, of the tests of a campaign, counted by its store."""
+    """Counts the passed tests of a campaign by severity, in its store."""
     rows = record.query(
         "SELECT (max_oob > 0) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
         "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1",
@@ -50,7 +50,7 @@ def passed_tests(record: Record) -> list[Passed]:
 
 
 def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
-    """For a summary; nothing where nobody passed."""
+    """Returns a sentence for the summary; empty if no test passed."""
     inside, partly, mostly = found
     every = sum(each.tests for each in found)
     if not every:
@@ -70,7 +70,7 @@ def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
 
 
 def outside_table(found: Sequence[Passed]) -> list[Table]:
-    """The same as a table; none where nobody passed."""
+    """Returns the counts as a table; empty if no test passed."""
     every = sum(each.tests for each in found)
     if not every:
         return []

@@ -1,4 +1,4 @@
-"""Sections on many tests: their failures, their margins, what they cover; all counted by the store."""
+"""Makes the sections on many tests: failures, margins and coverage. The store counts."""
 
 import shlex
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from roadgpt.report.page import Block, Figure, Table, TableCell, cell
 from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.report.page.lines import bars, lines
 from roadgpt.study.chapters.maps import CALLED
-from roadgpt.study.chapters.saying import decimal, percent
+from roadgpt.study.chapters.wording import decimal, percent
 
 NAMED = 30  # failures, one by one
 STEPS = 200  # of a curve
@@ -27,14 +27,16 @@ MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))
 def failures(
     folder: Path, record: Record, cells: Sequence[CellStatus], drives_on: bool = False
 ) -> list[Block]:
-    """When failures were found, why, and some by name: the worst, or the first where a drive ends as the car
-    leaves its lane, for then none is worse than another.
+    """Returns when failures were found, why the car failed, and a table of single failures.
+
+    The table lists the worst failures. If a drive ends as soon as the car leaves its lane, no failure is
+    worse than another, and the table lists the first ones.
 
     Args:
-        folder: of the campaign.
-        record: of it.
-        cells: whose curves are drawn.
-        drives_on: do cars drive on where they have left their lane?
+        folder: the campaign's folder.
+        record: the campaign's tests.
+        cells: the cells whose curves are drawn.
+        drives_on: whether cars drive on after they have left their lane.
     """
     blocks: list[Block] = [_curves(record, cells), _causes(record, drives_on)]
     order = "margin IS NULL, margin, cell, number" if drives_on else "cell, number"
@@ -66,7 +68,7 @@ def failures(
 
 
 def _caption(shown: int, every: int, drives_on: bool) -> str:
-    """Over failures that are shown, of so many."""
+    """Returns the caption of a table of failures that shows only some of them."""
     if every == 1:
         return "The one failure"
     if shown == every:
@@ -79,7 +81,7 @@ def _caption(shown: int, every: int, drives_on: bool) -> str:
 
 
 def again(folder: Path, name: str, number: int) -> str:
-    """The picture of a test that was driven again; empty where none was."""
+    """Returns the address of the picture of a test that was driven again; empty if it was not."""
     place = f"again/{name}/runs/{number:04d}/birds_eye.png"
     return place if (folder / place).is_file() else ""
 
@@ -105,8 +107,11 @@ def _far_heads(drives_on: bool) -> list[str]:
 
 
 def _how_far(margin: float | None, outside: float | None, drives_on: bool) -> list[TableCell]:
-    """What ``_far_heads`` names: the largest share of the car outside its lane, and, where it drove on, how
-    many metres beyond what is allowed; a drive that ends there ends within centimetres of it."""
+    """Returns the cells under ``_far_heads``.
+
+    They are the largest share of the car outside its lane and, if it drove on, how many metres it was beyond
+    the limit. A drive that ends at the limit ends within centimetres of it, so its distance says nothing.
+    """
     share = cell(None) if outside is None else cell(round(outside, 4), percent(outside, 0))
     far = None if margin is None or margin >= 0 else -margin
     return [share, *([decimal(far)] if drives_on else [])]
@@ -125,7 +130,7 @@ def _causes(record: Record, drives_on: bool) -> Table:
 
 
 def margins(record: Record, drives_on: bool = False) -> Figure:
-    """A histogram of how near tests came to failing."""
+    """Returns a histogram of the margins of all tests."""
     low, high, width = MARGINS
     n = round((high - low) / width)
     found: Mapping[int, int] = dict(
@@ -149,7 +154,7 @@ def margins(record: Record, drives_on: bool = False) -> Figure:
 
 
 def coverage(record: Record, done: int) -> list[Block]:
-    """Maps of two features each, of an even sample of tests; none where the features are not known."""
+    """Returns maps of two features each, from an even sample of tests; empty if no features are known."""
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))
     blocks: list[Block] = []
@@ -169,7 +174,7 @@ def coverage(record: Record, done: int) -> list[Block]:
 
 
 def _map(record: Record, across: str, upwards: str, every: int) -> NDArray[np.float64]:
-    """Counts ``(SIDE, SIDE)`` of tests, by the store."""
+    """Returns the number of tests in each map cell, ``(SIDE, SIDE)``, counted by the store."""
     (x0, x1), (y0, y1) = BOUNDS[across], BOUNDS[upwards]
     rows = record.query(
         "SELECT CAST((x - ?) * ? AS INTEGER), CAST((y - ?) * ? AS INTEGER), count(*) FROM "
