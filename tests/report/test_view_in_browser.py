@@ -132,7 +132,7 @@ def test_texts_are_texts(page: Page) -> None:
     painted = page.run("getComputedStyle(document.querySelector('.badge')).backgroundColor")
     assert painted == "rgb" + str(tuple(round(255 * part) for part in to_rgb(SEVERE["partly outside"])))
     assert page.run("document.querySelector('.said').textContent").startswith("kept its lane")
-    assert "metre road" in page.run("document.querySelector('.told p').textContent")
+    assert "metre road" in page.run("document.querySelector('.words p').textContent")
 
 
 def test_the_slider_moves_the_car_to_where_it_was(page: Page, driven: Run) -> None:

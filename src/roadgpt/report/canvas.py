@@ -110,7 +110,7 @@ class Header:
     def of(cls, run: Run, width: float) -> "Header":
         """Returns the header of a picture of a width in inches, its text broken to fit."""
         room = width - 2 * MARGIN
-        title = fitted(run.words or run.source or "a road that was given", room, TITLE, True, MOST_LINES)
+        title = fitted(run.title, room, TITLE, True, MOST_LINES)
         return cls(run, width, title, fitted(run.description, room - _badge(run), TEXT, lines=MOST_SAID))
 
     @property

@@ -100,7 +100,7 @@ def _slopes(axes: Axes, run: Run, s: Array, z: Array) -> None:
     left, right = axes.get_xlim()
     shortest = SHORTEST * (right - left) / (WIDTH - LEFT - RIGHT)
     lift = 0.13 * _metres_per_inch(axes)
-    for middle, slope in _told_slopes(s, grade, shortest):
+    for middle, slope in _labelled_slopes(s, grade, shortest):
         if not left <= middle <= right - shortest / 2:
             continue
         text = "level" if abs(slope) < 5e-4 else f"{slope:+.1%}".replace("%", " %").replace("-", "−")
@@ -110,10 +110,10 @@ def _slopes(axes: Axes, run: Run, s: Array, z: Array) -> None:
         )  # fmt: skip
 
 
-def _told_slopes(s: Array, grade: Array, shortest: float) -> list[tuple[float, float]]:
-    """Where a slope is told, metres, and which."""
+def _labelled_slopes(s: Array, grade: Array, shortest: float) -> list[tuple[float, float]]:
+    """Returns station in metres and value of each slope that gets a label."""
     breaks = np.flatnonzero(np.abs(np.diff(grade)) > SAME_GRADE * (s[1] - s[0]) / 2)
-    told = [
+    found = [
         ((s[a] + s[b]) / 2, float(grade[(a + b) // 2]))
         for a, b in pairwise(np.r_[0, breaks + 1, len(s) - 1])
         if s[b] - s[a] >= shortest
@@ -123,10 +123,10 @@ def _told_slopes(s: Array, grade: Array, shortest: float) -> list[tuple[float, f
         room = min(shortest, s[b] - s[a]) / 2
         steepest = a + int(np.abs(grade[a : b + 1]).argmax())
         place = float(np.clip(s[steepest], s[a] + room, s[b] - room))
-        is_alone = not any(s[a] <= middle <= s[b] or abs(place - middle) < shortest for middle, _ in told)
+        is_alone = not any(s[a] <= middle <= s[b] or abs(place - middle) < shortest for middle, _ in found)
         if way[a] and s[b] - s[a] >= shortest / 2 and is_alone:
-            told.append((place, float(grade[steepest])))
-    return told
+            found.append((place, float(grade[steepest])))
+    return found
 
 
 def _metres_per_inch(axes: Axes) -> float:

@@ -133,11 +133,11 @@ def _case(case: Case, suite: str) -> Iterator[str]:
 
 
 def _properties(properties: Properties, indent: str) -> Iterator[str]:
-    told = {name: value for name, value in properties.items() if value is not None}
-    if not told:
+    known = {name: value for name, value in properties.items() if value is not None}
+    if not known:
         return
     yield f"{indent}<properties>\n"
-    for name, value in told.items():
+    for name, value in known.items():
         text = f"{value:.6g}" if isinstance(value, float) else str(value)
         yield f'{indent}  <property name="{escaped(name)}" value="{escaped(text)}"/>\n'
     yield f"{indent}</properties>\n"

@@ -129,8 +129,8 @@ def _share(path: Path, records: list[Any], outcome: str) -> float | None:
     """By the verdict beside the test; else by its records, of which that of the goal does not count."""
     run = run_of_test(path)
     if run is not None and (run / "verdict.json").is_file():
-        told = _loaded(run / "verdict.json")
-        share = told.get("max_oob") if isinstance(told, dict) else None
+        verdict = _loaded(run / "verdict.json")
+        share = verdict.get("max_oob") if isinstance(verdict, dict) else None
         return float(share) if isinstance(share, (int, float)) else None
     counted = records[:-1] if outcome == "PASS" else records
     return max((float(record[SHARE]) for record in counted), default=None)
@@ -218,14 +218,14 @@ def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, siz
         PatchCollection([Rectangle((x0, y0), cell, cell)], fc=GROUND, ec="#c5cad1", lw=0.8, zorder=1)
     )
     colour = OUTCOMES.get(entry.graded, INK)
-    told = entry.outcome
+    outcome = entry.outcome
     if entry.graded != entry.outcome and entry.share is not None:
-        told = f"{percent(entry.share)} out"
+        outcome = f"{percent(entry.share)} out"
     axes.text(x0, y0 - 0.06, f"{entry.number}", size=small, color=SOFT, va="bottom")
     axes.text(
         x0 + cell,
         y0 - 0.06,
-        told,
+        outcome,
         size=small,
         weight="bold",
         color=DARKER.get(colour, colour),

@@ -43,8 +43,7 @@ def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
         wide = WIDTH - LEFT - SIDE - BETWEEN - RIGHT
         beside = _axes(figure, LEFT + SIDE + BETWEEN, foot, wide)
         _beside(beside, run, (long, span), scale)
-        title = run.words or run.source or "a road that was given"
-        title = textwrap.shorten(title, LONGEST, placeholder=" …")
+        title = textwrap.shorten(run.title, LONGEST, placeholder=" …")
         at = (foot + SIDE + 0.32) / (2 * row)
         figure.text(LEFT / WIDTH, at, f"Road {number + 1}", size=11, weight="bold", color=INK)
         figure.text((LEFT + 0.72) / WIDTH, at, title, size=11, color=INK, parse_math=False)

@@ -65,7 +65,7 @@ def _curvature(axes: Axes, run: Run, s: Array) -> None:
     _name_sides(axes, "left", "right")
     other = axes.twinx()
     other.set_ylim(-reach, reach)
-    ticks = [sign / radius for sign in (1, -1) for radius in _told_radii(reach)]
+    ticks = [sign / radius for sign in (1, -1) for radius in _labelled_radii(reach)]
     other.set_yticks(ticks, [f"{abs(1 / tick):.0f}" for tick in ticks])
     other.set_ylabel("radius, m", size=10, color=INK)
     other.tick_params(labelsize=8, colors=SOFT, length=3)
@@ -84,14 +84,14 @@ def _fill(axes: Axes, s: Array, values: Array, limit: float) -> float:
     return reach
 
 
-def _told_radii(reach: float) -> list[float]:
+def _labelled_radii(reach: float) -> list[float]:
     """Those whose numbers have room between each other and zero, the tightest first."""
-    told: list[float] = []
+    found: list[float] = []
     for radius in RADII:
-        below = 1 / told[-1] if told else reach
+        below = 1 / found[-1] if found else reach
         if min(below - 1 / radius, 1 / radius) > LEAST_APART * reach:
-            told.append(radius)
-    return told
+            found.append(radius)
+    return found
 
 
 def _grade(axes: Axes, run: Run, s: Array) -> None:

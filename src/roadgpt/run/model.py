@@ -113,14 +113,18 @@ class Run:
     seconds: Seconds = Seconds()
 
     def __repr__(self) -> str:
-        about = self.words or self.source or "a road that was given"
-        made = f"{about!r}, {self.length:.0f} m, seed {self.seed}"
+        made = f"{self.title!r}, {self.length:.0f} m, seed {self.seed}"
         return f"Run({self.index}, {self.outcome}: {self.description}; {made})"
 
     @property
     def words(self) -> str:
         """The description that the road was made from."""
         return self.request.words
+
+    @property
+    def title(self) -> str:
+        """The description, or where there is none the name of the road's file; never empty."""
+        return self.words or self.source or "a road without a description"
 
     @property
     def world(self) -> World:

@@ -102,7 +102,7 @@ def test_the_view_tells_raters_no_verdict_and_no_measures(made: tuple[Path, Surv
             found = re.search(r'<script id="data" type="application/json">(.*?)</script>', page)
             assert found
             for scene in json.loads(found[1]):
-                assert {scene[key] for key in ("outcome", "description", "about", "told")} == {""}
+                assert {scene[key] for key in ("outcome", "description", "about", "words")} == {""}
                 assert scene["places"] == []
     raters_see = survey.model_dump_json(exclude={"items": {"__all__": {"machine", "roads"}}})
     assert "VALID" not in raters_see

@@ -158,7 +158,7 @@ def write(
     """Films one Run or two, and returns the path; ``watch`` gets each frame before it is written."""
     encoder()  # before anything is drawn
     film = Film.of(runs, view, settings)  # type: ignore[arg-type]
-    title = " and ".join(dict.fromkeys(run.words or run.source or "a road that was given" for run in runs))
+    title = " and ".join(dict.fromkeys(run.title for run in runs))
     with closing(film.frames()) as frames:
         shown = frames if watch is None else watch(frames, len(film))
         write_film(shown, Path(path), film.settings.fps, title)

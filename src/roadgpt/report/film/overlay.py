@@ -53,7 +53,7 @@ class Overlay:
     def _title(self, frame: Frame) -> None:
         """The description, at the top."""
         u, size = self.scale, self._size(TITLE)
-        text = self.run.words or self.run.source or "a road that was given"
+        text = self.run.title
         rows = self._rows(text, size, self.width - 2 * EDGE * u, 2, bold=True)
         shade(frame, 0, 0, self.width, (9 + LINE * len(rows)) * u)
         for k, row in enumerate(rows):

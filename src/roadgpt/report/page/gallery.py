@@ -52,19 +52,19 @@ def gallery(roads: Sequence[Thumbnail], size: float, label: str, columns: int = 
 
 def _cell(road: Thumbnail, x: float, y: float, size: float) -> str:
     top = y + TITLE
-    told = graded(road.outcome, road.share)
+    outcome = graded(road.outcome, road.share)
     hue, mark = f"var(--{road.outcome.lower()})", road.outcome.lower()
-    if told != road.outcome and road.share is not None:
+    if outcome != road.outcome and road.share is not None:
         hue, mark = f"var(--{severity(road.share).split()[0]})", percent(road.share)
     out = [
-        tag("title", f"road {road.number}: {told}"),
+        tag("title", f"road {road.number}: {outcome}"),
         words(x + 1, top - 3.5, f"{road.number}", 10, is_soft=True),
         tag(
             "rect", x=x, y=top, width=CELL, height=CELL, rx=2, fill="var(--wash)", stroke="var(--line)",
             class_="frame",
         ),
     ]  # fmt: skip
-    if told not in ("PASS", "VALID"):
+    if outcome not in ("PASS", "VALID"):
         shown = tag("tspan", mark, fill=hue)
         text = f'<text x="{number(x + CELL - 1)}" y="{number(top - 3.5)}" font-size="9.5" text-anchor="end">'
         out.append(f"{text}{shown}</text>")

@@ -1,6 +1,7 @@
 """Elements of SVG for pictures that stand on a page by the hundred; the same values give the same text.
 
-matplotlib draws all that has axes (``chart``); its SVG of a hundred linked roads would be ten times as large.
+matplotlib draws all that has axes (``chart``). A hundred linked roads would take it 1.6 s and 1.8 times the
+bytes, and it writes no titles that show when the pointer is on a road.
 """
 
 from html import escape

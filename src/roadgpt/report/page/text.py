@@ -45,20 +45,20 @@ HTML = str.maketrans({"<": "&lt;", "&": "&amp;"})  # Markdown passes HTML tags t
 
 def markdown_of(page: Page) -> str:
     """Returns text and tables of a page as Markdown; of figures only the captions."""
-    parts = [f"# {_told(page.title)}", *([_told(page.lead)] if page.lead else [])]
+    parts = [f"# {_escaped(page.title)}", *([_escaped(page.lead)] if page.lead else [])]
     parts.append("\n".join(f"- {_line(line)}" for line in page.summary))
     for section in page.sections:
-        parts += [f"## {_told(section.title)}", *_blocks(section.blocks)]
+        parts += [f"## {_escaped(section.title)}", *_blocks(section.blocks)]
     if page.card:
         parts += ["## How this was made", "\n".join(f"- {k}: {_code(k, v)}" for k, v in page.card.items())]
     return "\n\n".join(parts) + "\n"
 
 
 def _code(name: str, value: str) -> str:
-    return f"`{value}`" if name.startswith("command") else _told(value)
+    return f"`{value}`" if name.startswith("command") else _escaped(value)
 
 
-def _told(words: str) -> str:
+def _escaped(words: str) -> str:
     """Words that are no markup, in one line."""
     return " ".join(words.translate(HTML).splitlines())
 
@@ -69,11 +69,11 @@ def _blocks(blocks: Sequence[Block]) -> list[str]:
         if isinstance(block, Table):
             out.append(_table(block))
         elif isinstance(block, Figure):
-            out.append(f"*{_told(block.caption)}* (figure: see report.html)")
+            out.append(f"*{_escaped(block.caption)}* (figure: see report.html)")
         elif isinstance(block, Cards):
             out += [f"**{_line(card.title)}** {' '.join(map(_line, card.lines))}" for card in block.cards]
         elif isinstance(block, Details):
-            out += [f"**{_told(block.title)}**", *_blocks(block.blocks)]
+            out += [f"**{_escaped(block.title)}**", *_blocks(block.blocks)]
         else:
             out.append(_line(block))
     return out
@@ -86,20 +86,20 @@ def _line(line: Line) -> str:
 def _piece(piece: str | TableCell) -> str:
     if isinstance(piece, ShellCommand):
         return f"`{piece}`"
-    return _told(piece) if isinstance(piece, str) else _linked(piece)
+    return _escaped(piece) if isinstance(piece, str) else _linked(piece)
 
 
 def _linked(cell: TableCell) -> str:
-    text = _told(cell.text).replace("|", "\\|")
+    text = _escaped(cell.text).replace("|", "\\|")
     return f"[{text}]({cell.href.replace(' ', '%20')})" if cell.href else text
 
 
 def _table(table: Table) -> str:
-    heads = " | ".join(_told(head).replace("|", "\\|") for head in table.heads)
+    heads = " | ".join(_escaped(head).replace("|", "\\|") for head in table.heads)
     rows = [f"| {heads} |", f"|{'---|' * len(table.heads)}"]
     rows += [f"| {' | '.join(_linked(each) for each in row)} |" for row in table.rows]
-    note = f"\n\n{_told(table.note)}" if table.note else ""
-    return f"**{_told(table.caption)}**\n\n" + "\n".join(rows) + note
+    note = f"\n\n{_escaped(table.note)}" if table.note else ""
+    return f"**{_escaped(table.caption)}**\n\n" + "\n".join(rows) + note
 
 
 def csv_of(table: Table) -> str:

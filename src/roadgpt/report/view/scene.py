@@ -51,13 +51,13 @@ def scene(run: Run) -> dict[str, Any]:
     if run.road is None:
         raise UsageError(f"there is no road to show: {run.description}")
     return {
-        "title": run.words or run.source or "a road that was given",
+        "title": run.title,
         "outcome": outcome_of(run),
         "colour": OUTCOMES.get(outcome_of(run), INK),
         "letters": LETTERS.get(OUTCOMES.get(outcome_of(run), INK), "#ffffff"),
         "description": run.description,
         "about": origin(run),
-        "told": _told(run.road),
+        "words": _words(run.road),
         "road": _road(run.road, run.world),
         "world": run.world.model_dump(include=WORLD),
         "severe": SCALE,
@@ -66,7 +66,7 @@ def scene(run: Run) -> dict[str, Any]:
     }
 
 
-def _told(road: Road) -> str:
+def _words(road: Road) -> str:
     """The geometry in words; nothing for a road that is too odd to be measured."""
     try:
         return sentence(describe(road))

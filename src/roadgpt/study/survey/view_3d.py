@@ -7,7 +7,7 @@ from roadgpt.report.view import page_of, scene
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 
-UNTOLD = {"outcome": "", "description": "", "about": "", "told": "", "places": []}
+UNTOLD = {"outcome": "", "description": "", "about": "", "words": "", "places": []}
 
 
 def write_view(runs: Sequence[Run], titles: Sequence[str], path: Path) -> None:

@@ -14,8 +14,8 @@ function wireBar(player) {
   wireKeys(player);
   return () => {
     slider.value = String(player.time);
-    slider.setAttribute("aria-valuetext", player.told());
-    byId("clock").textContent = player.told();
+    slider.setAttribute("aria-valuetext", player.clock());
+    byId("clock").textContent = player.clock();
     byId("bar").classList.toggle("playing", player.isPlaying);
     byId("play").setAttribute("aria-label", player.isPlaying ? "Pause" : "Play");
     rate.value = String(player.rate);

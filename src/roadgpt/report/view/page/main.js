@@ -50,7 +50,7 @@ const player = {
     panels.forEach(({ stage }) => stage && (stage.line.visible = player.hasLine));
     stale();
   },
-  told() {
+  clock() {
     const isDriven = panels.some(({ trip }) => trip.isDriven);
     const [now, all] = [player.time, player.duration];
     return isDriven ? `${now.toFixed(1)} / ${all.toFixed(1)} s` : `${(now * PACE).toFixed(0)} / ${(all * PACE).toFixed(0)} m`;

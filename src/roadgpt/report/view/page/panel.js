@@ -72,8 +72,8 @@ function write(find, scene, trip, fastest) {
   find(".badge").style.color = scene.letters;
   find(".said").textContent = scene.description;
   find(".origin").textContent = scene.about;
-  find(".told p").textContent = scene.told;
-  find(".told").hidden = !scene.told;
+  find(".words p").textContent = scene.words;
+  find(".words").hidden = !scene.words;
   find(".hint").textContent = "drag to look around, scroll to come nearer";
   find(".second figcaption").innerHTML = trip.isDriven ? "speed, km/h <i>over distance, m</i>" : "curvature, 1/(100 m) <i>left is up</i>";
   find(".legend").hidden = !trip.isDriven;

@@ -114,8 +114,8 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
     pen.strokeStyle = "#fff";
     pen.lineWidth = 1.5;
     pen.stroke();
-    const told = what.tell(pose);
-    said(pen, size.wide < NARROW ? told.split(",")[0] : told, size.wide - RIGHT + 2, 12, "right", LOOK.ink);
+    const text = what.tell(pose);
+    said(pen, size.wide < NARROW ? text.split(",")[0] : text, size.wide - RIGHT + 2, 12, "right", LOOK.ink);
   }
 
   takesHold(canvas, (u) => moveTo(trip.timeAt(clamp(((u - LEFT) / view.wide) * road.length, 0, road.length))));
