@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Samples
+from roadgpt.road import Edges, Samples
 
 Indices = NDArray[np.intp]
 Boxes = tuple[Array, Array]
@@ -23,27 +23,28 @@ PORTION = 512  # quads per bounding box in the first comparison and per result; 
 SLIVER = 1e-6  # m^2: a corner flatter than this does not count as convex
 
 
-def sides(samples: Samples, half_width: float) -> tuple[Array, Array]:
+def sides(samples: Samples, edges: Edges) -> tuple[Array, Array]:
     """Returns left and right edge points ``(n, 2)`` in metres of a road at its samples."""
     centre = np.stack((samples.x, samples.y), axis=1)
-    across = half_width * np.stack((-np.sin(samples.heading), np.cos(samples.heading)), axis=1)
-    return centre + across, centre - across
+    across = np.stack((-np.sin(samples.heading), np.cos(samples.heading)), axis=1)
+    return centre + edges.left[:, None] * across, centre + edges.right[:, None] * across
 
 
-def bulge(samples: Samples, half_width: float) -> float:
+def bulge(samples: Samples, edges: Edges) -> float:
     """Returns how far, at most, a true edge bulges beyond the straight line between its samples, in metres.
 
     It is the rise of an arc over its chord, chord^2 times curvature / 8, on the outer edge of the tightest
     bend.
     """
     step, bend = samples.s[1] - samples.s[0], float(np.abs(samples.curvature).max())
-    return float(step**2 * bend * (1 + bend * half_width) / 8)
+    reach = float(max(np.abs(edges.left).max(), np.abs(edges.right).max()))
+    return float(step**2 * bend * (1 + bend * reach) / 8)
 
 
-def extent(samples: Samples, half_width: float) -> tuple[Array, Array]:
+def extent(samples: Samples, edges: Edges) -> tuple[Array, Array]:
     """Returns the least and the greatest x and y of the edges of the road, ``(2,)`` each in metres."""
-    edges, slack = np.concatenate(sides(samples, half_width)), bulge(samples, half_width)
-    return edges.min(axis=0) - slack, edges.max(axis=0) + slack
+    points, slack = np.concatenate(sides(samples, edges)), bulge(samples, edges)
+    return points.min(axis=0) - slack, points.max(axis=0) + slack
 
 
 def quads_of(left: Array, right: Array) -> Array:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from roadgpt.export.finite import finite
 from roadgpt.geometry.curve import Array
@@ -36,18 +37,18 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
     return np.interp(np.linspace(0.0, along[-1], count), along, s)
 
 
-def line(road: Road, s: Array, t: float) -> Array:
+def line(road: Road, s: Array, t: ArrayLike) -> Array:
     """Returns points ``(n, 3)`` at offset ``t``.
 
     In a bend too tight for it, ``t`` is reduced so that the line never folds.
     """
     k = road.curvature(s)
-    inside = k * t > PINCH
+    inside = k * np.asarray(t) > PINCH
     offsets = np.where(inside, PINCH / np.where(inside, k, 1.0), t)
     return road.at(s, offsets)
 
 
-def lines(road: Road, s: Array, offsets: Sequence[float]) -> list[Array]:
+def lines(road: Road, s: Array, offsets: Sequence[ArrayLike]) -> list[Array]:
     """Returns the lines at several offsets."""
     return [line(road, s, t) for t in offsets]
 

@@ -91,8 +91,9 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
     grip = GRIP * world.friction
     pull = min(PULL / GRAVITY, grip)
     limits = DrivingLimits(min(COMFORT / GRAVITY, grip), pull, pull, world.speed_limit)
-    speed = lane_speed(bend, 0.0, step, world, limits)
-    stretch = np.maximum(1 + bend * world.lane_width / 2, 0.0)
+    offset = world.profile.middle(s)
+    speed = lane_speed(bend, 0.0, step, offset, limits)
+    stretch = np.maximum(1 - bend * offset, 0.0)
     along = step * (stretch[1:] + stretch[:-1]) / 2
     # the first station of the plan is one step after rest
     speed = np.minimum(speed, np.sqrt(2 * pull * GRAVITY * np.r_[0.0, np.cumsum(along)]))

@@ -7,7 +7,7 @@ import numpy as np
 
 from roadgpt.export.edges import line
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road
+from roadgpt.road import Profile, Road
 from roadgpt.road.land import Land
 
 RUN = 1.7  # horizontal length of a slope over its height
@@ -25,23 +25,24 @@ class Embankment(NamedTuple):
     """Whether it falls to the left of the direction of its edge."""
 
 
-def embankments(road: Road, rim: float, s: Array, land: Land) -> Iterator[Embankment]:
-    """Yields the slopes at both edges, ``rim`` metres beside the centre line, and at both ends.
+def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[Embankment]:
+    """Yields the slopes at both edges of a road and at both ends.
 
     Args:
         road: The road.
-        rim: Distance in metres from the centre line to the outer edge of the shoulder.
+        profile: Its cross-section; the slopes begin at the outer edges of the shoulders.
         s: Stations ``(n,)`` of the points of the edges.
         land: The land that the slopes run down into.
     """
-    heading = road.heading(s)
-    for side in (-1.0, 1.0):
-        edge = line(road, s, side * rim)
-        near = line(road, s, side * (rim + OUTSIDE))
+    heading, (left, right) = road.heading(s), profile.rims(s)
+    for side, rim in ((-1.0, right), (1.0, left)):
+        edge = line(road, s, rim)
+        near = line(road, s, rim + side * OUTSIDE)
         outward = side * np.stack([-np.sin(heading), np.cos(heading)], axis=-1)
         yield _bank(edge, near, outward, land, is_left=side > 0)
     for end, sign in ((0.0, -1.0), (road.length, 1.0)):
-        across = np.linspace(rim, -rim, ACROSS) * sign
+        rims = profile.rims(end)
+        across = np.linspace(*(rims if sign > 0 else rims[::-1]), ACROSS)
         edge = np.stack([line(road, np.array([end]), t)[0] for t in across])
         to = float(road.heading(end))
         way = sign * np.array([np.cos(to), np.sin(to)])

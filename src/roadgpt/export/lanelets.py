@@ -32,13 +32,14 @@ def lanelet_pairs(road: Road, world: World) -> list[LaneletPair]:
     Raises:
         ExportError: The road has a number that is not finite.
     """
-    wide = world.lane_width
-    fine = stations(road, wide)
+    fine = stations(road, world.profile.paved_reach)
     count = max(1, round(road.length / LENGTH))
     cuts = np.linspace(0.0, road.length, count + 1)
     out = []
     for start, end in zip(cuts.tolist(), cuts[1:].tolist(), strict=False):
         s = np.r_[start, fine[(fine > start + 1e-3) & (fine < end - 1e-3)], end]
-        right, middle, left = (np.round(each, DECIMALS) + 0.0 for each in lines(road, s, (-wide, 0.0, wide)))
+        edges = world.profile.edges(s)
+        made = lines(road, s, (edges.right, 0.0, edges.left))
+        right, middle, left = (np.round(each, DECIMALS) + 0.0 for each in made)
         out.append(LaneletPair(start, end, right, middle, left))
     return out

@@ -8,6 +8,7 @@ from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, Segment, read_design
 from roadgpt.road.moving import moved
 from roadgpt.road.opendrive import ImportedRoad, read_opendrive
+from roadgpt.road.profile import Edges, Profile
 from roadgpt.road.road import Road, Samples
 from roadgpt.road.short_segments import in_short_segments
 from roadgpt.road.source import read_blueprint, read_road
@@ -15,8 +16,10 @@ from roadgpt.road.world import World
 
 __all__ = [
     "Design",
+    "Edges",
     "Geometry",
     "ImportedRoad",
+    "Profile",
     "Road",
     "Samples",
     "Segment",

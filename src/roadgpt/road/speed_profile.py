@@ -83,11 +83,12 @@ def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: W
     ``lane_speed``.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
-    return lane_speed(curvature, grade, step, world, limits)
+    offset = world.profile.middle(step * np.arange(len(np.asarray(curvature))))
+    return lane_speed(curvature, grade, step, offset, limits)
 
 
 def lane_speed(
-    curvature: ArrayLike, grade: ArrayLike, step: float, world: World, limits: DrivingLimits
+    curvature: ArrayLike, grade: ArrayLike, step: float, offset: ArrayLike, limits: DrivingLimits
 ) -> Array:
     """Returns the speeds in m/s, from a standing start, of a car in the middle of the right lane.
 
@@ -98,11 +99,11 @@ def lane_speed(
         curvature: Curvature of the centre line in 1/m, ``(n,)``.
         grade: Grade as a ratio, ``(n,)`` or one value for all stations.
         step: Distance between stations in metres.
-        world: Provides the width of the lane.
+        offset: Offset of the middle of the lane in metres to the left of the centre line, ``(n,)``.
         limits: What the driver asks of car and road.
     """
     bend = np.asarray(curvature, float)
-    along = np.maximum(1 + bend * world.lane_width / 2, LEAST_STRETCH)
+    along = np.maximum(1 - bend * offset, LEAST_STRETCH)
     grades = np.broadcast_to(np.asarray(grade, float), bend.shape)
     level = [0.0] * len(bend)
     lane = _LanePath(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level)

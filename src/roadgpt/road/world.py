@@ -2,7 +2,9 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AliasChoices, BaseModel, ConfigDict, Field
+
+from roadgpt.road.profile import Profile
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -18,7 +20,7 @@ class World(BaseModel):
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
     lane_width: Positive = 4.0
-    verge: NotNegative = 3.0
+    verge: NotNegative = Field(3.0, validation_alias=AliasChoices("verge", "shoulder"))
     """Width in metres of the firm shoulder beside the carriageway.
 
     With 0 the road floats, as RoadGPT's mesh roads do.
@@ -43,9 +45,14 @@ class World(BaseModel):
     min_length: NotNegative = 20.0
 
     @property
+    def profile(self) -> Profile:
+        """The cross-section of the roads of this World."""
+        return Profile(self.lane_width, self.verge)
+
+    @property
     def road_width(self) -> float:
-        """The width of the carriageway in metres: one lane in each direction."""
-        return 2 * self.lane_width
+        """The greatest width of the carriageway in metres."""
+        return 2 * self.profile.paved_reach
 
     @property
     def marking_edges(self) -> tuple[float, float]:
@@ -55,4 +62,4 @@ class World(BaseModel):
         The centre line is painted over the middle of the road. The edge line lies within the lane and ends
         where the lane ends.
         """
-        return LINE / 2, -self.lane_width
+        return LINE / 2, -self.profile.paved_reach

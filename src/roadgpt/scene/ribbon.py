@@ -28,7 +28,8 @@ def road_patches(road: Road, world: World, meadow: Meadow) -> list[Patch]:
     s = _stations(road, rim)
     if world.verge == 0:
         return [*_surface(road, world, s), *_slab(road, world, s)]
-    slopes = [patch for bank in embankments(road, rim, s, meadow.land) for patch in _slope(bank, meadow)]
+    banks = embankments(road, world.profile, s, meadow.land)
+    slopes = [patch for bank in banks for patch in _slope(bank, meadow)]
     return [*_surface(road, world, s), *slopes, *_posts(road, world)]
 
 

@@ -18,16 +18,17 @@ from roadgpt.road import Road, World
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports where the road leaves the map, and whether it is too large for any place on it."""
-    half, size = world.road_width / 2, world.map_size
-    low, high = extent(road.sample(), half)
+    samples, size = road.sample(), world.map_size
+    offsets = world.profile.edges(samples.s)
+    low, high = extent(samples, offsets)
     room = min(low.min(), size - high.max())
     if room > 0:
         return () if room > SPLINE_REACH else _on_sbft_s_spline(road, world)
-    edges, slack = np.stack(sides(road.sample(), half), axis=1), bulge(road.sample(), half)  # (n, 2 sides, 2)
+    edges, slack = np.stack(sides(samples, offsets), axis=1), bulge(samples, offsets)  # (n, 2 sides, 2)
     out = np.any((edges <= slack) | (edges >= size - slack), axis=2)
     first = int(out.any(axis=1).argmax())
     x, y = (float(v) for v in edges[first, int(out[first].argmax())])
-    s = float(road.sample().s[first])
+    s = float(samples.s[first])
     verb = "leaves the map at" if first else "starts outside the map at"
     place = f"({round(x)}, {round(y)})"
     sentence = f"at s = {s:.0f} m: the road {verb} {place}; the map runs from 0 to {size:g} m"

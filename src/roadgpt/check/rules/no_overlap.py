@@ -19,13 +19,15 @@ from roadgpt.road import Road, World
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the first place where the road overlaps itself, and the earlier place that it overlaps."""
-    samples, half = road.sample(), world.road_width / 2
-    quads = quads_of(*sides(samples, half))
+    samples = road.sample()
+    offsets = world.profile.edges(samples.s)
+    quads = quads_of(*sides(samples, offsets))
     folded = np.flatnonzero(~is_convex(quads))
     if folded.size:
         return (_finding(road, int(folded[0]), "the road folds onto itself; widen the bend"),)
-    slack = 2 * bulge(samples, half)
-    half_turn = np.pi * half / max(float(samples.s[1] - samples.s[0]), 1e-9)
+    slack = 2 * bulge(samples, offsets)
+    narrowest = min(offsets.left.min(), -offsets.right.max())
+    half_turn = np.pi * narrowest / max(float(samples.s[1] - samples.s[0]), 1e-9)
     nearest = (np.inf, 0)
     for i, j in near_pairs(quads, reach=SPLINE_REACH, apart=max(2, int(half_turn))):
         gap = gaps(quads, i, j)

@@ -52,7 +52,7 @@ def placed(design: Design, world: World) -> Design | None:
 def _corners(road: Road, world: World) -> Array:
     """Corners ``(n, 2)`` of the hull of the ribbon, with what a spline may run on behind its ends."""
     half = world.road_width / 2
-    left, right = sides(road.sample(), half)
+    left, right = sides(road.sample(), world.profile.edges(road.sample().s))
     ends = np.array([-BEYOND, road.length + BEYOND])
     behind = np.concatenate([_straight_on(road, s, t) for s in ends for t in (-half, half)])
     points = np.concatenate([left, right, behind])

@@ -67,7 +67,7 @@ def document(road: Road, world: World) -> Element:
     for i, part in enumerate(reversed(parts)):
         # against the road's direction, so in the order in which they are driven
         root.extended(_lanelet(left[::-1], i, _backward(part), right[len(parts) - 1 - i], sign))
-    root.extended(_limit(sign, road.at(0.0, -world.lane_width), world))
+    root.extended(_limit(sign, road.at(0.0, world.profile.edges(0.0).right), world))
     root.extended(_problem(sign + 1, road, world, goal=right[-1]))
     return root
 
@@ -112,7 +112,7 @@ def _limit(id_: int, place: Array, world: World) -> Element:
 def _problem(id_: int, road: Road, world: World, goal: int) -> Element:
     """Returns the planning problem: from rest to the last lanelet, within twice the time of a calm drive."""
     start = start_of(road)
-    place = np.round(road.at(start, -world.lane_width / 2), 6)
+    place = np.round(road.at(start, world.profile.middle(start)), 6)
     out = Element("planningProblem", {"id": id_})
     state = out.add("initialState")
     state.add("position").extended(_point(place[:2].tolist()))

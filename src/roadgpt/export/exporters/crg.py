@@ -106,12 +106,12 @@ def _reach(headings: Array, step: float, world: World) -> float:
     """Returns half the surface's width in metres: lane and shoulder, or what the tightest bend allows."""
     turns = np.abs(wrap_angle(np.diff(headings)))
     room = ROOM * step / math.sin(min(float(turns.max(initial=1e-12)), math.pi / 2))
-    if room < world.lane_width:
+    if room < world.profile.paved_reach:
         raise ExportError(
             f"OpenCRG cannot hold a bend whose radius is {room:.1f} m, less than a lane is wide; "
             "use wider bends or a narrower lane"
         )
-    return min(world.lane_width + world.verge, room)
+    return min(world.profile.reach, room)
 
 
 def _field(value: float) -> str:

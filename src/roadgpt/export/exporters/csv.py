@@ -24,9 +24,8 @@ class Csv:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the road. A drive is written to NAME.drive.csv."""
         of = road.sample(STEP)
-        wide = np.full(len(of.s), world.lane_width)
-        verge = np.full(len(of.s), world.verge)
-        columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, verge]
+        wide, shoulder = world.profile.width(of.s), world.profile.shoulder(of.s)
+        columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, shoulder]
         _write(path, ROAD, columns)
         if poses is not None:
             p = poses

@@ -25,8 +25,9 @@ class GeoJson:
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes one feature collection. ``export.georeference`` defines where the map's corner lies."""
-        s, wide = road.sample(STEP).s, world.lane_width
-        right, middle, left = road.at(s, -wide), road.at(s), road.at(s, wide)
+        s, wide = road.sample(STEP).s, world.profile.lane_width
+        edges = world.profile.edges(s)
+        right, middle, left = road.at(s, edges.right), road.at(s), road.at(s, edges.left)
         features = [
             _line("centre line", middle, {"length_m": road.length, "speed_kmh": world.speed_limit * 3.6}),
             _area("right lane", right, middle, {"width_m": wide, "friction": world.friction}),

@@ -19,7 +19,7 @@ from roadgpt.export.edges import line
 from roadgpt.export.ego import goal_of, start_of
 from roadgpt.export.exporters.opendrive.lanes import NO_SHOULDER
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
+from roadgpt.road import Edges, Profile, Road, World
 
 # m between nodes: denser ones fold (BeamNGpy issue 240), and uneven ones make BeamNG's spline swing.
 SPACING = 2.0
@@ -110,30 +110,30 @@ def level_road(
     if not np.isfinite(middle).all():
         raise ExportError("the road has a number that is not finite; check it before it is exported")
     ground = _ground(middle, world) + lift
-    meshes = _meshes(middle, world, rng, materials, prefix, ground)
-    decals = _decals(road, world, s, up + above, materials, prefix)
-    first, last = start_of(road), goal_of(road)
-    right = -world.lane_width / 2
+    meshes = _meshes(middle, s, world.profile, rng, materials, prefix, ground)
+    decals = _decals(road, world.profile, s, up + above, materials, prefix)
+    first, goal = start_of(road), (goal_of(road) + road.length) / 2
     return LevelRoad(
         (*meshes, *decals),
-        road.at(first, right) + up,
+        road.at(first, world.profile.middle(first)) + up,
         float(road.heading(first)),
         float(road.grade(first)),
-        road.at((last + road.length) / 2, right) + up,
+        road.at(goal, world.profile.middle(goal)) + up,
         ground,
     )
 
 
 def _ground(middle: Array, world: World) -> float:
     """Returns a height in metres just below the lowest shoulder, or below the floor without a shoulder."""
-    if world.verge < NO_SHOULDER:
+    if world.profile.shoulder_width < NO_SHOULDER:
         return world.z_floor - CLEAR
     return float(middle[:, 2].min()) - UNDER - CLEAR
 
 
 def _meshes(
     middle: Array,
-    world: World,
+    s: Array,
+    profile: Profile,
     rng: np.random.Generator,
     materials: Materials,
     prefix: str,
@@ -141,36 +141,39 @@ def _meshes(
 ) -> list[Strip]:
     """Returns the mesh of the shoulder, if there is one, and of the road."""
     strips = []
-    if world.verge >= NO_SHOULDER:
-        broad = 2 * (world.lane_width + world.verge)
+    if profile.shoulder_width >= NO_SHOULDER:
         below = _lengthened(middle) - np.array([0.0, 0.0, UNDER])
         depths = np.maximum(DEPTH, below[:, 2] - ground)
-        strips.append(_mesh(f"{prefix}verge", materials.verge, below, broad, depths))
+        strips.append(_mesh(f"{prefix}verge", materials.verge, below, profile.rims(s), depths))
     shaken = _lengthened(middle)
     shaken[:, :2] += rng.uniform(-SHAKE, SHAKE, (len(shaken), 2))
-    return [*strips, _mesh(f"{prefix}road", materials.road, shaken, world.road_width)]
+    return [*strips, _mesh(f"{prefix}road", materials.road, shaken, profile.edges(s))]
 
 
-def _decals(road: Road, world: World, s: Array, up: Array, materials: Materials, prefix: str) -> list[Strip]:
+def _decals(
+    road: Road, profile: Profile, s: Array, up: Array, materials: Materials, prefix: str
+) -> list[Strip]:
     """Returns the decal that the AI follows, and the painted lines."""
-    wide = world.lane_width
+    left, right = profile.edges(s)
+    centre, thin = np.zeros(len(s)), np.full(len(s), LINE)
     wanted = (
-        ("lanes", materials.surface, 0.0, world.road_width, DRIVABLE),
-        ("left", materials.edge, wide - LINE / 2, LINE, NOT_DRIVABLE),
-        ("right", materials.edge, LINE / 2 - wide, LINE, NOT_DRIVABLE),
-        ("middle", materials.middle, 0.0, LINE, NOT_DRIVABLE),
+        ("lanes", materials.surface, (left + right) / 2, left - right, DRIVABLE),
+        ("left", materials.edge, left - LINE / 2, thin, NOT_DRIVABLE),
+        ("right", materials.edge, right + LINE / 2, thin, NOT_DRIVABLE),
+        ("middle", materials.middle, centre, thin, NOT_DRIVABLE),
     )
     strips = []
     for priority, (name, material, t, width, drivability) in enumerate(wanted):
         points = line(road, s, t) + up
-        nodes = np.column_stack([points, np.full(len(points), width)])
+        nodes = np.column_stack([points, width])
         strips.append(Strip(prefix + name, material, nodes, drivability, priority, name == "middle"))
     return strips
 
 
-def _mesh(name: str, material: str, points: Array, width: float, depths: Array | None = None) -> Strip:
+def _mesh(name: str, material: str, points: Array, edges: Edges, depths: Array | None = None) -> Strip:
     deep = np.full(len(points), DEPTH) if depths is None else depths
-    return Strip(name, material, np.column_stack([points, np.full(len(points), width), deep]))
+    width = np.pad(edges.left - edges.right, 1, mode="edge")  # as many as the lengthened points
+    return Strip(name, material, np.column_stack([points, width, deep]))
 
 
 def _lengthened(points: Array) -> Array:

@@ -5,6 +5,7 @@ shoulder ______|____________:____________|______ shoulder   the slabs of road an
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import goal_of, on_the_ground, start_of
@@ -30,17 +31,18 @@ def meshes(road: Road, world: World, poses: Poses | None = None) -> list[Triangl
     Raises:
         ExportError: The road has a number that is not finite.
     """
-    wide, verge = world.lane_width, world.verge
-    s = stations(road, wide + verge)
-    out = [_slab("road", "asphalt", road, s, wide, -wide)]
-    if verge >= NO_SHOULDER:
-        out.append(_slab("left verge", "gravel", road, s, wide + verge, wide))
-        out.append(_slab("right verge", "gravel", road, s, -wide, -wide - verge))
-    mark = min(LINE, wide / 4)
-    out.append(_strip("left edge line", "paint", road, s, wide, wide - mark))
-    out.append(_strip("right edge line", "paint", road, s, mark - wide, -wide))
+    profile = world.profile
+    s = stations(road, profile.reach)
+    edges, rims, has_shoulder = profile.edges(s), profile.rims(s), profile.shoulder_width >= NO_SHOULDER
+    out = [_slab("road", "asphalt", road, s, *edges)]
+    if has_shoulder:
+        out.append(_slab("left verge", "gravel", road, s, rims.left, edges.left))
+        out.append(_slab("right verge", "gravel", road, s, edges.right, rims.right))
+    mark = min(LINE, float(profile.width(s).min()) / 4)
+    out.append(_strip("left edge line", "paint", road, s, edges.left, edges.left - mark))
+    out.append(_strip("right edge line", "paint", road, s, edges.right + mark, edges.right))
     out += [_dashed(road, s, mark), _path(road, s, world, poses)]
-    if verge >= NO_SHOULDER:  # without a shoulder, the road floats
+    if has_shoulder:  # without a shoulder, the road floats
         out.append(_ground(road, world, s))
     return out
 
@@ -59,7 +61,7 @@ def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
     high = np.stack([at, at + columns + 1, at + columns], axis=-1)
     normals = up / np.linalg.norm(up, axis=-1, keepdims=True)
     parts = [TriangleMesh("", "grass", points, normals, points[:, :2], np.concatenate([low, high]))]
-    for bank in embankments(road, world.lane_width + world.verge, s, land):
+    for bank in embankments(road, world.profile, s, land):
         parts.append(_sloped(bank))
     return _joined("ground", parts)
 
@@ -70,7 +72,7 @@ def _sloped(bank: Embankment) -> TriangleMesh:
     along = np.gradient(bank.edge, axis=0)
     facing = np.cross(along, left - right)
     normals = facing / np.maximum(np.linalg.norm(facing, axis=-1, keepdims=True), 1e-9)
-    points, both, _, triangles = _band(left, right, normals, np.zeros(len(left)), np.zeros(2))
+    points, both, _, triangles = _band(left, right, normals, np.zeros(len(left)), (0.0, 0.0))
     return TriangleMesh("", "grass", points, both, points[:, :2], triangles)
 
 
@@ -91,7 +93,7 @@ def _dashed(road: Road, s: Array, width: float) -> TriangleMesh:
     left, right, normals = (
         np.split(each, cuts) for each in (whole.points[:n], whole.points[n:], whole.normals[:n])
     )
-    across = np.array([width, -width]) / 2
+    across = (width / 2, -width / 2)
     dashes = [_band(*each, across) for each in zip(left, right, normals, parts, strict=True)]
     return _joined("middle line", [TriangleMesh("", "paint", *dash) for dash in dashes])
 
@@ -100,8 +102,8 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMe
     if poses is None:
         start, end = start_of(road), goal_of(road)
         part = np.r_[start, s[(s > start) & (s < end)], end]
-        middle = -world.lane_width / 2
-        half = min(PATH_WIDTH, world.lane_width / 2) / 2
+        middle = world.profile.middle(part)
+        half = np.minimum(PATH_WIDTH, world.profile.width(part) / 2) / 2
         return _strip("path", "path", road, part, middle + half, middle - half, PATH)
     moved = np.r_[
         True, np.hypot(np.diff(poses.x), np.diff(poses.y)) > 1e-6
@@ -114,31 +116,31 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMe
     left = PATH_WIDTH / 2 * _left(heading)
     along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(ground[:, :2], axis=0).T))]
     normals = np.repeat(UP[None], len(ground), axis=0)
-    across = np.array([PATH_WIDTH, -PATH_WIDTH]) / 2
+    across = (PATH_WIDTH / 2, -PATH_WIDTH / 2)
     return TriangleMesh("path", "path", *_band(ground + left, ground - left, normals, along, across))
 
 
 def _strip(
-    name: str, material: str, road: Road, s: Array, left: float, right: float, lift: float = PAINT
+    name: str, material: str, road: Road, s: Array, left: ArrayLike, right: ArrayLike, lift: float = PAINT
 ) -> TriangleMesh:
     """Returns the surface between two offsets, seen from above."""
     a, b = line(road, s, left) + lift * UP, line(road, s, right) + lift * UP
-    return TriangleMesh(name, material, *_band(a, b, _normals(road, s), s, np.array([left, right])))
+    return TriangleMesh(name, material, *_band(a, b, _normals(road, s), s, (left, right)))
 
 
-def _slab(name: str, material: str, road: Road, s: Array, left: float, right: float) -> TriangleMesh:
+def _slab(name: str, material: str, road: Road, s: Array, left: Array, right: Array) -> TriangleMesh:
     """Returns the closed slab between two offsets, with its underside, flanks and ends."""
     a, b = line(road, s, left), line(road, s, right)
     low_a, low_b = a - THICKNESS * UP, b - THICKNESS * UP
     up, aside = _normals(road, s), _left(road.heading(s))
-    across, deep = np.array([left, right]), np.array([0.0, -THICKNESS])
+    deep = (0.0, -THICKNESS)
     sides = [
-        _band(a, b, up, s, across),
-        _band(low_b, low_a, -up, s, across[::-1]),
+        _band(a, b, up, s, (left, right)),
+        _band(low_b, low_a, -up, s, (right, left)),
         _band(low_a, a, aside, s, deep[::-1]),
         _band(b, low_b, -aside, s, deep),
-        _end(low_a[0], low_b[0], b[0], a[0], across),
-        _end(low_b[-1], low_a[-1], a[-1], b[-1], across[::-1]),
+        _end(low_a[0], low_b[0], b[0], a[0], np.array([left[0], right[0]])),
+        _end(low_b[-1], low_a[-1], a[-1], b[-1], np.array([right[-1], left[-1]])),
     ]
     return _joined(name, [TriangleMesh(name, material, *side) for side in sides])
 
@@ -146,13 +148,16 @@ def _slab(name: str, material: str, road: Road, s: Array, left: float, right: fl
 _Band = tuple[Array, Array, Array, np.ndarray]
 
 
-def _band(left: Array, right: Array, normals: Array, along: Array, across: Array) -> _Band:
+def _band(
+    left: Array, right: Array, normals: Array, along: Array, across: tuple[ArrayLike, ArrayLike]
+) -> _Band:
     """Returns points, normals, texture and triangles of a band between a left and a right edge."""
     n = len(left)
     i = np.arange(n - 1)
     first = np.stack([n + i, n + i + 1, i + 1], axis=-1)
     second = np.stack([n + i, i + 1, i], axis=-1)
-    texture = np.column_stack([np.repeat(across, n), np.tile(along, 2)])
+    sideways = np.concatenate([np.broadcast_to(each, n) for each in across])
+    texture = np.column_stack([sideways, np.tile(along, 2)])
     triangles = np.stack([first, second], axis=1).reshape(-1, 3)
     return np.concatenate([left, right]), np.tile(normals, (2, 1)), texture, triangles
 

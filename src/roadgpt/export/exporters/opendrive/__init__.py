@@ -48,7 +48,7 @@ def document(road: Road, world: World) -> Element:
 def _header(road: Road, world: World) -> Element:
     """Returns the header: revision, bounds of lanes and shoulders, and the georeference. It has no date."""
     x, y = road.centreline()[:, :2].T
-    reach = world.lane_width + world.verge
+    reach = world.profile.reach
     header = Element(
         "header",
         {

@@ -54,7 +54,7 @@ def _middle() -> Element:
 
 
 def _driving(number: int, world: World) -> Element:
-    lane = _lane(number, "driving").extended(_width(world.lane_width), _mark("solid", "none"))
+    lane = _lane(number, "driving").extended(_width(world.profile.lane_width), _mark("solid", "none"))
     lane.add("material", {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0})
     lane.add("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"})
     return lane
@@ -62,9 +62,8 @@ def _driving(number: int, world: World) -> Element:
 
 def _shoulder(number: int, world: World) -> list[Element]:
     """Returns the shoulder, firm ground at the height of the road; nothing where it has no width."""
-    if world.verge < NO_SHOULDER:
-        return []
-    return [_lane(number, "shoulder").extended(_width(world.verge))]
+    width = world.profile.shoulder_width
+    return [_lane(number, "shoulder").extended(_width(width))] if width >= NO_SHOULDER else []
 
 
 def speed_kmh(world: World) -> float:
