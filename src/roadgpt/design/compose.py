@@ -13,7 +13,15 @@ from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import longest_straight
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
-from roadgpt.design.draw import LEAD, SEPARATE, drawn_straight, drawn_turns, free_straight, inside, turn_rooms
+from roadgpt.design.draw import (
+    LEAD,
+    SEPARATE,
+    drawn_straight,
+    drawn_turns,
+    free_straight,
+    inside,
+    narrowed_turns,
+)
 from roadgpt.design.heights import Windows
 from roadgpt.design.sequence import TurnSequence, is_hairpin
 from roadgpt.road import World
@@ -54,11 +62,8 @@ def composed(
     haste: float,
 ) -> list[Element] | None:
     """The elements of a draft in driving order; None where they cannot have the length that was asked for."""
-    rooms = [
-        room._replace(grade=windows.of(turn))
-        for room, turn in zip(turn_rooms(order.turns, outline, world), order.turns, strict=True)
-    ]
-    turns: list[Element | None] = list(drawn_turns(rooms, outline, world, rng, haste))
+    narrowed = narrowed_turns(order.turns, outline, windows, world)
+    turns: list[Element | None] = list(drawn_turns(narrowed, outline, world, rng, haste))
     elements: list[Element] = []
     between = [is_hairpin(a) and is_hairpin(b) for a, b in pairwise(order.turns)]
     legs = [False, *between, False][: len(order.gaps)]

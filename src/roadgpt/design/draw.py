@@ -1,8 +1,8 @@
 """Draws the measures that words leave open: angles, radii and transitions of turns, lengths of straights."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import degrees, exp, inf, log, radians
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import KINDS, SHARPNESS, Range, overlap
 from roadgpt.check.measures import LEAST_TURN
 from roadgpt.design.elements import MOST_TRANSITION, least_radius, segments_of_turn, turn_element
+from roadgpt.design.heights import Windows
 from roadgpt.errors import DesignError
 from roadgpt.road import World
 
@@ -32,28 +33,19 @@ OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow fo
 TIGHTER = 1.35  # hard roads: radii are at most so many times the least one
 
 
-class TurnRoom(NamedTuple):
-    """From what a turn is drawn: degrees, metres, metres along the curve, percent."""
-
-    degrees: Range
-    radius: Range
-    length: Range | None
-    grade: Range | None
-    hand: int
-    tight: bool
-    """Was an upper limit of its radius promised?"""
-
-
-def turn_rooms(turns: Sequence[Feature], outline: Outline, world: World) -> list[TurnRoom]:
-    """The ranges for every turn, a little inside what was promised.
+def narrowed_turns(
+    turns: Sequence[Feature], outline: Outline, windows: Windows, world: World
+) -> list[Feature]:
+    """Returns the turns with ranges of angle, radius, length and grade a little inside what was asked for.
 
     Raises:
         DesignError: nothing is left of a range, such as a radius that the rules call too tight.
     """
-    return [_turn_room(turn, outline, world) for turn in turns]
+    narrowed = [_narrowed(turn, outline, world) for turn in turns]
+    return [replace(turn, grade=windows.of(turn)) for turn in narrowed]
 
 
-def _turn_room(turn: Feature, outline: Outline, world: World) -> TurnRoom:
+def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
     least = max(least_radius(world), 0.8 * world.road_width)
     promised = overlap(turn.radius, outline.each_turn.radius)
     radius = overlap(_inside(promised, 0.04), Range(least, inf)) if promised else Range(least, inf)
@@ -72,10 +64,8 @@ def _turn_room(turn: Feature, outline: Outline, world: World) -> TurnRoom:
         raise DesignError(
             f"a {turn.name} of {angle} degrees is not seen as a turn; ask for {LEAST_TURN + 5:g} or more"
         )
-    tight = radius.hi < inf
-    hand = -1 if turn.side == "right" else 1
-    drawn = _angles(turn, angle)
-    return TurnRoom(drawn, radius, overlap(turn.length, outline.each_turn.length), None, hand, tight)
+    length = overlap(turn.length, outline.each_turn.length)
+    return replace(turn, degrees=_angles(turn, angle), radius=radius, length=length)
 
 
 def _angles(turn: Feature, promised: Range) -> Range:
@@ -100,29 +90,34 @@ def _inside(span: Range, share: float) -> Range:
     return Range(span.lo + edge, span.hi - edge)
 
 
+def hand_of(turn: Feature) -> int:
+    """Returns 1 for a turn to the left, -1 for one to the right."""
+    return -1 if turn.side == "right" else 1
+
+
 def drawn_turns(
-    rooms: Sequence[TurnRoom], outline: Outline, world: World, rng: np.random.Generator, haste: float
+    turns: Sequence[Feature], outline: Outline, world: World, rng: np.random.Generator, haste: float
 ) -> list[Element]:
-    """Turns whose angles, radii and ramps are drawn.
+    """Draws angles, radii and transitions of turns.
 
     Args:
-        rooms: what each is drawn from.
+        turns: with narrowed ranges, from which each is drawn.
         outline: what was asked for.
         world: its map bounds the length of a turn.
         rng: source of chance.
-        haste: 0 draws freely; towards 1 turns get as small as was promised, so that they fit somewhere.
+        haste: 0 draws freely; towards 1 turns get as small as was asked for, so that they fit somewhere.
     """
-    angles = [room.degrees.lo + _share(rng, haste) * (room.degrees.hi - room.degrees.lo) for room in rooms]
-    angles = _uncoiled(angles, rooms, 215 + 115 * rng.random())
+    ranges = [turn.degrees or ANY_TURN for turn in turns]
+    hands = [hand_of(turn) for turn in turns]
+    angles = [degrees.lo + _share(rng, haste) * (degrees.hi - degrees.lo) for degrees in ranges]
+    angles = _uncoiled(angles, ranges, hands, 215 + 115 * rng.random())
     if outline.turning:
-        angles = _summed(angles, rooms, _target(outline.turning, rng))
-        rooms = [
-            room._replace(degrees=Range(a - KEPT, a + KEPT)) for room, a in zip(rooms, angles, strict=True)
-        ]
-    longest = longest_turn(len(rooms), outline, world) * (1 - 0.6 * haste)
+        angles = _summed(angles, ranges, _target(outline.turning, rng))
+        turns = [replace(t, degrees=Range(a - KEPT, a + KEPT)) for t, a in zip(turns, angles, strict=True)]
+    longest = longest_turn(len(turns), outline, world) * (1 - 0.6 * haste)
     return [
-        drawn_turn(room, angle, longest, outline.hard, rng, haste)
-        for room, angle in zip(rooms, angles, strict=True)
+        drawn_turn(turn, angle, longest, outline.hard, rng, haste)
+        for turn, angle in zip(turns, angles, strict=True)
     ]
 
 
@@ -141,14 +136,14 @@ def _share(rng: np.random.Generator, haste: float) -> float:
     return float(rng.random() * (1 - 0.9 * haste))
 
 
-def _uncoiled(angles: list[float], rooms: Sequence[TurnRoom], most: float) -> list[float]:
+def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int], most: float) -> list[float]:
     """Angles scaled towards their least until the heading swings through no more than ``most`` degrees."""
-    low = _swing([room.degrees.lo * room.hand for room in rooms])
-    now = _swing([angle * room.hand for angle, room in zip(angles, rooms, strict=True)])
+    low = _swing([degrees.lo * hand for degrees, hand in zip(ranges, hands, strict=True)])
+    now = _swing([angle * hand for angle, hand in zip(angles, hands, strict=True)])
     if now <= most or now <= low:
         return angles
     f = max((most - low) / (now - low), 0.0)
-    return [room.degrees.lo + f * (a - room.degrees.lo) for a, room in zip(angles, rooms, strict=True)]
+    return [degrees.lo + f * (a - degrees.lo) for a, degrees in zip(angles, ranges, strict=True)]
 
 
 def _target(asked: Range, rng: np.random.Generator) -> float:
@@ -158,10 +153,10 @@ def _target(asked: Range, rng: np.random.Generator) -> float:
     return low + (high - low) * (0.3 + 0.4 * float(rng.random()))
 
 
-def _summed(angles: list[float], rooms: Sequence[TurnRoom], target: float) -> list[float]:
+def _summed(angles: list[float], ranges: Sequence[Range], target: float) -> list[float]:
     """Angles moved towards their least or their most until they add up, as far as that goes."""
     missing = target - sum(angles)
-    ends = [room.degrees.hi if missing > 0 else room.degrees.lo for room in rooms]
+    ends = [degrees.hi if missing > 0 else degrees.lo for degrees in ranges]
     room_left = sum(ends) - sum(angles)
     f = min(missing / room_left, 1.0) if room_left else 0.0
     return [angle + f * (end - angle) for angle, end in zip(angles, ends, strict=True)]
@@ -176,48 +171,50 @@ def _swing(signed: Sequence[float]) -> float:
 
 
 def drawn_turn(
-    room: TurnRoom, angle: float, longest: float, hard: bool, rng: np.random.Generator, haste: float
+    turn: Feature, angle: float, longest: float, hard: bool, rng: np.random.Generator, haste: float
 ) -> Element:
-    """One turn whose radius and ramps are drawn.
+    """Draws the radius and the transitions of one turn.
 
     Args:
-        room: what it is drawn from.
+        turn: with narrowed ranges, from which it is drawn.
         angle: degrees.
         longest: metres along the curve.
         hard: is it to be tight?
         rng: source of chance.
         haste: as for ``drawn_turns``.
     """
-    least, most = room.radius.lo, room.radius.hi
+    asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
+    least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
     if hard:
         most = max(min(most, least * TIGHTER), least)
-    if room.length:
-        low, high = room.length.lo, min(room.length.hi, max(LONGEST_TURN, 1.2 * room.length.lo))
+    if turn.length:
+        low, high = turn.length.lo, min(turn.length.hi, max(LONGEST_TURN, 1.2 * turn.length.lo))
         low = low if low > 0 else 0.5 * high
         length = low + (0.35 + 0.3 * rng.random()) * (high - low)
         ramp = 0.1 * length
         radius = min(max((length - ramp) / radians(angle), least), most)
-        angle = min(max(degrees((length - ramp) / radius), room.degrees.lo), room.degrees.hi)
-        return turn_element(angle, room.hand, radius, ramp, room.grade)
-    if not room.tight and not hard:
+        angle = min(max(degrees((length - ramp) / radius), asked.lo), asked.hi)
+        return turn_element(angle, hand_of(turn), radius, ramp, turn.grade)
+    if not is_tight and not hard:
         least = max(least, SHORTEST_TURN * (1 - haste) / radians(angle))
     wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
-    if room.tight:  # promised: stay well inside, for short turns measure wider than they are
+    if is_tight:  # promised: stay well inside, for short turns measure wider than they are
         wide = least + 0.85 * (wide - least)
     radius = exp(log(least) + _share(rng, haste) * (log(wide) - log(least)))
     if radius * radians(angle) > longest:
         if rng.random() < 0.7:
-            angle = max(room.degrees.lo, min(angle, degrees(longest / radius)))
+            angle = max(asked.lo, min(angle, degrees(longest / radius)))
         radius = max(least, min(radius, longest / radians(angle)))
-    return turn_element(angle, room.hand, radius, _ramp(room, angle, radius, rng), room.grade)
+    transition = _transition(is_tight, angle, radius, rng)
+    return turn_element(angle, hand_of(turn), radius, transition, turn.grade)
 
 
-def _ramp(room: TurnRoom, angle: float, radius: float, rng: np.random.Generator) -> float:
+def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Generator) -> float:
     """Length of the clothoids; short where a promised radius must still be seen."""
     arc = radius * radians(angle)
     share = RAMPS[0] + (RAMPS[1] - RAMPS[0]) * rng.random()
     ramp = min(max(share * arc, RAMP_LIMITS[0]), max(RAMP_LIMITS[1], radius / RADII_OF_RAMP))
-    if room.tight:
+    if is_tight:
         ramp = min(ramp, max(arc - SEEN_ARC, 1.0))
     return min(ramp, MOST_TRANSITION * arc / segments_of_turn(angle))
 

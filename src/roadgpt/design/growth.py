@@ -7,6 +7,7 @@ number of turns is open, a longer road has more of them.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
 from typing import NamedTuple
 
@@ -17,7 +18,7 @@ from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range
 from roadgpt.design.compose import asked_length, gap_between
-from roadgpt.design.draw import TurnRoom, drawn_turn, longest_turn, turn_rooms
+from roadgpt.design.draw import ANY_TURN, drawn_turn, hand_of, longest_turn, narrowed_turns
 from roadgpt.design.heights import Windows
 from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, Complex, MapPose, PlanLine, walk
 from roadgpt.design.sequence import TurnSequence
@@ -111,12 +112,9 @@ class _Growth:
         self.target, self.asked = target, asked
         self.more = _repeated(outline)
         self.has_open_sides = _has_open_sides(outline)
-        rooms = turn_rooms(order.turns, outline, world)
-        self.rooms = [
-            _roomy(room._replace(grade=windows.of(turn)), target)
-            for room, turn in zip(rooms, order.turns, strict=True)
-        ]
-        self.longest = longest_turn(len(rooms), outline, world)
+        turns = narrowed_turns(order.turns, outline, windows, world)
+        self.turns = [_roomy(turn, target) for turn in turns]
+        self.longest = longest_turn(len(turns), outline, world)
         low, high = EXTRA.get(order.turns[-1].name, EXTRA_OF_OTHERS)
         self.extra = low + (high - low) * rng.random()
         self.apart = world.road_width + SPARE + COARSENESS + BULGE
@@ -153,21 +151,21 @@ class _Growth:
         heading = np.exp(1j * np.radians(self.rng.integers(3600) / 10))
         return complex(round(x, 2), round(y, 2)), complex(heading)
 
-    def _turn(self, at: int, so_far: float) -> tuple[TurnRoom, Sequence[Feature]] | None:
+    def _turn(self, at: int, so_far: float) -> tuple[Feature, Sequence[Feature]] | None:
         """What the next turn is drawn from, and the straights before it; None behind the last."""
         named = len(self.order.turns)
         if at < named:
-            return self.rooms[at], self.order.gaps[at]
+            return self.turns[at], self.order.gaps[at]
         left = self.target - so_far - LEAST_LEFT - self.extra / 2
         if not self.more or at >= min(MOST_TURNS, self.outline.turns.hi) or left < self.longest:
             return None
-        return self.rooms[-1], ()
+        return self.turns[-1], ()
 
     def _step(
         self,
         way: _Way,
         before: Element | None,
-        room: TurnRoom,
+        asked: Feature,
         wishes: Sequence[Feature],
         at: int,
     ) -> tuple[_Way, Element] | None:
@@ -175,10 +173,10 @@ class _Growth:
 
         Args:
             way, before: the road so far, and its last turn.
-            room, wishes: from what the next turn is drawn, and the straights asked for before it.
+            asked, wishes: from what the next turn is drawn, and the straights asked for before it.
             at: its number, from 0.
         """
-        hand = room.hand
+        hand, degrees = hand_of(asked), asked.degrees or ANY_TURN
         if at >= len(self.order.turns) and before:
             switches = self.has_open_sides is False
             hand = -1 if (before.turn > 0) == switches else 1
@@ -189,10 +187,9 @@ class _Growth:
             elif self.has_open_sides:
                 hand = -hand
             haste = number / TRIED
-            angle = room.degrees.lo + self.rng.random() * (room.degrees.hi - room.degrees.lo)
-            turn = drawn_turn(
-                room._replace(hand=hand), angle, self.longest, self.outline.hard, self.rng, haste
-            )
+            angle = degrees.lo + self.rng.random() * (degrees.hi - degrees.lo)
+            sided = replace(asked, side="left" if hand > 0 else "right")
+            turn = drawn_turn(sided, angle, self.longest, self.outline.hard, self.rng, haste)
             gap = gap_between(before, wishes, turn, self.outline, self.windows, self.rng, 0.5 + haste / 2)
             elements = _stretched(gap, extra * (1 - haste) * self.rng.uniform(*UNEVEN))
             line = walk([*elements, turn])
@@ -254,14 +251,16 @@ def is_long(outline: Outline) -> bool:
     return outline.length is not None and outline.length.lo >= LONG and _repeated(outline)
 
 
-def _roomy(room: TurnRoom, metres: float) -> TurnRoom:
+def _roomy(turn: Feature, metres: float) -> Feature:
     """Turns off the tightest that is allowed, and the more so the further apart a spline's points are.
 
     The competition's files hold so few points that on a road of 10 km its spline has one every 20 m.
     """
+    if turn.radius is None or turn.radius.hi < inf:
+        return turn
     spacing = max(CONTROL_SPACING, metres / MOST_CONTROL_POINTS)
-    least = room.radius.lo * OFF_TIGHTEST + OFF_BY_SPACING * (spacing - CONTROL_SPACING)
-    return room._replace(radius=Range(least, room.radius.hi)) if room.radius.hi == inf else room
+    least = turn.radius.lo * OFF_TIGHTEST + OFF_BY_SPACING * (spacing - CONTROL_SPACING)
+    return replace(turn, radius=Range(least))
 
 
 def _repeated(outline: Outline) -> bool:

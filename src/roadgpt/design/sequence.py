@@ -23,13 +23,8 @@ SMALL, LARGE = 27.0, 105.0  # degrees of usual turns, by which a number of them 
 ROUNDS = 60  # of drawing sides until left and right are as many as asked for
 
 
-class Turn(NamedTuple):
-    """A turn whose side may still be open."""
-
-    feature: Feature
-    side: Side | None
-    switches: bool
-    """Must it go the other way than the one before?"""
+OpenTurn = tuple[Feature, bool]
+"""A turn whose side may still be open, and whether it must go the other way than the one before."""
 
 
 class TurnSequence(NamedTuple):
@@ -58,15 +53,15 @@ def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> T
     turns, gaps = _listed(outline, rng, plain) if outline.names_all_turns else _free(outline, rng, plain)
     _with_ends(outline, turns, gaps)
     sides = _sides(turns, outline, rng)
-    features = tuple(replace(turn.feature, side=side) for turn, side in zip(turns, sides, strict=True))
+    features = tuple(replace(turn, side=side) for (turn, _), side in zip(turns, sides, strict=True))
     return TurnSequence(features, tuple(map(tuple, gaps)))
 
 
 def _listed(
     outline: Outline, rng: np.random.Generator, plain: bool
-) -> tuple[list[Turn], list[list[Feature]]]:
+) -> tuple[list[OpenTurn], list[list[Feature]]]:
     """The groups, one after another."""
-    turns: list[Turn] = []
+    turns: list[OpenTurn] = []
     gaps: list[list[Feature]] = [[]]
     counts = _group_counts(outline, rng, plain)
     for group, count in zip(outline.groups, counts, strict=True):
@@ -76,7 +71,7 @@ def _listed(
             continue
         for number in range(count):
             switches = group.alternating and number > 0
-            turns.append(Turn(feature, None if switches else feature.side, switches))
+            turns.append((replace(feature, side=None) if switches else feature, switches))
             gaps.append([])
     return turns, gaps
 
@@ -103,10 +98,12 @@ def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> li
     return counts
 
 
-def _free(outline: Outline, rng: np.random.Generator, plain: bool) -> tuple[list[Turn], list[list[Feature]]]:
+def _free(
+    outline: Outline, rng: np.random.Generator, plain: bool
+) -> tuple[list[OpenTurn], list[list[Feature]]]:
     """Any turns, and the straights that were asked for somewhere between them, in their order."""
     count = _turn_count(outline, rng, plain)
-    turns = [Turn(Feature("turn", "turn"), None, False)] * count
+    turns = [(Feature("turn", "turn"), False)] * count
     gaps: list[list[Feature]] = [[] for _ in range(count + 1)]
     straights = [group.feature for group in outline.groups for _ in range(group.lo)]
     apart = len(straights) <= count + 1
@@ -144,7 +141,7 @@ def _turned(outline: Outline) -> Range:
     return Range(ceil(max(outline.turning.lo, 0) / LARGE), most)
 
 
-def _with_ends(outline: Outline, turns: list[Turn], gaps: list[list[Feature]]) -> None:
+def _with_ends(outline: Outline, turns: list[OpenTurn], gaps: list[list[Feature]]) -> None:
     """Puts what the road must start and end with at its ends."""
     for feature, index in ((outline.starts, 0), (outline.ends, -1)):
         if feature is None:
@@ -156,8 +153,8 @@ def _with_ends(outline: Outline, turns: list[Turn], gaps: list[list[Feature]]) -
             else:
                 gap[index] = both(gap[index], feature)
         elif turns:
-            one = turns[index]
-            turns[index] = one._replace(feature=both(one.feature, feature), side=feature.side or one.side)
+            one, switches = turns[index]
+            turns[index] = replace(both(one, feature), side=feature.side or one.side), switches
 
 
 def _shares(one: Feature, other: Feature) -> bool:
@@ -179,7 +176,7 @@ def both(one: Feature, other: Feature) -> Feature:
     )
 
 
-def _sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generator) -> list[Side]:
+def _sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator) -> list[Side]:
     left, right, n = outline.left, outline.right, len(turns)
     for _ in range(ROUNDS):
         sides = _drawn_sides(turns, outline, rng)
@@ -188,13 +185,13 @@ def _sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generator) ->
     raise DesignError(f"the sides asked for the {n} turns contradict each other; leave one of them open")
 
 
-def _drawn_sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generator) -> list[Side] | None:
+def _drawn_sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator) -> list[Side] | None:
     """Random sides, leaning to those still missing; None where a fixed side breaks an alternation."""
     sides: list[Side] = []
-    for turn in turns:
-        if sides and (turn.switches or outline.alternating):
+    for turn, switches in turns:
+        if sides and (switches or outline.alternating):
             side = OTHER_SIDE[sides[-1]]
-            if turn.side not in (None, side) and not turn.switches:
+            if turn.side not in (None, side) and not switches:
                 return None
         else:
             side = turn.side or _free_side(turn, sides, len(turns), outline, rng)
@@ -203,7 +200,7 @@ def _drawn_sides(turns: Sequence[Turn], outline: Outline, rng: np.random.Generat
 
 
 def _free_side(
-    turn: Turn, sides: Sequence[Side], count: int, outline: Outline, rng: np.random.Generator
+    turn: Feature, sides: Sequence[Side], count: int, outline: Outline, rng: np.random.Generator
 ) -> Side:
     rest = count - len(sides)
     lefts, rights = sides.count("left"), len(sides) - sides.count("left")
@@ -213,5 +210,5 @@ def _free_side(
         return "left"
     if not sides:
         return "left" if rng.random() < 0.5 else "right"
-    wide = turn.feature.degrees is not None and turn.feature.degrees.lo >= WIDE
+    wide = turn.degrees is not None and turn.degrees.lo >= WIDE
     return OTHER_SIDE[sides[-1]] if rng.random() < (SWITCH_WIDE if wide else SWITCH) else sides[-1]
