@@ -25,12 +25,12 @@ from roadgpt.road import Design, World
 
 
 class Designer(Protocol):
-    """Turns what was asked for into a blueprint."""
+    """Turns a Brief into a Design."""
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
-        """A Design that keeps every promise of the Brief and is valid on this map.
+        """Returns a Design that meets every requirement of the Brief and is valid on this map.
 
         Raises:
             DesignError: there is none, as far as this designer can tell.
@@ -47,7 +47,7 @@ def draft(
     designer: str = "planner",
     chat: ChatSettings | None = None,
 ) -> Design:
-    """A Design for a Brief, by the designer of that name.
+    """Returns a Design for a Brief, made by the designer of that name.
 
     Args:
         brief: what was asked for.
@@ -67,7 +67,7 @@ def draft(
 
 
 def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
-    """The designer of that name."""
+    """Returns the designer of that name."""
     return _made(name, settings_for(plugins.find("designers", name), chat))
 
 

@@ -18,7 +18,7 @@ MANY = 60  # drafts that fitted on the map and broke a promise: then the map was
 def advice(
     brief: Brief, outline: Outline, world: World, failed: Counter[str], boxes: Sequence[float], fits: Fits
 ) -> str:
-    """One sentence: which wish stood in the way, and what to do.
+    """Returns one sentence that says which requirement could not be met, and what to do.
 
     Args:
         brief: what was asked for.
@@ -46,7 +46,7 @@ def advice(
 
 
 def too_fast(world: World, slower: float | None) -> str:
-    """One sentence: the slopes that were asked for would have crests and dips too abrupt for the speed.
+    """Returns one sentence that says that crests and dips would be too abrupt for the speed limit.
 
     Args:
         world: its speed limit.
@@ -61,7 +61,7 @@ def too_fast(world: World, slower: float | None) -> str:
 
 
 def wishes_of(outline: Outline) -> str:
-    """The turns that were asked for, as the start of a sentence that goes on with 'not fit'."""
+    """Returns what was asked for, as the start of a sentence that goes on with 'not fit'."""
     parts = [
         _counted(group.lo, group.feature.name) for group in outline.groups if group.feature.kind == "turn"
     ]

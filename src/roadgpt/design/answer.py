@@ -26,7 +26,7 @@ Way = Annotated[Literal["left", "right", "straight"], BeforeValidator(_plain_dir
 
 
 class AnswerSegment(BaseModel):
-    """One segment of an answer."""
+    """One segment of a language model's answer."""
 
     distance: Number = Field(description="Length along the road, metres.")
     direction: Way = Field(description="left, right or straight.")
@@ -35,14 +35,14 @@ class AnswerSegment(BaseModel):
 
 
 class AnswerStart(BaseModel):
-    """Where a road starts, and which way it looks."""
+    """The starting point and the heading of a road."""
 
     starting_point: list[Number] = Field(description="x, y and z of the start, metres.")
     theta: Number = Field(description="Degrees: 0 along +x, 90 along +y.")
 
 
 class AnswerRoad(AnswerStart):
-    """A whole road."""
+    """The answer of a language model that is asked for a whole road."""
 
     segments: list[AnswerSegment] = Field(description="In driving order.")
 
@@ -57,13 +57,13 @@ class AnswerRoad(AnswerStart):
 
 
 class AnswerStep(AnswerSegment):
-    """The next segment, and whether it is the last one."""
+    """The answer of a language model that is asked for the next segment, and whether it is the last one."""
 
     last: bool = Field(description="Is the road finished with this segment?")
 
 
 def design_of(start: AnswerStart, segments: list[AnswerSegment]) -> tuple[Design, tuple[str, ...]]:
-    """The Design of an answer, and a sentence for everything that had to be settled.
+    """Returns the Design of an answer, and a sentence for everything that had to be corrected in it.
 
     Raises:
         UsageError: it is no design; one sentence, fit to be shown to the model.

@@ -22,7 +22,7 @@ USUAL_HEIGHT = 0.0  # m, of a start that is proposed
 
 
 def rules(name: str, world: World) -> str:
-    """A text that stands beside the designers, with the numbers of this world."""
+    """Returns a prompt text of the package, with the numbers of this world filled in."""
     text = files("roadgpt.design.designers").joinpath(name).read_text(encoding="utf-8")
     half = world.road_width / 2
     numbers = {
@@ -42,12 +42,12 @@ def rules(name: str, world: World) -> str:
 
 
 def words_of(brief: Brief) -> str:
-    """The description; where there is none, what it would be."""
+    """Returns the description; where there is none, the sentence that states the Brief."""
     return brief.words.strip()[:MOST_WORDS] or sentence(brief)
 
 
 def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[Design], seed: int) -> str:
-    """The question: description, demands, earlier roads, objections so far, a start to vary them."""
+    """Returns the question: description, requirements, earlier roads, objections so far and a start."""
     demanded = demands(promises_of(brief, world))
     parts = [
         f"Description: {words_of(brief)}",
@@ -64,13 +64,13 @@ def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[
 
 
 def start_for(world: World, seed: int) -> str:
-    """A start drawn from the seed, in words: so that campaigns vary without a model's own chance."""
+    """Returns a start drawn from the seed, in words, so that roads differ for any model."""
     x, y, theta = drawn_start(world, seed)
     return f"a start near ({x:g}, {y:g}) with theta {theta:g}"
 
 
 def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
-    """A start in metres, and a heading in degrees that looks across the map."""
+    """Draws a start in metres, and a heading in degrees that looks across the map."""
     rng = np.random.default_rng(seed)
     x, y = (round(float(v)) for v in world.map_size * (0.12 + 0.76 * rng.random(2)))
     to_middle = np.degrees(np.arctan2(world.map_size / 2 - y, world.map_size / 2 - x))
@@ -79,7 +79,7 @@ def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
 
 
 def demands(outline: Outline) -> list[str]:
-    """What a road is held to, one line each, in driving order."""
+    """Returns the requirements of a road in driving order, one line each."""
     out: list[str] = []
     for group in outline.groups:
         sides = "alternating sides" if group.alternating else ""

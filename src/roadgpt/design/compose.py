@@ -61,7 +61,7 @@ def composed(
     rng: np.random.Generator,
     haste: float,
 ) -> list[Element] | None:
-    """The elements of a draft in driving order; None where they cannot have the length that was asked for."""
+    """Returns the elements of a draft in driving order; None where they cannot have the required length."""
     narrowed = narrowed_turns(order.turns, outline, windows, world)
     turns: list[Element | None] = list(drawn_turns(narrowed, outline, world, rng, haste))
     elements: list[Element] = []
@@ -91,7 +91,7 @@ def _from_corner_to_corner(elements: list[Element], world: World) -> list[Elemen
 
 
 def asked_length(outline: Outline, windows: Windows) -> Range | None:
-    """The length that was asked for; else enough to climb as much as was asked, at no extreme grade."""
+    """Returns the required length; else one long enough for the required climb at no extreme grade."""
     if outline.length or not outline.climb:
         return outline.length
     height = max(outline.climb.lo, -outline.climb.hi, 0.0)
@@ -109,7 +109,7 @@ def gap_between(
     rng: np.random.Generator,
     haste: float,
 ) -> list[Element]:
-    """The straights between two turns, or between a turn and an end."""
+    """Returns the straights between two turns, or between a turn and an end of the road."""
     if wishes:
         few = outline.turns.hi <= 1 and len(wishes) == 1
         return _asked_gap(before, wishes, after, windows, rng, haste, LONELY_MEAN if few else JOIN_MEAN)

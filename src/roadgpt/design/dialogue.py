@@ -26,7 +26,7 @@ MOST_LEFT_OUT = 2  # segments in a row that could not be placed; then the road e
 
 
 class DesignTask(NamedTuple):
-    """What is to be designed, and under which settings."""
+    """A road that a language model is to design, and the settings."""
 
     brief: Brief
     world: World
@@ -40,7 +40,7 @@ class DesignTask(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What came of it."""
+    """The result of a dialogue with a language model."""
 
     design: Design
     proposed: Design
@@ -53,7 +53,7 @@ class Outcome(NamedTuple):
 
 
 def whole(chat: Chat, task: DesignTask) -> Outcome:
-    """One road per question, until nothing is wrong with it or all rounds are spent; the best one of them.
+    """Asks for whole roads until one has no objections or all rounds are used up; returns the best one.
 
     Raises:
         ReplyError, DesignError: no answer was a road.
@@ -109,7 +109,7 @@ def _compact(answer: BaseModel) -> str:
 
 
 def stepwise(chat: Chat, task: DesignTask) -> Outcome:
-    """One segment per question, each looked at before the next is asked for.
+    """Asks for one segment at a time and checks each before it asks for the next.
 
     A segment that will not do is asked for again, at most ``rounds`` times, and then left out; so the run
     goes on whatever the model answers.
@@ -139,7 +139,7 @@ class _Steps:
         self.start = AnswerStart(starting_point=[x, y, USUAL_HEIGHT], theta=theta)
 
     def walked(self) -> Outcome:
-        """The road, when the model has said that it is finished, or when nothing more can be added."""
+        """Returns the road when the model has said that it is finished, or when nothing more can be added."""
         self._begin()
         tries, left_out, endings = 0, 0, 0
         wrong: tuple[str, ...] = ()

@@ -122,7 +122,7 @@ def drawn_turns(
 
 
 def longest_turn(turns: int, outline: Outline, world: World) -> float:
-    """Metres along the curve that one turn may take, so that all find room."""
+    """Returns the greatest length of one turn in metres at which all turns find room."""
     wide = outline.each_turn.radius
     longest = max(LONGEST_TURN, wide.lo * radians(WIDE_ANGLE)) if wide and wide.lo > WIDEST else LONGEST_TURN
     by_map = min(2.2 * world.map_size / (turns + 1.2), longest)
@@ -220,7 +220,7 @@ def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Gene
 
 
 def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
-    """Metres of a straight that was asked for, of at least ``least`` where that is allowed."""
+    """Draws the metres of a straight that was asked for, at least ``least`` where that is allowed."""
     span = wish.length or Range(10, inf)
     low, high = span.lo, span.hi
     if high == inf:
@@ -233,10 +233,10 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
 
 def inside(least: float) -> float:
-    """Metres to draw, so that at least so many are measured between the turns at the ends."""
+    """Returns the metres to draw so that at least ``least`` are measured between the turns at the ends."""
     return 1.05 * least + 3.0
 
 
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
-    """Metres of a straight that nobody asked for."""
+    """Draws the length in metres of a straight that nobody asked for."""
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)

@@ -97,7 +97,7 @@ class _Row:
     """Metres, of the parabolas at the inner joints."""
 
     def keeps(self, row: Sequence[Element], drawn: Sequence[float], slack: float) -> bool:
-        """Is every straight with a promised length as steep as promised, and written hardly steeper?"""
+        """Returns whether each straight of fixed length has the required grade and is hardly steeper."""
         means = _means(self.joints, self.grades, self.edges, self.radii)
         inner = _inner(self.joints, self.grades, self.edges, self.radii)
         if np.abs(self.grades - drawn).max() > PUSHED:
@@ -112,7 +112,7 @@ class _Row:
         )
 
     def fits(self, least: Sequence[float]) -> bool:
-        """Is no parabola smaller than the rule allows?"""
+        """Returns whether each parabola is as large as the rule asks for."""
         halves = _halves(self.joints, self.grades, self.radii)
         return bool(np.all(halves >= np.abs(np.diff(self.grades)) * np.array(least) / 200 * (1 - ROUNDING)))
 

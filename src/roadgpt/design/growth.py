@@ -42,7 +42,7 @@ LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
 
 
 class Grown(NamedTuple):
-    """A plan and where it lies."""
+    """A plan and its place on the map."""
 
     elements: list[Element]
     line: PlanLine
@@ -78,7 +78,7 @@ class _Way(NamedTuple):
 def grown(
     order: TurnSequence, outline: Outline, windows: Windows, world: World, rng: np.random.Generator
 ) -> Grown | None:
-    """A road of the length that was asked for; None where it ran out of room, or where none was asked for.
+    """Returns a road of the required length; None where it ran out of room, or where no length is required.
 
     Args:
         order: turns with their sides, and the straights that were asked for between them.
@@ -247,7 +247,7 @@ def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
 
 
 def is_long(outline: Outline) -> bool:
-    """Is it a road to be grown from the first, with as many turns as it is long?"""
+    """Returns whether a road is so long that it is grown from the first draft on."""
     return outline.length is not None and outline.length.lo >= LONG and _repeated(outline)
 
 

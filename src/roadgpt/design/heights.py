@@ -38,7 +38,7 @@ STEADY_SHARE = (0.75, 1.25)  # of one grade, that of the places of a road with h
 
 
 class Windows:
-    """The grades, in percent, that every place and every feature of a road may have."""
+    """The grades in percent that every place and every feature of a road may have."""
 
     def __init__(self, outline: Outline, world: World) -> None:
         limit = min(100 * world.max_grade, STEEPEST) - UNDER_LIMIT
@@ -72,7 +72,7 @@ class Windows:
                 )
 
     def of(self, feature: Feature) -> Range | None:
-        """What the feature promises, drawn in; else what the whole road does."""
+        """Returns the grade required of a feature without its edges; else that of the whole road."""
         if feature.grade is None:
             return self.base
         own = overlap(drawn_in(feature.grade), self.limit) or self.limit
@@ -92,7 +92,7 @@ class Windows:
         return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Of straights that follow each other: one that promises nothing must differ from its neighbours."""
+        """Returns grades of consecutive straights; one without a requirement differs from the others."""
         out = [self.of(straight) for straight in straights]
         for i, straight in enumerate(straights):
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
@@ -101,30 +101,30 @@ class Windows:
         return out
 
     def other(self, grade: Range | None) -> Range:
-        """A grade that is seen to differ."""
+        """Returns a grade that is seen to differ from the given one."""
         if self.base and not (self.base.lo <= 0 <= self.base.hi):
             return Range(0, 0)
         return Range(0, 0) if grade is None or grade.lo > 1 or grade.hi < -1 else Range(3.5, 6)
 
     @staticmethod
     def part(one: Range | None, other: Range | None) -> bool:
-        """Must the grade change between features with these promises?"""
+        """Returns whether the grade must change between features with these requirements."""
         return bool(one and other and (one.lo > other.hi or other.lo > one.hi))
 
     @staticmethod
     def between(one: Range | None, other: Range | None) -> float:
-        """Percentage points by which the grade must change at least between features with these promises."""
+        """Returns the least change of grade in percentage points between features with these requirements."""
         return max(one.lo - other.hi, other.lo - one.hi, 0.0) if one and other else 0.0
 
     def alike(self, one: Range | None, other: Range | None) -> bool:
-        """Would straights with these promises be measured as one: both climbing, both falling, or alike?"""
+        """Returns whether straights with these requirements would be measured as one."""
         if not one or not other or not self.part(one, other):
             return True
         return min(one.lo, other.lo) >= LEVEL or max(one.hi, other.hi) <= -LEVEL
 
 
 def drawn_in(grade: Range) -> Range:
-    """A promised grade without its edges, where ramps and rounding could break it."""
+    """Returns a required grade without its edges, where parabolas and rounding could break it."""
     margin = min(MARGIN, MARGIN_SHARE * (grade.hi - grade.lo)) if grade.hi - grade.lo < inf else MARGIN
     return Range(grade.lo + margin, grade.hi - margin)
 
@@ -179,7 +179,7 @@ def drawn_heights(
 
 
 def rounded(values: np.ndarray) -> np.ndarray:
-    """To a tenth of a percent, and clearly on one side of what is called flat."""
+    """Returns grades rounded to a tenth of a percent, each clearly flat or clearly not."""
     steep = np.abs(values)
     near = np.abs(steep - LEVEL) < UNCLEAR
     clear = np.where(near, LEVEL + np.where(steep < LEVEL, -UNCLEAR, UNCLEAR), steep)
@@ -252,7 +252,7 @@ def _free_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Gener
 
 
 def is_mountainous(outline: Outline) -> bool:
-    """Does the road have hairpins one after the other, which take it up or down a slope?
+    """Returns whether the road has several hairpins, which take it up or down a slope.
 
     Where the words speak of heights at a place or of hills, they decide.
     """

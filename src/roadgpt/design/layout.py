@@ -32,14 +32,14 @@ Complex = NDArray[np.complex128]
 
 
 class PlanLine(NamedTuple):
-    """A walked centre line that starts at the origin along +x: stations, and points as x + iy."""
+    """An approximate centre line that starts at the origin along +x: stations, and points as x + iy."""
 
     s: Array
     z: Complex
 
 
 class MapPose(NamedTuple):
-    """Where a line lies on the map: start in metres, heading in degrees."""
+    """The position of a line on the map: start in metres, heading in degrees."""
 
     x: float
     y: float
@@ -55,7 +55,7 @@ def walk(elements: Sequence[Element]) -> PlanLine:
 
 
 def bends_of(elements: Sequence[Element]) -> tuple[Array, Array, float]:
-    """Stations (m), curvatures there (1/m), linear in between and 0 after the last; and the length."""
+    """Returns stations (m), curvatures there (1/m, linear in between, 0 after the last) and the length."""
     knots, bends, at = [0.0], [0.0], 0.0
     for element in elements:
         length = element.length
@@ -78,7 +78,7 @@ def _headings(s: Array, knots: Array, bends: Array) -> Array:
 
 
 def keeps_clear(line: PlanLine, world: World, with_verges: bool) -> bool:
-    """Do parts of the road stay off each other: carriageways at least, and off each other's verges?"""
+    """Returns whether no two parts of the road overlap: carriageways, and with the shoulders if asked for."""
     z = line.z[::COARSE]
     spacing = COARSE * (line.s[1] - line.s[0])
     apart = world.road_width + (world.verge if with_verges else SPARE) + COARSENESS
@@ -94,7 +94,7 @@ def keeps_clear(line: PlanLine, world: World, with_verges: bool) -> bool:
 
 
 def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | None:
-    """A random place on the map where the ribbon fits, at a random heading; None where there is none."""
+    """Draws a place and a heading at which the road fits on the map; None where there is none."""
     room = world.map_size - world.road_width - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
     chosen = _extent(line.z, turns[:1], room)
@@ -136,6 +136,6 @@ def _extent(z: Complex, thetas: Array, room: float) -> tuple[float, float, float
 
 
 def smallest_box(line: PlanLine) -> float:
-    """Side of the smallest square that holds the line at some heading, metres."""
+    """Returns the side in metres of the smallest square that holds the line at some heading."""
     turned = np.exp(1j * np.radians(np.arange(0, 90, 5)))[:, None] * line.z[:: max(1, len(line.z) // MANY)]
     return float(np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1)).min())

@@ -21,7 +21,7 @@ OF_DEFAULT_ARC = 1.36  # length of a turn whose transitions are left open, over 
 
 
 def objections(design: Design, brief: Brief | None, world: World, partly: bool = False) -> tuple[str, ...]:
-    """Sentences; none where the road is valid and true to its Brief.
+    """Returns sentences that say what is wrong; none where the road is valid and meets its Brief.
 
     Args:
         design: to be looked at.

@@ -24,7 +24,7 @@ Fits = Callable[[Brief, World], bool]
 
 
 class Offer(NamedTuple):
-    """What would be drafted; None where nothing was found."""
+    """Requirements that could be met instead; None where nothing was found."""
 
     less: str | None
     """A smaller wish: '640 m', 'a straight of 300 m'."""
@@ -33,7 +33,7 @@ class Offer(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """What to do, as the end of a sentence."""
+        """Advice, as the end of a sentence."""
         larger = f"use --map-size {self.map_size:g}" if self.map_size else ""
         less = f"ask for {self.less or 'less'}"
         return f"{less} or {larger}" if larger else less
@@ -41,7 +41,7 @@ class Offer(NamedTuple):
 
 @lru_cache(maxsize=64)
 def offer(brief: Brief, world: World, fits: Fits, likely: float) -> Offer:
-    """What can be asked for instead of a Brief that does not fit on the map.
+    """Returns what can be asked for instead of a Brief that does not fit on the map.
 
     Args:
         brief: what was asked for.
@@ -53,7 +53,7 @@ def offer(brief: Brief, world: World, fits: Fits, likely: float) -> Offer:
 
 
 def no_room(error: NoRoomError, world: World) -> str:
-    """The sentence of a refusal, its length made sure of by drafting."""
+    """Returns the sentence of a refusal whose offer was verified by drafting."""
     from roadgpt.design.designers.planner import fits  # the planner asks for offers, too
 
     brief = error.brief

@@ -7,7 +7,7 @@ from roadgpt.chat import Usage
 
 
 class DesignReport(Frozen):
-    """Of one draft by a designer that asks a language model."""
+    """A report of one draft by a designer that asks a language model."""
 
     rounds: int = 0
     """Questions that it took."""

@@ -147,12 +147,12 @@ def elements_as_proposed(segments: Sequence[Segment]) -> RoadElements:
 
 
 def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:
-    """Tells whether a measured road has the turns of the elements, each to its side."""
+    """Returns whether a measured road has the turns of the elements, each to its side."""
     return [turn.side for turn in found.turns] == [one.side for one in elements if one.is_turn]
 
 
 def shows(found: Measures, elements: Sequence[RoadElement]) -> bool:
-    """Tells whether a measured road has the turns of the elements, each to its side and on its slope."""
+    """Returns whether a measured road has the turns of the elements, each to its side and on its slope."""
     if not shows_turns(found, elements):
         return False
     turns = (one for one in elements if one.is_turn)
@@ -165,5 +165,5 @@ def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:
 
 
 def is_turn(degrees: float) -> bool:
-    """Tells whether so many degrees would be seen as a turn."""
+    """Returns whether a change of heading of so many degrees is seen as a turn."""
     return abs(degrees) >= LEAST_TURN

@@ -28,19 +28,19 @@ OpenTurn = tuple[Feature, bool]
 
 
 class TurnSequence(NamedTuple):
-    """Turns with their sides, and the straights asked for before each of them and after the last."""
+    """Turns with their sides, and the straights asked for before each of them and after the last one."""
 
     turns: tuple[Feature, ...]
     gaps: tuple[tuple[Feature, ...], ...]
 
 
 def is_hairpin(feature: Feature) -> bool:
-    """Was the turn called a hairpin or a switchback?"""
+    """Returns whether the turn was called a hairpin or a switchback."""
     return feature.name in HAIRPINS
 
 
 def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
-    """Draws what the Outline leaves open.
+    """Draws the turns, their sides and their sequence, as far as the Outline leaves them open.
 
     Args:
         outline: what was asked for.
@@ -165,7 +165,7 @@ def _shares(one: Feature, other: Feature) -> bool:
 
 
 def both(one: Feature, other: Feature) -> Feature:
-    """A feature that keeps the promises of two."""
+    """Returns a feature that has the requirements of two."""
     return replace(
         one,
         side=one.side or other.side,

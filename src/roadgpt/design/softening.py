@@ -17,7 +17,7 @@ HELD = 0.5  # percentage points that a grade that was asked for over some metres
 
 
 def steep_kept(values: np.ndarray, lengths: np.ndarray, limits: Sequence[Range], least: float) -> list[Range]:
-    """The limits, where the longest stretch as steep as was asked must stay so."""
+    """Returns the limits, of which the longest element that is as steep as required must stay so."""
     out = [*limits]
     steep = [i for i in sorted(range(len(out)), key=lambda i: -lengths[i]) if abs(values[i]) >= least]
     if steep:
@@ -28,14 +28,14 @@ def steep_kept(values: np.ndarray, lengths: np.ndarray, limits: Sequence[Range],
 
 
 def held(element: Element, value: float, room: Range) -> Range:
-    """The limit of a straight whose length and grade were asked for: what was drawn, or hardly less."""
+    """Returns the limit of a straight of required length and grade: what was drawn, or hardly less."""
     if element.required_grade is None or not element.has_fixed_length or 0 in element.required_grade:
         return room
     return overlap(room, Range(value - HELD, value + HELD)) or room
 
 
 def one_way(value: float, room: Range) -> Range:
-    """The limit of a stretch that must go on climbing, or falling."""
+    """Returns the limit of an element that must go on climbing, or falling."""
     if np.isnan(value) or abs(value) < SEEN:
         return room
     return overlap(room, Range(SEEN) if value > 0 else Range(-inf, -SEEN)) or room
@@ -44,7 +44,7 @@ def one_way(value: float, room: Range) -> Range:
 def softened_values(
     values: np.ndarray, lengths: np.ndarray, limits: Sequence[Range], pace: Pace, ease: float, bumps: bool
 ) -> np.ndarray:
-    """Grades whose changes leave room for parabolas; a joining straight is half its neighbours' each."""
+    """Returns grades whose changes leave room for parabolas; its neighbours share a joining straight."""
     known = np.flatnonzero(~np.isnan(values))
     if len(known) < 2 or np.ptp(values[known]) == 0:
         return values

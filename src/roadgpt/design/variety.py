@@ -26,7 +26,7 @@ Complex = NDArray[np.complex128]
 
 
 class PlanShape(NamedTuple):
-    """A plan, or many: points as x + iy, and what comparing them needs time and again."""
+    """One plan or many: points as x + iy, and what is needed to compare them."""
 
     shares: Complex
     """At equal shares of the length, centred; ``(POINTS,)`` or ``(m, POINTS)``."""
@@ -43,7 +43,7 @@ class PlanShape(NamedTuple):
 
 
 def shape_of(s: Array, line: Complex) -> PlanShape:
-    """The shape of a line ``x + iy`` that was sampled at stations ``s`` (metres, from 0)."""
+    """Returns the shape of a line ``x + iy`` that was sampled at stations ``s`` (metres, from 0)."""
     shares = _at(s, line, np.linspace(0.0, float(s[-1]), POINTS))
     shares -= shares.mean()
     reach = min(MOST, int(s[-1] / STEP) + 1)
@@ -63,7 +63,7 @@ def _at(s: Array, line: Complex, stations: Array) -> Complex:
 
 
 def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
-    """Metres to the nearest of other shapes, infinite where none is alike.
+    """Returns the distance in metres to the nearest of other shapes; infinite where none is similar.
 
     Two lines are at least as far apart as their spreads, so most need not be laid onto each other.
 
@@ -97,7 +97,7 @@ def _at_least_by_metres(shape: PlanShape, others: PlanShape) -> Array:
 
 
 def apart(shape: PlanShape, others: PlanShape) -> Array:
-    """RMS distances in metres ``(m,)`` at equal shares, after the best shift, turn and mirror."""
+    """Returns RMS distances in metres ``(m,)`` at equal shares, after the best shift, turn and mirror."""
     own, many = shape.shares, others.shares
     sizes = others.spread**2 + shape.spread**2
     # einsum, not @: sums in one order on every machine, and no threads for so small a product
@@ -107,7 +107,7 @@ def apart(shape: PlanShape, others: PlanShape) -> Array:
 
 
 def apart_by_metres(shape: PlanShape, others: PlanShape) -> Array:
-    """The same at equal distances, as far as both roads go."""
+    """Returns the same distances at equal stations, as far as both roads go."""
     n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
     own, centre = shape.centres[n - 1], others.centres[row, n - 1]
     sizes = shape.spreads[n - 1] ** 2 + others.spreads[row, n - 1] ** 2
@@ -118,7 +118,7 @@ def apart_by_metres(shape: PlanShape, others: PlanShape) -> Array:
 
 
 class Shapes:
-    """Shapes of designs, remembered from draft to draft: always those of the roads that grow from them."""
+    """Remembers the shapes of designs from draft to draft, as measured on their roads."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Design, PlanShape]] = {}
@@ -126,7 +126,7 @@ class Shapes:
         self._stack = _room_for(FIRST_ROOM)
 
     def of(self, designs: Sequence[Design]) -> PlanShape:
-        """Shapes of designs, in their order, stacked; a row that only grows is not stacked anew."""
+        """Returns the shapes of designs, stacked in order; a sequence that only grows is not stacked anew."""
         if len(self._known) > REMEMBERED + len(designs):
             own = {id(design) for design in designs}
             self._known = {key: known for key, known in self._known.items() if key in own}
@@ -144,7 +144,7 @@ class Shapes:
         return PlanShape._make(rows[: len(designs)] for rows in self._stack)
 
     def remember(self, design: Design, road: Road) -> None:
-        """Keeps the shape of the road that grew from a design, where it is at hand."""
+        """Stores the shape of the road that was built from a design."""
         samples = road.sample()
         self._known[id(design)] = (design, shape_of(samples.s, samples.x + 1j * samples.y))
 

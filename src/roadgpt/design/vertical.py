@@ -50,7 +50,7 @@ class Pace:
 
     @classmethod
     def of(cls, design: Design, world: World) -> "Pace":
-        """Of a design."""
+        """Returns the radii for a design."""
         road = build(design)
         s = road.sample().s
         return cls(s, road.sample().curvature, road.length, world)
@@ -69,15 +69,15 @@ class Pace:
         return float(squares[min(first, len(squares) - 1) : last + 1].max())
 
     def comfort(self, s: float) -> float:
-        """Metres at a station: the radius that is felt no more than comfort allows."""
+        """Returns the comfortable radius at a station, both in metres."""
         return self._square(s) / COMFORT
 
     def least(self, s: float, is_bump: bool = False) -> float:
-        """Metres at a station: the least radius that the rule allows, for a crest or a dip asked for too."""
+        """Returns the least radius that the rule allows at a station, both in metres."""
         return self._square(s) / (GRAVITY if is_bump else MOST)
 
     def eased(self, s: float, ease: float, is_bump: bool = False) -> float:
-        """Metres at a station: so much of comfort, and never less than the least."""
+        """Returns a share of the comfortable radius at a station, and never less than the least; metres."""
         least = LEAST_SPARE * self.least(s, is_bump)
         return max(ease * SPARE * self.comfort(s), least)
 
@@ -89,7 +89,7 @@ def softened(
     lows: Sequence[float],
     highs: Sequence[float],
 ) -> list[float]:
-    """Grades moved as little as it takes until the parabolas between them fit, each within its bounds.
+    """Returns grades moved as little as it takes until the parabolas between them fit, within their bounds.
 
     Each slope that has too little room is put right in turn, by moving it and its neighbours: projections
     onto convex sets, which come to grades that fit wherever there are such.
@@ -120,7 +120,7 @@ def made_to_fit(
     pace: Pace,
     roomier: float = 1.0,
 ) -> list[float]:
-    """Grades of segments, moved until the parabolas fit that the rule asks for.
+    """Returns grades of segments, moved until the parabolas that the rule asks for fit.
 
     Args:
         grades: percent, of each segment.
@@ -143,7 +143,7 @@ def made_to_fit(
 
 
 def runs_of(inclines: Sequence[float], joining: Collection[int]) -> list[int]:
-    """Numbers for ``made_to_fit``: equal for neighbours of one incline.
+    """Returns numbers for ``made_to_fit`` that are equal for neighbours of one incline.
 
     Those that only join others go with the neighbour whose incline is nearer: between two slopes, a short
     third one leaves no room for their parabolas.
@@ -191,7 +191,7 @@ def _made_room(
 def joined(
     segments: Sequence[Segment], pace: Pace, ease: float = 1.0, opened: Collection[int] | None = None
 ) -> tuple[Segment, ...]:
-    """The segments with radii for parabolas that have none; where there is little room, what can be built.
+    """Returns the segments with radii for parabolas that have none, as large as there is room for.
 
     Args:
         segments: in driving order.
@@ -219,7 +219,7 @@ def joined(
 
 
 def changed_joints(before: Sequence[Segment], after: Sequence[Segment]) -> frozenset[int]:
-    """Indices of segments whose slope meets another than it did anywhere before."""
+    """Returns indices of segments where two slopes meet that met nowhere before."""
     known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
     return frozenset(
         i
@@ -229,7 +229,7 @@ def changed_joints(before: Sequence[Segment], after: Sequence[Segment]) -> froze
 
 
 def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
-    """The segments with parabolas that are smaller than the rule allows made as large as it asks for.
+    """Returns the segments, with parabolas enlarged that are smaller than the rule allows.
 
     Where their neighbours leave them no room, those give way.
     """
@@ -250,7 +250,7 @@ def _with_radius(segment: Segment, radius: float | None) -> Segment:
 
 
 def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> bool:
-    """Is a parabola smaller than the rule allows?"""
+    """Returns whether a parabola is smaller than the rule allows."""
     return any(True for _ in _too_small(segments, pace, bumps))
 
 

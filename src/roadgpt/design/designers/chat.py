@@ -19,7 +19,7 @@ RULES = "chat_rules.txt"
 
 
 class ChatDesigner:
-    """Designs by asking a language model, in rounds."""
+    """A designer that asks a language model, in rounds."""
 
     redrafts = False
     """It has asked again itself, as often as it may."""
@@ -33,7 +33,7 @@ class ChatDesigner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
-        """The model's Design for the Brief; the best that came of all rounds, even where it is not valid.
+        """Returns the best Design of all rounds, even where it is not valid.
 
         Raises:
             DesignError, ReplyError: no answer was a road.

@@ -64,7 +64,7 @@ class _Draft(NamedTuple):
 
 
 class Planner:
-    """Designs by search; the default designer."""
+    """The default designer, which searches by drawing drafts."""
 
     def __init__(self) -> None:
         self._shapes = Shapes()
@@ -72,7 +72,7 @@ class Planner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
-        """A Design for the Brief; ``notes`` only move the seed on, as every draft is checked anyway.
+        """Returns a Design for the Brief. ``notes`` only change the seed, as every draft is checked anyway.
 
         Raises:
             DesignError: no draft passed; says which wish stood in the way, and what to do.
@@ -84,7 +84,7 @@ class Planner:
 
 
 def fits(brief: Brief, world: World) -> bool:
-    """Is a road drafted soon, for more than one seed?"""
+    """Returns whether a road can be drafted within few drafts, for each of some seeds."""
     try:
         searches = [_Search(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
         return all(search.found(TRIED) is not None for search in searches)
@@ -110,7 +110,7 @@ class _Search:
         self.boxes: list[float] = []
 
     def run(self) -> tuple[Design, Road]:
-        """The first draft that passes; where all are like earlier roads, the least alike.
+        """Returns the first draft that passes; where all are similar to earlier roads, the least similar.
 
         Raises:
             DesignError: none did.
@@ -124,7 +124,7 @@ class _Search:
         return found
 
     def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
-        """The same; None where none passes."""
+        """Returns the first draft that passes, or None."""
         alike: list[tuple[float, int, _Draft]] = []
         finished = 0
         most_alike = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS

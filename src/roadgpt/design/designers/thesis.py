@@ -28,7 +28,7 @@ RULES = "thesis_rules.txt"
 
 
 class ThesisDesigner:
-    """Designs as RoadGPT's thesis did: one question, and what comes of it."""
+    """A designer that works as in RoadGPT's thesis: it asks one question and takes the answer as it is."""
 
     redrafts = False
     """An invalid road counts as one."""
@@ -42,7 +42,7 @@ class ThesisDesigner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
-        """The Design that the model answers with; ``notes``, ``earlier`` and ``seed`` are nothing to it.
+        """Returns the Design that the model answers with. ``notes``, ``earlier`` and ``seed`` are not used.
 
         Raises:
             ReplyError: the answer is no design.

@@ -32,7 +32,7 @@ MOST_CHANGES = 12
 
 
 class Edited(NamedTuple):
-    """The changed Design, and what is different about it, in sentences."""
+    """A changed Design, and sentences that say what is different about it."""
 
     design: Design
     changes: tuple[str, ...]
@@ -48,7 +48,7 @@ def edit(
     designer: str = "planner",
     chat: ChatSettings | None = None,
 ) -> Edited:
-    """The Design as the words want it.
+    """Returns the Design, changed as the words ask for.
 
     Args:
         design: as it is; it is not changed itself.

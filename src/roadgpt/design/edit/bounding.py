@@ -10,7 +10,7 @@ from roadgpt.design.road_elements import RoadElement
 
 
 def is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
-    """Is an element on the wrong side of what a change bounds?"""
+    """Returns whether an element is beyond the bound of a change."""
     assert change.to is not None
     seen = element.seen
     if change.what == "slope":
@@ -26,7 +26,7 @@ def is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
 
 
 def within(change: Change, elements: Sequence[RoadElement]) -> tuple[tuple[EditStep, ...], ...]:
-    """Slopes of elements that keep the bound: what is beyond is as steep as it says."""
+    """Returns the candidates that bring slopes within the bound of a change."""
     assert change.to is not None
     names = frozenset(element.name for element in elements)
     if change.bound < 0:

@@ -59,7 +59,7 @@ SEEN = 10.6  # m: the shortest straight that is seen
 def change_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[EditCandidate, ...]:
-    """All ways, the preferred one first; empty where everything is as it was asked for already.
+    """Returns all candidates, the preferred one first; none where everything is as was asked for already.
 
     Args:
         change: anything but adding, removing and mirroring.
@@ -95,7 +95,7 @@ def change_candidates(
 
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Turns to the one and to the other side by turns, as the first one begins; empty where they are so."""
+    """Returns the candidates that make turns alternate from the first one on; none where they do already."""
     side, wrong = elements[0].side, list[RoadElement]()
     for element in elements:
         wrong += [element] if element.side != side else []

@@ -33,13 +33,13 @@ says. Change no more than the request asks for."""
 
 
 class EditedSegment(AnswerSegment):
-    """A segment of the changed road."""
+    """A segment of a road as a language model changed it."""
 
     was: int = Field(description="Number of the old segment that it is; 0 of a new one.")
 
 
 class EditedRoad(BaseModel):
-    """The changed road."""
+    """A road as a language model changed it."""
 
     touched: list[int] = Field(description="Numbers of the old segments that the request speaks of.")
     theta: Number = Field(description="Degrees, of the start; as it was, but for good reasons.")
@@ -49,7 +49,7 @@ class EditedRoad(BaseModel):
 def edited_by_chat(
     chat: Chat, settings: ChatSettings, design: Design, words: str, world: World, geometry: Geometry
 ) -> tuple[Design, tuple[str, ...]]:
-    """The Design as a language model changes it, and what is different, in sentences.
+    """Returns the Design as a language model changes it, and sentences that say what is different.
 
     Raises:
         EditError: no answer was a valid road that differs from the old one.

@@ -11,7 +11,7 @@ IDLE = {"too", "make", "keep", "with", "of", "at", "as", "to", "by", "a", "the",
 
 @dataclass
 class RequestClause:
-    """What was found in one clause."""
+    """The meanings that were found in one clause of a request."""
 
     targets: list[Target] = field(default_factory=list)
     new: list[Target] = field(default_factory=list)
@@ -25,22 +25,22 @@ class RequestClause:
 
     @property
     def names(self) -> set[str]:
-        """Of all meanings that are left."""
+        """Names of all meanings that are left."""
         return {lexeme.name for lexeme in self.row}
 
     @property
     def keeps(self) -> bool:
-        """Does it say no more than what is to stay as it is?"""
+        """Whether it says only what is to stay as it is."""
         return "keep" in self.names and not self.is_action
 
     @property
     def is_amount(self) -> bool:
-        """Is it no more than a number?"""
+        """Whether it is only a number."""
         named = self.targets or self.new or self.places or self.unknown
         return not named and "#" in self.names and self.names <= IDLE | {"#"}
 
     @property
     def is_action(self) -> bool:
-        """Does it say what is to be done?"""
+        """Whether it says what is to be done."""
         is_side = "make" in self.names and any(target.is_bare for target in self.targets)
         return bool(self.new) or is_side or bool(self.names - IDLE)

@@ -13,11 +13,11 @@ class CountedRow:
         self.row = row
 
     def name(self, at: int) -> str:
-        """Of the meaning that stands there; empty where none does."""
+        """Returns the name of the meaning at an index; empty where there is none."""
         return self.row[at].name if 0 <= at < len(self.row) else ""
 
     def ordinals(self, at: int, found: dict[str, Any]) -> int:
-        """'second', 'first and third', 'last two', 'second to fourth'."""
+        """Reads 'second', 'first and third', 'last two' or 'second to fourth'."""
         numbers = [int(self.row[at].value)]
         at += 1
         if self.name(at) == "#" and not self.row[at].unit and abs(numbers[0]) == 1:
@@ -41,7 +41,7 @@ class CountedRow:
         return at
 
     def numbers(self, at: int, found: dict[str, Any]) -> int:
-        """'turns 2 to 4', 'turn 3', 'turns 1, 3 and 5'."""
+        """Reads 'turns 2 to 4', 'turn 3' or 'turns 1, 3 and 5'."""
         numbers: list[int] = []
         while (
             self.name(at) == "#" and not self.row[at].unit and self.row[at].value == int(self.row[at].value)

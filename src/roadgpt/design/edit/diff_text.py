@@ -13,7 +13,7 @@ AGAIN = ("start ", "turned ", "theta ")  # what a repair says of the road as a w
 
 
 def sentences(before: Design, elements: RoadElements, found: Measures, made: Made) -> tuple[str, ...]:
-    """One for every turn and straight that is not as it was, and for the road as a whole."""
+    """Returns a sentence for each turn and straight that has changed, and for the road as a whole."""
     besides = [said for said in made.besides if not said.startswith(AGAIN)]
     if besides:
         besides = [f"to keep it valid: {'; '.join(besides)}"]
@@ -22,7 +22,7 @@ def sentences(before: Design, elements: RoadElements, found: Measures, made: Mad
 
 
 def between(before: Design, after: Design, geometry: Geometry) -> tuple[str, ...]:
-    """What is different about another design, turn by turn where there are as many as before."""
+    """Returns sentences that compare two designs, turn by turn where both have the same elements."""
     (elements, found), (new, measured) = elements_on_road(before, geometry), elements_on_road(after, geometry)
     made = Made(after, new, measured)
     same = [element.name for element in elements] == [element.name for element in new]

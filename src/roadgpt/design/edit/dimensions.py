@@ -24,7 +24,7 @@ NEAR = 3  # words between a number and the noun that it belongs to
 
 @dataclass(frozen=True, slots=True)
 class StatedNumber:
-    """A number with what stands around it."""
+    """A number of a request, with its unit and the words around it."""
 
     value: float
     unit: str
@@ -34,7 +34,7 @@ class StatedNumber:
 
 
 class Dimensions:
-    """What a clause says of angle, radius, length, slope and side."""
+    """Reads what a clause says about angle, radius, length, slope and side."""
 
     def __init__(self, clause: RequestClause) -> None:
         self.clause, self.row, self.names = clause, clause.row, clause.names
@@ -71,11 +71,11 @@ class Dimensions:
         return StatedNumber(lexeme.value, lexeme.unit, before, noun, after in comparatives and before != "to")
 
     def has(self, *names: str) -> bool:
-        """Is one of these words there?"""
+        """Returns whether the clause has one of these words."""
         return any(name in self.names for name in names)
 
     def changes(self) -> list[Change]:
-        """All of them."""
+        """Returns all changes that the clause asks for."""
         out = [self._angle(), self._radius(), self._length(), self._slope(), self._side(), self._shape()]
         words = self.clause.words
         if not any(out):
@@ -93,11 +93,11 @@ class Dimensions:
         return Change("angle" if noun == "turn" else "length", to=self.amounts[0].value)
 
     def way(self) -> Way | None:
-        """Up, down or flat, where one of these words is there."""
+        """Returns up, down or flat, where the clause has one of these words."""
         return next((way for way in WAYS if way in self.names), None)
 
     def side(self) -> Side | None:
-        """Left or right, where one of these words is there."""
+        """Returns left or right, where the clause has one of these words."""
         return next((side for side in SIDES if side in self.names), None)
 
     def _more(self, up: tuple[str, ...], down: tuple[str, ...], noun: str) -> int:

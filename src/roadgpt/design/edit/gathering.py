@@ -12,7 +12,7 @@ ADVICE = "say what is to be different where, for example: make the second turn s
 
 
 def gathered(clauses: Sequence[RequestClause]) -> list[Change]:
-    """The changes that clauses ask for.
+    """Returns the changes that clauses ask for.
 
     Raises:
         EditError: a clause cannot be understood, or says of no change what it is about.
@@ -45,7 +45,7 @@ class _Gathering:
         self.last: RequestClause | None = None
 
     def act(self, clause: RequestClause) -> None:
-        """A clause that says what is to be done."""
+        """Takes a clause that says what is to be done."""
         if clause.begins_unknown and not clause.names & {
             *VERBS,
             "make",
@@ -65,7 +65,7 @@ class _Gathering:
         self.before = tuple(dict.fromkeys(c.target for c in found if c.target is not None)) or self.before
 
     def name(self, clause: RequestClause, is_last: bool) -> None:
-        """A clause of places alone; the last one is to be as what was said before."""
+        """Takes a clause that only names places; the last one is to be changed as was said before."""
         added = [index for index, change in enumerate(self.changes) if change.what == "add"]
         if self._is_side_of_new(clause):
             self.changes[-1] = replace(self.changes[-1], side=clause.targets[0].side)
@@ -83,7 +83,11 @@ class _Gathering:
             self.waiting.append(clause)
 
     def done(self) -> list[Change]:
-        """All changes, if nothing waits for what is wanted of it."""
+        """Returns all changes.
+
+        Raises:
+            EditError: nothing says what to do with a place that was named.
+        """
         if self.waiting and not (self.changes and self.last is None):
             said = " and ".join(clause.words for clause in self.waiting)
             raise EditError(f"what is to be different about '{short(said)}' is not said; {ADVICE}")
@@ -109,7 +113,7 @@ def _complains_of_it(clause: RequestClause) -> bool:
 
 
 def short(words: str) -> str:
-    """Words as they are shown in a sentence."""
+    """Returns words shortened so that they can be quoted in a sentence."""
     plain = " ".join(words.split())
     return plain if len(plain) <= 60 else f"{plain[:59]}…"
 

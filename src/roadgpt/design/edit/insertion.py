@@ -40,7 +40,7 @@ SHARPNESS = {
 def insertion_candidates(
     change: Change, elements: RoadElements, world: World, number: int
 ) -> tuple[EditCandidate, ...]:
-    """All ways to add what a change asks for.
+    """Returns all candidates that add what a change asks for.
 
     Args:
         change: what, and where.

@@ -19,7 +19,7 @@ WHOLE_ROAD = RoadElement("", "gap", ())  # changes nothing, and is measured
 def road_length_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[tuple[EditStep, ...], ...]:
-    """All ways, the preferred one first.
+    """Returns all candidates that give the road another length, the preferred one first.
 
     Raises:
         EditError: so short a road is none.

@@ -21,7 +21,7 @@ SIGNS = {",": "comma", ";": "then", ".": "stop", "!": "stop", "\n": "then", "%":
 
 @dataclass(frozen=True, slots=True)
 class RequestLexeme:
-    """A meaning: a name of the vocabulary, "#" for a number, "ord" for a place in a row."""
+    """A meaning: a name of the vocabulary, "#" for a number, "ord" for an ordinal."""
 
     name: str
     text: str
@@ -60,7 +60,7 @@ def _longest() -> int:
 
 
 def lexemes(words: str) -> list[RequestLexeme]:
-    """The meanings of a request in order; words without a meaning are UNKNOWN, noise is left out."""
+    """Returns the meanings of a request in order; words without a meaning are UNKNOWN, noise is left out."""
     found = tokens(_OWNER.sub(r"\1", _ELIDED.sub(r"\1 ", words)))
     out: list[RequestLexeme] = []
     at = 0

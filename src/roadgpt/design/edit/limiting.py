@@ -34,7 +34,7 @@ def _apart(lexeme: RequestLexeme, behind: str) -> tuple[RequestLexeme, ...]:
 
 
 def bounded(row: Row) -> Row:
-    """The same, with what it is to be at most or at least in place of what it is not to be."""
+    """Returns the row with 'at most' or 'at least' in place of what a road is not to be."""
     row = [y for at, x in enumerate(row) for y in _apart(x, _name(row, at + 1))]
     out: Row = []
     at = 0

@@ -36,19 +36,19 @@ PLACES = {"after", "before", "between", "on"}
 
 
 class NamedTarget(NamedTuple):
-    """A target, and the index behind it."""
+    """A target that was read from a row, and the index behind it."""
 
     target: Target
     stop: int
 
 
 def named(row: Sequence[RequestLexeme], at: int) -> NamedTarget | None:
-    """The target that is named from ``at`` on; None where none is."""
+    """Returns the target that is named from index ``at`` on; None where there is none."""
     return _TargetReader(row).read(at)
 
 
 def place_at(row: Sequence[RequestLexeme], at: int) -> tuple[int, Place | None]:
-    """A place such as 'after the second turn' and the index behind it; None where none stands there."""
+    """Returns a place such as 'after the second turn' and the index behind it; None where there is none."""
     return _TargetReader(row).place_behind(at)
 
 
@@ -234,7 +234,7 @@ class _TargetReader(CountedRow):
         return NamedTarget(target, at)
 
     def place_behind(self, at: int) -> tuple[int, Place | None]:
-        """'after the second turn', 'between the first and the second turn', where it stands here."""
+        """Returns a place such as 'after the second turn', where the row has one at this index."""
         name = self.name(at)
         if name not in PLACES:
             return at, None

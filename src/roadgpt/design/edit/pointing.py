@@ -15,7 +15,7 @@ KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chi
 
 
 def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
-    """The elements that are meant, in driving order.
+    """Returns the elements that a target means, in driving order.
 
     Args:
         target: as it was read.
@@ -41,12 +41,12 @@ def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElem
 
 
 def turns(elements: RoadElements) -> list[RoadElement]:
-    """All turns."""
+    """Returns all turns."""
     return [element for element in elements if element.kind == "turn"]
 
 
 def straights(elements: RoadElements) -> list[RoadElement]:
-    """All straights that are seen."""
+    """Returns all straights that are long enough to be seen."""
     return [element for element in elements if element.kind == "gap" and element.seen is not None]
 
 

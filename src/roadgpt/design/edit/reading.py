@@ -23,7 +23,7 @@ AT = {"at_start": "start", "at_end": "end", "at_mid": "middle"}
 
 
 def read_request(words: str) -> EditRequest:
-    """What a change request asks for.
+    """Reads what a change request asks for.
 
     Raises:
         EditError: it is empty, too long, or asks for no change that is known.

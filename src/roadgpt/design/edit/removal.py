@@ -12,7 +12,7 @@ from roadgpt.road import Segment
 
 
 def removal_candidates(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[EditCandidate, ...]:
-    """All ways to take turns or straights away: nothing, or a straight, in their place."""
+    """Returns all candidates that replace turns or straights by nothing or by a straight."""
     if len(gone) == len([b for b in elements if b.segments]):
         raise EditError("then no road would be left; remove fewer")
     fillers = (0.0, SEPARATE, 1.0, 45.0)

@@ -66,13 +66,13 @@ class Target:
 
     @property
     def is_new(self) -> bool:
-        """Does it speak of something that is not on the road yet?"""
+        """Whether it names something that is not on the road yet."""
         return self.indefinite or (self.count is not None and not (self.numbers or self.most))
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where on the road: after, before or on something, or between two things."""
+    """A place on the road: after, before or on something, or between two things."""
 
     how: Literal["after", "before", "between", "on", "start", "end", "middle"]
     target: Target | None = None
@@ -81,7 +81,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One thing that is to be different afterwards."""
+    """One change that is asked for."""
 
     what: What
     target: Target | None = None
@@ -114,7 +114,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class EditRequest:
-    """All that was asked for at once."""
+    """All changes that are asked for at once."""
 
     words: str
     changes: tuple[Change, ...]

@@ -35,7 +35,7 @@ ONTO = {"to", "from", "on", "the", "ord", "every", "it", "at_end", "at_start", "
 
 
 def reworded(row: Sequence[RequestLexeme]) -> Row:
-    """The same request, put plainly."""
+    """Returns the same request in a plainer form."""
     out = _by_extremes(_turning(_without_statements(_without_asides([*row]))))
     out = [lexeme for lexeme in out if lexeme.name != "is"]
     out = _by_amounts(_new_in_row(_from_to(_followed(_instead(bounded(_apart(_pairs(out))))))))

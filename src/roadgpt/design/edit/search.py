@@ -33,7 +33,7 @@ Aims = dict[tuple[str, Quantity], float]
 
 
 class Made(NamedTuple):
-    """A road with the changes, how it measures, and what had to be changed besides."""
+    """A road with the changes, its measures, and what else had to be changed."""
 
     design: Design
     elements: RoadElements
@@ -42,7 +42,7 @@ class Made(NamedTuple):
 
 
 class Tried(NamedTuple):
-    """What came of one way: a road, or why there is none."""
+    """The result of trying one candidate: a road, or the reason why there is none."""
 
     made: Made | None
     objection: str
@@ -58,7 +58,7 @@ def tried(
     world: World,
     geometry: Geometry,
 ) -> Tried:
-    """The first way that makes a valid road; else the objection to the preferred one.
+    """Returns the first candidate that makes a valid road; else the objection to the preferred one.
 
     Args:
         design: before the edit.
@@ -208,7 +208,7 @@ def _unlike(elements: RoadElements, found: Measures) -> str:
 
 
 def seen_as(name: str, elements: RoadElements, found: Measures) -> MeasuredFeature | None:
-    """How an element measures on the finished road; None where it is not seen by itself."""
+    """Returns the measured feature of an element on the road; None where it is not seen by itself."""
     turns = [element.name for element in elements if element.kind == "turn"]
     if name in turns:
         return found.turns[turns.index(name)]

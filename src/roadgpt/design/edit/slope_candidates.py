@@ -18,7 +18,7 @@ STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 
 
 def slope_candidates(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
-    """Grades of one turn or straight."""
+    """Returns the steps that give one turn or straight another grade, the preferred one first."""
     now = element.seen.grade if element.seen else element.incline
     limit = 100 * world.max_grade
     sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
@@ -77,7 +77,7 @@ def _steeper(change: Change, element: RoadElement, now: float, sign: int, limit:
 def road_slope_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[tuple[EditStep, ...], ...]:
-    """Grades of the whole road, or of all that lies behind a place."""
+    """Returns the candidates that give many elements other grades, the preferred one first."""
     names = frozenset(element.name for element in elements)
     limit = 100 * world.max_grade - 0.3
     sign = {"up": 1, "down": -1}.get(change.way or "", 0)

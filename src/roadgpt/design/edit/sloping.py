@@ -9,7 +9,7 @@ from roadgpt.road import World
 
 @dataclass(frozen=True, slots=True)
 class SlopeOfAll:
-    """Another slope of many elements: every incline times a factor, and so much more; then within bounds."""
+    """Changes the slopes of many elements: each incline is multiplied, increased and then clipped."""
 
     names: frozenset[str]
     times: float = 1.0
@@ -21,11 +21,11 @@ class SlopeOfAll:
 
     @property
     def goals(self) -> tuple[Goal, ...]:
-        """None: inclines of many segments measure as they are written."""
+        """None, because inclines of many segments measure as they are written."""
         return ()
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Every segment by itself."""
+        """Returns the elements with each segment's incline changed by itself."""
         limit = 100 * world.max_grade - 0.2
 
         def one(incline: float) -> float:

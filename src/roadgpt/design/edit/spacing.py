@@ -11,12 +11,12 @@ HIDDEN = 9.0  # m, measured: turns of one hand with so much between them are two
 
 
 def gap(name: str, length: float, incline: float) -> RoadElement:
-    """A straight that is new."""
+    """Returns a new straight."""
     return RoadElement(name, "gap", (straight(length, incline),))
 
 
 def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
-    """Straights between new neighbours of one hand, so that they are not seen as one turn.
+    """Returns the elements with straights between new neighbours of one hand, so that two turns are seen.
 
     Turns that were neighbours before, on the same sides, are two already.
     """

@@ -47,12 +47,12 @@ class EditStep(Protocol):
         ...
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """The elements with the change."""
+        """Returns the elements with the change."""
         ...
 
 
 def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], RoadElement]) -> RoadElements:
-    """The elements, of which the one of that name is changed."""
+    """Returns the elements, of which the one of that name is changed."""
     return tuple(change(element) if element.name == name else element for element in elements)
 
 
@@ -160,7 +160,7 @@ def _sloped(element: RoadElement, grade: float, world: World) -> RoadElement:
 
 
 def scaled(segment: Segment, more: float, wider: float) -> Segment:
-    """A segment that turns ``more`` times as far at ``wider`` times the radius; all else in proportion."""
+    """Returns a segment that turns ``more`` times as far at ``wider`` times the radius."""
     if not segment.turn_degrees:
         return segment
     degrees = round(segment.turn_degrees * more * TENTH) / TENTH
@@ -183,12 +183,12 @@ def scaled(segment: Segment, more: float, wider: float) -> Segment:
 
 
 def straight(length: float, incline: float) -> Segment:
-    """A straight segment with numbers as they are written."""
+    """Returns a straight segment with its numbers rounded as they are written."""
     return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
 
 
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
-    """A turn of an element's side and slope that is written anew."""
+    """Returns a turn that has the element's side and slope and is written anew."""
     ramps = [s.transition for s in element.segments if s.transition]
     ramp = ramps[0] if ramps else RAMP_SHARE * radius * radians(degrees)
     segments = turn_segments(degrees, 1 if element.side == "left" else -1, radius, ramp, element.incline)
@@ -198,13 +198,13 @@ def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElemen
 def turn_segments(
     degrees: float, hand: int, radius: float, ramp: float, incline: float
 ) -> tuple[Segment, ...]:
-    """A turn as the planner writes it."""
+    """Returns the segments of a turn as the planner writes it."""
     turn = turn_element(degrees, hand, radius, ramp)
     return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
 
 def stretched(element: RoadElement, more: float) -> RoadElement:
-    """A gap with so many metres more of straight road."""
+    """Returns a gap with ``more`` metres more of straight road."""
     straight = [i for i, s in enumerate(element.segments) if not s.turn_degrees]
     if not straight:
         new = Segment(distance=max(round(more * TENTH) / TENTH, LEAST), direction="straight")
@@ -227,25 +227,25 @@ def _with_distance(segment: Segment, distance: float) -> Segment:
 
 
 def with_incline(segment: Segment, incline: float) -> Segment:
-    """The segment on another slope, percent."""
+    """Returns the segment with another incline in percent."""
     rounded = round(float(incline) * TENTH) / TENTH
     return segment if rounded == segment.incline else segment.model_copy(update={"incline": rounded})
 
 
 @dataclass(frozen=True, slots=True)
 class Flip:
-    """A turn to the other side."""
+    """Mirrors one turn."""
 
     element: RoadElement
     goals: tuple[Goal, ...] = ()
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """All that bends, bends the other way."""
+        """Returns the elements with this one mirrored."""
         return changed(elements, self.element.name, flipped)
 
 
 def flipped(element: RoadElement) -> RoadElement:
-    """The mirror image of an element."""
+    """Returns the mirror image of an element."""
     return replace(
         element,
         side=element.side and OTHER_SIDE[element.side],
@@ -262,25 +262,25 @@ def _mirrored(segment: Segment) -> Segment:
 
 @dataclass(frozen=True, slots=True)
 class FlipAll:
-    """The mirror image of the whole road."""
+    """Mirrors the whole road."""
 
     goals: tuple[Goal, ...] = ()
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Every turn, and what bends between them."""
+        """Returns the elements, all mirrored."""
         return tuple(flipped(element) for element in elements)
 
 
 @dataclass(frozen=True, slots=True)
 class Become:
-    """A element becomes a gap of these segments, or vanishes."""
+    """Replaces an element by a gap of these segments, or removes it."""
 
     element: RoadElement
     segments: Sequence[Segment] = ()
     goals: tuple[Goal, ...] = ()
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Turns turn into gaps."""
+        """Returns the elements with a gap in place of this one."""
         return changed(
             elements,
             self.element.name,
@@ -290,7 +290,7 @@ class Become:
 
 @dataclass(frozen=True, slots=True)
 class Insert:
-    """New elements before the element of that name, or at the end where it is empty."""
+    """Inserts new elements before the element of that name, or at the end where the name is empty."""
 
     before: str
     elements: RoadElements
@@ -301,7 +301,7 @@ class Insert:
     """Segments of its first half; 0 halves the longest one."""
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """The new elements in their place, on the slope that is aimed at."""
+        """Returns the elements with the new ones in their place, on the slope that is aimed at."""
         new = tuple(self._aimed(element, aims) for element in self.elements)
         if self.split:
             return tuple(

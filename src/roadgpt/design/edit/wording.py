@@ -32,7 +32,7 @@ ENDINGS = {
 
 
 def wanted(clause: RequestClause, before: tuple[Target, ...]) -> list[Change]:
-    """The changes of one clause; empty where nothing was said that is known.
+    """Returns the changes that one clause asks for; none where nothing in it is known.
 
     Args:
         clause: places, new things and the words that are left.

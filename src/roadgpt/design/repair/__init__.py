@@ -40,14 +40,14 @@ SHORTEST_RAMP = 0.1  # m
 
 
 class Repaired(NamedTuple):
-    """A Design, and what was changed of the one that was proposed, in sentences."""
+    """A repaired Design, and sentences that say what was changed."""
 
     design: Design
     changes: tuple[str, ...]
 
 
 def repair(design: Design, brief: Brief | None, world: World, how: How = "none") -> Repaired:
-    """The proposed design, made valid as far as ``how`` allows.
+    """Returns the proposed design, made valid as far as ``how`` allows.
 
     Args:
         design: as proposed.

@@ -8,7 +8,7 @@ ALL_LISTED = 60  # segments; of longer lists only their number is told
 
 
 def changes_between(before: Design, after: Design) -> tuple[str, ...]:
-    """One sentence for the start, one for the heading, and one for every segment that changed."""
+    """Returns a sentence for the start, one for the heading, and one for each segment that changed."""
     out = list(_placing(before, after))
     pairs = zip(before.segments, after.segments, strict=True)
     told = [said for number, (one, other) in enumerate(pairs, 1) if (said := _segment(number, one, other))]

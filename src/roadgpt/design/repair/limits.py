@@ -29,7 +29,7 @@ ANGLE_MARGIN = 0.4  # degrees, off what was promised
 
 
 class Margins(NamedTuple):
-    """How far from the limits of the rules a repaired road keeps; wider where the first were too narrow."""
+    """Distances that a repaired road keeps from the limits of the rules."""
 
     radius: float = 1.045
     """Of the least one: the competition's spline cuts corners."""
@@ -49,7 +49,7 @@ MARGINS = (Margins(), Margins(1.07, 13.5, 18.0, 1.5, 1.0, 0.1), Margins(1.12, 15
 
 
 class Rows:
-    """Rows of limits, gathered."""
+    """Collects limits as rows of a matrix."""
 
     def __init__(self, count: int) -> None:
         self.count = count
@@ -57,7 +57,7 @@ class Rows:
         self.most: list[float] = []
 
     def add(self, lengths: dict[int, float], turns: dict[int, float], most: float) -> None:
-        """``lengths . d + turns . |t| <= most``."""
+        """Adds the limit ``lengths . d + turns . |t| <= most``."""
         row = np.zeros(2 * self.count)
         for index, factor in lengths.items():
             row[index] += factor
@@ -67,21 +67,21 @@ class Rows:
         self.most.append(most)
 
     def within(self, members: Sequence[int], span: Range | None) -> None:
-        """The lengths of some segments add up to what is in the range."""
+        """Adds the limit that the lengths of some segments add up to a sum in the range, metres."""
         if span and span.lo > 0:
             self.add(dict.fromkeys(members, -1.0), {}, -span.lo)
         if span and span.hi < inf:
             self.add(dict.fromkeys(members, 1.0), {}, span.hi)
 
     def turned(self, members: Sequence[int], span: Range | None) -> None:
-        """The turns of some segments add up to what is in the range, degrees."""
+        """Adds the limit that the turns of some segments add up to a sum in the range, degrees."""
         if span and span.lo > 0:
             self.add({}, dict.fromkeys(members, -METRES_PER_RADIAN), -METRES_PER_RADIAN * radians(span.lo))
         if span and span.hi < inf:
             self.add({}, dict.fromkeys(members, METRES_PER_RADIAN), METRES_PER_RADIAN * radians(span.hi))
 
     def done(self) -> tuple[Array, Array]:
-        """The matrix ``(m, 2 n)`` and the right side ``(m,)``."""
+        """Returns the matrix ``(m, 2 n)`` and the right side ``(m,)``."""
         return np.array(self.rows).reshape(-1, 2 * self.count), np.array(self.most)
 
 
@@ -93,7 +93,7 @@ def limits_of(
     world: World,
     margins: Margins,
 ) -> tuple[Array, Array]:
-    """Rows of all that lengths and turns must keep, ``(m, 2 n)`` and ``(m,)``."""
+    """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right side ``(m,)``."""
     rows = Rows(len(segments))
     radius = world.min_radius * margins.radius
     shortest = 1 / (1 - LEAST_RAMP)

@@ -24,7 +24,7 @@ CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: how the start is 
 
 
 def placed(design: Design, world: World) -> Design | None:
-    """The design moved, and turned if need be, so that its ribbon lies inside the map; None: it is too large.
+    """Returns the design moved, and if need be rotated, onto the map; None where the road is too large.
 
     It is moved no further than is needed, and turned about the middle of the road by the least angle.
     """

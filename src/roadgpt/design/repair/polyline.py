@@ -24,7 +24,7 @@ Complex = NDArray[np.complex128]
 
 
 class PlanPolyline(NamedTuple):
-    """Steps of a plan."""
+    """A plan as steps of a polyline."""
 
     owner: NDArray[np.intp]
     """Segment of every step, ``(k,)``."""
@@ -34,7 +34,7 @@ class PlanPolyline(NamedTuple):
     """Of every segment: its largest curvature times its length, over its turn; 0 of straights."""
 
     def walk(self, lengths: Array, turns: Array, heading: float) -> tuple[Complex, Complex]:
-        """Points ``(k + 1,)`` as x + iy from the origin, and every step.
+        """Returns points ``(k + 1,)`` as x + iy from the origin, and every step.
 
         Args:
             lengths: of the segments, metres.
@@ -48,7 +48,7 @@ class PlanPolyline(NamedTuple):
         return np.concatenate([[0j], np.cumsum(steps)]), steps
 
     def slopes(self, lengths: Array, steps: Complex) -> tuple[Complex, Complex]:
-        """How every point moves with each length and each turn: ``(k + 1, n)`` twice."""
+        """Returns the derivatives of all points by each length and by each turn, ``(k + 1, n)`` each."""
         n, k = len(lengths), len(steps)
         own = self.owner[:, None] == np.arange(n)
         behind = np.where(own, self.share[:, None], self.owner[:, None] > np.arange(n))
@@ -59,7 +59,7 @@ class PlanPolyline(NamedTuple):
 
 
 def polyline_of(segments: Sequence[Segment]) -> PlanPolyline:
-    """The figure of the plan that is built from these segments."""
+    """Returns the polyline of the plan that is built from these segments."""
     pieces = pieces_of(segments)
     curve = PieceCurve(0.0, 0.0, 0.0, joined(pieces))
     step = max(STEP, curve.length / MOST_STEPS)

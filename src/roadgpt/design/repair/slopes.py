@@ -42,7 +42,7 @@ def sloped(
     outline: Outline,
     world: World,
 ) -> Design:
-    """The design with inclines that keep the slopes; plan and start stay as they are."""
+    """Returns the design with inclines at which every slope is kept; plan and start stay as they are."""
     windows = [_window(element, outline, world) for element in elements]
     own = [window for window, element in zip(windows, elements, strict=True) for _ in element.segments]
     segments = list(design.segments)
@@ -81,7 +81,7 @@ def _is_seen(element: RoadElement) -> bool:
 
 
 def with_inclines(segments: Sequence[Segment], grades: Array) -> list[Segment]:
-    """The segments with other inclines, rounded to a tenth; those that stay are the same."""
+    """Returns the segments with other inclines, rounded to a tenth; unchanged ones stay the same objects."""
     rounded = [round(float(g) * TENTH) / TENTH for g in grades]
     return [
         s if s.incline == g else s.model_copy(update={"incline": g})

@@ -43,7 +43,7 @@ STARTS = (
 
 
 class Aim(NamedTuple):
-    """What was proposed, and what it is held to."""
+    """The proposed lengths and turns, and the limits that they must keep."""
 
     lengths: Array
     turns: Array
@@ -67,7 +67,7 @@ class Solution(NamedTuple):
 
 
 def solved(aim: Aim) -> Solution | None:
-    """The cheapest change that was found; None where none keeps the limits."""
+    """Returns the cheapest change that was found; None where none keeps the limits."""
     found: list[Solution] = []
     work = 0
     for share in STARTS:
