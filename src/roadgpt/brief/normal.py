@@ -39,7 +39,7 @@ PLAIN: dict[Slope, Slope] = {
 
 
 def normal(brief: Brief) -> Brief:
-    """Returns the normal form of a Brief; the normal form of a normal form is itself."""
+    """Returns the normal form of a Brief; a Brief in normal form is returned unchanged."""
     before, after = brief, _simpler(brief)
     for _ in range(MOST_STEPS):
         if after == before:

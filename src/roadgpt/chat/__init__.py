@@ -99,9 +99,7 @@ def asks_a_model(part: Any) -> bool:
 
 
 def settings_for(part: Any, settings: ChatSettings | None) -> ChatSettings | None:
-    """Returns the settings to create a plug-in with: those given, else the user's own; None if it takes
-    none.
-    """
+    """Returns the settings to create a plug-in with, by default the user's own; None if it takes none."""
     return (settings or configured()) if asks_a_model(part) else None
 
 

@@ -163,7 +163,7 @@ def key_for(base_url: str | None) -> Key | None:
     return usable(keys[0]) if keys else None
 
 
-def name_server(base_url: str, wanted: str | None, place: object) -> None:
+def trust_server(base_url: str, wanted: str | None, place: object) -> None:
     """Records that the user names the server that a file names, so that it may get the user's key.
 
     Raises:

@@ -38,7 +38,7 @@ class Meter:
         """Adds costs."""
         self.spent = self.spent + spent
 
-    def room(self, prompt: int, most: int, price: tuple[float, float] | None, model: str) -> int:
+    def reply_tokens(self, prompt: int, most: int, price: tuple[float, float] | None, model: str) -> int:
         """Returns how many tokens an answer may have without exceeding a limit.
 
         Args:
@@ -50,12 +50,12 @@ class Meter:
         Raises:
             BudgetError: too few tokens are left for an answer.
         """
-        room = min(most, self._tokens_left(prompt), self._affordable(prompt, price, model))
-        if room >= LEAST_REPLY:
-            return room
+        reply_tokens = min(most, self._tokens_left(prompt), self._affordable(prompt, price, model))
+        if reply_tokens >= LEAST_REPLY:
+            return reply_tokens
         spent = self.spent
         limit, so_far, flag = f"{self.max_tokens or 0:,} tokens", f"{spent.usage.total:,}", "--max-tokens"
-        if self._tokens_left(prompt) > room:
+        if self._tokens_left(prompt) > reply_tokens:
             limit, so_far, flag = f"{self.max_cost or 0:g} USD", f"{spent.cost or 0:.4f}", "--max-cost"
         raise BudgetError(
             f"the limit of {limit} is too low for the next question ({so_far} are spent); "
@@ -126,7 +126,7 @@ class Account:
         now = _now.get()
         return now.meter if now else self._own
 
-    def room(self, messages: Sequence[Message], model: str) -> int:
+    def reply_tokens(self, messages: Sequence[Message], model: str) -> int:
         """Returns how many tokens the answer to these messages may have.
 
         Raises:
@@ -134,7 +134,7 @@ class Account:
         """
         prompt = sum(tokens_in(message.text) for message in messages)
         price = price_of(self.settings, model)
-        return self.meter.room(prompt, self.settings.max_completion, price, model)
+        return self.meter.reply_tokens(prompt, self.settings.max_completion, price, model)
 
     def count(self, model: str, usage: Usage, seconds: float) -> float | None:
         """Counts one answered request and returns its cost in USD; None if the price is unknown."""

@@ -9,9 +9,8 @@ from enum import IntEnum
 
 from roadgpt.chat.prices import has_openai_prices
 
-UNUSABLE_IN_A_ROW = (
-    2  # unusable replies in a row on one rung, after which the server is taken not to be able to do it
-)
+# after so many unusable replies in a row in one format, the server is taken not to support it
+UNUSABLE_IN_A_ROW = 2
 
 
 class ResponseFormat(IntEnum):

@@ -33,7 +33,7 @@ def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.G
         its = others[pair.lang]
         pair = _made(pair, joined(pair, its[int(rng.integers(len(its)))], rng))
     elif way < 0.28:
-        pair = _made(pair, wished(pair, rng))
+        pair = _made(pair, with_requirement(pair, rng))
     pair = sometimes_spoiled(pair, rng)
     if rng.random() < 0.35:
         language = pair.lang if pair.lang in LANGUAGES else "en"
@@ -91,7 +91,7 @@ def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] 
     return tidy(f"{first} {link} {second}"), standard(brief)
 
 
-def wished(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
+def with_requirement(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
     """Returns the pair with one more requirement for the whole road; None if that is not possible."""
     if "|" in pair.plan or pair.plan.startswith("!") or pair.lang not in LANGUAGES:
         return None

@@ -56,9 +56,7 @@ class DecoderGraph(nn.Module):
     def forward(
         self, token: Tensor, place: Tensor, own: Tensor, across: Tensor, seen: Tensor
     ) -> tuple[Tensor, Tensor]:
-        """Returns the scores of the next token, and the keys and values of the earlier tokens plus this
-        one.
-        """
+        """Returns the scores of the next token and ``own`` extended by this token."""
         reader = self.reader
         x = reader.tokens(token) + reader.plan_places(place)
         kept: list[Tensor] = []

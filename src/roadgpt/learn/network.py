@@ -50,8 +50,13 @@ class Attention(nn.Module):
         return x.view(x.shape[0], x.shape[1], self.heads, self.size).transpose(1, 2)
 
     def forward(self, x: Tensor, key: Tensor, value: Tensor, mask: Tensor | None) -> Tensor:
-        """Returns the attended values; ``key`` and ``value`` are already split, ``mask`` is added to the
-        scores.
+        """Returns the attended values, shape (batch, queries, width).
+
+        Args:
+            x: what asks, (batch, queries, width).
+            key: keys, already split, (batch, heads, length, size).
+            value: values, already split, (batch, heads, length, size).
+            mask: added to the scores; None masks nothing.
         """
         query = self.split(self.query(x))
         scores = query @ key.transpose(2, 3) / math.sqrt(self.size)
@@ -103,8 +108,14 @@ class DecoderLayer(nn.Module):
         mask: Tensor | None,
         seen: Tensor,
     ) -> Tensor:
-        """Applies the layer; ``own`` are keys and values of the plan so far, ``across`` those of the
-        description.
+        """Applies the layer to x (batch, tokens, width).
+
+        Args:
+            x: the embedded tokens.
+            own: keys and values of the plan so far, each (batch, heads, tokens so far, size).
+            across: keys and values of the description, each (batch, heads, pieces, size).
+            mask: added to the scores of the plan so far.
+            seen: added to the scores of the description.
         """
         x = x + self.dropout(self.own(self.norms[0](x), *own, mask))
         x = x + self.dropout(self.across(self.norms[1](x), *across, seen))
@@ -112,12 +123,12 @@ class DecoderLayer(nn.Module):
         return out
 
     def own_keys(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Returns keys and values of new tokens."""
+        """Returns keys and values of new tokens, each (batch, heads, tokens, size)."""
         y = self.norms[0](x)
         return self.own.split(self.own.key(y)), self.own.split(self.own.value(y))
 
     def across_keys(self, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Returns keys and values of the description."""
+        """Returns keys and values of the description, each (batch, heads, pieces, size)."""
         return self.across.split(self.across.key(memory)), self.across.split(self.across.value(memory))
 
 
@@ -152,11 +163,13 @@ class ReaderNetwork(nn.Module):
         return x
 
     def start(self, memory: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """Returns keys and values of the description for every decoder layer."""
+        """Returns keys and values of the description for every decoder layer, each (batch, heads, pieces,
+        size).
+        """
         return [layer.across_keys(memory) for layer in self.decoder]
 
     def write(self, tokens: Tensor, memory: Tensor, seen: Tensor) -> Tensor:
-        """Returns the scores after every token of whole plans, for training."""
+        """Returns the scores after every token of whole plans, (batch, length, tokens), for training."""
         length = tokens.shape[1]
         x = self.dropout(self.tokens(tokens) + self.plan_places.weight[:length])
         ahead = torch.full((length, length), -1e4, device=x.device, dtype=x.dtype).triu(1)
@@ -165,11 +178,13 @@ class ReaderNetwork(nn.Module):
         return self.scores(x)
 
     def scores(self, x: Tensor) -> Tensor:
-        """Returns the scores of all tokens; the token embeddings serve as input and as output weights."""
+        """Returns scores (..., tokens) for x (..., width); the token embeddings also serve as output
+        weights.
+        """
         return functional.linear(self.final(x), self.tokens.weight) * self.shape.width**-0.5 * 8 + self.bias
 
     def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
-        """Returns the scores of the next token at every place of the plan; pieces with the number 0 are
+        """Returns the scores of the next token at every place, (batch, length, tokens); piece 0 is
         padding.
         """
         seen = (pieces == 0)[:, None, None, :] * -1e4

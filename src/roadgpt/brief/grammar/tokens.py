@@ -66,9 +66,7 @@ class Token:
 
 
 def plain(text: str) -> str:
-    """Returns the text in lower case, with plain quotes and dashes and without accents: 'Größe' ->
-    'grosse'.
-    """
+    """Returns the text in lower case, with plain quotes and dashes, without accents: 'Größe' -> 'grosse'."""
     return text.lower() if text.isascii() else "".join(map(_plain_letter, text))
 
 

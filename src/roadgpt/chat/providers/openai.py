@@ -117,7 +117,7 @@ class OpenAI:
             *messages,
             *([_instruction(form)] if form is not None and response_format > ResponseFormat.SCHEMA else []),
         ]
-        room = self._account.room(told, self._model)
+        room = self._account.reply_tokens(told, self._model)
         begun = time.perf_counter()
         try:
             answer = self._sent(told, self._body(form, response_format, room))
@@ -181,9 +181,7 @@ class OpenAI:
 
 @dataclass
 class FormatFallback:
-    """How one question is asked: format by format, from the strictest to the loosest, until an answer is
-    usable.
-    """
+    """Asks one question in one response format after another, from the strictest to the loosest."""
 
     messages: list[Message]
     response_format: ResponseFormat

@@ -48,7 +48,7 @@ class Replay:
             ReplyError: the recorded exchange ended with this error.
             UsageError: the recording cannot be read.
         """
-        self._account.room(messages, self._settings.model or "")
+        self._account.reply_tokens(messages, self._settings.model or "")
         question = question_of(self._settings, messages, schema)
         kept = self._store.take(question, occasion(), self._account.meter.turns)
         if kept is None:

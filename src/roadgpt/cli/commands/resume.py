@@ -54,14 +54,14 @@ def command(
     """
     from roadgpt.campaign.lifecycle import plan_of, work
     from roadgpt.campaign.record import Record
-    from roadgpt.chat.config import name_server
+    from roadgpt.chat.config import trust_server
     from roadgpt.drive.trust import expect
 
     with Record.opened(campaign) as record:
         plan = plan_of(record)
     expect(driver, {*plan.drivers}, campaign)
     if base_url is not None:
-        name_server(base_url, plan.chat.base_url if plan.chat else None, campaign)
+        trust_server(base_url, plan.chat.base_url if plan.chat else None, campaign)
     given = {name: value for name, value in limits.items() if value is not None}
     if given and plan.chat is None:
         raise UsageError(f"--max-tokens and --max-cost are for language models; {campaign} asks none")

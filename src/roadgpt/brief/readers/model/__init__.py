@@ -151,7 +151,7 @@ class ModelReader:
         )
         if not found or found[0].is_refusal:
             return None
-        tokens = as_usual.told(found[0].tokens)
+        tokens = as_usual.restored(found[0].tokens)
         draft = replace(found[0], tokens=tokens, line=plan_of(tokens, text.slots))
         try:
             return self._as_brief(words, text, draft)

@@ -28,7 +28,7 @@ class OrdinaryNumbers(NamedTuple):
     text: SlottedText
     counts: dict[str, str]
 
-    def told(self, tokens: Sequence[str]) -> tuple[str, ...]:
+    def restored(self, tokens: Sequence[str]) -> tuple[str, ...]:
         """Returns a plan with the original counts in place of the stand-ins."""
         return tuple(self.counts.get(token, token) for token in tokens)
 

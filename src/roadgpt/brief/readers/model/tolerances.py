@@ -44,9 +44,7 @@ def _is_count(tokens: Sequence[str], at: int) -> bool:
 
 
 def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
-    """Returns the numbers without those that are tolerances; the number before one then includes its
-    words.
-    """
+    """Returns the numbers without the tolerances; the number before a tolerance then ends after it."""
     out: list[Number] = []
     for number in numbers:
         if out and _is_tolerance(tokens[out[-1].last + 1 : number.first]) and number.value < out[-1].value:
