@@ -9,7 +9,7 @@ import pytest
 
 from chat.stub_server import Scene, Stub, drops, fails, floods, says, serving
 from roadgpt.brief.readers.grammar import GrammarReader
-from roadgpt.chat import ChatSettings, habits, wire
+from roadgpt.chat import ChatSettings, client, server_quirks
 from roadgpt.errors import RoadGPTError
 from roadgpt.run import Setup, campaign, perform
 
@@ -76,11 +76,11 @@ def _alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         monkeypatch.delenv(name)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "home"))
     monkeypatch.setenv("OPENAI_API_KEY", "sk-secret-of-mine")
-    monkeypatch.setattr(wire, "sleep", lambda seconds: None)
+    monkeypatch.setattr(client, "sleep", lambda seconds: None)
     monkeypatch.chdir(tmp_path)
-    habits.forget()
+    server_quirks.forget()
     yield
-    habits.forget()
+    server_quirks.forget()
 
 
 def setup(stub: Stub, designer: str = "chat", **more: object) -> Setup:

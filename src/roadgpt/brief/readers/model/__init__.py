@@ -42,7 +42,7 @@ ADVICE = {
     "!contradiction": "the description contradicts itself; leave something out, or say which part of"
     " the road is meant",
     "!impossible": "no such road can be built: junctions, roundabouts, loops, radii below 15 m and grades"
-    " above 15 percent are not possible; ask for less",
+    " above 15 percent are not possible; leave that out",
 }
 TOO_MUCH = (
     "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or for a larger map"
