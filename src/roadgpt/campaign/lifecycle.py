@@ -1,7 +1,7 @@
-"""Launching campaigns, and going on with them: one process that thinks and writes, and workers that drive.
+"""Begins campaigns and works on them: one process schedules and writes, and workers run the tests.
 
-begin     a folder with a store in it: the plan, its cells with their Briefs, nothing done
-work      whatever the store lacks: resumed as often as it takes, it comes to the same table
+begin     makes a folder with a store in it: the plan, and its cells with their Briefs
+work      runs the tests that the store lacks; however often it is interrupted, the tables are the same
 """
 
 import sqlite3
@@ -37,13 +37,16 @@ TOLD = {
     "budget": "number of tests or seconds",
     "drives": "choice whether to drive",
 }
-"""Fields of a Plan, where people call them something else."""
+"""Names that users know for fields of a Plan."""
 
 
 def begin(plan: Plan, folder: Path) -> bool:
-    """Make a campaign's folder ready for its plan: a new one, or the one that lies there, to be gone on with.
+    """Prepares the folder of a campaign: a new one, or one that holds the same campaign already.
 
-    Reads the descriptions. Gives back whether it was there before.
+    Reads the descriptions of a new campaign.
+
+    Returns:
+        True if the campaign was there before.
 
     Raises:
         UsageError: the plan cannot be carried out, or the folder holds something else.
@@ -69,7 +72,7 @@ def begin(plan: Plan, folder: Path) -> bool:
 
 
 def _is_free(folder: Path) -> None:
-    """A folder that holds something else is left alone."""
+    """Refuses a folder that holds something else."""
     if not folder.is_dir() or (folder / STORE).is_file():
         return
     if any(path.name != LOCK and not path.name.startswith(STORE) for path in folder.iterdir()):
@@ -78,7 +81,7 @@ def _is_free(folder: Path) -> None:
 
 @contextmanager
 def _without_trace(folder: Path) -> Iterator[None]:
-    """Where nothing comes of it, leave no folder behind that holds nothing."""
+    """Removes the folder again if an error leaves nothing in it."""
     try:
         yield
     except BaseException:
@@ -90,7 +93,7 @@ def _without_trace(folder: Path) -> Iterator[None]:
 
 
 def _admit(plan: Plan) -> None:
-    """Code and servers that came with files are asked about before anything is kept, paid for or begun.
+    """Asks about code and servers that came with files, before anything is stored, paid for or begun.
 
     Raises:
         UsageError: a driver of the plan is code that the user does not name.
@@ -104,8 +107,8 @@ def _admit(plan: Plan) -> None:
 
 
 def _drivers_come(plan: Plan) -> None:
-    """A driver whose name is mistyped is told of before anything is kept or paid for; and so is a setting
-    that a simulator cannot heed."""
+    """Reports a wrong name of a driver, and a setting that a simulator cannot obey, before anything is paid
+    for."""
     if plan.drives:
         for simulator in plan.simulators:
             refuse_ignored(plugins.find("simulators", simulator), plan.world)
@@ -114,7 +117,7 @@ def _drivers_come(plan: Plan) -> None:
 
 
 def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
-    """What is read out of each description, and what that has cost."""
+    """Returns what is read from each description, and what that cost."""
     request, _ = next(plan.requests())
     meter = Meter.of(plan.chat)
     words = dict.fromkeys(text for text in plan.prompts if text.strip())
@@ -135,14 +138,14 @@ def _same(plan: Plan, folder: Path) -> None:
 
 
 def plan_of(record: Record) -> Plan:
-    """The plan that a store holds."""
+    """Returns the plan that a store holds."""
     with reading_store(record.path):
         return Plan.model_validate_json(record.meta("plan")).came_with(record.path)
 
 
 @contextmanager
 def _lone(folder: Path) -> Iterator[None]:
-    """Be the only process at work in a folder, which is made where there is none."""
+    """Makes this process the only one that works in a folder, which is made where there is none."""
     with ExitStack() as stack:
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -159,18 +162,21 @@ def _lone(folder: Path) -> Iterator[None]:
 def work(
     folder: Path, workers: int = 1, executor: str = "processes", address: str = "", plan: Plan | None = None
 ) -> Iterator[Progress]:
-    """Do what the campaign in a folder still lacks; iterate over it to make it work.
+    """Runs the tests that the campaign in a folder lacks; iterate over it to make it work.
 
     Args:
         folder: made by ``begin``.
         workers: how many.
-        executor: name of a part on the shelf ``executors``.
-        address: where the workers are, for executors that ask.
-        plan: with other limits than the one in the store; None: that one.
+        executor: name of an installed executor.
+        address: of the workers, for executors that connect to other machines.
+        plan: the plan with other limits than those in the store; None: the stored plan.
+
+    Yields:
+        The progress, after every group of results.
 
     Raises:
-        UsageError: there is no campaign, or another process is at work on it, or a part is not installed.
-        ChatError: a language model could not be asked, or a limit is reached; what is done is kept.
+        UsageError: there is no campaign, or another process is at work on it, or a plug-in is not installed.
+        ChatError: a language model could not be asked, or a limit is reached; what is done is stored.
         RoadGPTError: the system refuses to write, or there are no workers.
     """
     kind: type[Executor] = plugins.find("executors", executor)
@@ -219,7 +225,7 @@ def _conclude(folder: Path, store: Store) -> None:
 
 
 def _sweep(folder: Path, store: Store) -> None:
-    """Remove what a killed process left: files that are not whole, and drives whose results were not kept."""
+    """Removes what a killed process left: partial files, and drives whose results were not stored."""
     refuse_links(folder / TRACES, folder / LOG, folder / RESULTS, folder / CELLS)
     sweep(folder)
     if (folder / TRACES).is_dir():

@@ -1,4 +1,4 @@
-"""The values of a campaign: what is asked for, what comes of it, and what all tests of a cell share."""
+"""The values of a campaign: what is asked for, the results of tests, and what the tests of a cell share."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
 
 Goal = Literal["failures", "coverage", "hardest", "boundary"]
-"""What a search is after; a cell without a goal makes so many roads and looks for nothing."""
+"""What a search looks for; a cell without a goal makes a number of roads and does not search."""
 GOALS: tuple[Goal, ...] = get_args(Goal)
 
 MOST_TESTS = 10_000_000  # of one cell; numbers of tests have seven digits
@@ -22,15 +22,15 @@ U = TypeVar("U")
 
 
 class Budget(Frozen):
-    """When a cell is done: at whichever limit is reached first."""
+    """The limits of a cell, which is done when it reaches the first of them."""
 
     tests: Annotated[int, Field(ge=1, le=MOST_TESTS)] | None = None
     seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
-    """On the clock, over all sittings; then no further batch is begun."""
+    """Seconds on the clock, over all sessions; once they have passed, no further batch is begun."""
 
     @property
     def most(self) -> int:
-        """Tests, at most."""
+        """The largest number of tests."""
         return self.tests or MOST_TESTS
 
 
@@ -42,63 +42,68 @@ class Proposal:
     """A test that a generator asks for."""
 
     design: Design | None
-    """None: a worker drafts it from the cell's Brief, as road ``number`` of a campaign with this seed; it is
-    to differ from the designs of batches that were told."""
+    """The road; None: a worker drafts it from the cell's Brief, as road ``number`` of a campaign with this
+    seed, and
+    so that it differs from the designs of the batches that the generator was told of."""
     seed: int
-    """Of the draft; where a design is given, the driver's own."""
+    """The seed of the draft; where a design is given, the driver's own seed."""
     origin: str
-    """Where it comes from, as tables show it: 'draft', 'vary 17', 'cross 3+9', 'walk'."""
+    """Where the road comes from, as tables show it: 'draft', 'vary 17', 'cross 3+9', 'walk'."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """What came of one test; only what another day, machine load or number of workers does not change."""
+    """The result of one test.
+
+    It holds only what does not depend on the day, the load of the machine or the number of workers.
+    """
 
     number: int
-    """In its cell, from 1."""
+    """Number of the test in its cell, from 1."""
     batch: int
-    """From 0."""
+    """Number of its batch, from 0."""
     proposal: Proposal
     outcome: Outcome
     description: str
     """The outcome in a sentence."""
     design: Design | None = None
-    """What was driven; None where nothing could be designed."""
+    """The road that was driven; None where no road could be designed."""
     length: float = 0.0
-    """Metres in plan; 0 where there is no road."""
+    """Length of the road in plan, metres; 0 where there is no road."""
     margin: float | None = None
-    """Metres, see ``roadgpt.verdict.margin``; None where nobody drove."""
+    """Metres, see ``roadgpt.verdict.margin``; None where the road was not driven."""
     max_oob: float | None = None
     """Largest share of the car outside its lane, 0 to 1."""
     beyond: float | None = None
-    """Metres that its body reached beyond the marking, at most; None, too, in stores of older versions."""
+    """Largest distance of the car's body beyond the marking, metres; None also in stores of earlier versions.
+    """
     at_s: float | None = None
-    """Metres along the road where it failed."""
+    """Station of the failure, metres along the road."""
     side: Side | None = None
     cause: Cause | None = None
     features: Mapping[str, float] = field(default_factory=dict)
-    """Of the road and of the drive: ``run.features.features_of`` and ``campaign.behaviour.behaviour_of``."""
+    """Features of road and drive: ``run.features.features_of`` and ``campaign.behaviour.behaviour_of``."""
 
     @property
     def failed(self) -> bool:
-        """Did the car fail on a road that the rules allow?"""
+        """True if the car failed on a road that the rules allow."""
         return self.outcome == "FAIL"
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One combination of a plan: what all its tests share."""
+    """One combination of a plan, and what all its tests share."""
 
     name: str
     """'c01', 'c02', ..., in the order of the plan."""
     request: Request
-    """Words, seed, world and setup, as for ``roadgpt run``."""
+    """Description, seed, world and setup, as for ``roadgpt run``."""
     brief: Brief | None
-    """Read once, by the main process; None where there are no words."""
+    """What was read from the description, once, by the main process; None where there is no description."""
     generator: str
     goal: Goal | None
     settings: Mapping[str, Any] = field(default_factory=dict)
-    """Of the generator, as its own documentation has them."""
+    """The generator's settings, which its own documentation describes."""
     budget: Budget = UNLIMITED
 
 
@@ -106,39 +111,43 @@ class Pool(Protocol):
     """The workers of a campaign, for the pure work of a generator: candidates, features, predictions."""
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """``function`` of every item, in their order; the function stands at the top of a module.
+        """Returns ``function`` of every item, in the order of the items.
 
-        What the function raises is raised here again.
+        The function has to stand at the top level of a module. An error that it raises is raised here again.
         """
         ...
 
 
 class Generator(Protocol):
-    """Thinks out tests, batch by batch; made with a Cell.
+    """Proposes tests, batch by batch; it is made with a Cell.
 
-    Before batch k is asked for, every result of batches 0 to k - 2 has been told, in order of number, and
-    nothing else. Its state follows from its cell and from what it was told; its random numbers in a batch
-    come from ``np.random.default_rng([cell.request.seed, k])``. So the same campaign gives the same table
-    however many workers there are and however often it is interrupted.
+    Before it is asked for batch k, it has been told all results of batches 0 to k - 2, in order of their
+    numbers,
+    and no others. Its state may depend only on its cell and on these results, and its random numbers in a
+    batch
+    come from ``np.random.default_rng([cell.request.seed, k])``. Therefore a campaign has the same table for
+    any
+    number of workers, and however often it is interrupted.
 
-    A class that searches says so: ``goals`` names what it can search for. One without the name searches for
-    nothing, and its cells have no goal.
+    A generator that searches names in ``goals`` what it can search for. One without ``goals`` does not
+    search,
+    and its cells have no goal.
     """
 
     batch_size: int
-    """Tests in one batch, about 10 to 20: as many are always under way as two batches have."""
+    """Tests in one batch, about 10 to 20; up to two batches are running at a time."""
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """The next n tests, or fewer where there is nothing left to ask for.
+        """Returns the next n tests, or fewer where there is nothing left to propose.
 
         Args:
-            batch: its number, from 0.
+            batch: number of the batch, from 0.
             first: number of its first test, from 1.
-            n: how many, at most ``batch_size``.
-            pool: the campaign's workers, for what takes long.
+            n: number of tests, at most ``batch_size``.
+            pool: the workers of the campaign, for work that takes long.
         """
         ...
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Results of one batch, in order of number; takes under 1 ms each."""
+        """Receives the results of one batch, in order of their numbers; takes less than 1 ms for each."""
         ...

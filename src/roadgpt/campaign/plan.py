@@ -1,6 +1,6 @@
 """The Plan of a campaign: every combination of prompts, designers, drivers, simulators, generators and seeds.
 
-Each combination is a cell, with a budget of its own; all else is the same for all cells.
+Each combination is a cell with a budget of its own; everything else is the same for all cells.
 """
 
 import math
@@ -21,7 +21,7 @@ from roadgpt.road import Geometry, World
 from roadgpt.run.model import Request, Setup
 
 WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"
-"""Generators, where none is named."""
+"""The generators that are used where none is named."""
 PATIENCE = 900.0  # s for one test: longer than a drive may take, which ends by itself
 MOST_CELLS = 100_000
 
@@ -42,9 +42,9 @@ class Plan(Frozen):
     seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (0,)
     goal: Goal | None = None
     settings: Mapping[str, Any] = Field(default_factory=dict)
-    """Of the generators."""
+    """Settings of the generators."""
     budget: Budget = UNLIMITED
-    """Of each cell."""
+    """The limits of each cell."""
     reader: str = "model"
     rules: Literal["strict", "sbft"] = "strict"
     geometry: Geometry = "arcs"
@@ -53,22 +53,22 @@ class Plan(Frozen):
     world: World = World()
     chat: ChatSettings | None = None
     patience: Annotated[float, Field(gt=0, allow_inf_nan=False)] = PATIENCE
-    """Seconds for one test; who takes longer is taken to hang."""
+    """Seconds for one test; a test that takes longer is taken to hang."""
 
     def essence(self) -> "Plan":
-        """Without what may be another when the campaign goes on."""
+        """Returns the Plan without the settings that may change when the campaign is resumed."""
         chat = self.chat and self.chat.essence()
         return self.model_copy(update={"chat": chat, "patience": PATIENCE})
 
     def came_with(self, file: object) -> "Plan":
-        """The same, out of a file that may be somebody else's, as a Setup's is."""
+        """Returns the Plan as read from a file that may be somebody else's; see ``Setup.came_with``."""
         chat = self.chat and self.chat.came_with(file)
         drivers = tuple(trust.came_with(driver, file) for driver in self.drivers)
         return self.model_copy(update={"chat": chat, "drivers": drivers})
 
     @property
     def asks_a_model(self) -> bool:
-        """Does the reader or a designer ask a language model?"""
+        """True if the reader or a designer asks a language model."""
         return any(self._asks(designer) for designer in self.designers)
 
     def _asks(self, designer: str) -> bool:
@@ -76,13 +76,13 @@ class Plan(Frozen):
         return any(asks_a_model(plugins.find(shelf, name)) for shelf, name in parts)
 
     def _searches(self, generator: str) -> bool:
-        """Does a generator search for the goal? Others may stand beside it, to be compared with."""
+        """Checks whether a generator can search for the goal; others may stand beside it for comparison."""
         if self.goal is None:
             return False
         return self.goal in getattr(plugins.find("generators", generator), "goals", ())
 
     def requests(self) -> Iterator[tuple[Request, str]]:
-        """Of each cell its request and generator, in order."""
+        """Yields the request and the generator of each cell, in order."""
         every = product(
             self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds
         )
@@ -102,11 +102,12 @@ class Plan(Frozen):
             yield Request(words=words, seed=seed, world=self.world, setup=setup), generator
 
     def check(self) -> None:
-        """Look at what need not be tried out.
+        """Checks what can be checked without running anything.
 
         Raises:
-            UsageError: a part is not installed, cells are too many or the same, nothing says when to stop,
-            a search may not drive, or nobody searches for the goal.
+            UsageError: a plug-in is not installed, there are too many cells or two alike, there is no
+                limit, a
+                search may not drive, or no generator searches for the goal.
         """
         lists = (self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds)
         cells = math.prod(map(len, lists))
@@ -141,7 +142,7 @@ class Plan(Frozen):
         plugins.find("readers", self.reader.partition(":")[0])
 
     def cells(self, briefs: Mapping[str, Brief]) -> list[Cell]:
-        """All cells; briefs are those of the prompts."""
+        """Returns all cells; ``briefs`` holds what was read from each prompt."""
         made = [*self.requests()]
         wide = max(2, len(str(len(made))))
         return [

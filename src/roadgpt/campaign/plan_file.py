@@ -1,4 +1,4 @@
-"""Plans as files: TOML whose every key is known; a mistake is told with its key and what to do."""
+"""Plans as TOML files. A mistake is reported with its key and with advice."""
 
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -35,11 +35,11 @@ ADVICE = {
     "model_type": "give a table",
     "dict_type": "give a table",
 }
-"""What to do about mistakes, by pydantic's names for them."""
+"""Advice on mistakes, by pydantic's names for them."""
 
 
 def _listed(value: Any) -> Any:
-    """One value stands for a list of one."""
+    """Takes a single value for a list of one."""
     return tuple(value) if isinstance(value, list) else (value,)
 
 
@@ -53,7 +53,7 @@ class _Strict(BaseModel):
 
 
 class WorldTable(_Strict):
-    """The table ``[world]``: numbers with the units that people speak in."""
+    """The table ``[world]``, in the units that people use."""
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     lane_width: Annotated[float, Field(ge=2, le=10)] = 4.0
@@ -66,13 +66,13 @@ class WorldTable(_Strict):
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 
     def world(self) -> World:
-        """The same, as a value."""
+        """Returns the World with these values."""
         told = self.model_dump()
         return World(speed_limit=told.pop("speed_limit_kmh") / 3.6, **told)
 
 
 class PlanTable(_Strict):
-    """A whole file."""
+    """The keys of a plan file."""
 
     prompts: Texts = ()
     designers: Texts = ("planner",)
@@ -95,17 +95,17 @@ class PlanTable(_Strict):
 
 
 class PlanFile(BaseModel):
-    """What a file says: the plan, and which settings of language models it names."""
+    """The content of a plan file: the plan, and the settings of language models that it names."""
 
     plan: Plan
     chat: dict[str, Any]
 
 
 def read_plan(path: Path) -> PlanFile:
-    """The plan in a file.
+    """Reads the plan in a file.
 
     Raises:
-        UsageError: it is no TOML, or a key or a value of it cannot be used.
+        UsageError: the file is not TOML, or a key or a value of it cannot be used.
     """
     try:
         told = tomllib.loads(read_text(path, LARGEST, "a plan of a campaign", "utf-8-sig"))
@@ -125,7 +125,7 @@ def read_plan(path: Path) -> PlanFile:
 
 
 def _plan(table: PlanTable, folder: Path) -> Plan:
-    """The plan of a file in a folder, where its relative paths begin."""
+    """Returns the plan of a file; relative paths in it begin at the folder."""
     reader, colon, weights = table.reader.partition(":")
     return Plan(
         prompts=table.prompts or ("",),
@@ -148,7 +148,7 @@ def _plan(table: PlanTable, folder: Path) -> Plan:
 
 
 def _sentence(error: ValidationError, within: tuple[str, ...]) -> str:
-    """The first mistake: where, what, and what to do."""
+    """Describes the first mistake: where it is, what it is, and what to do."""
     mistake = error.errors()[0]
     place = (*within, *mistake["loc"])
     key = ".".join(str(part + 1 if isinstance(part, int) else part) for part in place)

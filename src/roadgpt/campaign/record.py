@@ -1,4 +1,4 @@
-"""The record of a campaign: what its store tells whoever asks, also while somebody works on it."""
+"""Reads a campaign's store, also while another process works on the campaign."""
 
 import sqlite3
 from collections.abc import Iterator, Sequence
@@ -18,7 +18,7 @@ PATIENCE = 30.0  # s for another process
 
 
 def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
-    """A store's file and the number of its format; raises sqlite3.Error."""
+    """Returns a connection to a store's file and the number of its format; raises sqlite3.Error."""
     try:
         return _opened(path, mode)
     except sqlite3.OperationalError as error:
@@ -47,7 +47,7 @@ def _missing(db: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def no_campaign(folder: Path) -> UsageError:
-    """What to say where a folder holds no store."""
+    """Returns the error for a folder that holds no store."""
     if not (folder / CARD).is_file():
         return UsageError(f"there is no campaign in {folder}; give a folder that roadgpt campaign made")
     show = f"{folder} holds single runs and no campaign; roadgpt show {folder} tells of them"
@@ -70,7 +70,7 @@ class Batch:
 
 
 class Record:
-    """A campaign's file, to be read; ``tests`` and its other tables are told in ``campaign.store``."""
+    """A campaign's store, open for reading; ``campaign.store`` describes its tables."""
 
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
@@ -80,7 +80,7 @@ class Record:
 
     @classmethod
     def opened(cls, folder: Path) -> Self:
-        """The record of the campaign in a folder.
+        """Opens the record of the campaign in a folder.
 
         Raises:
             UsageError: there is none, or it is damaged or of another version.
@@ -115,11 +115,11 @@ class Record:
 
     @property
     def folder(self) -> Path:
-        """Of the campaign."""
+        """The campaign's folder."""
         return self.path.parent
 
     def close(self) -> None:
-        """Let go of the file; what was committed is in it."""
+        """Closes the file; everything that was committed is in it."""
         self._db.close()
 
     def __enter__(self) -> Self:
@@ -129,12 +129,12 @@ class Record:
         self.close()
 
     def query(self, sql: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
-        """All rows that a SELECT gives; for counts and groups, not for a million rows."""
+        """Returns all rows of a SELECT; for counts and groups, not for a million rows."""
         with reading_store(self.path):
             return self._db.execute(sql, values).fetchall()
 
     def stream(self, sql: str, values: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
-        """The rows that a SELECT gives, one by one."""
+        """Yields the rows of a SELECT one by one."""
         with reading_store(self.path):
             cursor = self._db.execute(sql, values)
         while True:
@@ -145,11 +145,11 @@ class Record:
             yield row
 
     def meta(self, name: str) -> str:
-        """One of ``plan``, ``versions``, ``finished``."""
+        """Returns the value of ``plan``, ``versions`` or ``finished``."""
         return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
 
     def cells(self) -> list[Cell]:
-        """In the order of the plan."""
+        """Returns all cells, in the order of the plan."""
         rows = self.query("SELECT name, cell FROM cells ORDER BY name")
         return [self._cell(name, text) for name, text in rows]
 
@@ -161,7 +161,7 @@ class Record:
             return found
 
     def cell(self, name: str) -> Cell:
-        """One cell.
+        """Returns one cell.
 
         Raises:
             UsageError: there is none of that name.
@@ -175,11 +175,12 @@ class Record:
     def results(
         self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
     ) -> Iterator[Result]:
-        """Results of tests that have ended, of one cell or of all, in order, one by one.
+        """Yields the results of tests that have ended, in order, one by one.
 
         Args:
-            cell: its name.
-            where: a condition in SQL on the columns of ``tests`` and ``details``, with its values.
+            cell: name of the cell; None: all cells.
+            where: a condition in SQL on the columns of ``tests`` and ``details``.
+            values: the values of the condition's placeholders.
         """
         for _, result in self.results_by_cell(cell, where, values):
             yield result
@@ -187,7 +188,7 @@ class Record:
     def results_by_cell(
         self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
     ) -> Iterator[tuple[str, Result]]:
-        """The same, each with the name of its cell."""
+        """Yields the same results, each with the name of its cell."""
         chosen, names = ("tests.cell = ? AND", [cell]) if cell is not None else ("", [])
         sql = (
             f"SELECT {RESULT} FROM tests JOIN details USING (cell, number) "  # noqa: S608 - our own words
@@ -199,7 +200,7 @@ class Record:
             yield told
 
     def result(self, cell: str, number: int) -> Result:
-        """One result.
+        """Returns one result.
 
         Raises:
             UsageError: there is no such test, or it has not ended.
@@ -209,12 +210,12 @@ class Record:
         raise UsageError(f"{self.path.parent} holds no result of test {number} of {cell}")
 
     def batches(self, cell: str) -> list[Batch]:
-        """All that were asked for, in order."""
+        """Returns the batches of a cell that were asked for, in order."""
         rows = self.query("SELECT batch, first, n, left FROM batches WHERE cell = ? ORDER BY batch", (cell,))
         return [Batch(*row) for row in rows]
 
     def waiting(self, cell: str) -> list[tuple[int, int, Proposal]]:
-        """Tests of a cell that were asked for and have not ended: number, batch, proposal."""
+        """Returns number, batch and proposal of the tests of a cell that have not ended."""
         rows = self.query(
             "SELECT tests.number, batch, seed, origin, design FROM tests JOIN details USING (cell, number) "
             "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",
@@ -227,18 +228,18 @@ class Record:
             ]
 
     def spent(self) -> tuple[int, float]:
-        """Tokens and USD that language models were paid for so far."""
+        """Returns the tokens and USD that language models have cost so far."""
         sql = "SELECT coalesce(sum(tokens), 0), coalesce(sum(cost), 0) FROM "
         tests, other = (self.query(sql + table)[0] for table in ("tests", "sittings"))
         return tests[0] + other[0], tests[1] + other[1]
 
     def trace_file(self, cell: str, number: int) -> str | None:
-        """Name of the file that holds the drive of a test; None where nobody drove."""
+        """Returns the name of the file that holds the drive of a test; None where it was not driven."""
         rows = self.query(
             "SELECT file FROM tests JOIN traces USING (trace) WHERE cell = ? AND number = ?", (cell, number)
         )
         return str(rows[0][0]) if rows else None
 
     def feature_names(self) -> list[str]:
-        """Of all features that any result has, sorted."""
+        """Returns the names of all features that any result has, sorted."""
         return [name for (name,) in self.query("SELECT name FROM features ORDER BY name")]

@@ -1,4 +1,4 @@
-"""Results and cells as they stand in the store: exactly, so that whoever goes on knows what was known."""
+"""Converts results and cells to rows of the store and back, without any loss."""
 
 import json
 import math
@@ -18,23 +18,23 @@ RESULT = (
     "beyond, at_s, "
     "origin, design, description, features"
 )
-"""Columns of a result, of the tables ``tests`` and ``details`` together."""
+"""The columns of a result, of the tables ``tests`` and ``details`` joined."""
 
 
 def design_text(design: Design | None) -> str | None:
-    """A design as JSON that gives the very same design again."""
+    """Returns a design as JSON, from which ``design_of`` makes the same design again."""
     return None if design is None else design.model_dump_json(exclude_none=True)
 
 
 def design_of(text: str | None) -> Design | None:
-    """The design again."""
+    """Returns the design that ``design_text`` wrote."""
     return None if text is None else Design.model_validate_json(text)
 
 
 def proposal_rows(
     cell: str, batch: int, number: int, proposal: Proposal
 ) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """A test that was asked for: its rows in ``tests`` and in ``details``."""
+    """Returns the rows of a test that was asked for, for ``tests`` and for ``details``."""
     given = proposal.design is not None
     return (
         (cell, number, batch, proposal.seed, given),
@@ -43,13 +43,13 @@ def proposal_rows(
 
 
 def result_values(result: Result) -> tuple[Any, ...]:
-    """What is set in ``tests`` when a test has ended."""
+    """Returns the values that are set in ``tests`` when a test has ended."""
     numbers = (result.length, result.margin, result.max_oob, result.beyond, result.at_s)
     return (result.outcome, result.cause, result.side, *map(_number, numbers))
 
 
 def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
-    """What is set in ``details`` when a test has ended."""
+    """Returns the values that are set in ``details`` when a test has ended."""
     result = ended.result
     features = {name: float(value) for name, value in sorted(result.features.items()) if math.isfinite(value)}
     texts = (_plain(result.description), json.dumps(features), _plain(ended.error) or None)
@@ -57,17 +57,17 @@ def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
 
 
 def _plain(text: str) -> str:
-    """Text as UTF-8 can have it; what a broken terminal put into it is written as an escape."""
+    """Returns text that UTF-8 can encode; characters from a broken terminal are written as escapes."""
     return to_bytes(text).decode()
 
 
 def _number(value: float | None) -> float | None:
-    """SQLite has no NaN."""
+    """Returns None for NaN, which SQLite does not have."""
     return None if value is None or math.isnan(value) else float(value)
 
 
 def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
-    """Cell and result, of a row with the columns ``RESULT``."""
+    """Returns cell and result of a row with the columns ``RESULT``."""
     cell, number, batch, seed, given, outcome, cause, side, length, margin, max_oob, beyond, at_s = row[:13]
     origin, text, description, features = row[13:]
     values = _features_of(features)
@@ -94,7 +94,7 @@ def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
 
 
 def _features_of(text: str) -> dict[str, float]:
-    """Features as ``detail_values`` wrote them; TypeError where they are something else."""
+    """Reads features as ``detail_values`` wrote them; raises TypeError where they are anything else."""
     values = json_of(text)
     if not isinstance(values, dict) or not all(
         isinstance(value, (int, float)) and math.isfinite(value) for value in values.values()
@@ -104,7 +104,7 @@ def _features_of(text: str) -> dict[str, float]:
 
 
 def cell_text(cell: Cell) -> str:
-    """A cell as JSON."""
+    """Returns a cell as JSON."""
     return json.dumps(
         {
             "name": cell.name,
@@ -119,7 +119,7 @@ def cell_text(cell: Cell) -> str:
 
 
 def cell_of_text(text: str, file: object) -> Cell:
-    """The cell again, out of a store."""
+    """Returns the cell that ``cell_text`` wrote into a store."""
     data: Mapping[str, Any] = json_of(text)
     return Cell(
         name=data["name"],

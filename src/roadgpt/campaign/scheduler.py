@@ -1,4 +1,5 @@
-"""The office of a campaign: hands out tests, takes in results, keeps them in groups, asks for more."""
+"""Schedules the tests of a campaign: hands them to workers, stores their results in groups, and asks for
+more."""
 
 import time
 from collections import Counter
@@ -25,32 +26,32 @@ PER_WORKER = 2  # tests under way or waiting, below which the next cell is begun
 
 @dataclass
 class Progress:
-    """How far a campaign is."""
+    """How much of a campaign is done."""
 
     total: int | None
-    """Tests; None where only time limits them."""
+    """Number of tests; None where only time limits them."""
     outcomes: Counter[str] = field(default_factory=Counter)
     cells: int = 0
-    """That are done."""
+    """Number of cells that are done."""
     of_cells: int = 0
     under_way: int = 0
 
     @property
     def done(self) -> int:
-        """Tests that have ended."""
+        """Number of tests that have ended."""
         return self.outcomes.total()
 
 
 @dataclass(frozen=True)
 class _Out:
-    """A test that was handed out."""
+    """A test that was handed to a worker."""
 
     schedule: BatchScheduler
     task: Task
 
 
 class Scheduler:
-    """One sitting: the process that writes the store, with its workers."""
+    """One session of a campaign: the process that writes the store, and its workers."""
 
     def __init__(self, plan: Plan, store: Store, staff: WorkerConfig, kind: type[Executor]) -> None:
         self._store = store
@@ -76,7 +77,7 @@ class Scheduler:
         self.executor = kind(staff)
 
     def run(self) -> Iterator[Progress]:
-        """Work until nothing is left to do; tells how far it is after every group of results."""
+        """Works until nothing is left to do; yields the progress after every group of results."""
         self._store.begin_sitting(self._staff.workers)
         while self._error is None:
             look()
@@ -95,7 +96,7 @@ class Scheduler:
         yield self.progress
 
     def leave(self) -> None:
-        """Keep what is done, when the work ends before its time."""
+        """Stores what is done when the work ends early."""
         self.executor.stop()
         if self._may_write and self._error is None:
             try:
@@ -131,7 +132,7 @@ class Scheduler:
         self._drop_if_done(schedule)
 
     def _open(self) -> bool:
-        """Begin the next cell that is not done; False where there is none."""
+        """Begins the next cell that is not done; returns False where there is none."""
         while self._next < len(self._names):
             schedule = BatchScheduler(self._store.cell(self._names[self._next]), self._store)
             self._next += 1
@@ -148,7 +149,7 @@ class Scheduler:
         return False
 
     def _with_chat(self, cell: Cell) -> Cell:
-        """With the language model's settings of this sitting, which may have other limits."""
+        """Returns the cell with this session's settings of the language model: its limits may differ."""
         if cell.request.setup.chat is None:
             return cell
         setup = cell.request.setup.model_copy(update={"chat": self._chat})
@@ -168,7 +169,10 @@ class Scheduler:
         self.executor.submit(jobs)
 
     def _earlier(self, schedule: BatchScheduler, test: Task) -> list[str]:
-        """Names of the blocks of designs that a draft is not to repeat; workers get those they have not."""
+        """Returns the names of the blocks of designs that a draft has to differ from.
+
+        Blocks that workers may lack are shared, and those that no later test needs are dropped.
+        """
         if test.proposal.design is not None:
             return []
         name = schedule.cell.name
@@ -184,7 +188,7 @@ class Scheduler:
         return [f"{name}/{batch}" for batch in wanted]
 
     def _retry_underfunded(self) -> None:
-        """Tests whose share of the money was too small get all that is left, one after another."""
+        """Runs the tests whose allowance was too small one after another, each with all that is left."""
         if self._out:
             return
         one = self._underfunded.pop(0)
@@ -223,7 +227,8 @@ class Scheduler:
             self._count_losses(out, value)
 
     def _count_losses(self, out: _Out, ended: FinishedTest) -> None:
-        """Where the simulator is dead, end the work, and leave the tests that it lost to whoever goes on."""
+        """Stops the work where the simulator is dead; the tests that it lost are reopened for the next
+        session."""
         if not self._losses.count(out, ended.is_lost) or self._error is not None:
             return
         folder = self._store.folder
@@ -239,7 +244,7 @@ class Scheduler:
         return waited >= GROUP_SECONDS or len(self._pending) >= GROUP
 
     def _keep(self) -> None:
-        """Write what has ended: its drives first, so that every result has its own."""
+        """Stores what has ended: the drives first, so that every stored result has its drive."""
         now = time.monotonic()
         drives = [(cell, one.result.number, one.trace) for cell, one in self._pending if one.trace]
         self._may_write = False  # until it went well

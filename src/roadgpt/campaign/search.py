@@ -1,4 +1,4 @@
-"""What searching generators share: settings, tasks for candidates, and proposals made of them."""
+"""Shared by the generators that search: settings, candidates, and the proposals that are made of them."""
 
 from collections.abc import Sequence
 from typing import Annotated, Literal
@@ -15,25 +15,28 @@ from roadgpt.run import seed_of
 
 MOST_AXES = 4
 DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")
-"""Features that a road has only once somebody drove it."""
+"""The features that a road has only after a drive."""
 
 
 class SearchSettings(Frozen):
-    """Settings of searches. A plan has one table of them for all its generators, so all know the names, and
-    leave alone what they do not need: only ``batch`` is for all, the rest is ``quality_diversity``'s."""
+    """Settings of the generators that search.
+
+    A plan has one table of settings for all its generators, so each of them knows all names and ignores those
+    that it does not use: ``batch`` is for all, the others are for ``quality_diversity``.
+    """
 
     batch: Annotated[int, Field(ge=1, le=1000)] = 10
     """Tests in a batch."""
     axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = ("MAX_CURV", "STD_SA")
     """Features that span the map."""
     archive: Literal["grid", "cvt"] = "grid"
-    """Cells of a grid, or niches around evenly spread centres."""
+    """"grid": cells of a grid; "cvt": niches around evenly spread centroids."""
     cells: Annotated[int, Field(ge=2, le=10_000)] = 25
-    """Along each axis of a grid; niches altogether."""
+    """Number of cells along each axis of a grid, or number of niches."""
     candidates: Annotated[int, Field(ge=1, le=100)] = 8
-    """Roads that are thought of for each that is driven."""
+    """Number of candidates for each road that is driven."""
     apart: Annotated[float, Field(ge=0, le=1000)] = 5.5
-    """Metres RMS, after the best shift, turn and mirror, that a road keeps from every tested one."""
+    """Smallest distance to every tested road: metres RMS after the best shift, rotation and reflection."""
 
     @field_validator("axes")
     @classmethod
@@ -50,7 +53,7 @@ class SearchSettings(Frozen):
 
 
 def settings_of(cell: Cell) -> SearchSettings:
-    """A generator's settings.
+    """Returns the settings of a generator.
 
     Raises:
         UsageError: a setting is unknown or out of range, or the cell builds splines.
@@ -71,22 +74,25 @@ def settings_of(cell: Cell) -> SearchSettings:
 
 
 def context_of(cell: Cell) -> VariationContext:
-    """What the candidates of a cell share."""
+    """Returns what the candidates of a cell share."""
     return VariationContext(cell.brief, cell.request.world, cell.request.setup.rules)
 
 
 def batch_rng(cell: Cell, batch: int) -> np.random.Generator:
-    """The chance of one batch."""
+    """Returns the random generator of one batch."""
     return np.random.default_rng([cell.request.seed, batch])
 
 
 def make_candidates(tasks: Sequence[VariationTask], pool: Pool) -> list[Candidate]:
-    """The candidates that could be made."""
+    """Makes candidates on the workers; returns those that could be made."""
     return [candidate for candidate in pool.map(make_candidate, tasks) if candidate is not None]
 
 
 def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]) -> list[Proposal]:
-    """Proposals of candidates; where they are too few, the workers draft the rest, if there are words."""
+    """Returns proposals of candidates.
+
+    Where there are fewer candidates than n, the workers draft the rest, if there is a description.
+    """
     seed = cell.request.seed
     found = [
         Proposal(one.design, seed_of(seed, number), one.origin)
@@ -99,6 +105,6 @@ def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]
 
 
 def is_usable(result: Result) -> bool:
-    """Was the road driven, so that something can be learnt of it?"""
+    """Checks that a road was driven, so that a search can learn from the result."""
     is_judged = result.margin is not None and np.isfinite(result.margin)
     return result.design is not None and is_judged and bool(result.features)

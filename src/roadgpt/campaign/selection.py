@@ -1,8 +1,8 @@
-"""What a text names in a folder of tests: all of them, those of a cell, or one.
+"""The tests that an argument of a command selects in a folder: all of them, those of a cell, or one.
 
 hard            all tests of the campaign in the folder ``hard``, or all runs of a folder of runs
-hard/c01        those of a cell
-hard/c01/17     one test; also hard/17, where there is one cell, or where ``hard`` is a folder of runs
+hard/c01        the tests of a cell
+hard/c01/17     one test; also hard/17 where there is only one cell, or where ``hard`` is a folder of runs
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,8 @@ from roadgpt.run import Run, read_run
 from roadgpt.run.folder import RUNS, is_run, run_folder
 
 Choice = Literal["failures", "faults", "worst"]
-"""All failures; a typical one of each distinct fault; the one with the least margin, or else the nearest."""
+"""All failures; a typical failure of each distinct fault; or the failure with the least margin, else the road
+nearest to one."""
 LONGEST = 255  # bytes of one name, in every file system of today
 DIGITS = 18  # of a number that a store can look for
 WORST = "outcome != 'FAIL', margin IS NULL, margin, max_oob DESC,"  # first
@@ -29,32 +30,32 @@ MOST_NEAR = 3  # names that are offered for a wrong one
 
 @dataclass(frozen=True)
 class Selection:
-    """What a text names."""
+    """The tests that a text selects."""
 
     said: str
     folder: Path
     cell: str = ""
-    """Empty: all of them."""
+    """Name of the cell; empty: all cells."""
     number: int | None = None
-    """None: all tests."""
+    """Number of the test; None: all tests."""
 
     @property
     def is_campaign(self) -> bool:
-        """Are its tests in a store?"""
+        """True if the tests are in the store of a campaign."""
         return (self.folder / STORE).is_file()
 
     def of(self, name: NumberedTest) -> "Selection":
-        """One test of it, as it can be typed."""
+        """Returns the selection of one of its tests, with the text that selects it."""
         return Selection(f"{self.folder}/{name}", self.folder, name.cell, name.number)
 
     @property
     def stem(self) -> str:
-        """For the files that are made of one test: 'hard-c01-0017'."""
+        """The beginning of the names of files that are made of one test: 'hard-c01-0017'."""
         parts = (self.folder.resolve().name, self.cell, f"{self.number or 0:04d}")
         return "-".join(part for part in parts if part)
 
     def run(self) -> Run:
-        """The Run of one test, as it was kept; nobody drives.
+        """Returns the Run of the one selected test as it is stored; nothing is driven.
 
         Raises:
             UsageError: it cannot be read, or it has no road.
@@ -66,10 +67,10 @@ class Selection:
 
 
 def selection_of(text: str) -> Selection | None:
-    """What a text names; None for a single run, the file of a road, or anything else.
+    """Returns what a text selects; None where it names a single run, the file of a road, or anything else.
 
     Raises:
-        UsageError: it names a test or a cell that is not there.
+        UsageError: it names a test or a cell that does not exist.
     """
     path = Path(text)
     if any(len(part.encode()) > LONGEST for part in path.parts):
@@ -145,17 +146,17 @@ def _run_of(text: str, folder: Path, number: int) -> Selection:
 
 
 def _runs(folder: Path) -> list[int]:
-    """Numbers of the runs in a folder of runs."""
+    """Returns the numbers of the runs in a folder of runs."""
     paths = (path for path in (folder / RUNS).iterdir() if is_run(path))
     return sorted(number for path in paths if (number := _number(path.name)) is not None)
 
 
 def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
-    """The tests that are meant, in order.
+    """Returns the selected tests, one by one and in order.
 
     Args:
-        place: what was named.
-        choice: which of them; None: all that have a road.
+        place: what was selected.
+        choice: which of the selected tests; None: all that have a road.
 
     Raises:
         UsageError: a file cannot be read.
@@ -199,7 +200,7 @@ def _of_runs(place: Selection, choice: Choice | None) -> list[NumberedTest]:
 
 
 def near(text: str) -> Sequence[str]:
-    """Names like that of a path that is not there, as they can be typed."""
+    """Returns paths that exist and resemble one that does not, as they can be typed."""
     path = Path(text)
     while path.parent != path and not path.parent.exists():
         path = path.parent

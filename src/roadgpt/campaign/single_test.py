@@ -1,4 +1,4 @@
-"""What a worker does: one test of a cell, from a proposal to what came of it."""
+"""Runs one test of a cell on a worker: from its proposal to its result."""
 
 import traceback
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ CONCERNS_ALL = (PartError, UsageError, ChatError)  # what one test cannot be bla
 
 
 class Allowance(NamedTuple):
-    """What one test may ask of a language model; None: as much as it likes."""
+    """What one test may spend on a language model; None: no limit."""
 
     tokens: int | None = None
     cost: float | None = None
@@ -32,7 +32,7 @@ NO_TIME = Seconds()
 
 @dataclass(frozen=True)
 class Task:
-    """A test to be done."""
+    """A test to be run."""
 
     number: int
     batch: int
@@ -42,38 +42,38 @@ class Task:
 
 @dataclass(frozen=True)
 class FinishedTest:
-    """What came of it: the result, and what another day would give otherwise."""
+    """A test that has ended: its result, and what may differ when it is run again."""
 
     result: Result
     trace: Trace | None = None
     seconds: Seconds = NO_TIME
     spent: Spent | None = None
     error: str = ""
-    """Of a test that failed: where in which file."""
+    """The traceback of a test that failed."""
     is_lost: bool = False
-    """Did the simulator itself fail?"""
+    """True if the simulator itself failed."""
 
 
 @dataclass(frozen=True)
 class OutOfAllowance:
-    """A test whose allowance was not enough; it has to be done again."""
+    """A test whose allowance was too small; it has to be run again."""
 
     spent: Spent
     sentence: str
 
 
 class WorkerSetup:
-    """Prepares a worker for these setups: imports and compiles what they need."""
+    """Prepares a worker for setups: imports and compiles what they need."""
 
     def __init__(self, setups: tuple[Setup, ...]) -> None:
         self.setups = setups
         self.known = known()
 
     def __call__(self) -> None:
-        """Find all parts; what is not to be trusted is known here as well.
+        """Finds all plug-ins, and hands on what the user does not trust.
 
         Raises:
-            UsageError: a part is not installed, or a driver's file makes no driver.
+            UsageError: a plug-in is not installed, or a driver's file makes no driver.
         """
         join(self.known)
         for setup in self.setups:
@@ -81,15 +81,15 @@ class WorkerSetup:
 
 
 def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest | OutOfAllowance:
-    """One test.
+    """Runs one test.
 
     Args:
         task: the test.
         cell: what it shares with others.
-        earlier: designs that a draft is not to repeat, block by block.
+        earlier: designs that a draft has to differ from, block by block.
 
     Raises:
-        PartError, UsageError, ChatError: what no other test could do either.
+        PartError, UsageError, ChatError: an error that every other test would meet as well.
     """
     meter = Meter(task.allowance.tokens, task.allowance.cost)
     try:
@@ -108,7 +108,7 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
 
 
 def failed(task: Task, sentence: str) -> Result:
-    """Of a test that came to nothing."""
+    """Returns the result of a test that ended without a road or a drive."""
     return Result(task.number, task.batch, task.proposal, "ERROR", sentence, task.proposal.design)
 
 
@@ -119,7 +119,7 @@ def run_of(
     earlier: tuple[tuple[Design, ...], ...] = (),
     meter: Meter | None = None,
 ) -> Run:
-    """The Run of a test; raises what ``run.perform`` and ``run.prove`` raise."""
+    """Returns the Run of a test; raises what ``run.perform`` and ``run.prove`` raise."""
     request = cell.request
     if proposal.design is not None:
         return prove(proposal.design, proposal.seed, request.world, request.setup, number, cell.brief)
@@ -129,12 +129,12 @@ def run_of(
 
 
 def seed_of_driver(number: int, proposal: Proposal) -> int:
-    """The seed that test ``number`` is driven with, and drafted with if it is."""
+    """Returns the seed with which test ``number`` is driven, and drafted if it is a draft."""
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
 
 
 def result_of(run: Run, cell: Cell, task: Task) -> Result:
-    """What a campaign keeps of a Run."""
+    """Returns what a campaign stores of a Run."""
     verdict = run.verdict
     features: dict[str, float] = {}
     if run.is_valid and run.road is not None:

@@ -1,4 +1,4 @@
-"""How a campaign is doing, also while somebody works on it: counted by the store, never loading all rows."""
+"""The state of a campaign, also while a process works on it; SQLite counts, so rows are never loaded."""
 
 import time
 from collections import Counter
@@ -20,7 +20,7 @@ LATELY = 60.0  # s over which the speed of the moment is taken
 
 @dataclass(frozen=True)
 class CellStatus:
-    """How one cell is doing."""
+    """The state of one cell."""
 
     name: str
     words: str
@@ -30,27 +30,27 @@ class CellStatus:
     asked: int
     outcomes: Mapping[str, int]
     least_margin: float | None
-    """Metres, of drives that kept their lane; one that leaves it ends there, within centimetres of 0."""
+    """Metres, over drives that kept their lane; a drive that leaves it ends within centimetres of 0."""
     partly_outside: int
-    """Of the tests that passed: with up to half of the car outside its lane."""
+    """Number of passed tests in which up to half of the car was outside its lane."""
     mostly_outside: int
-    """Likewise: with more than half of it outside."""
+    """Number of passed tests in which more than half of the car was outside its lane."""
     max_oob: float | None
-    """Largest share outside, of tests that passed."""
+    """Largest share of the car outside its lane, over passed tests."""
     beyond: float | None
-    """Farthest beyond the marking, metres, of tests that passed; None, too, in stores of older versions."""
+    """Largest distance beyond the marking, metres, over passed tests; None in stores of earlier versions."""
     goal: Goal | None
     closed: str | None
-    """Why nothing more is asked for, where that is not that all were."""
+    """Why the cell ended before its number of tests was reached; None otherwise."""
 
     @property
     def done(self) -> int:
-        """Tests that have ended."""
+        """Number of tests that have ended."""
         return sum(self.outcomes.values())
 
     @property
     def remark(self) -> str:
-        """What has to be said of its result: a search for the boundary that finds one side only."""
+        """A warning about the result: a search for the boundary that found one side only; else empty."""
         kept, failed = self.outcomes.get("PASS", 0), self.outcomes.get("FAIL", 0)
         driven = kept + failed
         if self.goal != "boundary" or not self.done or (driven and min(kept, failed) >= ONE_SIDED * driven):
@@ -66,7 +66,7 @@ class CellStatus:
 
 @dataclass(frozen=True)
 class Lease:
-    """Who is at which test."""
+    """A test that is running, and its worker."""
 
     cell: str
     number: int
@@ -75,18 +75,18 @@ class Lease:
 
 @dataclass(frozen=True)
 class Status:
-    """How a campaign is doing."""
+    """The state of a campaign."""
 
     folder: str
     is_finished: bool
     is_running: bool
     total: int | None
-    """Tests; None where only time limits them."""
+    """Number of tests; None where only time limits them."""
     outcomes: Mapping[str, int]
     seconds: float
-    """That somebody has worked on it."""
+    """Seconds that the campaign was worked on."""
     rate: float
-    """Tests per second, lately where somebody works, else on the whole."""
+    """Tests per second: over the last minute while the campaign is worked on, else on average."""
     tokens: int
     cost_usd: float
     cells: tuple[CellStatus, ...]
@@ -94,12 +94,12 @@ class Status:
 
     @property
     def done(self) -> int:
-        """Tests that have ended."""
+        """Number of tests that have ended."""
         return sum(self.outcomes.values())
 
     @property
     def seconds_left(self) -> float | None:
-        """At this rate; None where nobody can tell."""
+        """Seconds left at this rate; None where it cannot be known."""
         if self.is_finished:
             return 0.0
         if self.total is None or self.rate <= 0:
@@ -107,7 +107,7 @@ class Status:
         return (self.total - self.done) / self.rate
 
     def to_json(self) -> dict[str, Any]:
-        """Plain data."""
+        """Returns the status as plain data."""
         return {
             **asdict(self),
             "remarks": [cell.remark for cell in self.cells if cell.remark],
@@ -117,7 +117,7 @@ class Status:
 
 
 def status_of(folder: Path) -> Status:
-    """How the campaign in a folder is doing.
+    """Returns the state of the campaign in a folder.
 
     Raises:
         UsageError: there is none.
@@ -159,8 +159,12 @@ def _rate(record: Record, done: int, seconds: float, is_running: bool) -> float:
 
 
 def _ended_since(record: Record, since: float) -> int:
-    """Tests. The clock's columns have no index, which every result would pay for: cells are begun in their
-    order, and the last tests of each are at its end, so it looks back until there is nothing new."""
+    """Counts the tests that ended since a time.
+
+    The columns of the clock have no index, since every result would pay for it. Cells are begun in order and
+    the
+    latest tests of each are at its end, so this looks back until nothing new is found.
+    """
     last = "SELECT ended FROM tests WHERE cell = ? AND ended IS NOT NULL ORDER BY number DESC LIMIT 20000"
     count = 0
     for cell, left in record.stream("SELECT cell, sum(left) FROM batches GROUP BY cell ORDER BY cell DESC"):

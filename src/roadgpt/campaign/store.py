@@ -1,20 +1,24 @@
-"""The store: one SQLite file that holds the truth about a campaign. One process writes it, anyone may read.
+"""The store: one SQLite file with everything about a campaign. One process writes it; any process may read
+it.
 
-    meta      format, plan, versions, and whether it is finished
-    cells     what their tests share; how long each has taken; why one was closed before its time
-    batches   which tests were asked for together; in one transaction with them, so that none is asked twice
-    tests     one row each, narrow, so that a million are counted in a second; no outcome: not done yet
-    details   the long parts of the same tests: designs, sentences, features
-    traces    files of drives
-    leases    who is at which test now; they end with the sitting, for nobody else can be at work
-    sittings  from when to when somebody worked on it; what was asked of language models to no end
+    meta      format, plan, versions, and whether the campaign is finished
+    cells     what their tests share; how long each has taken; why it was closed early
+    batches   which tests were asked for together; written in one transaction with them, so none is asked
+        twice
+    tests     one narrow row each, so that a million are counted in a second; no outcome: the test has not
+        ended
+    details   the long columns of the same tests: designs, sentences, features
+    traces    the files of drives
+    leases    which worker runs which test now; they end with the session, since only one process may work
+    sittings  the sessions: when somebody worked on it; what language models cost outside of tests
     features  names of all features there are
 
-Deterministic columns of tests and details make the tables; ``ended`` and all after it are the clock's.
+The tables of results are made of the deterministic columns of tests and details; ``ended`` and all columns
+after it depend on the clock.
 
 WAL and synchronous=NORMAL: what was committed survives the death of the process. A power cut may take the
-last transactions, each of them whole: the tests in them are then not done, and are done again, with the same
-results, since a batch depends on nothing but the results of batches that came before.
+last transactions, each of them whole. Their tests then count as not done and are run again with the same
+results, since a batch depends only on the results of earlier batches.
 """
 
 import json
@@ -58,7 +62,7 @@ CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 
 
 class Store(Record):
-    """A campaign's file, to be written; see the head of this module."""
+    """A campaign's store, open for writing; the docstring of this module describes its tables."""
 
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         super().__init__(path, db)
@@ -74,7 +78,14 @@ class Store(Record):
         versions: Mapping[str, str],
         spent: Spent | None = None,
     ) -> Self:
-        """A store that holds a plan and no tests, and what language models were paid for reading the words.
+        """Makes a store with a plan and its cells, without tests.
+
+        Args:
+            folder: of the campaign.
+            plan: as JSON.
+            cells: of the plan.
+            versions: of RoadGPT and the libraries that it works with.
+            spent: what language models cost for reading the descriptions.
 
         Raises:
             RoadGPTError: it cannot be written.
@@ -104,7 +115,7 @@ class Store(Record):
 
     @classmethod
     def opened(cls, folder: Path) -> Self:
-        """The store in a folder, to be written.
+        """Opens the store in a folder for writing.
 
         Raises:
             UsageError: there is none, or it is damaged or of another version.
@@ -136,14 +147,14 @@ class Store(Record):
                 raise
 
     def close(self) -> None:
-        """Let go of the file; that of a finished campaign may then be copied and made read-only."""
+        """Closes the file; the file of a finished campaign may then be copied and made read-only."""
         with suppress(sqlite3.Error):  # somebody reads it at this moment
             if self.meta("finished"):
                 self._db.execute("PRAGMA journal_mode = DELETE")
         super().close()
 
     def begin_sitting(self, workers: int) -> None:
-        """Somebody begins to work; leases of earlier sittings are over."""
+        """Begins a session; leases of earlier sessions end."""
         now = time.time()
         with self._whole() as db:
             db.execute("DELETE FROM leases")
@@ -153,12 +164,12 @@ class Store(Record):
             self._sitting = done.lastrowid or 0
 
     def end_sitting(self) -> None:
-        """Nobody works on it any more."""
+        """Ends the session."""
         with self._whole() as db:
             db.execute("UPDATE sittings SET is_over = 1 WHERE rowid = ?", (self._sitting,))
 
     def add_batch(self, cell: str, batch: int, first: int, proposals: Sequence[Proposal]) -> None:
-        """A batch with all its tests."""
+        """Adds a batch with all its tests."""
         rows = [proposal_rows(cell, batch, first + at, made) for at, made in enumerate(proposals)]
         n = len(proposals)
         with self._whole() as db:
@@ -173,7 +184,7 @@ class Store(Record):
             )
 
     def reopen(self, cell: str, number: int, batch: int) -> None:
-        """A test that has ended without a drive is to be done again."""
+        """Makes a test that ended without a drive one that has not ended."""
         with self._whole() as db:
             db.execute(
                 "UPDATE tests SET outcome = NULL, cause = NULL, side = NULL, length = NULL, margin = NULL, "
@@ -190,22 +201,22 @@ class Store(Record):
             db.execute("UPDATE batches SET left = left + 1 WHERE cell = ? AND batch = ?", (cell, batch))
 
     def close_cell(self, cell: str, why: str) -> None:
-        """No further batch is asked of it."""
+        """Records that no further batch of a cell will be asked for, and why."""
         with self._whole() as db:
             db.execute("UPDATE cells SET closed = ? WHERE name = ?", (why, cell))
 
     def finish(self) -> None:
-        """Everything is done."""
+        """Records that the campaign is finished."""
         with self._whole() as db:
             db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
 
     def set_plan(self, plan: str) -> None:
-        """Another plan, which differs in limits only."""
+        """Replaces the plan by one that differs in limits only."""
         with self._whole() as db:
             db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))
 
     def spend(self, spent: Spent) -> None:
-        """Something was asked of a language model that no test stands for."""
+        """Counts what a language model cost outside of tests."""
         with self._whole() as db:
             db.execute(
                 "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?",
@@ -213,7 +224,7 @@ class Store(Record):
             )
 
     def next_trace(self) -> int:
-        """Number of the next file of drives."""
+        """Returns the number of the next file of drives."""
         return int(self.query("SELECT coalesce(max(trace), 0) + 1 FROM traces")[0][0])
 
     def keep(
@@ -223,12 +234,12 @@ class Store(Record):
         leases: Sequence[tuple[str, int, RunningJob, float]],
         seconds: Mapping[str, float],
     ) -> None:
-        """A group of results, in one transaction.
+        """Stores a group of results in one transaction.
 
         Args:
-            ended: cells, and what came of their tests.
+            ended: names of cells, and their tests that have ended.
             trace: number and name of the file that holds their drives.
-            leases: cell and number of tests that are under way, by whom, and until when at most.
+            leases: cell and number of tests that are running, who runs them, and until when at most.
             seconds: that cells have taken since the last group.
         """
         now = time.time()
@@ -268,7 +279,7 @@ class Store(Record):
 
 @contextmanager
 def _refusals(folder: Path) -> Iterator[None]:
-    """Around all that is written: what the system refuses becomes a sentence."""
+    """Turns the errors of the system while writing into one clear sentence."""
     try:
         yield
     except (sqlite3.Error, OSError) as error:
@@ -276,7 +287,7 @@ def _refusals(folder: Path) -> Iterator[None]:
 
 
 def refused(folder: Path, error: sqlite3.Error | OSError) -> RoadGPTError:
-    """What to say when the system does not take what is written."""
+    """Returns the error for a system that does not accept what is written."""
     said = (error.strerror if isinstance(error, OSError) else None) or error
     return RoadGPTError(
         f"cannot write into {folder}: {said}; make room there, then say: roadgpt resume {folder}"

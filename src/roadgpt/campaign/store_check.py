@@ -1,8 +1,9 @@
-"""Is a store what RoadGPT wrote? Tables, columns and values, looked at once before anything is made of them.
+"""Checks that a store holds what RoadGPT writes: tables, columns and values, before they are used.
 
-A store that came from elsewhere, or lay on a bad disk, may hold anything: a text for a number, a number that
-is not finite, a cell that is called like a path. All of the narrow tables are looked at, a million tests in
-about a second; what stands in the wide one, designs and sentences, is looked at as it is read.
+A store that came from elsewhere, or from a bad disk, may hold anything: text in place of a number, a number
+that is not finite, a cell whose name is a path. All narrow tables are checked when a store is opened, which
+takes a second for a million tests. The wide table ``details``, with designs and sentences, is checked as it
+is read.
 """
 
 import sqlite3
@@ -24,7 +25,7 @@ OUTCOME = "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')"
 SIDE = "{0} IN ('left', 'right')"
 
 LATER = ("beyond",)
-"""Columns of ``tests`` that stores of older versions do not have; what they would hold is not known there."""
+"""Columns of ``tests`` that stores of earlier versions lack; their values are not known there."""
 NUMBERS = (
     "length",
     "margin",
@@ -58,26 +59,26 @@ TABLES: dict[str, dict[str, str]] = {
     "sittings": dict.fromkeys(("begun", "seen", "workers", "is_over", "tokens", "cost"), NUMBER),
     "features": {"name": TEXT},
 }
-"""What each column may hold, in SQL; nothing: it is looked at when it is read."""
+"""What each column may hold, in SQL; an empty condition: the column is checked when it is read."""
 META = ("finished", "plan", "versions")
 BUSY = {
     sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
     sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_PERM, sqlite3.SQLITE_INTERRUPT,
 }  # fmt: skip
-"""Errors of the moment, of which the store knows nothing."""
+"""Errors of the moment, which say nothing about the content of the store."""
 
 _checked: set[tuple[str, int]] = set()
 
 
 def damaged(path: Path, why: object) -> UsageError:
-    """What to say of a store that is not as RoadGPT wrote it."""
+    """Returns the error for a store that is not as RoadGPT wrote it."""
     said = " ".join(str(why).split())[:160]
     return UsageError(f"{path} is damaged, or not as roadgpt wrote it ({said}); start the campaign anew")
 
 
 @contextmanager
 def reading_store(path: Path) -> Iterator[None]:
-    """Around whatever is made of what a store holds: what makes no sense there becomes a sentence."""
+    """Turns the errors of code that uses the content of a store into one clear sentence."""
     try:
         yield
     except sqlite3.Error as error:
@@ -89,10 +90,10 @@ def reading_store(path: Path) -> Iterator[None]:
 
 
 def check_store(path: Path, db: sqlite3.Connection) -> None:
-    """Look at a store's tables, once in this process.
+    """Checks a store's tables, once per process.
 
     Raises:
-        UsageError: it lacks one, or holds what none of ours does.
+        UsageError: a table is missing, or holds what RoadGPT never writes.
     """
     key = (str(path.absolute()), path.stat().st_ino)
     if key in _checked:

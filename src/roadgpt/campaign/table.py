@@ -1,9 +1,9 @@
-"""The tables of a campaign: what is the same whoever worked on it, however often it was interrupted.
+"""The tables of a campaign: the same bytes for any number of workers, and however often it was interrupted.
 
-results.csv    one row per test: what was asked for, what came of it, its features
-cells.csv      one row per cell: what its tests share, how many of them ended how, and in how many cells of
-               the map of behaviour (over the features of its search, or the usual ones) there are failures;
-               how far outside its lane the car was where it passed
+results.csv    one row per test: what was asked for, its outcome, its features
+cells.csv      one row per cell: what its tests share, their numbers by outcome, in how many cells of the map
+               there are failures (over the features of its search, or the usual ones), and how far outside
+               its lane the car was where it passed
 """
 
 import csv
@@ -42,7 +42,7 @@ COLUMNS = (
     "description",
 )
 AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
-"""The map of behaviour, where a search names no other: its features, and cells along each."""
+"""The map of a cell whose search names no other: its features, and the cells along each."""
 EVERY = (
     "SELECT tests.cell, tests.number, batch, origin, seed, given, outcome, cause, side, length, margin, "
     "max_oob, beyond, at_s, description, features FROM tests JOIN details USING (cell, number) "
@@ -58,7 +58,7 @@ OUTCOMES = {
 
 
 def write_tables(record: Record, folder: Path) -> None:
-    """Write both, row by row; raises OSError."""
+    """Writes both tables, row by row; raises OSError."""
     features = record.feature_names()
     with reading_store(record.path):
         _write(folder / RESULTS, _lines(record.stream(EVERY), features))
@@ -67,10 +67,10 @@ def write_tables(record: Record, folder: Path) -> None:
 
 
 class _Echo:
-    """Stands in for a file: hands back what is written into it."""
+    """Stands in for a file, and returns what is written to it."""
 
     def write(self, text: str) -> str:
-        """The same."""
+        """Returns the text."""
         return text
 
 
@@ -78,7 +78,8 @@ _line = csv.writer(_Echo(), lineterminator="\n").writerow
 
 
 def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator[str]:
-    """The table of results; a million rows pass here, so numbers are handed on as they are written."""
+    """Yields the lines of the table of results; numbers are copied as text, since there may be a million
+    rows."""
     yield _line((*COLUMNS, *features))
     written = _written(features)
     for cell, number, batch, origin, seed, given, *rest, found in rows:
@@ -92,7 +93,7 @@ def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator
 
 
 def _written(features: Sequence[str]) -> re.Pattern[str]:
-    """Features as the store has them, in JSON and in order: of each its number, or nothing."""
+    """Returns a pattern that matches features as the store has them, with one group for each number."""
     each = (rf"(?:{re.escape(json.dumps(name))}: ([-+.\de]+)(?:, |(?=\}})))?" for name in features)
     return re.compile(rf"\{{{''.join(each)}\}}")
 
@@ -137,7 +138,7 @@ def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
 
 
 def _failing_cells(record: Record, cell: Cell) -> int:
-    """In how many cells of the map of behaviour a car failed: how widely the failures differ."""
+    """Counts the cells of the map in which a car failed: a measure of how much the failures differ."""
     axes, cells = cell.settings.get("axes", AXES), cell.settings.get("cells", PER_AXIS)
     if not isinstance(axes, (list, tuple)) or not isinstance(cells, int) or not {*axes} <= {*BOUNDS}:
         axes, cells = AXES, PER_AXIS  # another generator's settings mean something else

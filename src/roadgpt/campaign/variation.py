@@ -1,10 +1,10 @@
-"""Variations: new roads made from tested ones, each proved before anyone drives it. Verb: ``varied``.
+"""Variations: new roads made of tested ones, each checked before it is driven.
 
-    Task --change elements--> place on the map --> look --> build --> every rule --> Candidate, or nothing
+    VariationTask --mutate elements--> place on the map --> fast checks --> build --> every rule --> Candidate
 
-A Task says all that a worker needs, so ``pool.map(varied, tasks)`` does the work anywhere. A change may break
-what was asked for, or lead off the map: then it is drawn again. What comes back keeps every promise of the
-Brief and every rule, by ``check.inspect`` on the road that will be driven.
+A VariationTask holds all that a worker needs, so ``pool.map(make_candidate, tasks)`` runs anywhere. A
+mutation may break what was asked for, or leave the map: then another is drawn. A Candidate keeps every
+requirement of the Brief and every rule, by ``check.inspect`` on the road that will be driven.
 """
 
 from collections.abc import Sequence
@@ -44,7 +44,7 @@ class VariationContext(NamedTuple):
     brief: Brief | None
     world: World
     rules: Literal["strict", "sbft"] = "strict"
-    """"sbft": the competition's validator has to take the road as well."""
+    """"sbft": the road has to pass the validator of the competition as well."""
 
 
 class VariationTask(NamedTuple):
@@ -52,27 +52,27 @@ class VariationTask(NamedTuple):
 
     kind: Kind
     parents: tuple[Design, ...]
-    """None of a draft, one of a variation, two of a crossing; two, to stand between."""
+    """None of a draft, one of a variation, two of a crossover, two of a road between them."""
     origin: str
     seed: tuple[int, ...]
     setting: VariationContext
     share: float = 0.5
-    """Of the way from one parent to the other, of a road between them."""
+    """Position of a road between its parents, 0 to 1."""
 
 
 class Candidate(NamedTuple):
-    """A road that keeps all that was asked for, and what can be seen of it."""
+    """A road that keeps all that was asked for, and its features."""
 
     design: Design
     origin: str
     features: dict[str, float]
-    """Of the road: what no drive is needed for."""
+    """Features of the road, which need no drive."""
     surrogate_features: Array
     shape: PlanShape
 
 
 def make_candidate(task: VariationTask) -> Candidate | None:
-    """The road that a task asks for; None where none was found that keeps the Brief and every rule."""
+    """Returns the candidate of a task; None where no road was found that keeps the Brief and every rule."""
     rng = np.random.default_rng(task.seed)
     setting = task.setting
     if task.kind == "between":
@@ -89,7 +89,7 @@ def make_candidate(task: VariationTask) -> Candidate | None:
 def _changed(
     parents: Sequence[Elements], setting: VariationContext, rng: np.random.Generator
 ) -> tuple[Design, Road] | None:
-    """A road like its parent, or one that takes after two."""
+    """Returns a mutation of one parent, or a crossover of two."""
     for attempt in range(TRIES):
         elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
         if len(parents) == 1 or rng.random() < CHANGED_TOO:
@@ -101,7 +101,7 @@ def _changed(
 
 
 def _drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
-    """A planner's own draft."""
+    """Returns a draft of the planner."""
     try:
         design = draft(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))
     except DesignError:
@@ -110,7 +110,7 @@ def _drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Desig
 
 
 def _between(task: VariationTask) -> tuple[Design, Road] | None:
-    """A road between two, and where it lies between their places."""
+    """Returns a road between two, at a place between theirs."""
     one, other = task.parents
     elements = interpolated(elements_of(one.segments), elements_of(other.segments), task.share)
     if elements is None:
@@ -123,7 +123,7 @@ def _between(task: VariationTask) -> tuple[Design, Road] | None:
 def placed(
     elements: Elements, setting: VariationContext, rng: np.random.Generator
 ) -> tuple[Design, Road] | None:
-    """The road of elements, somewhere on the map; None where it breaks a promise or a rule."""
+    """Returns the road of elements at a random place; None where it breaks a requirement or a rule."""
     line = walk([as_written(element) for element in elements])
     where = place(line, setting.world, rng)
     if where is None or not keeps_clear(line, setting.world, with_verges=False):
@@ -132,7 +132,7 @@ def placed(
 
 
 def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:
-    """The design and its road, where no rule objects."""
+    """Returns a design and its road if no rule objects; else None."""
     try:
         road = build(design)
         if check.inspect(road, setting.brief, setting.world):
@@ -148,7 +148,7 @@ def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] 
 
 
 def described(design: Design, road: Road, origin: str, setting: VariationContext) -> Candidate:
-    """A road that passed, with all that can be seen of it."""
+    """Returns the candidate of a road that passed, with its features."""
     samples = road.sample()
     features = features_of(samples.points) | behaviour_of(road, setting.brief)
     shape = shape_of(samples.s, samples.x + 1j * samples.y)
@@ -156,7 +156,7 @@ def described(design: Design, road: Road, origin: str, setting: VariationContext
 
 
 def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
-    """What can be seen of a road that was driven before."""
+    """Returns the features of a road that was driven before, as a candidate."""
     design, setting = known
     return described(design, build(design), "", setting)
 

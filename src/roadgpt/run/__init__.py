@@ -1,10 +1,10 @@
-"""The whole flow on one page. Makes a Run, and a folder of Runs. Verbs: ``perform``, ``prove``, ``campaign``.
+"""The whole flow on one page: makes a Run, and a folder of Runs. Verbs: ``perform``, ``prove``, ``campaign``.
 
     words --read--> Brief --draft--> Design --build--> Road --inspect--> Findings --simulate--> Drive
                                ^                                  |        (none)                 |
                                '----------- their sentences ------'                  Verdict <--judge
 
-``perform`` goes from words to a Run; ``prove`` from a Design or a Road that exists to a Run.
+``perform`` makes a Run from words; ``prove`` makes one from a Design or a Road that exists.
 """
 
 import time
@@ -70,22 +70,22 @@ def perform(
     earlier: Sequence[Design] = (),
     meter: Meter | None = None,
 ) -> Run:
-    """From words to a Run: read, design until no rule objects, drive, judge.
+    """Makes a Run from words: reads them, designs until no rule objects, drives, and judges.
 
     Args:
         words: a description, or the Brief that was read from it.
-        seed: of the campaign; the road's own is drawn from it and its index.
+        seed: of the campaign; the road's own seed is drawn from it and the road's index.
         world: map, limits of the rules, surface.
-        setup: who does the work, and how.
+        setup: the reader, designer, rules, simulator and driver.
         index: number of the road in its campaign, from 1.
-        earlier: designs that the new one should not repeat.
+        earlier: designs that the new one has to differ from.
         meter: counts what language models are asked, and holds the limits of a campaign.
 
     Raises:
         BriefError: the words cannot be read.
         DesignError: nothing could be designed.
         ChatError: a language model could not be asked, or did not answer as it should.
-        UsageError: a part is not installed, or the driver's file makes no driver.
+        UsageError: a plug-in is not installed, or the driver's file makes no driver.
     """
     check_parts(setup, world)
     begun = time.perf_counter()
@@ -114,11 +114,11 @@ def perform(
 
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
-    """What the setup's reader reads out of the words, if a road of this world can be like that.
+    """Returns what the setup's reader reads from the words, if this world has room for such a road.
 
     Raises:
         BriefError: the words cannot be read, or ask for what the world does not allow.
-        PartError: no such reader.
+        PartError: there is no such reader.
         ChatError: a language model could not be asked, or did not answer as it should.
     """
     with counting(meter or Meter.of(setup.chat), "reading"):
@@ -138,16 +138,21 @@ def prove(
     brief: Brief | None = None,
     despite_findings: bool = False,
 ) -> Run:
-    """From a Design or a Road to a Run: check, drive, judge. The seed is handed on as it is.
-
-    Where there is a Brief, the road is to keep its promises.
+    """Makes a Run from a Design or a Road: checks, drives, and judges it.
 
     Args:
-        despite_findings: drive a road that the rules object to, as roads of other people's maps are; not one
-            that nobody can drive on. The findings stay in the Run, beside the verdict.
+        blueprint: the Design, or the Road.
+        seed: of the drive; it is used as it is.
+        world: map, limits of the rules, surface.
+        setup: the rules, simulator and driver.
+        index: number of the road in its campaign, from 1.
+        brief: what the road has to keep; None: nothing was asked for.
+        despite_findings: drive also a road that the rules object to, as roads of real maps are, unless it
+            cannot
+            be driven on at all. The findings stay in the Run, beside the verdict.
 
     Raises:
-        UsageError: a part is not installed, or the driver's file makes no driver.
+        UsageError: a plug-in is not installed, or the driver's file makes no driver.
     """
     check_parts(setup, world)
     begun = time.perf_counter()
@@ -170,25 +175,27 @@ def campaign(
     draw: Draw | None = None,
     meter: Meter | None = None,
 ) -> Campaign:
-    """Many Runs of one description, each written into one folder as it ends.
+    """Makes many Runs of one description, and writes each into one folder as it ends.
 
-    Iterate over it to make it work (over ``.all_runs()`` to be given also the roads of a campaign that goes
-    on); ``.folder`` says where. A driver or a simulator that fails costs one Run.
+    Iterate over the Campaign to make it work, or over ``.all_runs()`` to receive also the roads that an
+    earlier
+    session made. ``.folder`` is its folder. A driver or a simulator that fails costs one Run.
 
     Args:
         words: a description, or the Brief that was read from it.
-        n: how many roads.
-        seed: of the campaign; each road's own is drawn from it and its index.
+        n: number of roads.
+        seed: of the campaign; each road's own seed is drawn from it and the road's index.
         world: map, limits of the rules, surface.
-        setup: who does the work, and how.
-        out: the folder; an interrupted campaign of the same request is continued there, and nothing is done
-            where it is finished. None makes a new one under ``roadgpt-runs``.
-        draw: puts pictures into the folders, as ``report.drawing()`` does; None draws none.
-        meter: as for ``perform``; what earlier roads of the folder cost is counted to it.
+        setup: the reader, designer, rules, simulator and driver.
+        out: the folder. An interrupted campaign of the same request is continued there; a finished one is
+            left
+            as it is. None makes a new folder under ``roadgpt-runs``.
+        draw: writes pictures into the folders, as ``report.drawing()`` does; None: no pictures.
+        meter: as for ``perform``; what earlier roads of the folder cost is added to it.
 
     Raises:
         BriefError: the words cannot be read.
-        UsageError: the folder holds something else, or a part is not installed.
+        UsageError: the folder holds something else, or a plug-in is not installed.
     """
     meter = meter or Meter.of(setup.chat)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
@@ -204,11 +211,13 @@ def campaign(
 
 @cache
 def check_parts(setup: Setup, world: World = USUAL) -> None:
-    """Find rules, simulator and driver before work begins; one that fails after that costs one road.
+    """Checks that rules, simulator and driver work before the first road; one that fails later costs one
+    road.
 
     Raises:
-        UsageError: a part is not installed, the driver's file makes no driver, or the simulator cannot heed
-            what the world says.
+        UsageError: a plug-in is not installed, the driver's file makes no driver, or the simulator cannot
+            obey
+            a setting of the world.
         DriverError: the driver hung while it was made.
     """
     rules_of(setup.rules)
@@ -218,7 +227,7 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
 
 
 class _Made(NamedTuple):
-    """A draft, and what was said about it."""
+    """A draft, and what the rules say of it."""
 
     design: Design
     road: Road
@@ -228,7 +237,7 @@ class _Made(NamedTuple):
 
 
 def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: int) -> _Made:
-    """The first draft that no rule objects to, or the last one, with what they say of it."""
+    """Returns the first draft that no rule objects to, or the last one with its findings."""
     world, setup = request.world, request.setup
     designer = designer_of(setup.designer, setup.chat)
     own_geometry: Geometry | None = getattr(designer, "geometry", None)
@@ -257,7 +266,7 @@ def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: i
 
 
 def _driven(run: Run, despite_findings: bool = False) -> Run:
-    """The Run with its drive and verdict, where the road is valid and is to be driven."""
+    """Returns the Run with its drive and verdict, if the road is valid and is to be driven."""
     setup = run.request.setup
     objections = [finding for finding in run.findings if finding.stops or not despite_findings]
     if objections:

@@ -1,4 +1,4 @@
-"""Files and folders that are there whole or not at all, whenever the process is killed."""
+"""Files and folders that are complete or do not exist, whenever the process is killed."""
 
 import json
 import math
@@ -20,7 +20,7 @@ PART = ".part"  # end of the name of what is not yet whole
 
 
 def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> None:
-    """Write a file beside its place and then move it there; a private one is for its owner alone."""
+    """Writes a file beside its place and then renames it; a private file is readable by its owner only."""
     data = to_bytes(content) if isinstance(content, str) else content
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
@@ -35,10 +35,10 @@ def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> N
 
 
 def refuse_links(*paths: Path) -> None:
-    """Within a folder that may be somebody else's nothing is written through a link to elsewhere.
+    """Refuses to write through links: within a folder that may be somebody else's, they may lead anywhere.
 
     Raises:
-        UsageError: one of these is a link, or neither a file nor a folder.
+        UsageError: one of these paths is a link, or neither a file nor a folder.
     """
     for path in paths:
         if path.is_symlink() or (path.exists() and not (path.is_file() or path.is_dir())):
@@ -50,14 +50,15 @@ def refuse_links(*paths: Path) -> None:
 
 @contextmanager
 def held(path: Path) -> Iterator[None]:
-    """Hold a lock file while the block runs; a process that is killed lets go of it.
+    """Holds a lock file while the block runs; the system releases it when the process is killed.
 
-    The file stays: were it removed, a process that had just opened it would hold a lock that nobody sees, and
+    The file stays: if it were removed, a process that had just opened it would hold a lock that nobody sees,
+    and
     Windows removes no file that is open.
 
     Raises:
         BlockingIOError: another process holds it.
-        UsageError: it is no file.
+        UsageError: it is not a file.
     """
     refuse_links(path)
     with path.open("a") as file:
@@ -68,7 +69,7 @@ def held(path: Path) -> Iterator[None]:
 
 @contextmanager
 def whole_folder(path: Path) -> Iterator[Path]:
-    """A folder to fill; it takes its name when the block ends well, and vanishes when it does not."""
+    """Makes a folder to fill; it gets its name when the block ends well, and is removed when it does not."""
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     draft.mkdir(parents=True)
     try:
@@ -82,12 +83,12 @@ def whole_folder(path: Path) -> Iterator[Path]:
 
 
 def missing(folder: Path) -> tuple[Path, ...]:
-    """The folder and those around it that do not exist, the innermost first."""
+    """Returns the folder and those around it that do not exist, the innermost first."""
     return tuple(path for path in (folder, *folder.parents) if not path.exists())
 
 
 def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
-    """Remove files, then folders in which nothing else lies."""
+    """Removes files, and then those folders that are empty."""
     for path in files:
         with suppress(OSError):  # Windows removes no file that is open
             path.unlink()
@@ -97,7 +98,7 @@ def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
 
 
 def sweep(folder: Path) -> None:
-    """Remove what a killed process left unfinished in a folder."""
+    """Removes unfinished files and folders that a killed process left in a folder."""
     for path in folder.glob(f"*{PART}"):
         if path.is_dir():
             shutil.rmtree(path)
@@ -106,12 +107,12 @@ def sweep(folder: Path) -> None:
 
 
 def to_bytes(text: str) -> bytes:
-    """As UTF-8; what a broken terminal put into words is written as an escape, which JSON reads back."""
+    """Returns text as UTF-8; characters from a broken terminal become escapes, which JSON reads back."""
     return text.encode("utf-8", "backslashreplace")
 
 
 def json_text(value: Any, indent: int | None = 1) -> str:
-    """JSON that every reader takes: numbers that are not finite become null."""
+    """Returns JSON that every reader accepts: numbers that are not finite become null."""
     try:
         return json.dumps(value, indent=indent, allow_nan=False, ensure_ascii=False) + "\n"
     except ValueError:

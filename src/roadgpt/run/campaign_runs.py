@@ -1,4 +1,4 @@
-"""Many Runs in one folder: written as each ends; an interrupted campaign goes on where it stopped."""
+"""Many Runs in one folder: each is written as it ends, and an interrupted campaign is continued."""
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
@@ -30,16 +30,16 @@ Perform = Callable[[int, Sequence[Design]], Run]
 
 @dataclass
 class Campaign:
-    """Iterate over it to make it work; each Run is on the disk when it is handed out."""
+    """Runs of one description; iterate over it to make them. Each Run is on the disk when it is yielded."""
 
     folder: Path
     request: Request
     roads: int
-    """How many there will be."""
+    """Number of roads that are asked for."""
     perform: Perform
     draw: Draw | None = None
     made: tuple[Path, ...] = ()
-    """Folders that were made for it, the innermost first; they go again where nothing can be designed."""
+    """Folders that were made for it, the innermost first; removed where nothing can be designed."""
     meter: Meter = field(default_factory=Meter)
     """Counts what is asked of language models, earlier roads included."""
     _finished: set[int] = field(default_factory=set)
@@ -59,7 +59,7 @@ class Campaign:
         draw: Draw | None,
         meter: Meter | None = None,
     ) -> "Campaign":
-        """A campaign in its folder: a new one, or the one that lies there, to be continued.
+        """Opens a campaign in its folder: a new one, or the one that is there, to continue it.
 
         Raises:
             UsageError: the folder holds something else, or cannot be made.
@@ -93,21 +93,21 @@ class Campaign:
 
     @property
     def is_complete(self) -> bool:
-        """Are all roads there?"""
+        """True if all roads are finished."""
         return len(self._finished) >= self.roads
 
     def __iter__(self) -> Iterator[Run]:
-        """The Runs that are still to be made, one by one; raises as ``all_runs``."""
+        """Yields the Runs that are still to be made, one by one; raises what ``all_runs`` raises."""
         return self._runs(with_earlier=False)
 
     def all_runs(self) -> Iterator[Run]:
-        """The Runs that were there before, read from the disk, then those that are still to be made.
+        """Yields the Runs that exist, read from the disk, then those that are still to be made.
 
         Raises:
-            DesignError: no road could be designed; there is no folder then, unless it was there before.
+            DesignError: no road could be designed; the folder is removed, unless it was there before.
             ChatError: a language model cannot be asked, or a limit is reached; roads before it are complete.
-            GivenUpError: the simulator failed three times in a row; these roads are to be made again.
-            UsageError: a part is not installed, or another process is at work in the folder.
+            GivenUpError: the simulator failed three times in a row; these roads have to be made again.
+            UsageError: a plug-in is not installed, or another process is at work in the folder.
             RoadGPTError: a file cannot be written.
         """
         return self._runs(with_earlier=True)
@@ -128,7 +128,7 @@ class Campaign:
                 yield from self._work()
 
     def _work(self) -> Iterator[Run]:
-        """The roads that are missing; then the page of all of them."""
+        """Makes the missing roads, and then the page of all of them."""
         try:
             yield from self._made_runs()
         except (DesignError, ChatError):
@@ -147,10 +147,11 @@ class Campaign:
             self._write_card(is_finished=True)
 
     def _made_runs(self) -> Iterator[Run]:
-        """Road after road, each written and counted before it is handed out.
+        """Makes road after road; each is written and counted before it is yielded.
 
-        Roads that cannot be designed are held back until one can: a description that makes no road at all
-        leaves no tests behind.
+        Roads that cannot be designed are held back until one can be: a description that no road can keep
+        leaves no
+        tests behind.
         """
         lacking = [index for index in range(1, self.roads + 1) if index not in self._finished]
         held_back: list[Run] = []
@@ -172,7 +173,7 @@ class Campaign:
             held_back = []
 
     def _give_up(self, last: Run) -> NoReturn:
-        """Leave the roads that the simulator lost to whoever goes on."""
+        """Removes the roads that the simulator lost, so that they are made when the campaign continues."""
         with self._writing():
             for run in self._losses.lost:
                 remove_run(run.index, self.folder)
@@ -183,7 +184,7 @@ class Campaign:
         )
 
     def _go_without_trace(self) -> None:
-        """Take away what was made for roads that cannot be; what was there before stays."""
+        """Removes what was made for roads that cannot be designed; earlier files stay."""
         if self._finished:
             self._tally.write(self.folder)
             return
@@ -192,7 +193,7 @@ class Campaign:
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """Around all that is written, and nothing else: what the system refuses becomes a sentence."""
+        """Turns an error of the system while writing into one clear sentence."""
         try:
             yield
         except OSError as error:
@@ -202,7 +203,7 @@ class Campaign:
             ) from error
 
     def earlier_runs(self) -> Iterator[Run]:
-        """The Runs that were there before, read from the disk."""
+        """Yields the Runs that were there before, read from the disk."""
         for index in self.kept:
             yield read_run(run_folder(self.folder, index))
 
@@ -232,7 +233,7 @@ class Campaign:
             self._designs.insert(place, run.design)
 
     def _begin(self) -> bool:
-        """Make the folder ready, and say whether the campaign is finished.
+        """Prepares the folder; returns True if the campaign is finished.
 
         Another process may have worked in it since it was opened.
         """
@@ -251,7 +252,7 @@ class Campaign:
         write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
 
     def _take_up(self) -> Card:
-        """Look at what lies in the folder, and keep the roads that are finished."""
+        """Reads what is in the folder, and keeps the roads that are finished."""
         card = read_card(self.folder)
         there_was = card.request.essence()
         other = [name for name, value in self.request.essence() if getattr(there_was, name) != value]
@@ -271,7 +272,7 @@ class Campaign:
         return card
 
     def _keep(self, index: int) -> None:
-        """Count a road that is there; one that cannot be read is made again."""
+        """Counts a road that is there; one that cannot be read is made again."""
         try:
             run = read_run(run_folder(self.folder, index))
         except UsageError:
@@ -283,12 +284,12 @@ class Campaign:
 
 
 def _may_lie_in_a_new_folder(path: Path) -> bool:
-    """Is this what a campaign leaves that was stopped before it had a card?"""
+    """Checks for a file of a campaign that was stopped before it had a card."""
     return path.name == LOCK or (path.name.startswith(CARD) and path.name.endswith(PART))
 
 
 def finished(folder: Path) -> list[int]:
-    """Numbers of the roads that are finished, in their order."""
+    """Returns the numbers of the roads that are finished, in order."""
     numbers = (path.name.split(".")[1] for path in folder.glob("test.*.json"))
     indices = sorted({int(number) for number in numbers if number.isdecimal()})
     return [

@@ -1,4 +1,4 @@
-"""The card of a campaign: what its folder says that it was asked for, so that it can be gone on with."""
+"""The card of a campaign, ``campaign.json``: what the folder was asked for, so that it can be continued."""
 
 from pathlib import Path
 from typing import Literal
@@ -14,7 +14,7 @@ CARD = "campaign.json"
 
 
 class Card(Frozen):
-    """What a campaign's folder says of the campaign."""
+    """What the folder of a campaign says about it."""
 
     format: Literal[1] = 1
     request: Request
@@ -23,7 +23,7 @@ class Card(Frozen):
 
 
 def seed_in(folder: Path) -> int | None:
-    """The seed of the campaign in a folder; None where there is none.
+    """Returns the seed of the campaign in a folder; None where there is none.
 
     Raises:
         UsageError: its card is damaged.
@@ -32,10 +32,10 @@ def seed_in(folder: Path) -> int | None:
 
 
 def read_card(folder: Path) -> Card:
-    """What a campaign's folder says of the campaign.
+    """Reads the card of a campaign's folder.
 
     Raises:
-        UsageError: no campaign lies there.
+        UsageError: there is no campaign, or its card is damaged or of another version.
     """
     try:
         card = read_json(folder / CARD, 4_000_000, "the card of a campaign")

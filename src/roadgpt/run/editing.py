@@ -1,4 +1,4 @@
-"""Changed roads: where a Design comes from, and the folder of the Run that a change made of it.
+"""Changed roads: where a Design comes from, and the folder of the Run of the changed road.
 
 folder/
   test.0001.json, runs/0001/...    the new Run, as in any campaign
@@ -30,16 +30,16 @@ class Original:
     seed: int
     path: str
     remarks: tuple[str, ...] = ()
-    """What had to be settled of its file."""
+    """What was adjusted when its file was read."""
 
 
 def original(path: Path | str, world: World, setup: Setup) -> Original:
-    """The Design in a run's folder, a campaign's folder of one road, or a file.
+    """Returns the Design in a run's folder, a campaign's folder of one road, or a file.
 
     Args:
         path: of one of these.
-        world: of a Design that no run belongs to.
-        setup: of the same.
+        world: of a Design that belongs to no run.
+        setup: of a Design that belongs to no run.
 
     Raises:
         UsageError: there is no Design, or there are several.
@@ -54,7 +54,7 @@ def original(path: Path | str, world: World, setup: Setup) -> Original:
 
 
 def original_of(run: Run, path: str) -> Original:
-    """The Design of a Run that lies in a path.
+    """Returns the Design of a Run; ``path`` is where the Run is.
 
     Raises:
         UsageError: it has none.
@@ -65,16 +65,16 @@ def original_of(run: Run, path: str) -> Original:
 
 
 def reject_used(out: Path) -> None:
-    """UsageError where something lies in a folder already."""
+    """Raises UsageError where a folder holds something already."""
     if out.is_dir() and any(out.iterdir()):
         raise UsageError(f"{out} is not empty; a changed road goes into a new folder: name another one")
 
 
 def folder_for(words: str, seed: int, out: Path | None) -> Path:
-    """A folder for the changed road that holds nothing yet.
+    """Returns an empty folder for the changed road.
 
     Raises:
-        UsageError: it cannot be made, or something lies there.
+        UsageError: it cannot be made, or is not empty.
     """
     if out is None:
         return new_folder(words, seed)
@@ -88,14 +88,14 @@ def folder_for(words: str, seed: int, out: Path | None) -> Path:
 
 @dataclass(frozen=True)
 class _Beside:
-    """Puts the request and the pictures of the road as it was beside those of the new one."""
+    """Writes the request, and the pictures of the road as it was, beside those of the new road."""
 
     card: bytes
     before: Run
     draw: Draw | None
 
     def of_run(self, run: Run, folder: Path) -> None:
-        """Into the new run's folder."""
+        """Writes them into the new run's folder."""
         (folder / CARD).write_bytes(self.card)
         if self.draw is not None:
             self.draw.of_run(run, folder)
@@ -103,22 +103,22 @@ class _Beside:
             self.draw.of_run(self.before, folder / BEFORE)
 
     def of_campaign(self, folder: Path) -> None:
-        """Nothing: one road needs no overview."""
+        """Writes nothing: one road needs no overview."""
 
 
 def write_edit(
     run: Run, before: Run, words: str, changes: Sequence[str], source: str, folder: Path, draw: Draw | None
 ) -> Path:
-    """Write a changed road; gives back the folder of its Run.
+    """Writes a changed road; returns the folder of its Run.
 
     Args:
         run: of the changed road.
         before: the road as it was, not driven.
         words: the change request.
-        changes: sentences.
-        source: where the road as it was lies.
+        changes: sentences that say what was changed.
+        source: the path of the road as it was.
         folder: an empty one.
-        draw: draws the pictures, before and after; None draws none.
+        draw: draws the pictures, before and after; None: no pictures.
     """
     card = {
         "request": words,

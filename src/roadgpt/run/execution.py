@@ -52,7 +52,7 @@ FIELDS = (
 
 
 class ExecutionRecord(NamedTuple):
-    """One moment, in the competition's order."""
+    """One moment of a drive; the fields are in the competition's order."""
 
     timer: float
     pos: list[float]
@@ -74,7 +74,7 @@ class ExecutionRecord(NamedTuple):
 
 
 def records_of(road: Road, drive: Drive, world: World) -> list[ExecutionRecord]:
-    """The Drive at 10 Hz, and at its last step and at every step that leaves the lane."""
+    """Returns the Drive at 10 Hz, with its last step and every step at which the car leaves its lane."""
     oracle = consult(road, drive, world)
     keep = _steps(drive["time"], np.diff(oracle.oob_counter, prepend=0) > 0)
     ahead, velocity = _directions(drive)
@@ -100,7 +100,7 @@ def records_of(road: Road, drive: Drive, world: World) -> list[ExecutionRecord]:
 
 
 def _steps(time: NDArray[np.float64], leaves: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Indices of the steps that are recorded."""
+    """Returns the indices of the steps that are recorded."""
     period = np.floor(time * RATE + 1e-6)
     is_first = np.r_[True, np.diff(period) > 0]
     is_first[-1] = True
@@ -108,7 +108,7 @@ def _steps(time: NDArray[np.float64], leaves: NDArray[np.bool_]) -> NDArray[np.i
 
 
 def _directions(drive: Drive) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where the car looks, and how it moves, in space: both ``(n, 3)``."""
+    """Returns unit vectors ahead and velocities in m/s, in space: both ``(n, 3)``."""
     heading, pitch, roll = drive["heading"], drive["pitch"], drive["roll"]
     ahead = np.stack([np.cos(heading) * np.cos(pitch), np.sin(heading) * np.cos(pitch), np.sin(pitch)])
     level = np.stack([-np.sin(heading), np.cos(heading), np.zeros_like(heading)])  # left, before it rolls

@@ -1,4 +1,4 @@
-"""Road files of a Run: for a campaign as it goes, and of Runs that are there."""
+"""Road files of Runs: of a campaign while it runs, and of Runs that exist."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ NAME = "road"  # of the files in a Run's own folder
 
 
 def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAME) -> tuple[Path, ...]:
-    """Write the road of a Run in each format, with its drive where a format can hold one.
+    """Writes the road of a Run in each format, with its drive where the format can hold one.
 
     Raises:
         PartError: a format is unknown.
@@ -25,21 +25,21 @@ def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAM
 
 
 def poses_of(run: Run) -> Poses | None:
-    """How the car moved; None where it did not."""
+    """Returns how the car moved; None where it did not."""
     return Poses.of(run.drive.columns) if run.drive is not None and len(run.drive) > 1 else None
 
 
 @dataclass(frozen=True)
 class Exporting:
-    """Puts road files into the folder of each Run of a campaign, before whoever draws its pictures."""
+    """Writes road files into the folder of each Run of a campaign, before its pictures are drawn."""
 
     formats: tuple[str, ...]
     tell: Callable[[str], None]
-    """Is told of a road that a format cannot hold; that costs this one file."""
+    """Receives a sentence about a road that a format cannot hold; that costs this one file."""
     draw: Draw | None = None
 
     def of_run(self, run: Run, folder: Path) -> None:
-        """All formats, then the pictures."""
+        """Writes all formats, then the pictures."""
         for format_ in self.formats if run.road is not None else ():
             try:
                 export(run, folder, [format_])
@@ -49,6 +49,6 @@ class Exporting:
             self.draw.of_run(run, folder)
 
     def of_campaign(self, folder: Path) -> None:
-        """The pictures."""
+        """Writes the pictures of all roads."""
         if self.draw is not None:
             self.draw.of_campaign(folder)

@@ -1,13 +1,13 @@
-"""The features that the SBFT competition maps tests by: two of the road, three of the drive.
+"""The features by which the SBFT competition maps tests: two of the road, three of the drive.
 
     MAX_CURV   1/m: of circles through interpolated points i, i+2, i+4, the last window left out
     DIR_COV    share of directions that occur: angles to north fall into 25 bins of 0 to 360 degrees
     STD_SA     degrees: standard deviation of the steering wheel's angle
     MEAN_LP, MAX_LP    m: mean and largest distance from the edge of the lane (``oob_distance``)
 
-Source: the competition's test_analysis.py (2024), after DeepHyperion (ISSTA 2021). Kept with its quirks:
-DIR_COV divides by the 26 edges of the bins, and takes angles by arccos, so that they never pass 180 degrees
-and a full circle scores 0.5.
+Source: the competition's test_analysis.py (2024), after DeepHyperion (ISSTA 2021). Its peculiarities are
+kept: DIR_COV divides by the 26 edges of the bins and takes angles by arccos, so that they never exceed 180
+degrees and a full circle scores 0.5.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ FEWEST_RECORDS = 3  # with fewer, a drive has no features
 
 
 def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> dict[str, float]:
-    """All features of a test.
+    """Returns the features of a test, by name.
 
     Args:
         points: interpolated points of the road ``(n, 2)`` or ``(n, 3)``, about one per metre.
@@ -39,12 +39,12 @@ def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> d
 
 
 def max_curvature(plan: NDArray[np.float64]) -> float:
-    """Largest curvature, 1/m, of points ``(n, 2)``; 0 on a line and for fewer than six points."""
+    """Returns the largest curvature, 1/m, of points ``(n, 2)``; 0 on a line and for fewer than six points."""
     return float((1 / radii(plan)).max(initial=0.0))
 
 
 def direction_coverage(plan: NDArray[np.float64], bins: int = BINS) -> float:
-    """Share of the edges (26 of 25 bins) that bin the directions of points ``(n, 2)``."""
+    """Returns the share of the edges (26 of 25 bins) that the directions of points ``(n, 2)`` fall into."""
     step = np.diff(plan, axis=0)
     length = np.sqrt((step**2).sum(axis=1))
     moves = length > 0

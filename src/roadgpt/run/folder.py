@@ -1,12 +1,12 @@
 """The folder of one Run: written whole, and read back as the Run that it was.
 
 campaign/
-  test.0001.json           written last: where it is, the Run is finished
+  test.0001.json           written last: if it exists, the Run is finished
   runs/0001/
     brief.json design.json road.json drive.npz verdict.json    the values, each in its own form
     run.json               outcome, findings, seed, versions, and the whole request
-    seconds.json           what it cost on the clock: the one file that another day changes
-    error.txt              where a simulator or driver failed
+    seconds.json           seconds on the clock: the one file that differs from day to day
+    error.txt              the traceback where a simulator or driver failed
     *.png                  the pictures
 """
 
@@ -36,28 +36,30 @@ RUNS = "runs"
 
 
 class Draw(Protocol):
-    """Whoever draws pictures; the room ``report`` does."""
+    """Draws the pictures of folders of runs; ``report.drawing`` makes one."""
 
     def of_run(self, run: Run, folder: Path) -> object:
-        """Put the pictures of a Run into its folder."""
+        """Draws the pictures of a Run into its folder."""
         ...
 
     def of_campaign(self, folder: Path) -> object:
-        """Put a picture of all roads into a campaign's folder."""
+        """Draws a picture of all roads into a campaign's folder."""
         ...
 
 
 def run_folder(campaign: Path, index: int) -> Path:
-    """Where road ``index`` of a campaign lies."""
+    """Returns the path of the folder of road ``index`` of a campaign."""
     return campaign / RUNS / f"{index:04d}"
 
 
 def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | None = None) -> Path:
-    """Write a Run into a campaign's folder, its test file last; gives back the Run's own folder.
+    """Writes a Run into a campaign's folder, its test file last; returns the Run's own folder.
 
     Args:
-        run, campaign, draw: what, where, and who draws it.
-        test: what is to stand in the test file, where that is not the usual.
+        run: the Run.
+        campaign: the folder of the campaign.
+        draw: draws the pictures; None: no pictures.
+        test: the content of the test file; None: the usual one.
     """
     folder = run_folder(campaign, run.index)
     refuse_links(campaign / RUNS, folder)
@@ -71,7 +73,7 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
 
 
 def remove_run(index: int, campaign: Path) -> None:
-    """Take a Run out of a campaign's folder, its test file first: from then on it is to be made."""
+    """Removes a Run from a campaign's folder, its test file first: from then on it has to be made again."""
     (campaign / test_name(index)).unlink(missing_ok=True)
     shutil.rmtree(run_folder(campaign, index), ignore_errors=True)
 
@@ -112,12 +114,12 @@ def _card(run: Run) -> dict[str, Any]:
 
 
 def is_run(path: Path) -> bool:
-    """Does a Run lie here?"""
+    """Checks whether a folder holds a Run."""
     return (path / "run.json").is_file()
 
 
 def only_run(path: Path) -> Path:
-    """The folder of the only run of a campaign's folder; any other path as it is.
+    """Returns the folder of the only run of a campaign's folder; any other path as it is.
 
     Raises:
         UsageError: nothing is there, or the campaign has several runs, or none.
@@ -134,7 +136,7 @@ def only_run(path: Path) -> Path:
 
 
 def read_run(path: Path | str) -> Run:
-    """The Run in a folder, or the one that a campaign's test file belongs to.
+    """Reads the Run in a folder, or the one that a campaign's test file belongs to.
 
     Raises:
         UsageError: there is no Run, or a file of it cannot be read.
@@ -150,7 +152,7 @@ def read_run(path: Path | str) -> Run:
 
 
 def run_of_test(path: Path) -> Path | None:
-    """The folder of the run that a campaign's test.NNNN.json belongs to; None for any other file."""
+    """Returns the folder of the run that a campaign's test.NNNN.json belongs to; None for any other file."""
     parts = path.name.split(".")
     beside = path.parent / RUNS / parts[1] if len(parts) == 3 and parts[0] == "test" else path
     return beside if path.is_file() and is_run(beside) else None
@@ -201,7 +203,7 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
 
 
 def _completed(run: Run) -> Run:
-    """A Run that an older version wrote, with what its verdict does not tell measured on its drive."""
+    """Returns a Run of an earlier version with the values of its verdict that were not measured then."""
     road, drive, verdict = run.road, run.drive, run.verdict
     if road is None or drive is None or verdict is None or verdict.beyond is not None:
         return run
@@ -210,7 +212,7 @@ def _completed(run: Run) -> Run:
 
 @dataclass(frozen=True)
 class _Card:
-    """What a run says of itself in ``run.json``, but for what has a form of its own."""
+    """The content of ``run.json``, without the values that have a form of their own."""
 
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="ignore", allow_inf_nan=False)
 

@@ -1,4 +1,4 @@
-"""Names of the folders of campaigns: safe whatever the description says."""
+"""Names of campaigns' folders, which are safe whatever the description says."""
 
 import re
 import unicodedata
@@ -11,13 +11,13 @@ LONGEST = 40  # letters of a description
 
 
 def slug(words: str) -> str:
-    """A description as a part of a path: only a-z, 0-9 and '-', at most 40 of them."""
+    """Returns a description as a part of a path: only a-z, 0-9 and '-', at most 40 characters."""
     plain = unicodedata.normalize("NFKD", words[:1000].casefold()).encode("ascii", "ignore").decode()
     return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:LONGEST].strip("-") or "road"
 
 
 def new_folder(words: str, seed: int, home: Path = HOME) -> Path:
-    """A folder made now that did not exist; a number is added where the name is taken.
+    """Makes a folder that did not exist; a number is added where its name is taken.
 
     Raises:
         UsageError: no folder can be made here.

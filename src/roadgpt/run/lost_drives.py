@@ -1,8 +1,8 @@
-"""A simulator that is dead: three drives in a row that it lost itself, and nobody goes on asking it.
+"""Gives up a simulator that is dead: one that lost three drives in a row.
 
-Wherever many roads are driven, what came of each is counted here. A drive is lost where the simulator could
-not be started, went away, or gave no answer (``SimulatorError``); that a driver fails, or the physics of one
-road breaks down, is no loss. One that works again in between begins the count anew.
+Wherever many roads are driven, each drive is counted here. A drive is lost if the simulator could not be
+started, went away, or gave no answer (``SimulatorError``); a failure of the driver, or of the physics on one
+road, is no loss. A drive that works begins the count anew.
 """
 
 from typing import Generic, TypeVar
@@ -14,14 +14,14 @@ MOST = 3  # in a row; each may have cost minutes of waiting for the simulator to
 
 
 class LostDrives(Generic[Key]):
-    """Drives in a row that a simulator lost."""
+    """The drives in a row that a simulator lost."""
 
     def __init__(self) -> None:
         self.lost: list[Key] = []
-        """Those that came to nothing, by whatever tells them apart."""
+        """Keys of the lost drives."""
 
     def count(self, key: Key, is_lost: bool) -> bool:
-        """Count what came of a drive; True where it is time to give up."""
+        """Counts a drive; returns True if it is time to give up."""
         if not is_lost:
             self.lost.clear()
             return False
@@ -30,10 +30,10 @@ class LostDrives(Generic[Key]):
 
     @staticmethod
     def given_up(said: str, again: str) -> GivenUpError:
-        """What to say.
+        """Returns the error to raise.
 
         Args:
-            said: of the last drive, the simulator's own sentence.
-            again: how the roads that were not driven are driven.
+            said: the simulator's own sentence about the last drive.
+            again: how to drive the roads that were not driven.
         """
         return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({said})", again)

@@ -1,4 +1,4 @@
-"""The Run: all that came of one road, and the Request that it answers."""
+"""The Run: everything about one road from words to verdict, and the Request that it answers."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -16,29 +16,30 @@ if TYPE_CHECKING:
     from roadgpt.verdict import Verdict
 
 Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
-"""VALID: the rules object to nothing, and nobody drove."""
+"""VALID: the rules do not object, and the road was not driven."""
 
 
 class Setup(Frozen):
-    """Who does the work, and how."""
+    """The plug-ins that make and drive roads, and how they do it."""
 
     reader: str = "model"
     designer: str = "planner"
     rules: Literal["strict", "sbft"] = "strict"
     driver: str = "beamng_like"
-    """A name on the shelf, or FILE.py:CLASS."""
+    """Name of an installed driver, or FILE.py:CLASS."""
     simulator: str = "mujoco"
     geometry: Geometry = "arcs"
     keep_driving: bool = False
     drives: bool = True
-    """False: roads are designed and checked only."""
+    """False: roads are only designed and checked."""
     chat: ChatSettings | None = None
-    """The language model, for readers and designers that ask one; None: what the user's settings say."""
+    """The language model, for readers and designers that ask one; None: the user's settings."""
 
     def came_with(self, file: object) -> Self:
-        """The same, out of a file that may be somebody else's: it names, and the user decides.
+        """Returns the Setup as read from a file that may be somebody else's: the user is asked before it is
+        trusted.
 
-        See ``roadgpt.provenance``; the driver is the user's own file where they named it.
+        See ``roadgpt.provenance``; a driver is trusted if the user named its file.
         """
         driver = trust.came_with(self.driver, file)
         chat = self.chat and self.chat.came_with(file)
@@ -46,48 +47,48 @@ class Setup(Frozen):
 
 
 class Request(Frozen):
-    """What a campaign is asked for, all but how often; the same Request gives the same files."""
+    """What a campaign is asked for, except the number of roads; the same Request gives the same files."""
 
     words: str = ""
-    """Empty where roads were given."""
+    """The description; empty where roads were given."""
     seed: int = 0
     world: World = World()
     setup: Setup = Setup()
 
     def essence(self) -> "Request":
-        """Without what may be another when an interrupted campaign goes on."""
+        """Returns the Request without what may change when an interrupted campaign is continued."""
         chat = self.setup.chat and self.setup.chat.essence()
         return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
 
     def came_with(self, file: object) -> Self:
-        """As its Setup."""
+        """Returns the Request as read from a file that may be somebody else's; see ``Setup.came_with``."""
         return self.model_copy(update={"setup": self.setup.came_with(file)})
 
 
 @dataclass(frozen=True)
 class Seconds:
-    """What a Run cost on the clock; the only part of it that another day changes."""
+    """Seconds on the clock; the only part of a Run that differs from day to day."""
 
     design: float = 0.0
-    """Reading, designing and checking."""
+    """Seconds of reading, designing and checking."""
     drive: float = 0.0
-    """Driving and judging."""
+    """Seconds of driving and judging."""
 
     @property
     def total(self) -> float:
-        """Of both."""
+        """Seconds altogether."""
         return self.design + self.drive
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One road from words to verdict. What it did not come to is None."""
+    """One road from words to verdict. Values of stages that were not reached are None."""
 
     request: Request
     index: int
     """Number of the road in its campaign, from 1."""
     seed: int
-    """The road's own, drawn from the campaign's; a road that was given has the campaign's itself."""
+    """The road's own seed, drawn from the campaign's; a road that was given has the campaign's seed."""
     outcome: Outcome = "VALID"
     description: str = "valid, not driven"
     """The outcome in a sentence."""
@@ -98,18 +99,18 @@ class Run:
     drive: "Drive | None" = None
     verdict: "Verdict | None" = None
     rounds: int = 0
-    """Drafts that it took."""
+    """Number of drafts."""
     designing: DesignReport | None = None
-    """What the designer tells of its draft, where it asked a language model."""
+    """The designer's report on its draft, where it asked a language model."""
     spent: Spent | None = None
     """Tokens, seconds and money of all questions for this road; None where none was asked."""
     versions: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
-    """Name of the file that the road was read from, to be shown; not kept on the disk."""
+    """Name of the file that the road was read from, to be shown; not written to the disk."""
     trace: str = ""
-    """Of a simulator or a driver that failed: where."""
+    """The traceback of a simulator or a driver that failed."""
     is_lost: bool = False
-    """Did the simulator itself fail? Not kept on the disk."""
+    """True if the simulator itself failed; not written to the disk."""
     seconds: Seconds = Seconds()
 
     def __repr__(self) -> str:
@@ -133,7 +134,7 @@ class Run:
 
     @property
     def is_valid(self) -> bool:
-        """Is there a road that the rules do not object to?"""
+        """True if there is a road that the rules do not object to."""
         return self.road is not None and not self.findings
 
     @property
@@ -145,5 +146,5 @@ class Run:
 
     @property
     def length(self) -> float:
-        """Of the road, metres in plan; 0 where there is none."""
+        """Length of the road in plan, metres; 0 where there is none."""
         return self.road.length if self.road else 0.0

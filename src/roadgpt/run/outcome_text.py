@@ -1,4 +1,4 @@
-"""The outcome of a drive in one sentence, its end included where it went on after a departure."""
+"""The outcome of a drive in one sentence, with its end where it went on after a departure."""
 
 from roadgpt.drive import Drive
 from roadgpt.verdict import Verdict
@@ -12,7 +12,7 @@ WENT_ON = {
 
 
 def outcome_sentence(verdict: Verdict, drive: Drive) -> str:
-    """The verdict's sentence; of a car that was told to keep driving, also how its drive ended."""
+    """Returns the verdict's sentence; for a car that drove on after a departure, also how its drive ended."""
     if verdict.cause != "out of lane" or drive.ended not in WENT_ON:
         return verdict.description
     return f"{verdict.description}, {WENT_ON[drive.ended]} after {drive['s'][-1]:.0f} m"

@@ -1,8 +1,8 @@
 """A Run in the shape of the SBFT competition's ``test.NNNN.json``, which its tools read.
 
-Where theirs leaves a field out (an invalid road has no execution data), ours is there and empty. The
-description of a drive is in their words; ``verdict.json`` has ours. Their interpolated points are [x, y];
-ours carry the height: [x, y, z].
+Where the competition leaves a field out (an invalid road has no execution data), it is here and empty. The
+description of a drive has the competition's words; ``verdict.json`` has ours. The competition's interpolated
+points are [x, y]; these have the height as well: [x, y, z].
 """
 
 from typing import Any
@@ -19,7 +19,7 @@ PER_POINT = 1.0  # m
 
 
 def test_of(run: Run) -> dict[str, Any]:
-    """The test as data, in the competition's order of fields."""
+    """Returns the test as data, in the competition's order of fields."""
     points = np.empty((0, 3))
     control = np.empty((0, 2))
     if run.road is not None:
@@ -42,10 +42,10 @@ def test_of(run: Run) -> dict[str, Any]:
 
 
 def test_name(index: int) -> str:
-    """Name of the file of road ``index``."""
+    """Returns the name of the file of road ``index``."""
     return f"test.{index:04d}.json"
 
 
 def test_text(run: Run) -> str:
-    """What stands in the file."""
+    """Returns the content of the file."""
     return json_text(test_of(run), indent=None)

@@ -8,8 +8,10 @@ BITS = 53  # so that a seed survives every JSON reader
 
 
 def seed_of(seed: int, index: int) -> int:
-    """The seed of road ``index`` (from 1) of the campaign ``seed``: well mixed, so that campaigns whose seeds
-    are neighbours share no road. By numpy's SeedSequence, whose results are promised to stay the same.
+    """Returns the seed of road ``index`` (from 1) of the campaign with seed ``seed``.
+
+    It is mixed well, so that campaigns with neighbouring seeds share no road: by numpy's SeedSequence, which
+    promises never to change.
 
     Raises:
         UsageError: the campaign's seed is negative.

@@ -1,10 +1,12 @@
-"""Where tests left their lane, and how much such failures differ: the SBFT competition's analysis.
+"""Where cars left their lane, and how much such failures differ: the SBFT competition's analysis.
 
-Each failure is the road from 30 m before to 30 m after the place where the car left its lane, as a row of
-steps (change of direction, length). Two rows differ by their weighted Levenshtein distance: leaving out or
-adding a step costs 1, and exchanging steps costs (da / (1 + da) + dl / (1 + dl)) / 2 with da in degrees and
+Each failure is the road from 30 m before to 30 m after the place where the car left its lane, as a sequence
+of
+steps (change of direction, length). Two sequences differ by their weighted Levenshtein distance: leaving out
+or adding a step costs 1, and exchanging steps costs (da / (1 + da) + dl / (1 + dl)) / 2 with da in degrees
+and
 dl in metres, or nothing where da < 0.3 and dl < 0.2. Source: the competition's tests_evaluation.py (2024),
-and the code it calls. Its quirks are kept, so that its tools say the same of our files:
+and the code it calls. Its peculiarities are kept, so that its tools give the same figures for our files:
 
 * sparseness is the mean, over failures, of the distance to the one that differs most *among later tests*, so
   that the last failure has none;
@@ -37,14 +39,14 @@ EPS_METRES = 0.2
 
 
 class Departure(NamedTuple):
-    """Where a car left its lane."""
+    """The place where a car left its lane."""
 
     side: str
     """left or right"""
     number: int
-    """The record in which it was first outside."""
+    """Index of the record in which it was first outside."""
     first: int = 0
-    """The record in which it came to the segment."""
+    """Index of the record in which it came to the segment."""
     before: Array | None = None
     """The road up to the place, points ``(n, 2)``; None where it cannot be cut out."""
     after: Array | None = None
@@ -52,7 +54,7 @@ class Departure(NamedTuple):
 
     @property
     def segment(self) -> Array | None:
-        """Both together."""
+        """Both together; None where it cannot be cut out."""
         return (
             None if self.before is None or self.after is None else np.concatenate((self.before, self.after))
         )
@@ -61,12 +63,14 @@ class Departure(NamedTuple):
 def departure(
     points: ArrayLike, records: Sequence[ExecutionRecord], before: float = AROUND, after: float = AROUND
 ) -> Departure | None:
-    """What the competition's analysis finds in a failed test; None where the car did not leave its lane.
+    """Returns what the competition's analysis finds in a failed test; None where the car did not leave its
+    lane.
 
     Args:
-        points: control points of the road, ``(n, 2)`` or more columns, metres.
+        points: control points of the road, ``(n, 2)`` or with more columns, metres.
         records: its execution data.
-        before: metres of road that are cut out before the place; after: behind it.
+        before: metres of road that are cut out before the place.
+        after: metres of road that are cut out after it.
     """
     number = next((i for i, record in enumerate(records) if record.is_oob), None)
     if number is None:
@@ -84,7 +88,7 @@ def departure(
 
 
 def segment_around(points: ArrayLike, place: Sequence[float]) -> Array | None:
-    """Points ``(n, 2)`` of a road, given by control points, around a place; None where there are none."""
+    """Returns points ``(n, 2)`` of a road around a place; None where the segment cannot be cut out."""
     line = _interpolated(points)
     found = None if line is None else _cut_out(line, place, AROUND, AROUND)
     return None if found is None else np.concatenate(found)
@@ -101,7 +105,7 @@ def _interpolated(points: ArrayLike) -> Array | None:
 
 
 def _cut_out(line: Array, place: Sequence[float], before: float, after: float) -> tuple[Array, Array] | None:
-    """The line up to its point nearest to a place, and from there on, each as long as is asked for."""
+    """Returns the line up to its point nearest to a place, and from there on, each of the given length."""
     near, _ = _foot(line, place)
     nodes = np.flatnonzero(np.hypot(*(line - near).T) < NODE)
     if not nodes.size or not nodes[-1]:
@@ -117,7 +121,7 @@ def _first_metres(line: Array, metres: float) -> Array:
 
 
 def _foot(line: Array, place: Sequence[float]) -> tuple[Array, float]:
-    """The point of a line that is nearest to a place, and how far that is away."""
+    """Returns the point of a line that is nearest to a place, and their distance."""
     start, way = line[:-1], np.diff(line, axis=0)
     square = np.maximum((way**2).sum(axis=1), 1e-12)
     share = np.clip(((place - start) * way).sum(axis=1) / square, 0, 1)
@@ -128,7 +132,7 @@ def _foot(line: Array, place: Sequence[float]) -> tuple[Array, float]:
 
 
 def _first_record(line: Array, start: Array, records: Sequence[ExecutionRecord]) -> int:
-    """The first record beside a segment's start; the first of all where none is."""
+    """Returns the first record beside a segment's start; the first of all where none is."""
     for number, record in enumerate(records):
         foot, _ = _foot(line, record.pos[:2])
         close = np.flatnonzero(np.hypot(*(line - foot).T) < NODE)
@@ -139,14 +143,15 @@ def _first_record(line: Array, start: Array, records: Sequence[ExecutionRecord])
 
 
 def steps_of(points: ArrayLike) -> Array:
-    """Steps ``(n - 1, 2)`` between points ``(n, 2)``: change of direction in degrees, length in metres."""
+    """Returns steps ``(n - 1, 2)`` between points ``(n, 2)``: change of direction in degrees, length in
+    metres."""
     move = np.diff(np.asarray(points, float), axis=0)
     direction = np.degrees(np.arctan2(move[:, 1], move[:, 0]))
     return np.stack([np.diff(direction, prepend=direction[:1]), np.hypot(*move.T)], axis=-1)
 
 
 def distances(one: Array, others: list[Array]) -> Array:
-    """Weighted Levenshtein distances ``(k,)`` from one row of steps to k others, all at once."""
+    """Returns weighted Levenshtein distances ``(k,)`` from one sequence of steps to k others, all at once."""
     wide = max((len(other) for other in others), default=0)
     padded = np.full((len(others), wide, 2), 0.0)
     for row, other in zip(padded, others, strict=True):
@@ -171,14 +176,14 @@ def _cost(step: Array, others: Array) -> Array:
 
 
 class Sparseness:
-    """Sparseness that grows with every failure, without measuring old pairs again."""
+    """Sparseness that is updated with every failure, without measuring earlier pairs again."""
 
     def __init__(self) -> None:
         self._rows: dict[tuple[int, int], Array] = {}
         self._furthest: dict[tuple[int, int], float] = {}
 
     def add(self, number: int, points: ArrayLike) -> None:
-        """Take in the segment of the failure of one more test, points ``(n, 2)``."""
+        """Adds the segment of the failure of one more test, points ``(n, 2)``."""
         row = steps_of(points)
         apart = dict(zip(self._rows, distances(row, [*self._rows.values()]).tolist(), strict=True))
         key = (number, len(self._rows))
@@ -189,7 +194,7 @@ class Sparseness:
 
     @property
     def mean(self) -> float:
-        """NaN for fewer than two failures, as the competition has it."""
+        """Mean; NaN for fewer than two failures, as the competition has it."""
         return float(np.mean([*self._furthest.values()])) if self._furthest else math.nan
 
     @property

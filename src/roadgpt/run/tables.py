@@ -2,7 +2,7 @@
 
 generation_stats.csv         counts, and seconds on the clock
 oob_stats.csv                failures by side, and how much they differ
-experiment_description.csv   what was asked for: their columns first, then ours
+experiment_description.csv   what was asked for: the competition's columns first, then ours
 """
 
 import csv
@@ -32,7 +32,7 @@ class Tally:
         self.spread = Sparseness()
 
     def add(self, run: Run) -> None:
-        """Count one more Run."""
+        """Counts a Run."""
         self._count(run, 1)
         self.simulated += run.drive.duration if run.drive is not None else 0.0
         if run.outcome != "FAIL" or run.road is None or run.drive is None:
@@ -45,7 +45,7 @@ class Tally:
             self.spread.add(run.index, found.segment)
 
     def take_back(self, run: Run) -> None:
-        """Count a Run no more; it had no drive."""
+        """Removes a Run that had no drive from the counts."""
         self._count(run, -1)
 
     def _count(self, run: Run, times: int) -> None:
@@ -56,7 +56,7 @@ class Tally:
         self.driving += times * run.seconds.drive
 
     def write(self, folder: Path) -> None:
-        """Write the tables that change from road to road."""
+        """Writes the tables that change from road to road."""
         for name, row in zip(TABLES, (self._generation(), self._departures()), strict=True):
             write_whole(folder / name, _table([row]))
 
@@ -85,7 +85,7 @@ class Tally:
 
 
 def write_description(request: Request, roads: int, folder: Path) -> None:
-    """Write the table of what was asked for; the competition's columns that mean nothing here stay empty."""
+    """Writes the table of what was asked for; competition columns without a meaning here stay empty."""
     setup, world = request.setup, request.world
     theirs = {
         "executor": setup.simulator,

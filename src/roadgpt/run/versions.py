@@ -1,4 +1,4 @@
-"""What a Run was made with, so that a difference tomorrow can be explained."""
+"""The versions that a Run was made with, which explain later differences."""
 
 import platform
 from functools import cache
@@ -12,7 +12,7 @@ DRIVING = ("mujoco-core", "numba")
 
 
 def versions_of(setup: Setup) -> dict[str, str]:
-    """Versions of roadgpt, Python and the libraries that decide on numbers."""
+    """Returns the versions of roadgpt, Python and the libraries that decide on numbers."""
     return {
         "roadgpt": __version__,
         "python": platform.python_version(),
@@ -23,7 +23,7 @@ def versions_of(setup: Setup) -> dict[str, str]:
 
 
 def _beamng() -> dict[str, str]:
-    """Its client, and how it is driven; the client's version decides on that of the game."""
+    """Returns the version of BeamNG's client, which decides on that of the game, and its settings."""
     from roadgpt.drive.simulators.beamng.settings import Settings
 
     return {**_libraries(("beamngpy",)), "beamng": Settings.of().summary()}

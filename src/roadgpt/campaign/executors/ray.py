@@ -1,10 +1,10 @@
-"""The executor ``ray``: workers that are actors on a Ray cluster, each on a core of any of its machines.
+"""The executor ``ray``: workers that are actors on a Ray cluster, each on one core of any of its machines.
 
-A worker is given several short jobs with one message, since messages cross a network. When a worker ends,
-all jobs of its message are done again, one by one, so that the one to blame is found and no other is given
-up. Machines that die cost no job anything. Results come back here, to the one process that writes.
+A worker is sent several short jobs with one message, since messages cross a network. When a worker dies, all
+jobs of its message are run again one by one, to find the one that is to blame and give up no other. A machine
+that dies costs no job an attempt. Results come back to this process, the only one that writes.
 
-Ray's own retries are off: it cannot tell a job that kills its workers from a machine that was switched off.
+Ray's own retries are off: Ray cannot tell a job that kills its workers from a machine that was switched off.
 """
 
 import os
@@ -32,7 +32,7 @@ PATIENCE = 600.0  # s for the cluster to find room for one worker
 
 @dataclass(eq=False)
 class _Worker:
-    """A worker, as we see it."""
+    """A worker, as this process sees it."""
 
     actor: Any
     name: str
@@ -49,7 +49,9 @@ class Ray(JobQueue):
     """Workers on a Ray cluster."""
 
     def __init__(self, staff: WorkerConfig) -> None:
-        """Asks the cluster for them; ``staff.address`` is its head's, empty for a cluster on this machine.
+        """Asks the cluster for workers.
+
+        ``WorkerConfig.address`` is the address of its head, empty for a cluster on this machine.
 
         Raises:
             UsageError: Ray is not installed.
@@ -73,7 +75,7 @@ class Ray(JobQueue):
         self._thread.start()
 
     def under_way(self) -> list[RunningJob]:
-        """What has been handed to workers; the seconds are those of the whole message."""
+        """Returns the jobs that were sent to workers; the seconds are those of the whole message."""
         now = time.monotonic()
         with self._changed:
             return [
@@ -84,7 +86,7 @@ class Ray(JobQueue):
             ]
 
     def stop(self) -> None:
-        """End every worker, and a cluster that was started for them."""
+        """Ends every worker, and a cluster that was started for them."""
         if self._stops.is_set():
             return
         self._stops.set()
@@ -107,7 +109,7 @@ class Ray(JobQueue):
         answer_to_come.future().add_done_callback(lambda future: self._events.put((worker, future)))
 
     def _listen(self) -> None:
-        """Hears workers, in the order in which they speak."""
+        """Handles the messages of workers, in the order in which they come."""
         while not self._stops.is_set():
             try:
                 worker, future = self._events.get(timeout=ROUND)
@@ -155,7 +157,7 @@ class Ray(JobQueue):
         self._expect(worker, worker.actor.work.remote(orders))
 
     def _some(self, waiting: deque[QueuedJob]) -> list[QueuedJob]:
-        """Jobs for one message: a share of those that wait, or one that may be to blame, alone."""
+        """Takes jobs for one message: a share of those that wait, or a single one that may be to blame."""
         most = min(TOGETHER, -(-len(waiting) // (PER_WORKER * self._size)))
         works: list[QueuedJob] = []
         while waiting and len(works) < most and not (works and waiting[0] in self._alone):
@@ -165,7 +167,7 @@ class Ray(JobQueue):
         return works
 
     def _bury(self, worker: _Worker, how: str) -> None:
-        """A worker is gone: its jobs are given to others, and another takes its place."""
+        """Replaces a worker that has ended, and gives its jobs to others."""
         self._workers.remove(worker)
         is_nodes_fault = bool(worker.node) and worker.node not in self._nodes()
         for work in reversed(worker.works):
@@ -189,7 +191,7 @@ class Ray(JobQueue):
         return {node["NodeID"] for node in self._ray.nodes() if node["Alive"]}
 
     def _look_round(self) -> None:
-        """Ends workers that hang, and the wait for a cluster that has no room."""
+        """Ends workers that hang, and stops waiting for a cluster that has no free core."""
         now = time.monotonic()
         with self._changed:
             for worker in self._workers:
@@ -206,7 +208,7 @@ class Ray(JobQueue):
 
 
 def _connected(staff: WorkerConfig) -> tuple[Any, bool]:
-    """Ray, and whether we connected to it ourselves."""
+    """Connects to Ray; returns it, and whether this function made the connection."""
     try:
         import ray
     except ImportError as error:
@@ -230,13 +232,13 @@ def _connected(staff: WorkerConfig) -> tuple[Any, bool]:
 
 
 def _knock(address: str) -> None:
-    """Ray itself tries for minutes where nobody listens."""
+    """Tries the address of a cluster, since Ray itself tries for minutes where nobody listens."""
     host, _, port = address.rpartition(":")
     if host and port.isdecimal() and "/" not in host:
         socket.create_connection((host.strip("[]"), int(port)), ANSWER).close()
 
 
 def _reason(error: BaseException) -> str:
-    """Why Ray says that a worker ended, in its first line."""
+    """Returns the first line of what Ray says about the end of a worker."""
     said = str(error).strip().partition("\n")[0]
     return f"ended: {said}" if said else "ended"

@@ -1,4 +1,4 @@
-"""Failures that count: which are the same, why they happened, how stable each is, what is left of it."""
+"""Failures grouped by fault: which are alike, why they happen, how stable each is, and the simplest road."""
 
 from roadgpt.campaign.faults.change import Difference, SmallestChange, smallest_change
 from roadgpt.campaign.faults.distinct import Surroundings, faults_of, surroundings

@@ -1,7 +1,7 @@
-"""The smallest change of a road that the car kept which makes it fail: what broke it.
+"""The smallest change of a road that passed which makes it fail.
 
-First the fewest fields of the fewest segments, by delta debugging (see ``minimise``), then the smallest share
-of what is left of the change, by halving.
+First the fewest fields of the fewest segments are found by delta debugging (see ``minimise``), then the
+smallest share of what is left of the change, by halving.
 """
 
 from collections.abc import Sequence
@@ -29,17 +29,17 @@ NAMES = {
 
 @dataclass(frozen=True)
 class Difference:
-    """One field of one segment, from the kept road to the failing one."""
+    """The change of one field of one segment, from the road that passed to the one that failed."""
 
     segment: int
-    """From 0."""
+    """Index of the segment, from 0."""
     field: str
     kept: Any
     failing: Any
 
     @property
     def sentence(self) -> str:
-        """For people."""
+        """The difference as text for people."""
         unit = UNITS.get(self.field, "")
         before, after = (_told(value, unit) for value in (self.kept, self.failing))
         return f"segment {self.segment + 1}: {NAMES.get(self.field, self.field)} {before} -> {after}"
@@ -53,7 +53,7 @@ def _told(value: Any, unit: str) -> str:
 
 @dataclass(frozen=True)
 class SmallestChange:
-    """The change, and the failing road that it makes of the kept one."""
+    """The change, and the failing road that it makes of the one that passed."""
 
     run: Run
     differences: tuple[Difference, ...]
@@ -63,13 +63,13 @@ class SmallestChange:
 def smallest_change(
     kept: Run, failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES
 ) -> SmallestChange:
-    """Between two Runs whose Designs have equally many segments.
+    """Finds the smallest change between two Runs whose Designs have equally many segments.
 
     Args:
-        kept: the car kept its lane.
-        failure: it did not.
-        brief: promises that the roads between them must keep; None: none.
-        most: drives at most.
+        kept: a Run that passed.
+        failure: a Run that failed.
+        brief: requirements that the roads between them must keep; None: none.
+        most: largest number of drives.
 
     Raises:
         UsageError: the designs do not correspond, or the second Run did not fail.
@@ -91,7 +91,7 @@ def smallest_change(
 
 
 def _at_the_start_of(failing: Design, kept: Design) -> Design:
-    """Where a road lies on the map is no difference that a car could feel."""
+    """Moves a road to the start of another: where it lies on the map makes no difference to the car."""
     return failing.model_copy(update={"segments": kept.segments})
 
 
@@ -112,7 +112,7 @@ def _changed(design: Design, differences: Sequence[Difference]) -> Design:
 
 
 def _fewest(base: Design, every: Sequence[Difference], trial: Trial) -> list[Difference]:
-    """A part of the differences that fails, and none of which can be left out."""
+    """Returns a part of the differences that fails, and from which none can be left out."""
     left = [*every]
     size = max(1, len(left) // 2)
     while True:
@@ -128,7 +128,7 @@ def _fewest(base: Design, every: Sequence[Difference], trial: Trial) -> list[Dif
 
 
 def _least(base: Design, differences: Sequence[Difference], trial: Trial) -> list[Difference]:
-    """The same differences, as small as they may be."""
+    """Returns the same differences, each as small as possible."""
     low, high = 0.0, 1.0
     while high - low > FINEST:
         middle = (low + high) / 2

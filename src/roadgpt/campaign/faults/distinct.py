@@ -1,8 +1,8 @@
-"""Which failures are one and the same fault: clusters of the 60 m of road around the departure.
+"""Distinct faults: clusters of failures by the 60 m of road around the departure.
 
-Two failures are alike where their lanes bend and climb alike from 30 m before the departure to 30 m after it,
-lined up at the departure, give or take 8 m. Clusters are grown by complete linkage, so any two failures of
-one cluster are alike; the number of clusters is the number of distinct failures.
+Two failures are alike if their lanes have similar curvature and grade from 30 m before the departure to 30 m
+after it, aligned at the departure to within 8 m. Clusters grow by complete linkage, so any two failures of
+one cluster are alike; the number of clusters is the number of distinct faults.
 """
 
 from collections.abc import Sequence
@@ -32,18 +32,18 @@ MOST = 1000  # failures that are compared each with each at a time: a second, an
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """How the lane runs around a departure; columns of one length, every metre."""
+    """The lane around a departure, every metre; all columns have the same length."""
 
     bends: Array
-    """1/m, smoothed, with ``SHIFT`` steps more at either end; NaN beyond the road."""
+    """Curvature, 1/m, smoothed, with ``SHIFT`` more values at each end; NaN beyond the road."""
     grades: Array
     """Ratios, likewise."""
     kind: str
-    """Side and cause: failures of another kind are another fault."""
+    """Side and cause; failures of different kinds are different faults."""
 
 
 def surroundings(road: Road, world: World, station: float, kind: str) -> Surroundings:
-    """Of a departure at a station, in metres; ``kind`` says side and cause."""
+    """Returns the surroundings of a departure at a station, in metres; ``kind`` names side and cause."""
     reach = COUNT + SHIFT + SMOOTHING
     s = station + STEP * np.arange(-reach, reach + 1)
     on = (s >= 0) & (s <= road.length)
@@ -61,16 +61,17 @@ def _smoothed(values: Array) -> Array:
 
 
 def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
-    """How far a failure is from others, shape ``(n,)``: 1 where bends or grades differ by their measure.
+    """Returns the distances ``(n,)`` of a failure to others; 1 is a difference of ``BEND`` or ``GRADE`` all
+    along.
 
-    Road that only one of the two has counts as straight and level against the other's. Infinite for failures
-    of different kinds. The same both ways round.
+    Where only one of two roads exists, the other counts as straight and level. The distance of failures of
+    different kinds is infinite. It is symmetric.
     """
     return np.asarray(between([one], others)[0])
 
 
 def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Array:
-    """The distances of each to each, shape ``(len(some), len(others))``; see ``distances``."""
+    """Returns the distances of each to each, ``(len(some), len(others))``; see ``distances``."""
     least = np.full((len(some), len(others)), np.inf)
     if not least.size:
         return least
@@ -87,7 +88,7 @@ def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Arr
 
 
 class _Stacked(NamedTuple):
-    """Surroundings under each other; zeros beyond their roads."""
+    """Surroundings as rows; zeros beyond their roads."""
 
     bends: Array
     grades: Array
@@ -102,7 +103,7 @@ class _Stacked(NamedTuple):
         return cls(np.nan_to_num(bends), np.nan_to_num(grades), np.isnan(bends).astype(float), kinds)
 
     def moved(self, steps: int) -> Self:
-        """Where the departure lies so many steps on."""
+        """Returns the rows with the departure moved by so many steps."""
         part = slice(SHIFT + steps, self.bends.shape[1] - SHIFT + steps)
         return self._replace(
             bends=self.bends[:, part], grades=self.grades[:, part], beyond=self.beyond[:, part]
@@ -110,13 +111,14 @@ class _Stacked(NamedTuple):
 
 
 def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int = MOST) -> list[int]:
-    """The fault that each failure belongs to, from 0, numbered in order of their first failure.
+    """Returns the fault of each failure, from 0, numbered in order of their first failures.
 
     Args:
         failures: all of them.
-        alike: distance up to which two are one fault.
-        most: failures that are compared each with each; of those beyond, one joins the fault whose most
-            typical failure is nearest to it and near enough, and the others are compared with each other.
+        alike: distance up to which two failures are one fault.
+        most: number of failures that are compared each with each. Of those beyond it, a failure joins the
+            fault
+            whose most typical failure is nearest and near enough; the others are compared with each other.
     """
     found, left, count = np.full(len(failures), -1), np.arange(len(failures)), 0
     while len(left):
@@ -140,7 +142,7 @@ def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int 
 
 
 def _grown(some: Sequence[Surroundings], alike: float) -> NDArray[np.intp]:
-    """Clusters by complete linkage, numbered from 0."""
+    """Returns clusters by complete linkage, numbered from 0."""
     if len(some) < 2:
         return np.zeros(len(some), int)
     far = 1e6  # stands for infinity, which linkage does not take
@@ -151,7 +153,7 @@ def _grown(some: Sequence[Surroundings], alike: float) -> NDArray[np.intp]:
 
 
 def typical(members: Sequence[Surroundings]) -> list[int]:
-    """Numbers of the failures of a fault, from 0: first the one that is nearest to all others of it."""
+    """Returns the indices of the failures of a fault, first the one that is nearest to all others."""
     some = members[:MOST]
     squares = between(some, some) ** 2
     return [int(i) for i in np.argsort(np.round(squares.sum(axis=1), 9), kind="stable")]

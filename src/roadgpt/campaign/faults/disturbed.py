@@ -1,6 +1,6 @@
-"""Small disturbances of one drive: the road's grip, where the car starts, and how late its sensors tell.
+"""Small disturbances of one drive: the road's friction, where the car starts, and the delay of its sensors.
 
-A failure that only one exact drive shows is chance; one that survives these is the road's.
+A failure that only one exact drive shows is chance; one that survives these disturbances belongs to the road.
 """
 
 from collections import deque
@@ -33,7 +33,7 @@ class Disturbance:
 
 
 def disturbance_of(seed: int, number: int) -> Disturbance:
-    """The disturbance of repetition ``number`` (from 1) of a drive with this seed."""
+    """Returns the disturbance of repetition ``number`` (from 1) of a drive with this seed."""
     rng = np.random.default_rng([seed, number, 0xD157])
     return Disturbance(1 + GRIP * _normal(rng), START * _normal(rng), float(rng.uniform(0.0, DELAY)))
 
@@ -45,12 +45,12 @@ def _normal(rng: np.random.Generator) -> float:
 
 
 class LateDriver:
-    """A driver that sees what was a while ago.
+    """A driver that sees the past.
 
     Args:
-        driver: who steers.
+        driver: the driver that steers.
         delay: seconds; rounded to whole control steps.
-        world: the world that the driver is told of, whatever the grip really is.
+        world: the world that the driver is told of, whatever the friction really is.
     """
 
     def __init__(self, driver: Any, delay: float, world: "World") -> None:
@@ -61,14 +61,14 @@ class LateDriver:
         self._seen: deque[View] = deque()
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Hands on the world that the driver believes in."""
+        """Passes on the world that the driver believes in."""
         del world
         self._seen.clear()
         if hasattr(self._driver, "start"):
             self._driver.start(road, self._world, seed)
 
     def steer(self, view: View) -> Command:
-        """The driver's answer to what it saw so long ago; at first to the first that it saw."""
+        """Returns the driver's answer to what it saw ``delay`` ago; at the start, to the first view."""
         self._seen.append(view._replace(world=self._world))
         if len(self._seen) > round(self._delay / view.dt) + 1:
             self._seen.popleft()

@@ -1,4 +1,4 @@
-"""The failures of a folder, whoever made it: where each happened, and its Run. Nobody drives."""
+"""The failures of a campaign or a folder of runs: the place of each, and its Run. Nothing is driven."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ AT_ONCE = 500  # tests that a store is asked for
 
 @dataclass(frozen=True, eq=False)
 class FailureSite:
-    """Where one failure happened."""
+    """The place of one failure."""
 
     name: NumberedTest
     around: Surroundings
@@ -35,7 +35,7 @@ class FailureSite:
     outside: float | None
     """Largest share of the car outside its lane, 0 to 1."""
     beyond: float | None
-    """Metres that its body reached beyond the marking, at most."""
+    """Largest distance of the car's body beyond the marking, metres."""
 
 
 @dataclass(frozen=True)
@@ -44,16 +44,16 @@ class Failures:
 
     known: tuple[FailureSite, ...]
     every: int
-    """How many there are, with those that are not in the sample or system road is not known."""
+    """Number of all failures, also those outside the sample and those whose road is not known."""
 
 
 def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failures:
-    """All failures of a run, of a folder of runs, or of a campaign, cell by cell.
+    """Returns the failures of a run, of a folder of runs, or of a campaign, cell by cell.
 
     Args:
         folder: of any of these.
         most: where there are more, so many of them, evenly spread; None: all.
-        cell: of a campaign, system failures are meant; empty: all cells.
+        cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
         UsageError: nothing of the kind is there, or a file cannot be read.
@@ -75,7 +75,7 @@ def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failur
 
 
 def drivers_of(folder: Path) -> set[str]:
-    """Who drives in a run, a folder of runs or a campaign.
+    """Returns the drivers of a run, a folder of runs or a campaign.
 
     Raises:
         UsageError: nothing of the kind is there, or a file cannot be read.
@@ -124,7 +124,7 @@ def _of_campaign(record: Record, some: Sequence[NumberedTest]) -> Iterator[Failu
 
 
 def _of_result(cell: Cell, its: Result, system: str) -> FailureSite | None:
-    """None where its road is not known any more."""
+    """Returns the place of a failure; None where its road cannot be built any more."""
     if its.design is None:
         return None
     try:
@@ -136,7 +136,7 @@ def _of_result(cell: Cell, its: Result, system: str) -> FailureSite | None:
 
 
 def system_of(world: World, setup: Setup) -> str:
-    """What a fault belongs to: cells of the same driver, simulator and world share their faults."""
+    """Returns a text that is the same for cells that share their faults: same driver, simulator and world."""
     return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
 
 
@@ -150,7 +150,8 @@ def _site_of(
 
 
 def failed_run(folder: Path, name: NumberedTest, has_drive: bool = True) -> Run:
-    """The Run of a failure, as it was kept; of a campaign without its drive, where that is not wanted.
+    """Returns the Run of a failure as it is stored; that of a campaign without its drive, if that is not
+    wanted.
 
     Raises:
         UsageError: a file cannot be read.

@@ -1,4 +1,4 @@
-"""The distinct faults of a folder: its failures, those that are alike together. Nobody drives."""
+"""The distinct faults of a folder: groups of failures that are alike. Nothing is driven."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -29,15 +29,15 @@ class Fault:
     """Failures that are alike."""
 
     number: int
-    """From 1; the fault with most failures first."""
+    """Number from 1; the fault with most failures comes first."""
     members: tuple[FailureSite, ...]
-    """In the order of their tests."""
+    """All its failures, in the order of their tests."""
     typical: tuple[FailureSite, ...]
-    """A few of them, first the one that is nearest to all others of the fault."""
+    """A few of its failures, first the one that is nearest to all others."""
 
     @property
     def names(self) -> tuple[NumberedTest, ...]:
-        """Of the typical ones."""
+        """Names of the typical failures."""
         return tuple(each.name for each in self.typical)
 
 
@@ -47,9 +47,9 @@ class Faults:
 
     them: tuple[Fault, ...]
     failures: int
-    """All failures of the folder."""
+    """Number of all failures of the folder."""
     compared: int
-    """How many of them were compared; the others are not in any fault."""
+    """Number of failures that were compared; the others are not in any fault."""
 
     @property
     def headline(self) -> str:
@@ -75,7 +75,7 @@ class Faults:
 
     @property
     def ways(self) -> list[str]:
-        """In which ways the car failed, the commonest first: 'ran wide of right bends of R 15 m to 17 m'."""
+        """How the car failed, the most frequent way first: 'ran wide of right bends of R 15 m to 17 m'."""
         found: dict[tuple[Way, str | None], list[FailureSite]] = {}
         for fault in self.them:
             for each in fault.members:
@@ -95,12 +95,12 @@ def _told(way: Way, side: str | None, members: Sequence[FailureSite]) -> str:
 
 
 def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
-    """The distinct faults of a run, of a folder of runs, or of a campaign.
+    """Returns the distinct faults of a run, of a folder of runs, or of a campaign.
 
     Args:
         folder: of any of these.
-        most: failures at most that are compared, evenly spread; None: all.
-        cell: of a campaign, whose failures are meant; empty: all cells.
+        most: largest number of failures to compare, evenly spread; None: all.
+        cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
         UsageError: nothing of the kind is there, or a file cannot be read.

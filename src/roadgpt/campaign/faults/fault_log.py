@@ -1,13 +1,14 @@
-"""The book of a folder's faults: of each its most typical failure, repeated and made simpler.
+"""The results of analysing the faults of a folder: the typical failure of each, repeated and simplified.
 
 DIR/faults/
-  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; where it is, that is done
-  c01/0017.png     what happened, from above; or .svg, .pdf
+  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; if it exists, that is
+  done
+  c01/0017.png     what happened, from above
   simplest/c01/    a folder of runs: the simplest roads that fail alike, under the numbers of the failures
-  faults.csv       one line per fault, the one with most failures first
+  faults.csv       one line per fault, the fault with most failures first
   failures.csv     one line per failure, and the fault that it belongs to
 
-Of a folder of runs without c01/.
+In a folder of runs there is no c01/.
 """
 
 import csv
@@ -41,23 +42,23 @@ HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "ma
 
 
 class FailureDrawing(Protocol):
-    """Whoever draws a failure; the room ``report`` does."""
+    """Draws a failure; ``report.fault.draw_fault`` is one."""
 
     def __call__(self, run: Run, reason: FailureReason, more: str, path: Path) -> object:
-        """Write a picture, in the format of the path's suffix."""
+        """Writes a picture."""
         ...
 
 
 class AnalysisTask(NamedTuple):
-    """One fault that is to be looked into; goes to another process."""
+    """One fault that is to be analysed; it can be sent to another process."""
 
     folder: Path
     fault: int
-    """Its number."""
+    """Number of the fault."""
     names: tuple[NumberedTest, ...]
-    """Of its typical failures, the most typical first."""
+    """Its typical failures, the most typical first."""
     times: int
-    """Disturbed drives."""
+    """Number of disturbed drives."""
     minimise: bool = False
     draw: FailureDrawing | None = None
     formats: tuple[str, ...] = ("png",)
@@ -66,24 +67,28 @@ class AnalysisTask(NamedTuple):
 
 @dataclass(frozen=True)
 class FailureAnalysis:
-    """One failure, looked into."""
+    """The analysis of one failure."""
 
     name: NumberedTest
     reason: FailureReason
     stability: Stability
     simplest: str = ""
-    """What is left of its road, in a sentence; empty where nobody has looked for that."""
+    """The simplest road that fails alike, in a sentence; empty where it was not looked for."""
 
 
 def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
-    """Why a fault's failure happens, how often, and what is left of its road; with the fault's number.
+    """Analyses a fault: why its failure happens, how often it fails again, and the simplest road.
 
-    It is the most typical failure that fails every second time or oftener; where none of ``task.names`` does,
-    the one that fails most often. What stands in the book already, with as many drives of the same road, is
-    read and not driven again.
+    The failure is the most typical one that fails in at least half of the disturbed drives; if none of
+    ``task.names`` does, the one that fails most often. An analysis that is stored already, with as many
+    drives of
+    the same road, is read and not repeated.
+
+    Returns:
+        The number of the fault, and the analysis.
 
     Raises:
-        UsageError: the run, or what stands in the book, cannot be read; a part is not installed.
+        UsageError: the run or a stored analysis cannot be read, or a plug-in is not installed.
         RoadGPTError: a file cannot be written.
     """
     best: FailureAnalysis | None = None
@@ -98,7 +103,7 @@ def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
 
 
 def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
-    """One failure, driven again and drawn, where that has not been done."""
+    """Returns the analysis of one failure; drives and draws it where that has not been done."""
     run, path = failed_run(task.folder, name), _page(task.folder, name)
     there = _read(path, run, name, task.times)
     found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
@@ -112,7 +117,7 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
 
 
 def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
-    """The same with its simplest road, looked for where that has not been done."""
+    """Returns the analysis with its simplest road, which is looked for where that has not been done."""
     place = simplest_of(task.folder, found.name)
     if found.simplest and is_run(place):
         return found
@@ -125,7 +130,7 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
 
 
 def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
-    """What stands in the book of a fault, by the rule of ``look_into``; None: nobody has looked into it.
+    """Returns the stored analysis of a fault, chosen as ``analyse`` does; None: there is none.
 
     Raises:
         UsageError: it cannot be read.
@@ -138,7 +143,7 @@ def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
 
 
 def simplest_of(folder: Path, name: NumberedTest) -> Path:
-    """The folder of the simplest road that fails as this one does."""
+    """Returns the folder of the simplest road that fails as this failure does."""
     return run_folder(folder / FOLDER / SIMPLEST / name.cell, name.number)
 
 
@@ -156,12 +161,15 @@ def _made(place: Path) -> Path:
 
 
 def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis], folder: Path) -> Path:
-    """``faults.csv`` and ``failures.csv``; the same failures give the same bytes. Gives back the first.
+    """Writes ``faults.csv`` and ``failures.csv``; the same failures give the same bytes.
 
     Args:
         faults: of the folder.
-        looked: into them, by their numbers.
+        looked: their analyses, by number of the fault.
         folder: of the campaign, or of runs.
+
+    Returns:
+        The path of ``faults.csv``.
 
     Raises:
         RoadGPTError: a file cannot be written.
@@ -220,7 +228,8 @@ def _drive(drive: Repeated) -> dict[str, Any]:
 
 
 def _read(path: Path, run: Run, name: NumberedTest, times: int | None = None) -> FailureAnalysis | None:
-    """What was found before, where it is of this Run and, if that matters, of as many drives."""
+    """Returns a stored analysis if it is of this Run and, where ``times`` is given, of as many drives; else
+    None."""
     try:
         data = read_json(path)
         if data["seed"] != run.seed or data["description"] != run.description:

@@ -1,8 +1,8 @@
 """The simplest road that still fails alike.
 
-By delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input, IEEE
-Transactions on Software Engineering 28 (2002). What comes out is 1-minimal: no single step more can be taken
-without the failure going away.
+It is found by delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing
+Input, IEEE Transactions on Software Engineering 28 (2002). The road is 1-minimal: after any single further
+simplification the failure disappears.
 """
 
 from collections.abc import Sequence
@@ -23,16 +23,16 @@ class Simplest:
     """What is left of a failing road."""
 
     run: Run
-    """Fails for the same cause and to the same side."""
+    """A Run that fails for the same cause and to the same side."""
     segments_before: int
     drives: int
-    """That it took."""
+    """Number of drives that this took."""
     is_minimal: bool
-    """False where the drives were used up before every step had been tried."""
+    """False if the drives were used up before every simplification had been tried."""
 
     @property
     def sentence(self) -> str:
-        """For people."""
+        """The result as text for people."""
         assert self.run.design is not None
         left = len(self.run.design.segments)
         what = f"{self.segments_before} segments" if self.segments_before != 1 else "1 segment"
@@ -43,7 +43,7 @@ class Simplest:
 
 
 class Trial:
-    """Drives candidates of one failure, each once, and counts."""
+    """Drives candidates of one failure, each once, and counts the drives."""
 
     def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
         if failure.verdict is None or failure.verdict.kept or failure.design is None:
@@ -54,11 +54,11 @@ class Trial:
         self.kind = (failure.verdict.cause, failure.verdict.side)
         self.drives = 0
         self.is_exhausted = False
-        """Was a drive refused because all were used up?"""
+        """True if a drive was refused because all drives were used up."""
         self._known: dict[Design, Run | None] = {}
 
     def fails(self, design: Design | None) -> Run | None:
-        """The Run of a valid road that fails as the first did; None for any other."""
+        """Returns the Run of a valid road that fails as the original does; None for any other road."""
         if design is None:
             return None
         if design not in self._known:
@@ -83,7 +83,7 @@ class Trial:
 
 
 def _moved(design: Design, failure: Run) -> list[Design]:
-    """The Design in the middle of the map: what is left of a road may stick out where the road did not."""
+    """Returns the Design moved to the middle of the map, which a part of a road may otherwise leave."""
     try:
         points = build(design, failure.request.setup.geometry).centreline()
     except RoadGPTError:
@@ -96,12 +96,12 @@ def _moved(design: Design, failure: Run) -> list[Design]:
 
 
 def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) -> Simplest:
-    """The simplest valid road that fails for the same cause and to the same side.
+    """Finds the simplest valid road that fails for the same cause and to the same side.
 
     Args:
         failure: a failing Run with a Design.
-        brief: promises that it must go on keeping; None: it need not be what was asked for any more.
-        most: drives at most.
+        brief: requirements that the road must keep; None: it need not be what was asked for.
+        most: largest number of drives.
 
     Raises:
         UsageError: the Run did not fail, or has no Design.
@@ -119,7 +119,7 @@ def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) 
 
 
 def _reduced(design: Design, steps: Sequence[Simplification], trial: Trial) -> Design:
-    """The Design after as many of the steps as it goes on failing with: all, or halves of them."""
+    """Returns the Design after as many simplifications as it still fails with: all, or halves of them."""
     kept: list[Simplification] = []
 
     def take(part: Sequence[Simplification]) -> None:

@@ -1,8 +1,8 @@
 """Why a car left its lane: the bend, the speed and the slope at the place, in one sentence.
 
-What a bend asks of the tyres is v^2 k over the part of gravity that presses the car onto the road there,
-which is g cos(grade) + v^2 c with c the vertical curvature (negative on a crest). R. Rajamani, Vehicle
-Dynamics and Control, 2nd ed., 2.6; k is that of the right lane's middle, not of the centre line.
+The friction that a bend requires is v^2 k over the share of gravity that presses the car onto the road there,
+g cos(grade) + v^2 c, with c the vertical curvature (negative on a crest). R. Rajamani, Vehicle Dynamics and
+Control, 2nd ed., 2.6; k is the curvature of the right lane's middle, not of the centre line.
 """
 
 import math
@@ -21,7 +21,7 @@ from roadgpt.verdict.verdict import Cause
 
 Array = NDArray[np.float64]
 Way = Literal["wide", "inside", "off", "stopped", "late"]
-"""It ran wide of a bend, cut its inside, left a straight, came to a standstill, or ran out of time."""
+"""The car ran wide of a bend, cut its inside, left a straight, came to a standstill, or ran out of time."""
 
 GRAVITY = 9.81  # m/s^2
 BEFORE, AFTER = 25.0, 5.0  # m, around the departure: where its bend is looked for
@@ -37,9 +37,9 @@ class Manner(NamedTuple):
 
     way: Way
     side: Literal["left", "right"] | None
-    """Of the bend; None on a straight."""
+    """Side to which the road bends; None on a straight."""
     radius: float | None
-    """Metres, of the centre line where it bends most."""
+    """Metres, of the centre line where it is tightest."""
 
 
 @dataclass(frozen=True)
@@ -50,15 +50,16 @@ class FailureReason:
     sentence: str
     station: float
     radius: float | None
-    """Of the centre line where it bends most; None on a straight."""
+    """Radius of the centre line where it is tightest; None on a straight."""
     side: Literal["left", "right"] | None
-    """Of the bend."""
+    """Side to which the road bends."""
     entered: float
     """Speed where the bend begins, or where the car left its lane if that was earlier."""
     needed: float
-    """Most friction that the lane's middle asks for at the speeds driven; 0.93 is 0.93 g on level ground."""
+    """Largest friction that the lane's middle requires at the speeds driven; 0.93 is 0.93 g on level ground.
+    """
     friction: float
-    """What the road has."""
+    """Friction of the road."""
     grade: float
     """Ratio, at the place."""
     hill: float
@@ -66,7 +67,7 @@ class FailureReason:
 
 
 def reason_of(run: Run) -> FailureReason:
-    """Of a failed Run.
+    """Returns the reason of a failed Run.
 
     Raises:
         UsageError: the Run did not fail, or was not driven.
@@ -80,13 +81,13 @@ def reason_of(run: Run) -> FailureReason:
 
 
 def lane_curvature(road: Road, world: World, stations: Array) -> Array:
-    """Curvature in 1/m of the right lane's middle beside these stations, shape as theirs."""
+    """Returns the curvature, 1/m, of the right lane's middle beside these stations, in their shape."""
     bend = road.curvature(stations)
     return np.asarray(bend / np.maximum(1 + bend * world.lane_width / 2, 0.2))
 
 
 def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
-    """Stations around a departure, the tightest curvature of the lane among them, and where that is."""
+    """Returns stations around a departure, the largest curvature of the lane among them, and its station."""
     near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
     bends = lane_curvature(road, world, near)
     tightest = int(np.argmax(np.abs(bends)))
@@ -96,13 +97,14 @@ def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, fl
 def manner_of(
     road: Road, world: World, station: float, cause: Cause | None, left_to: Literal["left", "right"] | None
 ) -> Manner:
-    """In which way a car failed, from the road and the place alone: no drive is needed.
+    """Returns in which way a car failed, from the road and the place alone; no drive is needed.
 
     Args:
-        road, world: where.
+        road: the road.
+        world: gives the width of the lane.
         station: of the departure, metres.
         cause: of the failure.
-        left_to: the side to which it left.
+        left_to: the side to which the car left its lane.
     """
     if cause in ("stuck", "timeout"):
         return Manner("stopped" if cause == "stuck" else "late", None, None)
@@ -152,7 +154,7 @@ def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station:
 
 
 def _needed(road: Road, drive: Drive, world: World, begin: float, station: float) -> float:
-    """The most friction that the lane's middle asks for, at the speeds driven, up to the departure."""
+    """Returns the largest friction that the lane's middle requires up to the departure."""
     on = (drive["s"] >= min(begin, station)) & (drive["s"] <= station)
     if not on.any():
         on[-1] = True
@@ -163,7 +165,7 @@ def _needed(road: Road, drive: Drive, world: World, begin: float, station: float
 
 
 def _entry(road: Road, world: World, place: float, bend: float) -> float:
-    """Station where the bend around a place begins: back to where it is half as tight."""
+    """Returns the station where the bend around a place begins: where it is half as tight."""
     back = np.arange(place, max(0.0, place - 60.0) - 0.5, -0.5)
     before = lane_curvature(road, world, np.maximum(back, 0.0)) * math.copysign(1.0, bend)
     softer = np.flatnonzero(before < ENTRY * abs(bend))
@@ -171,7 +173,7 @@ def _entry(road: Road, world: World, place: float, bend: float) -> float:
 
 
 def _after(road: Road, begin: float, bend: float) -> str:
-    """Which bend of the other side lies right before, if there is one."""
+    """Describes a bend to the other side right before, if there is one."""
     back = np.arange(max(0.0, begin - JUST_BEFORE), begin, 0.5)
     if not len(back):
         return ""
@@ -191,6 +193,6 @@ def _slope_told(grade: float, hill: float) -> str:
 
 
 def _speed_at(drive: Drive, station: float) -> float:
-    """m/s when the car first came to a station."""
+    """Returns the speed, m/s, when the car first came to a station."""
     reached = np.flatnonzero(drive["s"] >= station)
     return float(drive["speed"][reached[0] if len(reached) else -1])

@@ -1,6 +1,6 @@
-"""Ways in which a Design can be simpler: fewer segments, level, straighter, rounder numbers.
+"""Simplifications of a Design: fewer segments, level, straighter, rounder numbers.
 
-Each way is a list of single steps; ``minimise`` tries how many of them can be taken together.
+Each kind gives a list of single simplifications; ``minimise`` tries how many of them can be made together.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,7 +13,7 @@ ROUND = {
     "turn_degrees": (30.0, 10.0, 5.0, 1.0),
     "radius": (10.0, 5.0, 1.0),
 }
-"""Field -> what it is rounded to, the coarsest first; metres and degrees."""
+"""For each field the units to which it is rounded, the coarsest first; metres and degrees."""
 NAMES = {"distance": "length", "turn_degrees": "turn", "radius": "radius"}
 
 
@@ -22,9 +22,9 @@ class Simplification:
     """One simplification of one segment."""
 
     segment: int
-    """From 0, in the Design that is simplified."""
+    """Index of the segment, from 0, in the Design that is simplified."""
     change: Callable[[Segment], Segment | None]
-    """None: the segment goes."""
+    """Returns the new segment; None: the segment is removed."""
     told: str
 
 
@@ -32,7 +32,7 @@ Simplifier = Callable[[Design], list[Simplification]]
 
 
 def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None:
-    """The Design after all these steps; None where no segment would be left."""
+    """Returns the Design after all these simplifications; None where no segment would be left."""
     segments: list[Segment | None] = list(design.segments)
     for step in steps:
         segment = segments[step.segment]
@@ -43,7 +43,7 @@ def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None
 
 
 def simplifications() -> list[Simplifier]:
-    """All, those that take away most first."""
+    """Returns all kinds, those that remove most first."""
     rounding = [
         _rounding(field, unit)
         for unit in (50.0, 30.0, 10.0, 5.0, 1.0)

@@ -1,4 +1,4 @@
-"""How often a failure fails again under small disturbances: the difference between a fault and a fluke."""
+"""How often a failure fails again under small disturbances: what separates a fault from chance."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ STABLE = 0.5  # share of drives that fail, from which a failure counts as stable
 
 @dataclass(frozen=True)
 class Repeated:
-    """One drive more of the same road."""
+    """One further drive of the same road."""
 
     number: int
     disturbance: Disturbance
@@ -34,28 +34,28 @@ class Repeated:
 
 @dataclass(frozen=True)
 class Stability:
-    """All drives more of one road."""
+    """All further drives of one road."""
 
     drives: tuple[Repeated, ...]
 
     @property
     def failed(self) -> int:
-        """How many failed."""
+        """Number of drives that failed."""
         return sum(drive.failed for drive in self.drives)
 
     @property
     def share(self) -> float:
-        """Of drives that failed; 1 means that it always does."""
+        """Share of drives that failed; 1: all."""
         return self.failed / len(self.drives)
 
     @property
     def is_stable(self) -> bool:
-        """Does it fail every second time or oftener?"""
+        """True if at least half of the drives failed."""
         return self.share >= STABLE
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Of the share: Clopper and Pearson (Biometrika 26, 1934), 95 %."""
+        """Confidence interval of the share, 95 %: Clopper and Pearson (Biometrika 26, 1934)."""
         n, k = len(self.drives), self.failed
         low = float(beta.ppf((1 - SURE) / 2, k, n - k + 1)) if k else 0.0
         high = float(beta.ppf((1 + SURE) / 2, k + 1, n - k)) if k < n else 1.0
@@ -63,31 +63,31 @@ class Stability:
 
     @property
     def sentence(self) -> str:
-        """For people."""
+        """The result as text for people."""
         if self.failed == len(self.drives):
             return f"fails every time ({len(self.drives)} of {len(self.drives)} disturbed drives)"
         return f"fails {self.failed} of {len(self.drives)} times with friction, start or sensors off a little"
 
 
 def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = map) -> Stability:
-    """Drive the Run's road so many times more, each time disturbed; the same Run gives the same drives.
+    """Drives the Run's road again, each time disturbed; the same Run gives the same drives.
 
     Args:
         run: of a valid road, whatever its outcome.
-        times: how often, 1 or more.
-        spread: applies a function to all of its items, as ``map`` does, or a pool's.
+        times: number of drives, 1 or more.
+        spread: applies a function to all of its items, as ``map`` does, or a pool's ``map``.
 
     Raises:
-        UsageError: a part is not installed, or the driver's file makes no driver.
+        UsageError: a plug-in is not installed, or the driver's file makes no driver.
     """
     admit(run.request.setup.driver)  # other processes know nothing of where it comes from
     return Stability(tuple(spread(once, [(run, number) for number in range(1, times + 1)])))
 
 
 def once(task: tuple[Run, int]) -> Repeated:
-    """One disturbed drive of a Run's road; a driver that breaks down has failed.
+    """Drives a Run's road once, disturbed; a driver that breaks down has failed.
 
-    A simulator that does shows nothing of the road: the drive is done again.
+    Where the simulator breaks down, the drive is repeated, since that shows nothing of the road.
 
     Raises:
         GivenUpError: the simulator failed three times in a row.
@@ -109,7 +109,7 @@ def once(task: tuple[Run, int]) -> Repeated:
 
 
 def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
-    """The verdict on the Run's road with its driver, disturbed.
+    """Returns the verdict on the Run's road with its driver, disturbed.
 
     Raises:
         DriverError, SimulationError: as ``roadgpt.drive.simulate``.
@@ -125,7 +125,7 @@ def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
 
 
 def _engine(name: str, disturbance: Disturbance) -> Simulator | str:
-    """The simulator with the car beside its lane's middle, where it can be put there."""
+    """Returns the simulator with the car beside its lane's middle, if it can start there."""
     part = plugins.find("simulators", name)
     if not isinstance(part, type) or "start_offset" not in signature(part).parameters:
         return name

@@ -1,7 +1,7 @@
-"""The generator ``genetic``: the field's usual search, kept inside the Brief.
+"""The test generator ``genetic``: the usual search of the field, kept inside the Brief.
 
-The fittest roads so far, those that came nearest to failing, are crossed and changed; who wins a small
-tournament is a parent. No map, no model of the drive: what ``quality_diversity`` is measured against.
+The fittest roads so far, those that came nearest to failing, are crossed and mutated; the parents are the
+winners of small tournaments. It has no map and no surrogate: ``quality_diversity`` is compared with it.
 """
 
 from collections.abc import Sequence
@@ -26,28 +26,28 @@ CROSSED = 0.6  # of the children; the others take after one parent
 
 
 class Genetic:
-    """Tournaments, crossing, changes."""
+    """A genetic algorithm with tournaments, crossover and mutation."""
 
     goals: tuple[Goal, ...] = ("failures", "hardest")  # it knows only how near a road came to failing
 
     def __init__(self, cell: Cell) -> None:
-        """An empty population.
+        """Begins with an empty population.
 
         Raises:
-            UsageError: a setting cannot be.
+            UsageError: a setting cannot be used.
         """
         self._cell, self._setting = cell, context_of(cell)
         self.batch_size = settings_of(cell).batch
         self._fittest: list[tuple[float, int, Design]] = []
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Children of the fittest; drafts while there are none."""
+        """Proposes children of the fittest roads; drafts while there are none."""
         rng = batch_rng(self._cell, batch)
         tasks = [self._task(rng) for _ in range(n)]
         return proposals_of(self._cell, first, n, make_candidates(tasks, pool))
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Takes in what is fitter than the least fit."""
+        """Adds results to the population, and keeps the fittest."""
         for result in results:
             if is_usable(result):
                 assert result.margin is not None

@@ -1,10 +1,10 @@
-"""The generator ``quality_diversity``: many roads to fail on, all over the map, and inside the Brief.
+"""The test generator ``quality_diversity``: roads of many kinds to fail on, and all inside the Brief.
 
-    elites of the map --change--> eight candidates for each test --surrogate--> the most valuable are driven
+    elites of the map --mutate--> 8 candidates for each test --surrogate--> the most valuable are driven
 
-MAP-Elites (Mouret, Clune 2015) with a surrogate in front (Gaier, Asteroth, Mouret 2018): a candidate costs
-milliseconds and a drive many times that, so most candidates are only looked at. The goal says what a drive is
-worth. Batches 0 and 1, of which nothing is known yet, are spread over what looks hard.
+MAP-Elites (Mouret, Clune 2015) with a surrogate (Gaier, Asteroth, Mouret 2018): a candidate costs
+milliseconds and a drive many times as much, so most candidates are only predicted. The goal decides what a
+drive is worth. Batches 0 and 1, before which no result is known, are spread over roads that look hard.
 """
 
 from collections import Counter
@@ -46,10 +46,10 @@ class QualityDiversity:
     goals = GOALS
 
     def __init__(self, cell: Cell) -> None:
-        """An empty map.
+        """Begins with an empty map.
 
         Raises:
-            UsageError: a setting cannot be.
+            UsageError: a setting cannot be used.
         """
         self._cell, self._setting = cell, context_of(cell)
         self._wanted = settings_of(cell)
@@ -63,7 +63,7 @@ class QualityDiversity:
         self._elites: list[int] = []
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Takes results into the map; all else waits until it is asked."""
+        """Adds results to the map; all other work waits for ``ask``."""
         for result in results:
             if is_usable(result):
                 assert result.margin is not None
@@ -71,7 +71,7 @@ class QualityDiversity:
                 self._archive.add(result.number, result.features, -result.margin, result.failed)
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """The candidates that are worth most for the goal."""
+        """Proposes the candidates that are worth most for the goal."""
         rng = batch_rng(self._cell, batch)
         self._look(pool)
         self._elites = self._archive.elites() or list(self._results)
@@ -83,7 +83,7 @@ class QualityDiversity:
         return proposals_of(self._cell, first, n, [*found, *self._chosen(fresh, missing)])
 
     def _look(self, pool: Pool) -> None:
-        """Signs and shapes of the roads that were told of since."""
+        """Computes features and shapes of the roads that were added since."""
         known = list(self._results)[-MOST:]
         self._looks = {number: self._looks[number] for number in known if number in self._looks}
         new = [number for number in known if number not in self._looks]
@@ -92,7 +92,7 @@ class QualityDiversity:
         self._looks |= dict(zip(new, looks, strict=True))
 
     def _task(self, rng: np.random.Generator) -> VariationTask:
-        """A candidate to be made: a change of an elite, more often of one that failed, or something new."""
+        """Draws a candidate: a variation of an elite, more often of one that failed, or something new."""
         kind = KINDS[int(rng.choice(len(KINDS), p=OFTEN))] if self._results else "wild"
         seed = (int(rng.integers(2**53)),)
         if kind == "wild":
@@ -120,7 +120,7 @@ class QualityDiversity:
         return select(self._goal, n, candidates, expected, counts, self._wanted.apart)
 
     def _expected(self, candidates: Sequence[Candidate]) -> Predictions:
-        """What the surrogate's trees think of candidates."""
+        """Returns the predictions of the surrogate's trees for candidates."""
         outcomes = [self._outcome(self._results[number]) for number in self._looks]
         model = Surrogate([one.surrogate_features for one in self._looks.values()], outcomes)
         opinions = model.opinions([one.surrogate_features for one in candidates])
@@ -139,7 +139,7 @@ class QualityDiversity:
         return [target_of(result.margin, result.failed), *driven]
 
     def _bisected(self, batch: int, n: int, pool: Pool) -> list[Candidate]:
-        """Roads between those that were kept and their nearest relatives that were not."""
+        """Returns roads half-way between passed tests and their nearest relatives that failed."""
         for number, result in self._results.items():
             if number not in self._roads and result.design:
                 self._roads[number] = elements_of(result.design.segments)

@@ -1,6 +1,6 @@
-"""The generator ``random``: one fresh draft of the planner after another, without looking back.
+"""The test generator ``random``: independent drafts of the planner.
 
-What searches are measured against: it keeps the Brief as they do, and learns nothing.
+Searches are compared with it: it keeps the Brief as they do, and learns nothing.
 """
 
 from collections.abc import Sequence
@@ -11,19 +11,19 @@ from roadgpt.campaign.variation import VariationTask
 
 
 class Random:
-    """Drafts, each by itself."""
+    """Independent drafts."""
 
     def __init__(self, cell: Cell) -> None:
-        """Nothing to prepare.
+        """Reads the settings.
 
         Raises:
-            UsageError: a setting cannot be.
+            UsageError: a setting cannot be used.
         """
         self._cell = cell
         self.batch_size = settings_of(cell).batch
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """The next drafts."""
+        """Proposes the next drafts."""
         rng = batch_rng(self._cell, batch)
         setting = context_of(self._cell)
         tasks = [
@@ -32,4 +32,4 @@ class Random:
         return proposals_of(self._cell, first, n, make_candidates(tasks, pool))
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Nothing is learnt."""
+        """Ignores the results."""

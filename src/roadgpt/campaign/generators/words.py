@@ -1,4 +1,4 @@
-"""The generator ``words``: so many roads of one description, each different from those before it."""
+"""The test generator ``words``: roads of one description, each different from those before it."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ from roadgpt.campaign.model import Cell, Pool, Proposal, Result
 
 
 class Words:
-    """Roads of one description, drafted by the workers, as ``roadgpt run`` makes them."""
+    """Roads of one description that the workers draft, as ``roadgpt run`` does."""
 
     batch_size = 16
 
@@ -14,8 +14,8 @@ class Words:
         self._seed = cell.request.seed
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """The next roads."""
+        """Proposes the next roads."""
         return [Proposal(None, self._seed, "draft")] * n
 
     def tell(self, results: Sequence[Result]) -> None:
-        """A draft is shown all earlier designs as it is; nothing else is learnt here."""
+        """Ignores the results: drafts receive the earlier designs in another way."""

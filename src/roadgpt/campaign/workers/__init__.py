@@ -1,1 +1,1 @@
-"""What executors have in common: the desk that jobs wait on, a worker's inside, and what travels between."""
+"""Shared by executors: the queue of jobs, the main loop of a worker, and the messages between them."""

@@ -1,7 +1,7 @@
-"""The desk of an executor: jobs that wait, jobs that have ended, and what is raised when nobody can work.
+"""The queue of an executor: jobs that wait, jobs that have ended, and the error that stopped all workers.
 
-An executor inherits it and says how a job that waits gets to a worker (``_hand_out``). Its threads hold
-``_changed`` while they touch anything here, and notify it when a job has ended.
+An executor inherits from JobQueue and defines how a waiting job gets to a worker (``_hand_out``). Its threads
+hold ``_changed`` while they access the queue, and notify it when a job has ended.
 """
 
 import threading
@@ -24,7 +24,7 @@ CHUNKS = 4  # per worker, that ``map`` makes of its items: few messages, and nob
 
 @dataclass(eq=False)
 class QueuedJob:
-    """A job on its way."""
+    """A job in the queue."""
 
     call: bytes
     needs: tuple[str, ...]
@@ -35,10 +35,10 @@ class QueuedJob:
 
 
 class JobQueue(ABC):
-    """What every executor keeps of its jobs."""
+    """The jobs of an executor."""
 
     def __init__(self, workers: int) -> None:
-        """A desk for so many workers, with nothing on it."""
+        """Makes an empty queue for so many workers."""
         self._size = workers
         self._changed = threading.Condition()
         self._shared: dict[str, bytes] = {}
@@ -49,26 +49,26 @@ class JobQueue(ABC):
         self._broken: Exception | None = None
 
     def share(self, name: str, value: Any) -> None:
-        """Keep a value for jobs that need it."""
+        """Keeps a value for the jobs that need it."""
         self._shared[name] = pickled(value)
 
     def forget(self, name: str) -> None:
-        """Let go of a shared value."""
+        """Drops a shared value."""
         with self._changed:
             self._shared.pop(name, None)
 
     def submit(self, jobs: Sequence[Job]) -> None:
-        """Have jobs done."""
+        """Queues jobs and returns at once."""
         works = [QueuedJob(pickled((job.function, job.item, job.needs)), job.needs, job.key) for job in jobs]
         with self._changed:
             self._waiting.extend(works)
             self._hand_out()
 
     def done(self, seconds: float) -> list[FinishedJob]:
-        """What has ended; none where nothing did in that time.
+        """Returns the jobs that have ended since the last call, after at most ``seconds``.
 
         Raises:
-            RoadGPTError: no worker could be made ready, or whatever prevented that.
+            RoadGPTError: no worker could be made ready; or another error, whatever prevented that.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._ended or self._lost or self._broken, seconds)
@@ -80,10 +80,11 @@ class JobQueue(ABC):
         return [_told(work, kind, what) for work, kind, what in ended] + lost
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """``function`` of every item, in their order; what it raises is raised here.
+        """Returns ``function`` of every item, in the order of the items; an error that it raises is raised
+        here.
 
         Raises:
-            RoadGPTError: it ended three workers.
+            RoadGPTError: three workers died over it.
         """
         size = max(1, -(-len(items) // (CHUNKS * self._size)))
         parts = [items[first : first + size] for first in range(0, len(items), size)]
@@ -106,11 +107,13 @@ class JobQueue(ABC):
 
     @abstractmethod
     def _hand_out(self) -> None:
-        """Give jobs that wait to workers that are free; urgent ones first."""
+        """Gives waiting jobs to workers that are free, urgent jobs first."""
 
     def _news(self, has: set[str], works: Sequence[QueuedJob]) -> tuple[dict[str, bytes], tuple[str, ...]]:
-        """Shared values that a worker lacks for these jobs, and names that nobody needs any more; it ``has``
-        what it needs after that."""
+        """Returns the shared values that a worker lacks for these jobs, and the names that it can drop.
+
+        Updates ``has``, the names that the worker has.
+        """
         old = tuple(name for name in has if name not in self._shared)
         wanted = [name for work in works for name in work.needs]
         new = {name: self._shared[name] for name in wanted if name not in has}
@@ -125,7 +128,7 @@ class JobQueue(ABC):
             self._ended.append((work, kind, what))
 
     def _give_again(self, work: QueuedJob, how: str) -> None:
-        """A worker ended over a job: another gets it first of all, unless it has cost too many."""
+        """Queues the job of a dead worker first of all, or gives it up if too many workers died over it."""
         work.deaths += 1
         if work.deaths < MOST_DEATHS:
             (self._waiting if work.key is not None else self._urgent).appendleft(work)

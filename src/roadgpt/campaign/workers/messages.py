@@ -1,6 +1,6 @@
 """Messages between a campaign and its own worker processes: pickles with their length in front.
 
-Both ends are our own processes on one machine; nothing from elsewhere ever comes down this wire.
+Both ends are our own processes on one machine; no message from elsewhere is ever read here.
 """
 
 import pickle
@@ -11,20 +11,20 @@ HEAD = struct.Struct("<Q")
 
 
 def pickled(value: Any) -> bytes:
-    """A value as bytes."""
+    """Returns a value as bytes."""
     return pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
 
 
 def unpickled(data: bytes) -> Any:
-    """The value again."""
+    """Returns the value of these bytes."""
     return pickle.loads(data)  # noqa: S301 - from our own process
 
 
 def send(stream: IO[bytes], message: Any) -> None:
-    """Say something.
+    """Sends a message.
 
     Raises:
-        OSError: nobody listens.
+        OSError: the other end is gone.
     """
     body = pickled(message)
     stream.write(HEAD.pack(len(body)) + body)
@@ -32,7 +32,7 @@ def send(stream: IO[bytes], message: Any) -> None:
 
 
 def receive(stream: IO[bytes]) -> Any:
-    """The next message.
+    """Returns the next message.
 
     Raises:
         EOFError: the other end is gone.

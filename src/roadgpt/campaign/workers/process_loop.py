@@ -1,8 +1,9 @@
-"""A worker process: does one job after another, gives a sign of life every second, ends with its parent.
+"""The main loop of a worker process: runs one job after another, and ends with its parent.
 
-Down the wire come the paths of modules, what prepares a worker, and then jobs: the call (function, item,
-names of values), values by name that are new here, names that are needed no more. Up go kinds of messages
-with what belongs to them. Calls and values travel frozen, so that one that cannot be read costs one job.
+The parent sends the paths of modules, what prepares a worker, and then jobs: the call (function, item, names
+of values), the shared values that are new here, and the names of those that can be dropped. The worker sends
+a sign of life every second, and for each job the kind of its end and the pickled value or error. Calls and
+values are pickled one by one, so that one that cannot be unpickled costs one job.
 """
 
 import os
@@ -21,7 +22,7 @@ ALIVE, READY, VALUE, ERROR = range(4)  # kinds of messages that go up
 
 
 class JobMessage(NamedTuple):
-    """A job as it goes down."""
+    """A job as it is sent to a worker."""
 
     call: bytes
     new: dict[str, bytes]
@@ -29,13 +30,13 @@ class JobMessage(NamedTuple):
 
 
 def apply_each(work: tuple[Callable[[Any], Any], Sequence[Any]]) -> list[Any]:
-    """A function of each of some items."""
+    """Returns a function of each of some items."""
     function, items = work
     return [function(item) for item in items]
 
 
 class _Sender:
-    """Sends messages, one at a time; when nobody listens any more the process ends."""
+    """Sends messages, one at a time; ends the process when the parent is gone."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._stream = stream
@@ -55,7 +56,7 @@ class _Sender:
 
 
 def main() -> None:
-    """Work until the parent goes."""
+    """Works until the parent ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears of Ctrl-C, and ends us
     ends_its_own()
     heard, said = private_streams()
@@ -77,7 +78,7 @@ def main() -> None:
 
 
 def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
-    """What comes of a job, as kind of message and what belongs to it; keeps the shared values."""
+    """Runs a job; returns the kind of its end and the pickled value or error. Updates the shared values."""
     try:
         for name in order.old:
             shared.pop(name, None)
@@ -90,7 +91,7 @@ def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
 
 
 def portable(error: Exception) -> bytes:
-    """The error, or where it cannot travel, one that says the same."""
+    """Returns the pickled error; one that cannot be pickled is replaced by one with the same text."""
     try:
         data = pickled(error)
         unpickled(data)

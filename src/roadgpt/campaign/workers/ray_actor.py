@@ -1,4 +1,4 @@
-"""A worker on a cluster: is made ready, and does the jobs of one message after another."""
+"""A worker on a Ray cluster: it is prepared once, and then runs the jobs of one message after another."""
 
 import faulthandler
 import os
@@ -13,15 +13,15 @@ from roadgpt.errors import UsageError
 
 
 class RayActor:
-    """A worker, where it works."""
+    """The worker, in its own process."""
 
     def __init__(self, patience: float) -> None:
-        """A worker that ends when one of several jobs takes longer than so many seconds."""
+        """Takes the seconds after which one of several jobs is taken to hang, which ends the worker."""
         self._patience = patience
         self._shared: dict[str, Any] = {}
 
     def begin(self, version: str, prepare: bytes) -> tuple[int, bytes]:
-        """Become ready; tells the node and where that is, or what prevents it."""
+        """Prepares the worker; returns its node and place, or the error that prevents it."""
         import ray
 
         from roadgpt import __version__
@@ -40,9 +40,9 @@ class RayActor:
         return READY, pickled((ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}"))
 
     def work(self, orders: Sequence[JobMessage]) -> list[tuple[int, bytes]]:
-        """Do jobs one after another.
+        """Runs jobs one after another, and returns their ends.
 
-        One that is alone is timed by whoever sent it, who then knows which one hangs.
+        A job that comes alone is timed by the sender, who then knows which job hangs.
         """
         if len(orders) == 1:
             return [answer(orders[0], self._shared)]

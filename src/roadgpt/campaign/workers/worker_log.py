@@ -1,4 +1,4 @@
-"""The file of what workers print: however much that is, it does not grow for ever."""
+"""The file of what workers print; it does not grow without limit."""
 
 import os
 from contextlib import suppress
@@ -10,9 +10,9 @@ NOTE = b"[what was printed before is left out]\n"
 
 
 def shorten(log: Path) -> None:
-    """Keep the end of a log that has become too long; workers may go on writing, for they append.
+    """Keeps only the end of a log that has become too long; workers may go on appending to it.
 
-    What cannot be shortened stays as it is: no campaign stops over what its drivers print.
+    A file that cannot be shortened stays as it is: no campaign stops because of what its drivers print.
     """
     with suppress(OSError):
         if log.stat().st_size <= MOST:

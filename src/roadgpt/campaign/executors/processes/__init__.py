@@ -1,8 +1,8 @@
-"""The executor ``processes``: workers that are processes of this machine, as many as are wished for.
+"""The executor ``processes``: workers that are processes of this machine.
 
-A thread for each worker hears it and hands it its next job at once, whatever the campaign thinks about in the
-meantime. One more thread watches for those that hang. concurrent.futures would not do: when one of its
-processes dies, all that it was given is lost.
+One thread for each worker receives its messages and sends it its next job at once, whatever the campaign is
+doing. One more thread watches for workers that hang. concurrent.futures is not used, since it loses all its
+jobs when one process dies.
 """
 
 import threading
@@ -24,7 +24,7 @@ class Processes(JobQueue):
     """Workers that are processes of this machine."""
 
     def __init__(self, staff: WorkerConfig) -> None:
-        """Starts them.
+        """Starts the workers.
 
         Raises:
             RoadGPTError: the system refuses.
@@ -46,7 +46,7 @@ class Processes(JobQueue):
         threading.Thread(target=self._watch, name="roadgpt-watch", daemon=True).start()
 
     def under_way(self) -> list[RunningJob]:
-        """What is being done now, by the workers' numbers."""
+        """Returns the jobs that are running, and the worker of each."""
         now = time.monotonic()
         with self._changed:
             return [
@@ -56,7 +56,7 @@ class Processes(JobQueue):
             ]
 
     def stop(self) -> None:
-        """End every worker."""
+        """Ends every worker."""
         self._stops.set()
         with self._changed:
             leaving = [*self._workers]
@@ -84,7 +84,7 @@ class Processes(JobQueue):
         worker.begin(self._prepare)
 
     def _heard(self, worker: Worker, kind: int | None, what: bytes) -> None:
-        """By the worker's thread: it says something, or nothing ever again."""
+        """Handles a message of a worker, or its end; called by the worker's thread."""
         if kind is None:
             self._bury(worker)
             return
@@ -114,7 +114,7 @@ class Processes(JobQueue):
         worker.give(JobMessage(work.call, *self._news(worker.has, [work])))
 
     def _bury(self, worker: Worker) -> None:
-        """A worker is gone: its job is given to another, and another takes its place."""
+        """Replaces a worker that has ended, and gives its job to another."""
         how = worker.bury()
         with self._changed:
             self._workers.remove(worker)
@@ -136,9 +136,9 @@ class Processes(JobQueue):
             self._changed.notify_all()
 
     def _watch(self) -> None:
-        """Ends workers that hang, and keeps what they print short.
+        """Ends workers that hang, and shortens the log.
 
-        Takes no lock, for whoever writes to a worker that hangs holds it.
+        Takes no lock, since a thread that writes to a hanging worker may hold it.
         """
         last = time.monotonic()
         while not self._stops.wait(ROUND):

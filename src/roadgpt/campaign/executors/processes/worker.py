@@ -1,4 +1,4 @@
-"""Our end of one worker process: starts it, hands it jobs, hears it, ends it."""
+"""The parent's side of one worker process: starts it, sends it jobs, receives its messages, ends it."""
 
 import os
 import sys
@@ -19,20 +19,21 @@ PATIENCE = 1.0  # s for a process in the middle of a job to end what it has star
 
 
 class Worker:
-    """One process and the thread that hears it; its fields are guarded by the lock of whoever made it."""
+    """One process and the thread that receives its messages; the executor's lock guards its fields."""
 
     def __init__(self, name: str, log: Path, hear: "Callable[[Worker, int | None, bytes], None]") -> None:
-        """Starts it.
+        """Starts the process.
 
         Args:
             name: shown to people.
-            log: takes what it prints.
-            hear: told of every message but signs of life, as (worker, kind, what); of its end as kind None.
+            log: the file that receives what it prints.
+            hear: called with (worker, kind, value) for every message but signs of life; at its end kind
+                is None.
         """
         self.name = name
         self.is_ready = False
         self.job: Any = None
-        """What it does now; None: nothing."""
+        """The job that it runs now; None: none."""
         self.begun = self.heard = time.monotonic()
         self.has: set[str] = set()
         """Names of the shared values that it was sent."""
@@ -53,17 +54,17 @@ class Worker:
 
     @property
     def pid(self) -> int:
-        """Of the process."""
+        """Number of the process."""
         return self._process.pid
 
     def begin(self, prepare: bytes) -> None:
-        """Send what it needs to become ready, and hear it from now on."""
+        """Sends what it needs to become ready, and receives its messages from now on."""
         self._thread.start()
         self._say([*sys.path])
         self._say(prepare)
 
     def give(self, order: JobMessage) -> None:
-        """A job for it."""
+        """Sends it a job."""
         self._say(order)
 
     def _say(self, message: Any) -> None:
@@ -80,7 +81,7 @@ class Worker:
         self._hear(self, None, b"")
 
     def ask_to_end(self) -> None:
-        """Ask it to end with everything that it has started, such as a simulator, and do not wait."""
+        """Asks it to end with everything that it has started, such as a simulator, and does not wait."""
         if self.is_ready and self.job is None:
             with suppress(OSError, ValueError):
                 self._down.close()  # it reads that there are no more jobs, and leaves its simulator politely
@@ -89,7 +90,7 @@ class Worker:
         self._asked = time.monotonic()
 
     def kill(self, fault: str = "") -> None:
-        """End it: within a second by itself, so that what it has started ends as well, else by force."""
+        """Ends the process and what it has started: on its own within a second, otherwise by force."""
         self.fault = self.fault or fault
         children.ask_to_end(self._process)
         self._asked = self._asked or time.monotonic()
@@ -97,7 +98,7 @@ class Worker:
         children.kill(self._process)
 
     def bury(self) -> str:
-        """See it off, and say how it ended; called by the thread that hears it, at the very end."""
+        """Cleans up after the process has ended, and says how it ended; its own thread calls this last."""
         status = children.end(self._process)
         for stream in (self._down, self._process.stdout):
             with suppress(OSError):
@@ -106,5 +107,5 @@ class Worker:
         return self.fault or children.ending(status)
 
     def join(self, patience: float = FAREWELL) -> None:
-        """Wait until its end was heard, for so many seconds at most."""
+        """Waits until its end was noticed, for so many seconds at most."""
         self._thread.join(patience)
