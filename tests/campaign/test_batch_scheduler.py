@@ -105,7 +105,7 @@ def test_a_cell_ends_when_its_generator_has_nothing_more_to_ask(
     worked(tmp_path / "c", tests=30)
     with Record.opened(tmp_path / "c") as record:
         assert [result.number for result in record.results()] == [1, 2, 3, 4, 5, 6]
-        assert record.query("SELECT closed FROM cells") == [("there is nothing left to ask for",)]
+        assert record.query("SELECT closed FROM cells") == [("the generator had nothing left to propose",)]
 
 
 def test_a_generator_that_asks_for_too_much_or_without_words_is_told_so(
@@ -114,7 +114,7 @@ def test_a_generator_that_asks_for_too_much_or_without_words_is_told_so(
     monkeypatch.setattr(
         Search, "ask", lambda self, batch, first, n, pool: [Proposal(a_design(1), 1, "x")] * (n + 1)
     )
-    with pytest.raises(RoadGPTError, match="asks for 6 tests where 5 were wanted"):
+    with pytest.raises(RoadGPTError, match="proposed 6 tests, although 5 were asked for"):
         worked(tmp_path / "a", tests=30)
     monkeypatch.setattr(Search, "ask", lambda self, batch, first, n, pool: [Proposal(None, 1, "draft")] * n)
     begin(plan(5).model_copy(update={"prompts": ("",)}), tmp_path / "b")
@@ -128,7 +128,7 @@ def test_time_closes_a_cell_and_what_is_asked_is_finished(tmp_path: Path) -> Non
     with Record.opened(tmp_path / "c") as record:
         ((closed, seconds),) = record.query("SELECT closed, seconds FROM cells")
         waiting = record.query("SELECT count(*) FROM tests WHERE outcome IS NULL")
-    assert closed == "its time was up"
+    assert closed == "its time limit was reached"
     assert seconds >= 0.05
     assert waiting == [(0,)]
     assert steps[-1].done % 5 == 0
@@ -138,7 +138,7 @@ def test_time_closes_a_cell_and_what_is_asked_is_finished(tmp_path: Path) -> Non
 def test_another_plan_in_the_same_folder_is_refused_and_the_same_goes_on(tmp_path: Path) -> None:
     table = worked(tmp_path / "c", tests=10)
     assert begin(plan(10), tmp_path / "c")
-    with pytest.raises(UsageError, match=r"another campaign \(other number of tests"):
+    with pytest.raises(UsageError, match=r"another campaign \(different number of tests"):
         begin(plan(11), tmp_path / "c")
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "letter.txt").write_text("mine")

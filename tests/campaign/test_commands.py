@@ -203,7 +203,7 @@ def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixtur
         (["status", "DIR/nowhere"], "there is no campaign in"),
         (["top", "DIR/nowhere"], "there is no campaign in"),
         (["resume", "DIR/nowhere"], "there is no campaign in"),
-        (["campaign", "a road"], "nothing says when to stop; give a number of tests"),
+        (["campaign", "a road"], "there is no limit; give a number of tests"),
         (["campaign", "a road", "-n", "3", "--generator", "nobody"], "no generator called 'nobody'"),
         (
             ["campaign", "a road", "-n", "3", "--executor", "nobody", "--out", "DIR/new"],

@@ -160,8 +160,8 @@ def test_what_reading_has_cost_counts_for_the_limit(tmp_path: Path, monkeypatch:
     ("text", "sentence"),
     [
         ("goal = 'failures'\ndrive = false", "a search (--goal failures) learns from drives"),
-        ("seeds = [1, 2, 1]", "1 stands there twice"),
-        ("drivers = ['reference', 'reference']", "'reference' stands there twice"),
+        ("seeds = [1, 2, 1]", "1 is listed twice"),
+        ("drivers = ['reference', 'reference']", "'reference' is listed twice"),
     ],
 )
 def test_a_plan_that_makes_no_sense_is_told(tmp_path: Path, text: str, sentence: str) -> None:

@@ -17,10 +17,10 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("tets = 5", "'tets' is no key of a campaign; did you mean 'tests'?"),
-        ("[world]\nfrction = 1", "'world.frction' is no key of a campaign; did you mean 'friction'?"),
-        ("[chat]\nmodl = 'x'", "'chat.modl' is no key of a campaign; did you mean 'model'?"),
-        ("qqq = 1", "'qqq' is no key of a campaign; keys are prompts, designers"),
+        ("tets = 5", "'tets' is not a key of a campaign; did you mean 'tests'?"),
+        ("[world]\nfrction = 1", "'world.frction' is not a key of a campaign; did you mean 'friction'?"),
+        ("[chat]\nmodl = 'x'", "'chat.modl' is not a key of a campaign; did you mean 'model'?"),
+        ("qqq = 1", "'qqq' is not a key of a campaign; keys are prompts, designers"),
         ("tests = 0", "tests: 0 is not possible; give 1 or more"),
         ("tests = 'many'", "tests: 'many' is not possible; give a whole number"),
         ("tests = 1.5", "tests: 1.5 is not possible; give a whole number"),
@@ -38,7 +38,7 @@ ROOT = Path(__file__).resolve().parents[2]
         ("[world]\nfriction = 9", "world.friction: 9 is not possible; give 2 or less"),
         ("[chat]\ntemperature = 9", "chat.temperature: 9 is not possible; give 2 or less"),
         ("drive = 'no'", "drive: 'no' is not possible; give true or false"),
-        ("prompts = ", "is no TOML"),
+        ("prompts = ", "is not TOML"),
         (f"reader = 3 # {'x' * 50}", "reader: 3 is not possible"),
     ],
 )
@@ -54,7 +54,7 @@ def test_a_file_that_is_none_is_told(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"cannot be read.*check the path"):
         read_plan(tmp_path / "none.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(UsageError, match="is no TOML"):
+    with pytest.raises(UsageError, match="is not TOML"):
         read_plan(tmp_path / "bytes.toml")
 
 
@@ -117,7 +117,7 @@ def test_a_goal_is_searched_for_by_the_usual_generator(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"budget": Budget()}, "nothing says when to stop"),
+        ({"budget": Budget()}, "there is no limit"),
         ({"prompts": ("",)}, "needs a description"),
         ({"seeds": tuple(range(100_001))}, "more than 100,000; make several plans"),
     ],

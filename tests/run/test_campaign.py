@@ -126,9 +126,9 @@ def test_a_finished_campaign_is_not_made_again_but_can_grow(designer: Designer, 
 @pytest.mark.parametrize(
     ("other", "what"),
     [
-        ({"seed": 8}, "other seed"),
-        ({"words": Brief(words="another road")}, "other words"),
-        ({"setup": Setup(designer="double", drives=False, geometry="spline")}, "other setup"),
+        ({"seed": 8}, "different seed"),
+        ({"words": Brief(words="another road")}, "different words"),
+        ({"setup": Setup(designer="double", drives=False, geometry="spline")}, "different setup"),
     ],
 )
 def test_another_campaign_is_left_alone(
@@ -411,7 +411,7 @@ def test_another_campaign_that_began_since_the_folder_was_opened_is_left_alone(
     mine = campaign(BRIEF, 1, 8, setup=NO_DRIVE, out=tmp_path)
     list(campaign(BRIEF, 1, 7, setup=NO_DRIVE, out=tmp_path))
     before = contents(tmp_path)
-    with pytest.raises(UsageError, match="other seed"):
+    with pytest.raises(UsageError, match="different seed"):
         list(mine)
     assert contents(tmp_path) == before
 

@@ -89,15 +89,16 @@ class BatchScheduler:
         proposals = generator.ask(batch, first, n, pool)
         if len(proposals) > n:
             raise RoadGPTError(
-                f"the generator '{self.cell.generator}' asks for {len(proposals)} tests where {n} were wanted"
+                f"the generator '{self.cell.generator}' proposed {len(proposals)} tests, "
+                f"although {n} were asked for"
             )
         if self.cell.brief is None and any(proposal.design is None for proposal in proposals):
             raise RoadGPTError(
-                f"the generator '{self.cell.generator}' wants roads drafted, and there are no words to draft "
-                "them from; give a description"
+                f"the generator '{self.cell.generator}' drafts roads from a description, and there is none; "
+                "give a description"
             )
         if not proposals:
-            self.close("there is nothing left to ask for")
+            self.close("the generator had nothing left to propose")
             return []
         self._store.add_batch(self.cell.name, batch, first, proposals)
         self.batches.append(Batch(batch, first, len(proposals), len(proposals)))

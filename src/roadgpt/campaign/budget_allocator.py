@@ -61,5 +61,5 @@ class BudgetAllocator:
         so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"
         return (
             f"the limit of {limit} leaves no room for the next question ({so_far}); "
-            f"go on with: roadgpt resume {folder} and a higher --max-cost or --max-tokens"
+            f"continue with: roadgpt resume {folder} and a higher --max-cost or --max-tokens"
         )

@@ -131,8 +131,9 @@ def _same(plan: Plan, folder: Path) -> None:
         other = [TOLD.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
         if other:
             raise UsageError(
-                f"{folder} holds another campaign (other {', '.join(other)}); name another folder, "
-                f"or go on with it as it is: roadgpt resume {folder}"
+                f"{folder} holds another campaign (different {', '.join(other)}); "
+                "name another folder, "
+                f"or resume it as it is: roadgpt resume {folder}"
             )
         store.set_plan(plan.model_dump_json())
 

@@ -116,7 +116,7 @@ class Plan(Frozen):
                 f"the plan has {cells:,} cells, more than {MOST_CELLS:,}; make several plans of it"
             )
         if self.budget == UNLIMITED:
-            raise UsageError("nothing says when to stop; give a number of tests (-n 200) or --seconds")
+            raise UsageError("there is no limit; give a number of tests (-n 200) or --seconds")
         if self.goal is not None and not self.drives:
             raise UsageError(
                 f"a search (--goal {self.goal}) learns from drives; leave out the goal, or drive the roads"
@@ -125,7 +125,7 @@ class Plan(Frozen):
             twice = [value for value, count in Counter(values).items() if count > 1]
             if twice:
                 raise UsageError(
-                    f"{twice[0]!r} stands there twice, which gives the same tests twice; once will do"
+                    f"{twice[0]!r} is listed twice, which would run the same tests twice; list it once"
                 )
         for name in self.generators:
             plugins.find("generators", name)

@@ -112,7 +112,7 @@ def read_plan(path: Path) -> PlanFile:
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror}; check the path") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise UsageError(f"{path} is no TOML: {error}; correct it") from error
+        raise UsageError(f"{path} is not TOML: {error}; correct it") from error
     try:
         table = PlanTable.model_validate(told)
         ChatSettings.model_validate(table.chat).came_with(path)
@@ -162,7 +162,7 @@ def _sentence(error: ValidationError, within: tuple[str, ...]) -> str:
 def _unknown(key: str, name: str, known: Sequence[str]) -> str:
     near = get_close_matches(name.lower(), known, 1, 0.5)
     advice = f"did you mean '{near[0]}'?" if near else f"keys are {', '.join(known)}"
-    return f"'{key}' is no key of a campaign; {advice}"
+    return f"'{key}' is not a key of a campaign; {advice}"
 
 
 def _keys(place: tuple[Any, ...]) -> list[str]:

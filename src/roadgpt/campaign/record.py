@@ -50,12 +50,12 @@ def no_campaign(folder: Path) -> UsageError:
     """Returns the error for a folder that holds no store."""
     if not (folder / CARD).is_file():
         return UsageError(f"there is no campaign in {folder}; give a folder that roadgpt campaign made")
-    show = f"{folder} holds single runs and no campaign; roadgpt show {folder} tells of them"
+    show = f"{folder} holds single runs and no campaign; roadgpt show {folder} shows them"
     if not read_card(folder).request.words:
         return UsageError(show)
     return UsageError(
-        f"{folder} was made by roadgpt run, not by roadgpt campaign; roadgpt show {folder} tells what is in "
-        f"it, and the same roadgpt run with --out {folder} goes on where it stopped"
+        f"{folder} was made by roadgpt run, not by roadgpt campaign; roadgpt show {folder} shows what is in "
+        f"it, and the same roadgpt run with --out {folder} continues where it stopped"
     )
 
 
@@ -100,7 +100,10 @@ class Record:
             ) from error
         if version != FORMAT:
             db.close()
-            raise UsageError(f"{path} was written by another version of roadgpt; start the campaign anew")
+            raise UsageError(
+                f"{path} was written by another version of roadgpt (its format is {version}, this one reads "
+                f"{FORMAT}); start the campaign again in another folder"
+            )
         try:
             check_store(path, db)
             record = cls(path, db)

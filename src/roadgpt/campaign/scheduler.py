@@ -124,7 +124,7 @@ class Scheduler:
         if self._pending:
             self._keep()  # what the generator is told has to be in the store
         if schedule.is_late:
-            schedule.close("its time was up")
+            schedule.close("its time limit was reached")
         else:
             batch = len(schedule.batches)
             tests = [Task(number, batch, proposal) for number, proposal in schedule.ask(self.executor)]
@@ -237,7 +237,7 @@ class Scheduler:
             self._store.reopen(lost.schedule.cell.name, lost.task.number, lost.task.batch)
         self.progress.outcomes["ERROR"] -= len(self._losses.lost)
         said = ended.result.description
-        self._error = self._losses.given_up(said, f"see to it and go on with: roadgpt resume {folder}")
+        self._error = self._losses.given_up(said, f"fix it and continue with: roadgpt resume {folder}")
 
     def _is_due(self) -> bool:
         waited = time.monotonic() - (self._oldest if self._pending else self._looked)

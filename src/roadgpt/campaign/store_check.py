@@ -73,7 +73,9 @@ _checked: set[tuple[str, int]] = set()
 def damaged(path: Path, why: object) -> UsageError:
     """Returns the error for a store that is not as RoadGPT wrote it."""
     said = " ".join(str(why).split())[:160]
-    return UsageError(f"{path} is damaged, or not as roadgpt wrote it ({said}); start the campaign anew")
+    return UsageError(
+        f"{path} is damaged, or not as roadgpt wrote it ({said}); start the campaign again in another folder"
+    )
 
 
 @contextmanager

@@ -180,7 +180,7 @@ class Campaign:
                 self._tally.take_back(run)
                 self._finished.discard(run.index)
         raise self._losses.given_up(
-            last.description, f"see to it and go on with the same command and --out {self.folder}"
+            last.description, f"fix it and continue with the same command and --out {self.folder}"
         )
 
     def _go_without_trace(self) -> None:
@@ -198,7 +198,7 @@ class Campaign:
             yield
         except OSError as error:
             raise RoadGPTError(
-                f"cannot write into {self.folder}: {error.strerror or error}; make room there and go on "
+                f"cannot write into {self.folder}: {error.strerror or error}; make room there and continue "
                 "with the same command and --out"
             ) from error
 
@@ -258,7 +258,7 @@ class Campaign:
         other = [name for name, value in self.request.essence() if getattr(there_was, name) != value]
         if other:
             raise UsageError(
-                f"{self.folder} holds other roads (other {' and '.join(other)}); name another folder"
+                f"{self.folder} holds other roads (different {' and '.join(other)}); name another folder"
             )
         there = finished(self.folder)
         if there and there[-1] > self.roads:

@@ -184,7 +184,7 @@ def test_a_campaign_of_many_workers_gives_up_and_resumes(
     budget = Budget(tests=8)
     plan = Plan(prompts=(SHORTEST,), reader="grammar", simulators=("beamng",), budget=budget, seeds=(5,))
     begin(plan, tmp_path / "c")
-    with pytest.raises(GivenUpError, match=r"nobody listens on .*go on with: roadgpt resume .*c"):
+    with pytest.raises(GivenUpError, match=r"nobody listens on .*continue with: roadgpt resume .*c"):
         list(work(tmp_path / "c", 2))
     before = status_of(tmp_path / "c")
     assert before.outcomes.get("ERROR", 0) <= 1  # what was under way beside the three

@@ -75,7 +75,7 @@ def smallest_change(
         UsageError: the designs do not correspond, or the second Run did not fail.
     """
     if kept.design is None or failure.design is None:
-        raise UsageError("only roads with designs can be told apart segment by segment")
+        raise UsageError("only roads with designs can be compared segment by segment")
     if len(kept.design.segments) != len(failure.design.segments):
         raise UsageError(
             f"the roads have {len(kept.design.segments)} and {len(failure.design.segments)} segments; "

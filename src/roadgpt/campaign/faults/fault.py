@@ -70,7 +70,9 @@ class Faults:
         if self.compared == self.failures:
             return f"{faults} in {failures}"
         if not self.compared:
-            return f"{failures}; their roads are not known, so nobody can tell how many faults they are"
+            return (
+                f"{failures}; their roads are not known, so the number of distinct faults is not known either"
+            )
         return f"at least {faults} in {failures} ({self.compared:,} of them compared)"
 
     @property

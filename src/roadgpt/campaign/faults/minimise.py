@@ -48,7 +48,8 @@ class Trial:
     def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
         if failure.verdict is None or failure.verdict.kept or failure.design is None:
             raise UsageError(
-                f"road {failure.index} is no failing road with a design; only those are made simpler"
+                f"road {failure.index} did not fail, or has no design; "
+                "only failing roads with designs are simplified"
             )
         self.failure, self.brief, self.most = failure, brief, most
         self.kind = (failure.verdict.cause, failure.verdict.side)

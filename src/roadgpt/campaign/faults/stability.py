@@ -66,7 +66,8 @@ class Stability:
         """The result as text for people."""
         if self.failed == len(self.drives):
             return f"fails every time ({len(self.drives)} of {len(self.drives)} disturbed drives)"
-        return f"fails {self.failed} of {len(self.drives)} times with friction, start or sensors off a little"
+        share = f"{self.failed} of {len(self.drives)}"
+        return f"fails in {share} drives with friction, start and sensors slightly disturbed"
 
 
 def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = map) -> Stability:
@@ -100,7 +101,9 @@ def once(task: tuple[Run, int]) -> Repeated:
             verdict = drive_disturbed(run, disturbance)
         except SimulatorError as error:
             if losses.count(number, is_lost=True):
-                raise losses.given_up(str(error), "see to it, and the same command goes on") from error
+                raise losses.given_up(
+                    str(error), "fix it and run the same command again, which continues"
+                ) from error
             continue
         except RoadGPTError:
             return Repeated(number, disturbance, True, float("nan"), None)
