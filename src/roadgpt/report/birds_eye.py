@@ -29,7 +29,7 @@ LEFT, BOTTOM, BAR, KEY = 0.75, 0.62, 1.15, 0.22  # inches
 MARGIN, LEAST = 16.0, 60.0  # m, around the road and across the picture
 SLOWEST = 10.0  # km/h; the colours span at least so much
 
-# plasma without its lightest end, which asphalt would swallow
+# plasma without its lightest end, which has too little contrast on asphalt
 SPEEDS = LinearSegmentedColormap.from_list("speeds", colormaps["plasma"](np.linspace(0.0, 0.86, 64)))
 
 
@@ -82,7 +82,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
 
 
 def _frame(run: Run, centre: Array) -> Frame:
-    """All of the road, and all of the driven path."""
+    """Returns a frame around the road and the driven path."""
     shown = centre
     if run.drive is not None:
         shown = np.concatenate([centre, np.stack([run.drive["x"], run.drive["y"]], axis=-1)])
@@ -90,7 +90,7 @@ def _frame(run: Run, centre: Array) -> Frame:
 
 
 def _ground(axes: Axes, frame: Frame, size: float) -> None:
-    """Ground, grid, the border of the map, and what lies beyond it."""
+    """Draws ground, grid, the border of the map, and the area outside it."""
     axes.set(xlim=(frame.x0, frame.x1), ylim=(frame.y0, frame.y1), aspect="equal")
     axes.set_xlabel("x, metres east")
     axes.set_ylabel("y, metres north")
@@ -106,7 +106,7 @@ def _ground(axes: Axes, frame: Frame, size: float) -> None:
 
 
 def _path(figure: Figure, axes: Axes, run: Run) -> None:
-    """The driven path, and the bar that says which colour is which speed."""
+    """Draws the driven path, and the scale of its colours."""
     assert run.drive is not None
     line = driven_path(axes, run.drive)
     shown = axes.get_position()

@@ -41,7 +41,7 @@ def name_border(axes: Axes, frame: Frame, size: float, centre: Array, per_inch: 
 
 
 def _offers(frame: Frame, size: float, wide: float, high: float, gap: float) -> Iterator[tuple[Box, bool]]:
-    """Boxes beside every border in view, and whether letters stand on end there; from the middle outwards."""
+    """Yields boxes beside borders in view, from their middle outwards, and whether the text is vertical."""
     for y in (-gap - high, size + gap):
         if frame.y0 < y and y + high < frame.y1:
             for x in _along(max(frame.x0, 0.0) + wide / 2, min(frame.x1, size) - wide / 2):
@@ -60,7 +60,7 @@ def _along(low: float, high: float) -> list[float]:
 
 
 def _away(box: Box, points: Array) -> float:
-    """Metres from a box to the nearest point."""
+    """Returns the distance from a box to the nearest point, metres."""
     x0, x1, y0, y1 = box
     dx = np.maximum(np.maximum(x0 - points[:, 0], points[:, 0] - x1), 0)
     dy = np.maximum(np.maximum(y0 - points[:, 1], points[:, 1] - y1), 0)

@@ -76,7 +76,10 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
 
 
 def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
-    """RoadGPT's axes. A road that does not lie between 0 and 20 m is measured from its lowest point."""
+    """Returns figure, axes, heights and label as in RoadGPT's thesis.
+
+    Heights of a road that does not lie between 0 and 20 m are measured from its lowest point.
+    """
     figure = new_figure(WIDTH, top + THESIS_HEIGHT + BOTTOM)
     axes = add_axes(figure, LEFT, BOTTOM, RIGHT, top)
     label = "height, m"
@@ -94,7 +97,7 @@ def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
 
 
 def _slopes(axes: Axes, run: Run, s: Array, z: Array) -> None:
-    """Slopes in percent: of every stretch of one slope, and the steepest of every other climb or fall."""
+    """Writes grades in percent: of stretches of constant grade, and the steepest of others."""
     assert run.road is not None
     grade = run.road.grade(s)
     left, right = axes.get_xlim()
@@ -130,7 +133,7 @@ def _labelled_slopes(s: Array, grade: Array, shortest: float) -> list[tuple[floa
 
 
 def _metres_per_inch(axes: Axes) -> float:
-    """Upwards."""
+    """Returns the metres per inch of the vertical axis."""
     low, high = axes.get_ylim()
     figure = axes.get_figure(root=True)
     assert figure is not None

@@ -68,7 +68,7 @@ class Labels:
     def _offers(
         self, place: tuple[float, float], wide: float, high: float, away: Array | None
     ) -> list[tuple[float, float, float]]:
-        """Cost and centre of every place that a label could take."""
+        """Returns cost and centre of every place that a label could take."""
         offers = []
         for reach in REACHES:
             for angle in np.arange(WAYS) * (2 * np.pi / WAYS):
@@ -82,7 +82,7 @@ class Labels:
         return offers
 
     def _cover(self, x: float, y: float, wide: float, high: float) -> float:
-        """How bad it is to cover what lies under a box: the road, labels, or the border of the frame."""
+        """Returns the cost of covering what lies under a box: road, labels, or the border of the frame."""
         x0, x1, y0, y1 = _box(x, y, wide, high)
         dx = np.maximum(np.abs(self.clear_of[:, 0] - x) - wide / 2, 0)
         dy = np.maximum(np.abs(self.clear_of[:, 1] - y) - high / 2, 0)
@@ -93,7 +93,7 @@ class Labels:
         return cost + 20.0 * (x0 < frame.x0 or x1 > frame.x1 or y0 < frame.y0 or y1 > frame.y1)
 
     def _crossing(self, place: tuple[float, float], x: float, y: float, wide: float, high: float) -> float:
-        """How bad it is where a line to a label runs through another label."""
+        """Returns the cost of lines that run from a place to a label through another label."""
         own = _box(x, y, wide, high)
         line = _leader(place, x, y, own)
         through = sum(_holds(box, line) for box in self._boxes)
@@ -105,14 +105,14 @@ def _box(x: float, y: float, wide: float, high: float) -> Box:
 
 
 def _leader(place: tuple[float, float], x: float, y: float, box: Box) -> Array:
-    """Points on the line from a place to a label, up to its box."""
+    """Returns points on the line from a place to the box of a label."""
     line = np.linspace(place, (x, y), 24)
     x0, x1, y0, y1 = box
     return line[~((line[:, 0] > x0) & (line[:, 0] < x1) & (line[:, 1] > y0) & (line[:, 1] < y1))]
 
 
 def _holds(box: Box, points: Array) -> bool:
-    """Does one of the points lie in the box?"""
+    """Returns whether one of the points lies in the box."""
     x0, x1, y0, y1 = box
     x, y = points.T
     return bool(((x > x0) & (x < x1) & (y > y0) & (y < y1)).any())

@@ -34,7 +34,7 @@ def fitted(text: str, width: float, size: float, bold: bool = False, lines: int 
 
 
 def _shortened(row: str, width: float, size: float, bold: bool, has_more: bool) -> str:
-    """The row, with an ellipsis where it is too wide or not all."""
+    """Returns the row, with an ellipsis if it is too wide or more text follows."""
     if not has_more and inches(row, size, bold) <= width:
         return row
     while row and inches(row + ELLIPSIS, size, bold) > width:
@@ -44,7 +44,7 @@ def _shortened(row: str, width: float, size: float, bold: bool, has_more: bool) 
 
 @cache
 def _advance(letter: str, bold: bool) -> float:
-    """How far a letter moves on, in letters' heights; 0 where the font has it not."""
+    """Returns the advance of a letter, relative to the font size; 0 if the font lacks the letter."""
     font = get_font(findfont(FontProperties(family="DejaVu Sans", weight="bold" if bold else "normal")))
     if not font.get_char_index(ord(letter)):
         return 0.0

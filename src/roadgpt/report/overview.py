@@ -97,7 +97,7 @@ def pages(folder: Path | str) -> Iterator[Figure]:
 
 
 def _about(folder: Path) -> tuple[tuple[str, str], float]:
-    """Description and seed of the campaign, and the size of its map."""
+    """Returns description and seed of the campaign, and the side of its map in metres."""
     card = folder / "campaign.json"
     if not card.is_file():
         return (folder.name, ""), World().map_size
@@ -126,7 +126,10 @@ def _entry_of(path: Path, test: Any) -> Entry:
 
 
 def _share(path: Path, records: list[Any], outcome: str) -> float | None:
-    """By the verdict beside the test; else by its records, of which that of the goal does not count."""
+    """Returns the largest share of the car outside its lane, by the verdict or else the test's records.
+
+    The last record of a test that passed is at the goal and does not count.
+    """
     run = run_of_test(path)
     if run is not None and (run / "verdict.json").is_file():
         verdict = _loaded(run / "verdict.json")
@@ -169,12 +172,12 @@ def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float
 
 
 def _columns(count: int) -> int:
-    """As many as make the page about as wide as a sheet of paper is."""
+    """Returns the number of columns that gives the page about the shape of a sheet of paper."""
     return min(10, max(1, count if count <= 4 else int(np.ceil(np.sqrt(count * 1.05)))))
 
 
 def _places(count: int, columns: int, cell: float) -> Iterator[tuple[float, float]]:
-    """Upper left corners of the maps, inches from the page's."""
+    """Yields the upper left corners of the maps, inches from the corner of the page."""
     for i in range(count):
         row, column = divmod(i, columns)
         yield MARGIN + column * (cell + GAP), HEADER + TITLE + row * (cell + TITLE + GAP)
@@ -199,7 +202,7 @@ def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str],
 
 
 def _key(axes: Axes, entries: list[Entry]) -> None:
-    """What the signs on the maps mean: where a road starts, and where the car failed."""
+    """Writes what the signs on the maps mean: where a road starts, and where the car failed."""
     x = MARGIN + 0.06
     if any(len(entry.points) for entry in entries):
         axes.scatter(x, KEY, s=20, c=INK, marker="o", lw=0)
@@ -211,7 +214,7 @@ def _key(axes: Axes, entries: list[Entry]) -> None:
 
 
 def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, size: float) -> None:
-    """A road on its map; the map's y grows upwards, the page's downwards."""
+    """Draws a road on its map; y grows upwards on the map and downwards on the page."""
     x0, y0 = place
     small = 8.5 if cell > 1.2 else 7
     axes.add_collection(

@@ -57,7 +57,7 @@ def _seed(run: Run) -> str:
 
 
 def _axes(figure: Figure, left: float, foot: float, wide: float) -> Axes:
-    """Axes of the square's height, at a place in inches."""
+    """Adds axes of height SIDE at a place in inches."""
     across, high = figure.get_size_inches()
     axes: Axes = figure.add_axes((left / across, foot / high, wide / across, SIDE / high))
     return dress(axes)
@@ -79,7 +79,7 @@ def _side(run: Run) -> float:
 
 
 def _square(run: Run, side: float) -> Frame:
-    """A square of the same size for either road, around its middle."""
+    """Returns a square frame with a side in metres around the middle of a road."""
     points = _plan(run)
     x, y = (points.min(axis=0) + points.max(axis=0)) / 2
     return Frame(x - side / 2, x + side / 2, y - side / 2, y + side / 2)
@@ -109,7 +109,7 @@ def _above(axes: Axes, run: Run, frame: Frame) -> None:
 
 
 def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> None:
-    """Heights over the distance, both roads over the same length and span."""
+    """Draws heights over the distance; ``shown`` is length and span of the axes, the same for both roads."""
     assert run.road is not None
     s, z = stations_of(run.road), _heights(run)
     long, span = shown
@@ -132,7 +132,7 @@ def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> N
 
 
 def _remark(axes: Axes, text: str) -> None:
-    """In the upper right corner."""
+    """Writes text in the upper right corner of axes."""
     axes.text(
         0.985, 0.97, text, transform=axes.transAxes, ha="right", va="top", size=9, color=SOFT,
         path_effects=HALO, zorder=13,

@@ -77,7 +77,7 @@ def places_of(run: Run) -> list[MarkedPlace]:
 
 
 def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
-    """Where most of the car was outside."""
+    """Returns the place where the largest share of the car was outside its lane."""
     step = int(drive["outside"][: drive.lane_steps].argmax())
     x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
     beyond = f",\n{verdict.beyond:.2f} m beyond the marking" if verdict.beyond else ""
@@ -85,7 +85,7 @@ def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
 
 
 def _said(finding: Finding) -> str:
-    """A rule in two words; what a promise asked for in its own, since there are so many."""
+    """Returns the rule in a few words; for an unmet requirement the sentence of the finding."""
     if finding.rule == "promises":
         return textwrap.fill(plain(finding.sentence), LONGEST)
     return RULES.get(finding.rule, finding.rule.replace("_", " "))
@@ -118,7 +118,7 @@ def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top
 
 
 def _step(run: Run) -> int | None:
-    """Index of the step of the drive at which it failed."""
+    """Returns the index of the step of the drive at which it failed."""
     assert run.verdict is not None
     if run.drive is None or run.verdict.at_time is None:
         return None

@@ -53,7 +53,7 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
 
 
 def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
-    """The road in a value, and the world that it lies in."""
+    """Returns the road of a value, and its world."""
     if isinstance(what, Run):
         if what.road is None:
             raise UsageError(f"run {what.index} has no road to plot: {what.description}")

@@ -74,7 +74,7 @@ def _curvature(axes: Axes, run: Run, s: Array) -> None:
 
 
 def _fill(axes: Axes, s: Array, values: Array, limit: float) -> float:
-    """Draws values that may have either sign, with their limit in view; how far the axis reaches."""
+    """Draws signed values with their limit in view; returns how far the axis reaches."""
     reach = max(1.35 * limit, 1.1 * float(np.abs(values).max()))
     axes.set_ylim(-reach, reach)
     axes.fill_between(s, values, 0, where=values >= 0, color=BLUE, alpha=0.35, lw=0)
@@ -85,7 +85,7 @@ def _fill(axes: Axes, s: Array, values: Array, limit: float) -> float:
 
 
 def _labelled_radii(reach: float) -> list[float]:
-    """Those whose numbers have room between each other and zero, the tightest first."""
+    """Returns the radii whose labels do not overlap each other or zero, the tightest first."""
     found: list[float] = []
     for radius in RADII:
         below = 1 / found[-1] if found else reach
@@ -114,7 +114,7 @@ def _speed(axes: Axes, run: Run, s: Array) -> None:
 
 
 def _name_sides(axes: Axes, above: str, below: str) -> None:
-    """What lies above the zero line, and below it: beside the numbers."""
+    """Writes beside the numbers what lies above and below the zero line."""
     for y, text, colour in ((0.75, above, BLUE), (0.25, below, DARK_ORANGE)):
         axes.annotate(
             text, (0, y), (-0.6 * POINTS, 0), xycoords="axes fraction", textcoords="offset points",
@@ -129,7 +129,7 @@ def _limits(axes: Axes, limit: float, text: str) -> None:
 
 
 def _name_limit(axes: Axes, limit: float, text: str) -> None:
-    """Over the line, at its right end."""
+    """Writes the name of a limit above its line, at the right end."""
     axes.annotate(
         text, (1, limit), (-5, 1.5), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
         ha="right", va="bottom", size=8.5, color=VERMILLION, path_effects=HALO,

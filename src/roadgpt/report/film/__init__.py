@@ -166,7 +166,7 @@ def write(
 
 
 def _times(duration: float, settings: Settings) -> tuple[float, ...]:
-    """When the frames are; the last picture stays where the film reaches the end."""
+    """Returns the times of the frames; the last one is repeated if the film reaches the end of the drive."""
     if settings.begin >= duration:
         raise UsageError(f"the drive is over after {duration:.1f} s; let the film begin before that")
     wished = duration - settings.begin if settings.seconds is None else settings.seconds
@@ -179,7 +179,7 @@ def _times(duration: float, settings: Settings) -> tuple[float, ...]:
 
 
 def _beside(pictures: list[Frame], axis: int) -> Frame:
-    """Pictures of one size with seams between them."""
+    """Joins pictures of one size along an axis, with seams between them."""
     if len(pictures) == 1:
         return pictures[0]
     shape = list(pictures[0].shape)

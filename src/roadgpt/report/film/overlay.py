@@ -51,7 +51,7 @@ class Overlay:
         return fitted(text, room / POINTS, size, bold, lines).split("\n")
 
     def _title(self, frame: Frame) -> None:
-        """The description, at the top."""
+        """Writes the description at the top."""
         u, size = self.scale, self._size(TITLE)
         text = self.run.title
         rows = self._rows(text, size, self.width - 2 * EDGE * u, 2, bold=True)
@@ -60,14 +60,14 @@ class Overlay:
             write(frame, EDGE * u, (LINE * (k + 1)) * u, row, size, WHITE, "bold")
 
     def _numbers(self, frame: Frame, readout: Readout) -> None:
-        """Speed, station and margin, below on the left."""
+        """Writes speed, station and margin at the lower left."""
         u, edge = self.scale, EDGE * self.scale
         large, text, small = self._size(LARGE), self._size(TEXT), self._size(SMALL)
         wide, high = 148 * u, (78 if readout.margin is not None else 52) * u
         x, y = edge, self.height - edge - high
         shade(frame, x, y, x + wide, y + high)
         write(frame, x + 8 * u, y + 45 * u, f"at {readout.s:.0f} of {self.run.length:.0f} m", text, PALE)
-        if readout.margin is None:  # the camera's speed says nothing
+        if readout.margin is None:  # the speed of the camera has no meaning
             write(frame, x + 8 * u, y + 24 * u, "not driven", self._size(TITLE), WHITE, "bold")
             return
         speed = f"{readout.speed * 3.6:.0f}"
@@ -85,7 +85,7 @@ class Overlay:
         fill(frame, left, y + 67 * u, left + wide * share, y + 71 * u, colour)
 
     def _outcome(self, frame: Frame) -> None:
-        """The outcome and its sentence, in the middle."""
+        """Writes the outcome and its sentence in the middle."""
         u, text, bold = self.scale, self._size(TEXT), self._size(LARGE)
         room = min(self.width - 2 * EDGE * u, 420 * u)
         rows = self._rows(self.run.description, text, room - 28 * u, 3)

@@ -17,7 +17,7 @@ from roadgpt.verdict.margin import margins
 COLUMNS = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
 STEP = 0.02  # s, of a trip along a road that nobody drove
 TURN_LAG, TILT_LAG = 0.30, 0.45  # s by which the camera behind the car follows its heading and its slope
-STEEPEST = 0.35  # rad; a camera behind a car that tumbles does not tumble
+STEEPEST = 0.35  # rad; the camera behind the car does not tumble with it
 LONGEST = 3600.0  # s
 
 
@@ -40,7 +40,7 @@ class Trip:
 
     time: Array
     columns: dict[str, Array]
-    """COLUMNS, and ``wheel``."""
+    """Columns COLUMNS and ``wheel``, the angle that the wheels have turned by."""
     followed: dict[str, Array]
     """``heading`` and ``pitch`` of the camera behind the car."""
     s: Array
@@ -102,13 +102,13 @@ class Trip:
 
 
 def _lagging(values: Array, share: float) -> Array:
-    """Each value moved by this share towards the next one."""
+    """Returns values smoothed by a filter of first order with this coefficient."""
     share = min(1.0, share)
     return np.asarray(lfilter([share], [1.0, share - 1.0], values, zi=[values[0] * (1 - share)])[0])
 
 
 def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
-    """Along the middle of the driven lane at one calm speed, from where drives start to where they end."""
+    """Returns a ride along the middle of the right lane at a constant speed, from start to goal of drives."""
     speed = calm_speed(road, world)
     way = goal_of(road) - start_of(road)
     if way / speed > LONGEST:

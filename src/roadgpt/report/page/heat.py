@@ -23,7 +23,7 @@ FAINTEST = 0.1  # opacity
 
 
 class AxisRange(NamedTuple):
-    """What an axis shows, from where to where, and whether it counts things."""
+    """Name and limits of an axis, and whether it counts things."""
 
     name: str
     lo: float
@@ -83,7 +83,7 @@ def _paint(
     extent: tuple[float, float, float, float],
     origin: Literal["upper", "lower"],
 ) -> None:
-    """One pixel per cell, of one colour and of an opacity that grows with the number."""
+    """Draws one pixel per cell, in one colour whose opacity grows with the number."""
     blue = to_rgb(BLUE)
     shades = LinearSegmentedColormap.from_list("page", [(*blue, FAINTEST), (*blue, 1.0)])
     axes.imshow(

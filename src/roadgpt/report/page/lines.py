@@ -64,7 +64,7 @@ def bars(
 
 
 def _axes(across: str, upwards: str, more: float = 0.0, is_count: bool = False) -> tuple[Figure, Axes]:
-    """Axes with names, and ``more`` px of room above them."""
+    """Returns a figure and its axes, with ``more`` px of room above them."""
     figure, axes = new_chart(WIDTH, HEIGHT + more, LEFT, RIGHT, BOTTOM, TOP + more)
     axes.set(xlabel=across, ylabel=upwards)
     axes.grid(axis="y")

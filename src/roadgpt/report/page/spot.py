@@ -52,7 +52,7 @@ def spot_of(road: Road, world: World, drive: Drive | None, station: float) -> Sp
 
 
 def _step(drive: Drive, station: float) -> int:
-    """Of the drive, where the car first came to a station."""
+    """Returns the index of the step at which the car first reached a station."""
     reached = np.flatnonzero(drive["s"] >= station)
     return int(reached[0]) if len(reached) else len(drive) - 1
 

@@ -59,7 +59,7 @@ def _code(name: str, value: str) -> str:
 
 
 def _escaped(words: str) -> str:
-    """Words that are no markup, in one line."""
+    """Returns text on one line, escaped so that none of it is markup."""
     return " ".join(words.translate(HTML).splitlines())
 
 

@@ -34,7 +34,7 @@ DRIVE = {
     "t": MILLIMETRES,
     "outside": 4,
 }
-"""Columns of a drive that the page uses, and how many digits of them."""
+"""Columns of a drive that the page uses, and their decimals."""
 WORLD = {"map_size", "lane_width", "verge", "speed_limit", "oob_tolerance", "friction", "z_floor"}
 
 
@@ -67,7 +67,7 @@ def scene(run: Run) -> dict[str, Any]:
 
 
 def _words(road: Road) -> str:
-    """The geometry in words; nothing for a road that is too odd to be measured."""
+    """Returns the geometry in words; empty for a road that cannot be measured."""
     try:
         return sentence(describe(road))
     except UsageError:
