@@ -1,4 +1,4 @@
-"""How alike two roads are, in the criteria of the thesis' survey, each from 0 to 1.
+"""Measures how similar two roads are, in the criteria of the thesis' survey, each from 0 to 1.
 
     turns       the smaller number of turns over the larger
     sequence    1 less the edit distance of left turns, right turns and straights in order, over the longer
@@ -36,7 +36,7 @@ CRITERIA = ("turns", "sequence", "direction", "length", "incline", "shape", "gen
 
 @dataclass(frozen=True)
 class Similarity:
-    """Of two roads, from 0 to 1 each; and the two distances behind it."""
+    """How similar two roads are: six criteria from 0 to 1, and the two distances behind them."""
 
     turns: float
     sequence: float
@@ -45,41 +45,41 @@ class Similarity:
     incline: float
     shape: float
     metres: float
-    """Between the plans, root mean square, after the best shift and turn."""
+    """Distance between the plans, metres root mean square, after the best shift and turn."""
     points: float
-    """Percentage points between the grades, on average."""
+    """Mean difference between the grades, percentage points."""
 
     @property
     def general(self) -> float:
-        """The mean of the six."""
+        """The mean of the six criteria."""
         six = self.turns + self.sequence + self.direction + self.length + self.incline + self.shape
         return six / 6
 
     @property
     def is_duplicate(self) -> bool:
-        """Would nobody take them for two tests?"""
+        """Whether the two roads are near duplicates."""
         return self.turns == 1.0 and min(self.shape, self.incline) >= 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class Likeness:
-    """What is compared of one road."""
+    """The properties of one road that are compared."""
 
     turns: int
     length: float
     sequence: str
-    """Left turns, right turns and straights as the letters L, R and S, in driving order."""
+    """Left turns, right turns and straights in driving order, as the letters L, R and S."""
     sides: str
-    """The turns alone."""
+    """The turns alone, as the letters L and R."""
     shape: PlanShape
     grades: Array
-    """Percent, at the middle of so many equal shares of the length as a shape has points."""
+    """Grades in percent, at the middle of as many equal shares of the length as ``shape`` has points."""
     steps: Array
-    """Change of direction in degrees and length, every 5 m."""
+    """Change of direction in degrees and length in metres, every 5 m."""
 
 
 def likeness(road: Road) -> Likeness:
-    """What is compared of a road.
+    """Returns the properties of a road that are compared.
 
     Raises:
         UsageError: it has no two different points.
@@ -105,7 +105,7 @@ def likeness(road: Road) -> Likeness:
 
 
 def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similarity:
-    """How alike two roads are; shifting and turning are free, and mirroring where it is asked for."""
+    """Returns how similar two roads are, wherever they lie and, if asked, mirrored or not."""
     metres = plan_apart(one.shape, other.shape, mirror)
     points = float(np.abs(one.grades - other.grades).mean())
     return Similarity(
@@ -121,7 +121,7 @@ def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similari
 
 
 def plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
-    """Metres, root mean square, between two plans at equal shares, after the best shift and turn."""
+    """Returns the distance between two plans after the best shift and turn, metres root mean square."""
     turned = float(abs(np.vdot(one.shares, other.shares)))
     if mirror:
         turned = max(turned, float(abs(np.vdot(one.shares, other.shares.conj()))))
@@ -146,7 +146,7 @@ def _alike(one: str, other: str, mirror: bool) -> float:
 
 
 def edits(one: str, other: str) -> int:
-    """Letters to add, leave out or exchange to make one word of another (Levenshtein)."""
+    """Returns the Levenshtein distance of two words: letters to add, remove or replace."""
     row = list(range(len(other) + 1))
     for i, letter in enumerate(one, 1):
         before, row[0] = row[0], i
@@ -157,27 +157,27 @@ def edits(one: str, other: str) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """How different many roads of one description are, each from every other."""
+    """How different the roads of one description are, each compared with each other one."""
 
     metres: Array
-    """Distances ``(n, n)`` between plans, root mean square; NaN on the diagonal."""
+    """Distances ``(n, n)`` between plans, metres root mean square; NaN on the diagonal."""
     duplicates: tuple[tuple[int, int], ...]
-    """Places of the pairs that nobody would take for two tests."""
+    """Indices of the pairs that are near duplicates."""
     sparseness: float
-    """The competition's, of whole roads in steps of 5 m: mean distance to the road that differs most."""
+    """Mean distance of each road to the most different one, by the SBFT measure in steps of 5 m."""
     general: float
     """Mean similarity of all pairs; NaN for fewer than two roads."""
 
     @property
     def nearest(self) -> Array:
-        """Metres from every road to the one most like it, ``(n,)``; NaN where there is no other."""
+        """Distance of each road to the one nearest to it, metres ``(n,)``; NaN if there is no other."""
         if len(self.metres) < 2:
             return np.full(len(self.metres), np.nan)
         return np.asarray(np.nanmin(self.metres, axis=1))
 
 
 def spread(roads: Sequence[Likeness], mirror: bool = True) -> Spread:
-    """All pairs of roads; mirrored ones count as alike unless told otherwise."""
+    """Compares all pairs of roads; by default, mirrored roads count as the same."""
     n = len(roads)
     metres, general, twins = np.full((n, n), np.nan), [], []
     furthest = np.zeros(n)
@@ -203,16 +203,16 @@ def spread(roads: Sequence[Likeness], mirror: bool = True) -> Spread:
 
 @dataclass(frozen=True)
 class Between:
-    """How alike the roads of two descriptions are."""
+    """How similar the roads of two descriptions are."""
 
     general: float
     metres: float
-    """Of the nearest pair."""
+    """Distance of the nearest pair, metres."""
     duplicates: int
 
 
 def between(ones: Sequence[Likeness], others: Sequence[Likeness], mirror: bool = True) -> Between:
-    """Every road of one description with every road of another."""
+    """Compares every road of one description with every road of another."""
     found = [similarity(one, other, mirror) for one in ones for other in others]
     if not found:
         return Between(float("nan"), float("nan"), 0)

@@ -1,4 +1,4 @@
-"""Writes the report of a study, or of one campaign of ``roadgpt run``, from what lies in its folder."""
+"""Writes the report of a study, or of a folder of ``roadgpt run``, from the files in its folder."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -44,16 +44,16 @@ Found = Sequence[tuple[list[RoadRecord], Spread]]
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
-    """Write down what could not be made, so that the report can say it whenever it is written."""
+    """Writes down why roads are missing, so that later reports can say it."""
     told = {problem.part: problem.sentence for problem in problems}
     write_whole(folder / PROBLEMS, json_text(told))
 
 
 def write_study(folder: Path) -> Path:
-    """Write the report of the study in a folder; gives back where the page lies.
+    """Writes the report of a study and returns the path of its HTML page.
 
     Raises:
-        UsageError: there is no study, or a run of it cannot be read.
+        UsageError: there is no study, or one of its runs cannot be read.
         RoadGPTError: a file cannot be written.
     """
     plan = read_plan(folder)
@@ -71,7 +71,7 @@ def _problems(folder: Path) -> Mapping[str, str]:
 
 
 def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> Page:
-    """The report of a study."""
+    """Returns the page with the report of a study."""
     is_thesis = plan.kind == "thesis"
     sections = [
         validity(parts, plan.designers, is_thesis),
@@ -97,7 +97,7 @@ def _pictures(parts: Sequence[StudyPartRecord], size: float) -> list[Section]:
 
 
 def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> list[str]:
-    """What a reader wants to know, designer by designer."""
+    """Returns the sentences of the summary, designer by designer."""
     is_thesis = plan.kind == "thesis"
     lines = []
     for designer in plan.designers:
@@ -161,15 +161,15 @@ def _different_line(found: Found) -> str:
 
 
 def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
-    """Write the report of a campaign of ``roadgpt run`` into its folder; gives back where the page lies.
+    """Writes the report of a folder of ``roadgpt run`` into it and returns the path of its HTML page.
 
     Args:
-        folder: of the campaign.
-        command: that makes it again, to stand on the card.
-        next_steps: what to try where nothing failed: what it is, and its command.
+        folder: the folder of runs.
+        command: the command that makes the runs again, for the report's card.
+        next_steps: what to try if nothing failed, as pairs of a description and a command.
 
     Raises:
-        UsageError: there is no campaign, or a run of it cannot be read.
+        UsageError: there are no runs, or one of them cannot be read.
         RoadGPTError: a file cannot be written.
     """
     card = read_card(folder)
@@ -212,7 +212,7 @@ def _campaign_summary(part: StudyPartRecord, setup: Setup, world: World, found: 
 
 
 def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | None:
-    """The least margin of roads that ended so, and which that was."""
+    """Returns the least margin of the roads with an outcome, in metres, and the name of that road."""
     found = [
         (road.margin, road.index) for road in roads if road.outcome == outcome and road.margin is not None
     ]

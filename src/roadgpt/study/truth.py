@@ -1,7 +1,7 @@
-"""What a description asks for, written down by people: the truth that roads are held against.
+"""Defines the truth about a description: what it asks for, as people wrote it down before they saw a road.
 
-Its keys are those of the project's referee, an outside judge of roads, and mean the same: ``holds`` says of
-every key what the referee says (tests/authorities). Docs: how-to/study.md.
+Its keys are those of the project's referee, an independent judge of roads, and mean the same: tests compare
+``holds`` with the referee, key by key. The keys are documented in docs/how-to/evaluate-roads.md.
 """
 
 from dataclasses import replace
@@ -27,7 +27,7 @@ SLOPES = {
 
 
 def _pair(value: Any) -> Any:
-    """A number alone stands for both bounds."""
+    """Takes a number alone as both bounds."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return (value, value)
     return value
@@ -53,7 +53,7 @@ Slope = Literal["up", "down", "flat"]
 
 
 class ExpectedElement(Frozen):
-    """One turn or one straight."""
+    """One turn or one straight that a description asks for."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
 
@@ -66,35 +66,35 @@ class ExpectedElement(Frozen):
 
 
 class Truth(Frozen):
-    """What must hold; every key that is given is held against the road on its own."""
+    """What a road must keep; each key that is given is checked on its own."""
 
     turns: Bounds | None = None
     left: Bounds | None = None
     right: Bounds | None = None
     grade: Slope | None = None
     sequence: tuple[ExpectedElement, ...] | None = None
-    """All turns in their order, with the straights that were asked for between them."""
+    """All turns in their order, with the straights that were asked for among them."""
     ends: ExpectedElement | None = None
     starts: ExpectedElement | None = None
     alternating: Literal[True] | None = None
     max_grade: Bounds | None = None
-    """Percent, the steepest 10 m, whichever way."""
+    """Grade of the steepest 10 m, percent, up or down."""
     climb: Bounds | None = None
     length: Bounds | None = None
     hilly: Annotated[Bounds | None, BeforeValidator(_at_least)] = None
-    """A number: at least so many changes between climbing and falling."""
+    """Number of changes between climbing and falling; a number alone is a lower bound."""
     min_radius: Bounds | None = None
-    """Metres, the tightest place of the road."""
+    """Smallest radius of the road, metres."""
     turning: Bounds | None = None
-    """Degrees, all changes of heading added up."""
+    """Sum of all changes of heading, degrees."""
 
     def given(self) -> tuple[str, ...]:
-        """Those that are given."""
+        """Returns the names of the keys that are given."""
         return tuple(name for name in type(self).model_fields if getattr(self, name) is not None)
 
 
 def feature_of(wish: ExpectedElement | None) -> Feature | None:
-    """A wish as an Outline has it."""
+    """Returns an element as the Feature of an Outline."""
     if wish is None:
         return None
     return Feature(
@@ -109,12 +109,12 @@ def feature_of(wish: ExpectedElement | None) -> Feature | None:
 
 
 def groups_of(truth: Truth) -> tuple[Group, ...]:
-    """The sequence as an Outline has it; empty where none is given."""
+    """Returns the sequence as the groups of an Outline; empty if none is given."""
     return tuple(Group(feature) for wish in truth.sequence or () if (feature := feature_of(wish)))
 
 
 def holds(found: Measures, truth: Truth) -> dict[str, bool]:
-    """Which keys of the truth a measured road keeps."""
+    """Returns whether a measured road keeps each key of the truth."""
     return {key: found.length >= SHORTEST and _holds(found, truth, key) for key in truth.given()}
 
 
@@ -128,7 +128,7 @@ def _holds(found: Measures, truth: Truth, key: str) -> bool:
 
 
 def _outline(truth: Truth, key: str) -> Outline:
-    """An Outline that promises this key and nothing else."""
+    """Returns an Outline that requires one key and nothing else."""
     free, span = Outline(groups=(), turns=Range()), _range(getattr(truth, key)) if key in SPANS else None
     match key:
         case "turns" if span:
@@ -156,7 +156,7 @@ def _outline(truth: Truth, key: str) -> Outline:
 
 
 def sequence_holds(found: Measures, groups: tuple[Group, ...]) -> bool:
-    """Are these all turns, in their order, with the straights among them?"""
+    """Returns whether the groups are all turns in their order, with the straights among them."""
     turns = sum(group.feature.kind == "turn" for group in groups)
     exact = all(group.lo == group.hi == 1 for group in groups)
     if exact and len(found.turns) != turns:

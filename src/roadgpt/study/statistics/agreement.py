@@ -1,4 +1,4 @@
-"""Do people agree? Krippendorff's alpha, for any number of people, gaps included.
+"""Computes the agreement of raters: Krippendorff's alpha, for any number of raters, with gaps.
 
 Source: Krippendorff, Computing Krippendorff's alpha-reliability (2011).
 """
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def krippendorff(ratings: ArrayLike, level: Level = "ordinal") -> float:
-    """Alpha of ratings ``(people, units)``: 1 full agreement, 0 as by chance; NaN where a unit is not rated.
+    """Returns Krippendorff's alpha: 1 is full agreement, 0 agreement by chance.
 
     Args:
         ratings: numbers; only units that two or more people rated count.

@@ -1,4 +1,4 @@
-"""How sure is a mean over many prompts: by drawing prompts again, since roads of one prompt are alike."""
+"""Computes the confidence interval of a mean by resampling prompts, since roads of one prompt are alike."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from roadgpt.study.statistics.shares import Interval
 
 
 class Estimate(NamedTuple):
-    """A mean, and where it would lie with other prompts."""
+    """A mean with its confidence interval."""
 
     value: float
     interval: Interval
@@ -19,13 +19,13 @@ class Estimate(NamedTuple):
 def bootstrap(
     groups: Sequence[ArrayLike], confidence: float = 0.95, resamples: int = 10_000, seed: int = 0
 ) -> Estimate:
-    """The mean of all values, with the percentile interval of drawing whole groups with replacement.
+    """Returns the mean of all values, with the percentile interval of resampling whole groups.
 
     Args:
-        groups: the values of every group, such as the roads of a prompt; empty groups are left out.
-        confidence: of the interval.
-        resamples: how often.
-        seed: the same seed gives the same interval.
+        groups: the values of each group, such as the roads of a prompt; empty groups are left out.
+        confidence: confidence level of the interval.
+        resamples: number of resamples.
+        seed: seed of the resampling; the same seed gives the same interval.
     """
     values = [np.asarray(group, float).ravel() for group in groups]
     values = [group for group in values if len(group)]

@@ -1,4 +1,4 @@
-"""Do rows of a table of counts differ? Chi-squared, term by term, and the exact test beside it."""
+"""Tests whether the rows of a table of counts differ: chi-squared term by term, and the exact test."""
 
 from dataclasses import dataclass
 from math import prod
@@ -21,29 +21,29 @@ AS_RARE = 1e-7  # relative, two tables whose probabilities differ by less are as
 
 @dataclass(frozen=True, eq=False)
 class ChiSquared:
-    """Pearson's test of independence, without continuity correction, with all that leads to it."""
+    """Pearson's chi-squared test without continuity correction, with its intermediate values."""
 
     observed: Array
     expected: Array
     terms: Array
-    """(observed - expected)^2 / expected of every cell; 0 where nothing is expected."""
+    """(observed - expected)^2 / expected of every cell; 0 where the expected count is 0."""
     statistic: float
     freedom: int
-    """Degrees; rows and columns without a count are not counted."""
+    """Degrees of freedom; empty rows and columns do not count."""
     level: float
     critical: float
-    """What the statistic must exceed at this level; NaN without a degree of freedom."""
+    """Critical value of the statistic at this level; NaN without a degree of freedom."""
     p: float
     cramers_v: float
 
     @property
     def rejects(self) -> bool:
-        """Do the rows differ, at this level?"""
+        """Whether the rows differ at this level."""
         return self.p < self.level
 
     @property
     def is_sound(self) -> bool:
-        """Cochran's rule: no expected count below 1, and at most a fifth below 5.
+        """Whether Cochran's rule holds: no expected count is below 1, and at most a fifth are below 5.
 
         Empty rows and columns are left out, as in the test.
         """
@@ -53,23 +53,23 @@ class ChiSquared:
 
 @dataclass(frozen=True)
 class Exact:
-    """The exact test of a table."""
+    """Result of the exact test of a table."""
 
     p: float
     tables: int
-    """How many were counted out, or drawn."""
+    """Number of tables that were enumerated or drawn."""
     is_drawn: bool
-    """Drawn at random, from a seed, where there were too many to count out."""
+    """Whether tables were drawn at random, because there were too many to enumerate."""
 
 
 def chi_squared(table: ArrayLike, level: float = 0.05) -> ChiSquared:
-    """Pearson's chi-squared of counts ``(rows, columns)``.
+    """Returns Pearson's chi-squared test of a table of counts ``(rows, columns)``.
 
-    Rows and columns without a count tell nothing and are left out of the degrees of freedom; where fewer than
-    two of either are left, the statistic is 0 and p is 1.
+    Empty rows and columns are left out of the degrees of freedom. If fewer than two of either are left, the
+    statistic is 0 and p is 1.
 
     Raises:
-        UsageError: it is no table, or holds a negative or broken number.
+        UsageError: the table is not two-dimensional, or contains a negative or non-finite number.
     """
     observed = _counts(table)
     rows, columns = observed.sum(axis=1), observed.sum(axis=0)
@@ -93,12 +93,13 @@ def chi_squared(table: ArrayLike, level: float = 0.05) -> ChiSquared:
 
 
 def exact(table: ArrayLike, seed: int = 0) -> Exact:
-    """Fisher's exact test, after Freeman and Halton for larger tables: the share of tables with the same sums
-    that are as rare as this one or rarer.
+    """Returns Fisher's exact test, or Freeman and Halton's for larger tables.
+
+    p is the share of tables with the same sums that are as rare as this one or rarer.
 
     Args:
         table: counts ``(rows, columns)``.
-        seed: of the tables that are drawn, where there are too many to count out.
+        seed: seed of the tables that are drawn if there are too many to enumerate.
 
     Raises:
         UsageError: as for ``chi_squared``.
@@ -116,7 +117,7 @@ def exact(table: ArrayLike, seed: int = 0) -> Exact:
 
 
 def _counted(observed: NDArray[np.intp]) -> Exact:
-    """All tables of two columns with the same sums, told by their first column."""
+    """Enumerates all tables of two columns with the same sums, by their first column."""
     rows, hits = observed.sum(axis=1), int(observed[:, 0].sum())
     first = np.indices([row + 1 for row in rows[:-1]]).reshape(len(rows) - 1, -1).T
     last = hits - first.sum(axis=1)
@@ -129,7 +130,7 @@ def _counted(observed: NDArray[np.intp]) -> Exact:
 
 
 def _drawn(observed: NDArray[np.intp], seed: int) -> Exact:
-    """Tables with the same sums, drawn; this one counts among them."""
+    """Draws tables with the same sums at random; the observed one counts among them."""
     rng = np.random.default_rng(seed)
     source = stats.random_table(observed.sum(axis=1), observed.sum(axis=0))
     tables = min(DRAWN, max(FEWEST, MOST_CELLS // observed.size))

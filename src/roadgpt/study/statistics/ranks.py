@@ -1,4 +1,4 @@
-"""Do ratings or measures differ, by their ranks: paired, unpaired, and of many columns at once."""
+"""Tests by ranks whether ratings or measurements differ: paired, unpaired, and more than two columns."""
 
 from dataclasses import dataclass
 from itertools import permutations
@@ -16,20 +16,20 @@ FEW_ORDERS = 8  # pairs of a correlation, up to which every order is counted: 8!
 
 @dataclass(frozen=True)
 class Friedman:
-    """Do columns differ that the same people rated?"""
+    """Result of Friedman's test: whether columns differ that the same people rated."""
 
     statistic: float
     freedom: int
     p: float
     kendalls_w: float
-    """0: everyone orders the columns otherwise; 1: all alike."""
+    """Kendall's W: 0 if people do not agree on the order of the columns, 1 if all agree."""
     people: int
-    """With all columns rated."""
+    """Number of people who rated all columns."""
 
 
 @dataclass(frozen=True)
 class Paired:
-    """Do two columns differ that the same people rated?"""
+    """Result of Wilcoxon's test: whether two columns differ that the same people rated."""
 
     statistic: float
     """The smaller sum of signed ranks."""
@@ -37,23 +37,23 @@ class Paired:
     effect: float
     """Matched-pairs rank-biserial correlation, above 0 where the first is larger."""
     pairs: int
-    """Of which none is missing, equal ones included."""
+    """Number of pairs without a gap, equal ones included."""
 
 
 @dataclass(frozen=True)
 class Unpaired:
-    """Do two groups differ?"""
+    """Result of Mann and Whitney's test: whether two groups differ."""
 
     statistic: float
-    """U of the first."""
+    """U of the first group."""
     p: float
     a12: float
-    """Vargha and Delaney: how often the first is larger, ties half; 0.5: no difference."""
+    """Vargha and Delaney's A12: how often the first group is larger, ties count half."""
 
 
 @dataclass(frozen=True)
 class Correlation:
-    """Do two columns rise together?"""
+    """Spearman's rank correlation of two columns."""
 
     rho: float
     p: float
@@ -61,7 +61,7 @@ class Correlation:
 
 
 def friedman(ratings: ArrayLike) -> Friedman:
-    """Friedman's test of ratings ``(people, columns)``, corrected for ties; rows with a gap are left out."""
+    """Returns Friedman's test of ratings ``(people, columns)``, corrected for ties; drops rows with gaps."""
     x = _complete(ratings)
     people, columns = x.shape
     if people < 2 or columns < 2:
@@ -77,7 +77,7 @@ def friedman(ratings: ArrayLike) -> Friedman:
 
 
 def conover(ratings: ArrayLike, adjust: Literal["holm", "none"] = "holm") -> Array:
-    """p ``(k, k)`` of every pair of columns, after Friedman's test of ratings ``(people, k)``.
+    """Returns p ``(k, k)`` of every pair of columns of ratings ``(people, k)``, by Conover's test.
 
     Args:
         ratings: rows with a gap are left out.
@@ -108,7 +108,7 @@ def conover(ratings: ArrayLike, adjust: Literal["holm", "none"] = "holm") -> Arr
 
 
 def _spread(ranks: Array) -> float:
-    """Of ranks around their middle, over all people."""
+    """Returns the sum of squared ranks around their mean, over all people."""
     people, columns = ranks.shape
     return float((ranks**2).sum() - people * columns * (columns + 1) ** 2 / 4)
 
@@ -122,7 +122,7 @@ def _holm(p: Array) -> Array:
 
 
 def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
-    """Wilcoxon's signed-rank test of two columns ``(people,)``, two-sided.
+    """Returns Wilcoxon's signed-rank test of two columns ``(people,)``, two-sided.
 
     Exact for up to 50 pairs that differ, ties included, as ratings have many of them: among five raters
     the normal approximation finds a difference where no five can show one. Normal beyond. Equal pairs are
@@ -141,7 +141,7 @@ def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
 
 
 def _signed(ranks: Array, smaller: float) -> float:
-    """Twice the share of all ways to sign the ranks whose positive ones sum up to this or less."""
+    """Returns the exact two-sided p: twice the share of sign patterns with this sum or a smaller one."""
     halves = np.rint(2 * ranks).astype(int)  # tied ranks are halves
     ways = np.ones(1)  # that lead to each sum
     for rank in halves:
@@ -150,7 +150,7 @@ def _signed(ranks: Array, smaller: float) -> float:
 
 
 def mann_whitney(one: ArrayLike, other: ArrayLike) -> Unpaired:
-    """Mann and Whitney's U test of two groups, two-sided; NaN is left out."""
+    """Returns Mann and Whitney's U test of two groups, two-sided; NaN is left out."""
     x, y = _told(one), _told(other)
     if not len(x) or not len(y):
         return Unpaired(0.0, 1.0, 0.5)
@@ -161,7 +161,7 @@ def mann_whitney(one: ArrayLike, other: ArrayLike) -> Unpaired:
 
 
 def spearman(one: ArrayLike, other: ArrayLike) -> Correlation:
-    """Spearman's rank correlation of two columns, two-sided; NaN where one of them does not vary.
+    """Returns Spearman's rank correlation of two columns, two-sided; rho is NaN if one of them is constant.
 
     Exact for up to 8 pairs, ties included, by every order of the second column; Student's t beyond.
     """
@@ -174,7 +174,7 @@ def spearman(one: ArrayLike, other: ArrayLike) -> Correlation:
 
 
 def _ordered(x: Array, y: Array) -> float:
-    """The share of all orders of y that correlate with x as much as this one, whichever way, or more."""
+    """Returns the share of all orders of y whose correlation with x is as strong as this one or stronger."""
     one, other = (ranks - ranks.mean() for ranks in (stats.rankdata(x), stats.rankdata(y)))
     orders = np.array(list(permutations(range(len(y)))))
     return float((np.abs(other[orders] @ one) >= abs(other @ one) - 1e-9).mean())

@@ -1,4 +1,4 @@
-"""Shares: k of n, their intervals, and whether they rise or fall from group to group."""
+"""Computes intervals of shares k of n, and tests whether shares rise or fall from group to group."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
@@ -8,27 +8,27 @@ from scipy import stats
 
 
 class Interval(NamedTuple):
-    """From lo to hi."""
+    """An interval from ``lo`` to ``hi``."""
 
     lo: float
     hi: float
 
 
 class Trend(NamedTuple):
-    """Whether shares rise (z above 0) or fall with the score of their group."""
+    """Result of the trend test: z above 0 if shares rise with the scores of the groups."""
 
     z: float
     p: float
-    """Two-sided."""
+    """Two-sided p-value."""
 
 
 def wilson(k: int, n: int, confidence: float = 0.95) -> Interval:
-    """Wilson's score interval of the share k of n; all of 0 to 1 where n is 0."""
+    """Returns Wilson's score interval of the share k of n; 0 to 1 if n is 0."""
     return _interval(k, n, confidence, "wilson")
 
 
 def clopper_pearson(k: int, n: int, confidence: float = 0.95) -> Interval:
-    """Clopper and Pearson's exact interval of the share k of n; all of 0 to 1 where n is 0."""
+    """Returns Clopper and Pearson's exact interval of the share k of n; 0 to 1 if n is 0."""
     return _interval(k, n, confidence, "exact")
 
 
@@ -40,11 +40,12 @@ def _interval(k: int, n: int, confidence: float, method: Literal["exact", "wilso
 
 
 def trend(successes: Sequence[int], totals: Sequence[int], scores: Sequence[float] | None = None) -> Trend:
-    """Cochran and Armitage's test for trend, with the variance given all sums.
+    """Returns Cochran and Armitage's test for trend, with the variance for fixed sums.
 
     Args:
-        successes, totals: of every group, in their order.
-        scores: of the groups; 0, 1, 2, ... where None.
+        successes: number of successes in each group.
+        totals: number of trials in each group.
+        scores: scores of the groups; None: 0, 1, 2, ...
     """
     k, n = np.asarray(successes, float), np.asarray(totals, float)
     x = np.arange(len(k), dtype=float) if scores is None else np.asarray(scores, float)

@@ -1,4 +1,4 @@
-"""What a survey brought: figures, tables and a report, out of people's answers or of made-up ones."""
+"""Analyses a survey: makes figures, tables and a report from the answers of people or of made-up raters."""
 
 from pathlib import Path
 
@@ -22,12 +22,13 @@ MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this is a trial of the a
 def collected(
     folder: Path | str, number: int | None = None, seed: int = 0, agreement: float = 0.8
 ) -> Answers:
-    """The answers of a survey's folder, or of made-up raters; for those the file of answers is not opened.
+    """Returns the answers of a survey, or those of made-up raters without opening the file of answers.
 
     Args:
-        folder: of the survey.
-        number: of made-up raters; None: people's answers.
-        seed, agreement: of made-up raters.
+        folder: the survey's folder.
+        number: number of made-up raters; None: the answers of people.
+        seed: seed of the made-up raters.
+        agreement: how often made-up raters agree, 0 to 1; see ``synthetic``.
 
     Raises:
         UsageError: there is no survey, or nobody has answered yet.
@@ -52,13 +53,14 @@ def collected(
 
 
 def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
-    """Write ``report.html`` and ``.md``, ``answers.csv``, ``tables/`` and ``figures/`` into a folder.
+    """Writes ``report.html`` and ``.md``, ``answers.csv``, ``tables/`` and ``figures/`` into a folder.
 
     Returns:
-        Where the HTML page lies.
+        The path of the HTML page.
 
     Raises:
-        UsageError: the folder holds the other kind of answers: people's and made-up ones are never mixed.
+        UsageError: the folder contains an analysis of the other kind of raters; people and made-up raters are
+            never mixed.
         RoadGPTError: a file cannot be written.
     """
     out = Path(out)
@@ -80,7 +82,7 @@ def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
 
 
 def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
-    """The report; its figures are drawn into a folder that exists."""
+    """Returns the page with the report; its figures are drawn into an existing folder."""
     is_synthetic = answers.source == "synthetic"
     match, alike = tally(answers, "alignment"), tally(answers, "similarity")
     told = report_blocks.SurveyBlocks(is_synthetic)

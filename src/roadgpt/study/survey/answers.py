@@ -1,4 +1,4 @@
-"""The answers of a survey as rows, one per answer; what is exported and analysed."""
+"""Turns the answers of a survey into rows, one for each answer, which are exported and analysed."""
 
 import csv
 import io
@@ -31,18 +31,18 @@ class AnswerRow:
     item: str
     prompt: str
     criterion: str
-    """"overall" or what else a rating is about; empty for all that is no rating."""
+    """What is rated: "overall" or a criterion; empty if the question is no rating."""
     question: str
     answer: str
     score: int | None
-    """Of a rating, 1 to 5."""
+    """The score of a rating, 1 to 5; None for other questions."""
     page_of_rater: int
     """Number of the page on which this rater was asked."""
 
 
 @dataclass(frozen=True)
 class Answers:
-    """All that a survey brought."""
+    """All answers to a survey."""
 
     survey: Survey
     source: Source
@@ -53,22 +53,22 @@ class Answers:
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """Raters who failed the attention check, whose answers are left out of the analysis."""
+        """The raters who failed the attention check; their answers are left out of the analysis."""
         return tuple(sorted({row.rater for row in self.rows if row.attention == "failed"}))
 
     @property
     def used(self) -> tuple[AnswerRow, ...]:
-        """What is analysed."""
+        """The rows that are analysed."""
         return tuple(row for row in self.rows if row.attention != "failed")
 
     @property
     def unchecked(self) -> tuple[str, ...]:
-        """Raters with answers who left the attention check out; they are analysed."""
+        """The raters who did not answer the attention check; their answers are analysed."""
         return tuple(sorted({row.rater for row in self.rows if row.attention == "not answered"}))
 
     @property
     def finished(self) -> int:
-        """Raters who rated every road, of those who are analysed."""
+        """The number of analysed raters who rated every road."""
         asked = {
             question.id for item in self.survey.items for question in item.questions if question.is_rating
         }
@@ -79,7 +79,7 @@ class Answers:
 
 
 def answers_in(store: AnswerStore, survey: Survey) -> Answers:
-    """Everything that people answered and did not withdraw."""
+    """Returns all answers of people who did not withdraw."""
     raters = store.raters()
     given = {rater.digest: store.answers_of(rater) for rater in raters if rater.state == "agreed"}
     states = [rater.state for rater in raters]
@@ -89,7 +89,15 @@ def answers_in(store: AnswerStore, survey: Survey) -> Answers:
 def gathered(
     survey: Survey, given: Mapping[str, Mapping[str, str]], source: Source, invited: int, withdrawn: int = 0
 ) -> Answers:
-    """Answers out of what each rater (by digest) said to each question."""
+    """Returns the answers as rows.
+
+    Args:
+        survey: the survey.
+        given: the answers of each rater, by the digest of their token and by question.
+        source: whether the raters are people or made up.
+        invited: number of invited raters.
+        withdrawn: number of raters who withdrew.
+    """
     rows = [row for digest in sorted(given) for row in _rows(survey, digest, given[digest], source)]
     return Answers(survey, source, tuple(rows), invited, len(given), withdrawn)
 
@@ -125,7 +133,7 @@ def _attention(survey: Survey, given: Mapping[str, str]) -> Attention:
 
 
 def csv_of(rows: Sequence[AnswerRow]) -> str:
-    """All rows as CSV. Cells that a spreadsheet would take for a formula begin with an apostrophe."""
+    """Returns all rows as CSV; an apostrophe precedes what a spreadsheet would take for a formula."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(HEADS)

@@ -1,4 +1,4 @@
-"""The survey as a Starlette application: the addresses, and what each answers to whom.
+"""Answers requests about one survey, as a Starlette application.
 
 /static/NAME                                    the style and the script
 /join/SHARED                                    where a survey is open: makes a rater of whoever agrees
@@ -47,12 +47,12 @@ NOTICES = {
     422: ("Not saved", "One answer is none of those offered, or too long; go back and mend it."),
     503: ("Full", "This survey takes no more people."),
 }
-"""Heading and sentence of a page, by status."""
+"""Heading and sentence of an error page, by HTTP status."""
 Answer = Callable[[Request, bytes], Response]
 
 
 def _in_thread(answer: Answer) -> Callable[[Request], Awaitable[Response]]:
-    """An endpoint that reads the body and answers in a worker thread, which may wait for the disk."""
+    """Returns an endpoint that reads the body and answers in a worker thread, which may wait for the disk."""
 
     async def endpoint(request: Request) -> Response:
         return await run_in_threadpool(answer, request, await request.body())
@@ -61,7 +61,7 @@ def _in_thread(answer: Answer) -> Callable[[Request], Awaitable[Response]]:
 
 
 class SurveyApp:
-    """An ASGI application that serves one survey; its endpoints run in many threads at once.
+    """An ASGI application that serves one survey. Its endpoints run in several threads at once.
 
     Args:
         folder: of the survey.
@@ -97,7 +97,7 @@ class SurveyApp:
         self._app = RequestGuard(app)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answers one request, as ASGI has it."""
+        """Answers one request."""
         await self._app(scope, receive, send)
 
     def _static(self, request: Request, _: bytes) -> Response:
@@ -124,11 +124,11 @@ class SurveyApp:
         return RedirectResponse(f"/r/{own}/1", 303)
 
     def _rater(self, request: Request, has_agreed: bool = True) -> tuple[Rater, str]:
-        """Whose link it is, and their address.
+        """Returns the rater of a link and the link's path.
 
         Raises:
-            HTTPException: it is nobody's link, or that of someone who withdrew or, where that is needed, who
-                has not agreed yet.
+            HTTPException: the link belongs to nobody or to a rater who withdrew, or ``has_agreed`` is true
+                and the rater has not agreed yet.
         """
         token = request.path_params["token"]
         rater = self.store.rater_of(token)
@@ -141,7 +141,7 @@ class SurveyApp:
         return rater, f"/r/{token}"
 
     def _door(self, request: Request, body: bytes) -> Response:
-        """Consent; for one who agreed, the first page that is not finished."""
+        """Shows the consent page, or redirects a rater who agreed to the first unfinished page."""
         rater, base = self._rater(request, has_agreed=False)
         if rater.state == "invited":
             if request.method != "POST":
@@ -155,7 +155,7 @@ class SurveyApp:
         return RedirectResponse(f"{base}/{unfinished[0] if unfinished else len(own)}", 303)
 
     def _medium(self, request: Request, _: bytes) -> Response:
-        """A file of the survey: the name must be one of those that the survey lists."""
+        """Sends a file of the survey; its name must be one of those that the survey lists."""
         self._rater(request, has_agreed=False)
         medium = self.survey.media.get(request.path_params["name"])
         if medium is None or not (path := self.folder / MEDIA / medium.name).is_file():
@@ -164,7 +164,7 @@ class SurveyApp:
         return FileResponse(path, headers=KEPT | policy, media_type=MEDIA_TYPES[medium.kind])
 
     def _save_one(self, request: Request, body: bytes) -> Response:
-        """One answer as JSON; the reply confirms it only after it is on the disk."""
+        """Saves one answer that was sent as JSON, and confirms it after it is on the disk."""
         rater, _ = self._rater(request, has_agreed=False)
         if _kind(request) != JSON:
             raise HTTPException(415, "an answer comes as application/json")
@@ -234,7 +234,7 @@ class SurveyApp:
         return HTMLResponse(render(template, self.survey, **values), status)
 
     def _notice(self, request: Request, error: HTTPException) -> Response:
-        """A page, or for the script JSON, that says why a request is not answered."""
+        """Returns a page, or JSON for the script, that says why a request was refused."""
         status, headers = error.status_code, error.headers
         if status == 303:
             return Response(status_code=status, headers=headers)
@@ -256,12 +256,12 @@ def _missing(page: QuestionPage, given: Mapping[str, str]) -> list[str]:
 
 
 def _kind(request: Request) -> str:
-    """Content type of the body, without parameters."""
+    """Returns the content type of the body, without parameters."""
     return request.headers.get("content-type", "").split(";")[0].strip().lower()
 
 
 def _fields(request: Request, body: bytes) -> dict[str, str]:
-    """The fields of a form, the last of each name; none where it is no form."""
+    """Returns the fields of a form, the last of each name; empty if the body is no form."""
     if _kind(request) != FORM:
         return {}
     try:

@@ -1,9 +1,9 @@
-"""Makes a survey's folder out of runs: plots, films and 3-D views of every road, and ``survey.json`` last.
+"""Makes a survey's folder from runs: plots, films and 3-D views of every road, and finally ``survey.json``.
 
 DIR/
   survey.json       what is shown and asked
   media/            plots (PNG), films (MP4) and 3-D views (HTML)
-  answers.sqlite    comes with the first rater
+  answers.sqlite    created when the survey is first served
 """
 
 import hashlib
@@ -30,16 +30,16 @@ CAMERAS = {"chase": "film from behind the car", "bonnet": "film from the hood ca
 
 
 def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
-    """Make the folder of a survey; films that are there already are kept, so it goes on where it was stopped.
+    """Makes the folder of a survey. It keeps films that exist, so that it can be stopped and called again.
 
     Args:
-        plan: what a SURVEY.toml says.
-        base: the folder from which its runs are named.
-        out: the survey's folder; another survey in it is replaced if nobody was invited to it yet.
-        tell: is told of every step.
+        plan: the contents of SURVEY.toml.
+        base: the folder to which the paths of runs are relative.
+        out: the survey's folder; another survey in it is replaced if nobody has been invited to it yet.
+        tell: called with a sentence before every step.
 
     Raises:
-        UsageError: a run cannot be used, or the folder holds answers or something else.
+        UsageError: a run cannot be used, or the folder contains answers or something else.
         RoadGPTError: a file cannot be written.
     """
     out = Path(out)
@@ -94,14 +94,14 @@ def _run(base: Path, name: str) -> Run:
 
 
 class _Pages:
-    """Tells which page is being made, and how long the rest will take."""
+    """Reports which page is being made and how long the rest will take."""
 
     def __init__(self, total: int, tell: Tell) -> None:
         self.total, self.tell = total, tell
         self.begun, self.count = time.monotonic(), 0
 
     def begin(self, sentence: str) -> None:
-        """The next page is begun."""
+        """Reports that the next page is begun."""
         left = ""
         if self.count:
             seconds = (time.monotonic() - self.begun) / self.count * (self.total - self.count)
@@ -113,14 +113,14 @@ class _Pages:
 
 
 class _Work:
-    """Makes items, and tells of it."""
+    """Makes the items of a survey and reports its progress."""
 
     def __init__(self, folder: Path, axes: Axes, has_films: bool, has_views: bool, pages: _Pages) -> None:
         self.folder, self.axes, self.pages = folder, axes, pages
         self.has_films, self.has_views = has_films, has_views
 
     def road(self, name: str, plan: RoadPlan, run: Run) -> Item:
-        """A road and its description."""
+        """Makes the item of a road and its description."""
         prompt = _prompt(plan.prompt or run.words, plan.run)
         self.pages.begin(prompt)
         criteria = criteria_of(run.brief) if plan.criteria is None else plan.criteria
@@ -135,7 +135,7 @@ class _Work:
         )
 
     def pair(self, name: str, plan: PairPlan, runs: list[Run]) -> Item:
-        """Two roads of one description, one above the other."""
+        """Makes the item of two roads of one description, one shown above the other."""
         prompt = _prompt(plan.prompt or runs[0].words, plan.runs[0])
         self.pages.begin(f"{prompt} (two roads)")
         plots: list[Medium] = []
@@ -195,7 +195,7 @@ def _prompt(words: str, name: str) -> str:
 
 
 def _mark(runs: list[Run]) -> str:
-    """Another for other drives, so that a film is made again where the run is another."""
+    """Returns a hash of the drives, so that a film is made again if its run has changed."""
     drives = b"".join(run.drive.to_bytes() for run in runs if run.drive is not None)
     return hashlib.sha256(drives).hexdigest()[:10]
 

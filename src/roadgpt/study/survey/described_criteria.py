@@ -1,4 +1,4 @@
-"""What a description speaks of, and therefore what raters are asked about: turns, incline, order."""
+"""Finds the criteria that a description mentions, about which raters are asked: turns, incline, order."""
 
 from roadgpt.brief.model import Amount, Brief, Clause
 
@@ -8,7 +8,10 @@ RISES = frozenset({"crest", "dip"})
 
 
 def criteria_of(brief: Brief | None) -> tuple[str, ...]:
-    """Criteria of a description; none of a general one, which is rated as a whole only, as in the thesis."""
+    """Returns the criteria that a description mentions.
+
+    It is empty for a general description such as "a road", which is rated only as a whole, as in the thesis.
+    """
     if brief is None:
         return ()
     clauses = [*brief.clauses, *filter(None, (brief.starts, brief.ends))]
@@ -26,12 +29,12 @@ def criteria_of(brief: Brief | None) -> tuple[str, ...]:
 
 
 def _is_a_number(turns: Amount | None) -> bool:
-    """Is it more than that there are turns, as any road has them?"""
+    """Returns whether an amount says more than that there is a turn, as on any road."""
     return turns is not None and (turns.lo, turns.hi) != (1, None)
 
 
 def _has_a_number(clause: Clause) -> bool:
-    """Does it say how many turns there are?"""
+    """Returns whether a clause says how many turns there are."""
     if clause.kind in STRAIGHTS:
         return False
     return clause.kind not in HAVE_NO_NUMBER or clause.count.lo != 1 or clause.count.hi != 1

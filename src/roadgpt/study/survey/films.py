@@ -1,4 +1,4 @@
-"""Films for raters, by ``report.film``; where its libraries are missing a survey goes without."""
+"""Makes films for raters with ``report.film``; a survey can do without them."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,7 +16,7 @@ WHY_NONE = (
 
 
 def are_possible() -> bool:
-    """Is there what films need?"""
+    """Returns whether the libraries for films are installed."""
     try:
         encoder()
     except UsageError:
@@ -25,7 +25,7 @@ def are_possible() -> bool:
 
 
 def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
-    """Film one drive, or two in a split screen."""
+    """Makes a film of one drive, or of two in a split screen."""
     longest = max(run.drive.duration for run in runs if run.drive is not None)
     settings = Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
     if len(runs) == 1:

@@ -1,4 +1,4 @@
-"""Limits and headers of the survey's server: for every request and every answer, whoever made it."""
+"""Limits every request to the survey's server and adds the security headers to every response."""
 
 import json
 import re
@@ -20,7 +20,7 @@ FRAMES = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'self'; sandbox allow-scripts"
 )
-"""Policy of a 3-D view, which contains its scripts; it may neither fetch nor reach the page around it."""
+"""Policy of a 3-D view, which contains its scripts; it may not fetch anything or reach its parent page."""
 HEADERS = {
     "Server": "roadgpt",
     "Cache-Control": "no-store",
@@ -32,11 +32,11 @@ HEADERS = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
     "X-Robots-Tag": "noindex, nofollow",
 }
-"""Headers of every answer that does not set them itself."""
+"""Headers that every response has unless it sets them itself."""
 
 
 class RequestGuard:
-    """ASGI middleware: refuses requests beyond the limits, adds ``HEADERS``, turns errors into a sentence."""
+    """ASGI middleware that refuses requests beyond the limits, adds ``HEADERS`` and reports errors."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -62,7 +62,7 @@ class RequestGuard:
 
 
 def _refused_with(scope: Scope) -> int:
-    """The status with which a request is refused; 0 where it is within the limits."""
+    """Returns the status with which a request is refused; 0 if it is within the limits."""
     if len(scope["raw_path"]) + len(scope["query_string"]) > MOST_ADDRESS:
         return 414
     if scope["method"] == "POST":
@@ -76,12 +76,12 @@ def _refused_with(scope: Scope) -> int:
 
 
 def refusal(path: str, status: int, sentence: str = "") -> Response:
-    """Returns an answer of one sentence, after which the connection is closed.
+    """Returns a response of one sentence, after which the connection is closed.
 
     Args:
-        path: of the request; the script of the page, which posts to ``/answer``, gets JSON.
-        status: of HTTP.
-        sentence: what is wrong; empty: the status' own words. It holds nothing of the request.
+        path: path of the request; the pages' script, which posts to ``/answer``, gets JSON.
+        status: HTTP status.
+        sentence: what is wrong; if empty, the status' standard phrase. It must not quote the request.
     """
     sentence = sentence or f"{HTTPStatus(status).phrase}."
     if path.endswith("/answer"):

@@ -1,7 +1,7 @@
-"""What the machine measures on the same roads, criterion by criterion, to be held against what people say.
+"""Measures the roads of a survey in its criteria, so that the results can be compared with what people say.
 
-Of a road and its description: 1 where it keeps what is asked for, else 0, by ``study.criteria``. Of two
-roads: how alike they are from 0 to 1, by ``study.similarity``. Criteria of a survey's own are not measured.
+A road and its description: 1 if the road keeps the criterion, else 0, by ``study.criteria``. Two roads: their
+similarity from 0 to 1, by ``study.similarity``. Criteria that a survey adds itself are not measured.
 """
 
 from roadgpt.check.measures import measure
@@ -28,7 +28,7 @@ ALIKE = {
 
 
 def match(run: Run, prompt: str) -> dict[str, float]:
-    """Which criteria a road keeps; nothing for a description that is not the one it was made from."""
+    """Returns whether a road keeps each criterion, 1 or 0; empty if it was not made from this description."""
     if run.road is None or run.brief is None or prompt != run.words.strip():
         return {}
     asked = promises_of(run.brief, run.world)
@@ -41,7 +41,7 @@ def match(run: Run, prompt: str) -> dict[str, float]:
 
 
 def alike(one: Run, other: Run) -> dict[str, float]:
-    """How alike two roads are, criterion by criterion."""
+    """Returns how similar two roads are, 0 to 1, criterion by criterion."""
     if one.road is None or other.road is None:
         return {}
     try:

@@ -1,4 +1,4 @@
-"""The order of pages of each rater: random, but the same whenever they come back."""
+"""Puts the pages of a questionnaire into a random order, which stays the same for each rater."""
 
 import numpy as np
 
@@ -6,14 +6,15 @@ from roadgpt.study.survey.survey import QuestionPage, Survey
 
 
 def pages_for(survey: Survey, digest: str) -> tuple[QuestionPage, ...]:
-    """All pages in the order of one rater.
+    """Returns all pages in the order of one rater.
 
-    About the rater first; then the roads in random order, with the attention check among them but neither
-    first nor last (where there are two roads or more); then the pairs in random order; then the end.
+    The page about the rater comes first, then the roads in random order, then the pairs in random order,
+    then the end. The attention check stands among the roads,
+    neither first nor last if there are two roads or more.
 
     Args:
-        survey: what is asked.
-        digest: of the rater's token, hexadecimal.
+        survey: the survey.
+        digest: digest of the rater's token, hexadecimal.
     """
     rng = np.random.default_rng(int(digest, 16))
     by_part = {part: [page for page in survey.pages if page.part == part] for part in

@@ -29,7 +29,7 @@ ENVIRONMENT = Environment(
 
 
 def _paragraphs(text: str) -> Markup:
-    """Text as paragraphs, which empty lines separate."""
+    """Returns text as paragraphs; empty lines separate them."""
     parts = [part.strip() for part in text.replace("\r\n", "\n").split("\n\n") if part.strip()]
     return Markup("\n").join(Markup("<p>{}</p>").format(part) for part in parts)  # it escapes each part
 
@@ -81,7 +81,7 @@ def questionnaire(
 
 
 def own_answers(survey: Survey, base: str, given: Mapping[str, str], agreed_on: str) -> str:
-    """Returns the page that lists all that is kept of a rater, with the button that deletes it."""
+    """Returns the page that lists everything stored about a rater, with the button that deletes it."""
     rows = [
         (page.item.prompt if page.item else HEADINGS[page.part], question.text, given[question.id])
         for page in survey.pages

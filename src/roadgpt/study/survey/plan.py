@@ -1,4 +1,4 @@
-"""SURVEY.toml: which roads people are to rate, and what they are told. Read and written here."""
+"""Reads and writes SURVEY.toml, which says which roads people rate and what they are told."""
 
 import json
 import tomllib
@@ -26,18 +26,18 @@ PER_PAGE = 1.5  # minutes that a page takes, roughly: plots, films, a handful of
 
 
 class RoadPlan(Frozen):
-    """A road to be held against its description."""
+    """A road that is compared with its description."""
 
     run: Words
-    """Folder of a run, or its test.NNNN.json, from where the file lies."""
+    """Folder of a run or its test.NNNN.json, relative to the file."""
     prompt: str = ""
-    """Empty: the words that the road was made from."""
+    """The description; empty: the one that the road was made from."""
     criteria: tuple[Words, ...] | None = None
-    """None: those that the description speaks of."""
+    """The criteria; None: those that the description mentions."""
 
 
 class PairPlan(Frozen):
-    """Two roads of one description, to be compared."""
+    """Two roads of one description, which are compared with each other."""
 
     runs: tuple[Words, Words]
     prompt: str = ""
@@ -45,14 +45,14 @@ class PairPlan(Frozen):
 
 
 class AboutPlan(Frozen):
-    """A question about the rater, instead of the usual ones."""
+    """A question about the rater, which replaces the standard ones."""
 
     text: Words
     answers: Annotated[tuple[Words, ...], Field(min_length=2, max_length=20)]
 
 
 class SurveyPlan(Frozen):
-    """All of a SURVEY.toml."""
+    """The contents of SURVEY.toml."""
 
     title: Words = "Roads from words"
     asks: Words
@@ -63,20 +63,20 @@ class SurveyPlan(Frozen):
     films: bool = True
     views: bool = True
     about: Annotated[tuple[AboutPlan, ...], Field(max_length=30)] | None = None
-    """None: the thesis' six; an empty list: none."""
+    """Questions about the rater; None: the thesis' six; an empty list: none."""
     alignment: Annotated[tuple[RoadPlan, ...], Field(max_length=200)] = ()
     similarity: Annotated[tuple[PairPlan, ...], Field(max_length=200)] = ()
 
     @property
     def said_purpose(self) -> str:
-        """What raters are told of the purpose."""
+        """The purpose that raters are told."""
         if self.purpose:
             return self.purpose
         minutes = round(PER_PAGE * (len(self.alignment) + len(self.similarity)) + 2)
         return PURPOSE.format(minutes=minutes)
 
     def questions(self, usual: tuple[Question, ...]) -> tuple[Question, ...]:
-        """What raters are asked about themselves."""
+        """Returns the questions about the rater."""
         if self.about is None:
             return usual
         return tuple(
@@ -86,10 +86,10 @@ class SurveyPlan(Frozen):
 
 
 def read_plan(path: Path | str) -> SurveyPlan:
-    """What a SURVEY.toml says.
+    """Reads a SURVEY.toml.
 
     Raises:
-        UsageError: it is not there, no TOML, or says something that a survey cannot have.
+        UsageError: the file does not exist, is not TOML, or has a key or value that a survey cannot have.
     """
     path = Path(path)
     try:
@@ -112,12 +112,12 @@ def read_plan(path: Path | str) -> SurveyPlan:
 
 
 def named(criterion: str) -> str:
-    """A criterion as raters read it: ``turns`` is short for the number of turns."""
+    """Returns a criterion as raters read it: "number of turns" for ``turns``."""
     return CRITERIA.get(criterion, criterion)
 
 
 def plan_text(plan: SurveyPlan) -> str:
-    """A SURVEY.toml that says the same, to be edited."""
+    """Returns a plan as the text of a SURVEY.toml, to be edited."""
     own: dict[str, Any] = plan.model_dump(mode="json", exclude={"about", "alignment", "similarity"})
     own["purpose"] = plan.said_purpose
     lines = ["# The survey. Change it and say: roadgpt study survey new SURVEY.toml --out DIR"]
@@ -138,5 +138,5 @@ def plan_text(plan: SurveyPlan) -> str:
 
 
 def _toml(value: Any) -> str:
-    """Texts, truth and lists of texts are written in JSON as in TOML, but for one control character."""
+    """Returns a value as TOML, in which texts, booleans and lists are as in JSON but for one character."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,4 +1,4 @@
-"""What raters are asked: the thesis' three parts, its answers and its criteria.
+"""Defines the questions: the thesis' three parts, its answers and its criteria.
 
 Source: RoadGPT's thesis, section 6.2. It names all five answers about a description, but of those about two
 roads only the ends and "mostly dissimilar"; the two between are ours.
@@ -34,32 +34,32 @@ CRITERIA = {
     "order": "order of turns",
     "length": "length of the road",
 }
-"""Short names for a survey's file, and what raters read."""
+"""Short names in a survey's file, and the texts that raters read."""
 PAIR_CRITERIA = tuple(CRITERIA.values())
 
 
 class Question(Frozen):
-    """One thing that is asked: a choice of answers, or words where there are none."""
+    """One question: a choice of answers, or free text if there are none."""
 
     id: str
     text: str
     answers: tuple[str, ...] = ()
     criterion: str = ""
-    """What a rating is about: "overall", or a criterion; empty where it is no rating."""
+    """What is rated: "overall" or a criterion; empty if the question is no rating."""
     is_needed: bool = True
-    """Is a rater told where it is left out?"""
+    """Whether the page says so if the question has no answer."""
 
     @property
     def is_rating(self) -> bool:
-        """Is it about a road?"""
+        """Whether it is a rating of a road."""
         return bool(self.criterion)
 
     def takes(self, value: str) -> bool:
-        """May this be the answer? Nothing always may: it takes an answer back."""
+        """Returns whether a value is a possible answer; an empty one always is, and deletes the answer."""
         return value in self.answers or not value if self.answers else len(value) <= MOST_LETTERS
 
     def score(self, value: str) -> int:
-        """Place of an answer on its scale, from 1."""
+        """Returns the position of an answer on its scale, from 1."""
         return self.answers.index(value) + 1
 
 
@@ -102,7 +102,7 @@ ABOUT = (
 
 
 def alignment_questions(item: str, criteria: tuple[str, ...]) -> tuple[Question, ...]:
-    """How well a road matches its description: in general, in each criterion, and remarks."""
+    """Returns the questions about a road and its description: overall, each criterion, remarks."""
     overall = Question(
         id=f"{item}.{OVERALL}",
         text="How well does the road match the description in general?",
@@ -117,7 +117,7 @@ def alignment_questions(item: str, criteria: tuple[str, ...]) -> tuple[Question,
 
 
 def similarity_questions(item: str, criteria: tuple[str, ...]) -> tuple[Question, ...]:
-    """How alike two roads are: in general, in each criterion, and remarks."""
+    """Returns the questions about two roads: overall, each criterion, remarks."""
     overall = Question(
         id=f"{item}.{OVERALL}",
         text="How similar are road 1 (top) and road 2 (bottom) in general?",
@@ -150,7 +150,7 @@ def _remarks(item: str, what: str) -> Question:
 
 
 def check_question() -> Question:
-    """The attention check: its answer stands in its text."""
+    """Returns the attention check, whose text contains the right answer."""
     return Question(
         id="check",
         text=f"This question only shows that questions are read. Please choose “{MATCHES[CHECK]}” here.",
@@ -164,13 +164,13 @@ END = Question(
 
 
 def clean(text: str) -> str:
-    """Without control characters, halves of letters and spaces at the ends; lines end with a newline."""
+    """Returns a text without control characters, lone surrogates and outer spaces; "\\n" ends its lines."""
     text = text.replace("\r\n", "\n").replace("\r", "\n").encode("utf-8", "ignore").decode()
     return "".join(map(_letter, text)).strip()
 
 
 def _letter(letter: str) -> str:
-    """As it is kept: all spaces alike, joiners of letters as they are, nothing else that cannot be seen."""
+    """Returns a character as stored: any space becomes a plain one; invisible ones but joiners vanish."""
     if letter in "\n\t\u200c\u200d" or letter.isprintable():
         return letter
     return " " if letter.isspace() else ""

@@ -1,4 +1,4 @@
-"""Diverging stacked bars of ratings, and bars of who answered: for the report, and for papers.
+"""Draws diverging stacked bars of ratings, and bars of who answered, for the report and for papers.
 
 Each bar is all answers about one road in one criterion, its middle answer centred on zero: what lies to the
 right speaks for the road.
@@ -42,7 +42,7 @@ MADE_UP = "SYNTHETIC: made-up raters, no data of people"
 
 @dataclass(frozen=True)
 class Drawn:
-    """A figure, as it stands in the page."""
+    """A figure as SVG for the page."""
 
     name: str
     svg: str
@@ -50,7 +50,7 @@ class Drawn:
 
 @in_our_style
 def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Drawn:
-    """Draw all ratings of one part, item by item."""
+    """Draws all ratings of one part, item by item."""
     items = list(dict.fromkeys(unit.item.id for unit in found.units))
     high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW
     figure = new_figure(WIDE, high)
@@ -119,7 +119,7 @@ def _legend(figure: Figure, answers: Sequence[str], high: float) -> None:
 def about_bars(
     counts: Sequence[tuple[str, Sequence[tuple[str, int]]]], folder: Path, is_synthetic: bool
 ) -> Drawn:
-    """Draw who answered: for every question the number of each answer."""
+    """Draws how often each answer was given to each question about the raters."""
     rows = -(-len(counts) // 2)
     heights = [
         max(len(each[1]) for each in counts[2 * row : 2 * row + 2]) * 0.25 + 0.62 for row in range(rows)
@@ -149,7 +149,7 @@ def about_bars(
 
 
 def _finished(figure: Figure, name: str, folder: Path, is_synthetic: bool) -> Drawn:
-    """Write it as PNG, PDF and SVG; in the page its ink is the page's."""
+    """Writes a figure as PNG, PDF and SVG; returns an SVG whose text takes the page's colours."""
     if is_synthetic:
         figure.text(0.995, 0.995, MADE_UP, size=10, weight="bold", color=VERMILLION, ha="right", va="top")
         figure.text(

@@ -1,4 +1,4 @@
-"""The report's sentences and tables."""
+"""Makes the sentences and tables of a survey's report."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ NAMES = {"alignment": "road and description", "similarity": "two roads"}
 
 
 def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[str]:
-    """What a reader wants to know, in a few lines."""
+    """Returns the sentences of the summary."""
     used = len({row.rater for row in answers.used})
     lines = [
         f"Raters whose answers count: {used} ({answers.finished} rated everything). Left out, as they failed "
@@ -38,12 +38,12 @@ def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[st
 
 @dataclass(frozen=True)
 class SurveyBlocks:
-    """Makes tables and figures; those of made-up raters say so."""
+    """Makes tables and figures; those of made-up raters say so in their captions."""
 
     is_synthetic: bool
 
     def figure(self, drawn: Drawn, caption: str) -> Figure:
-        """A figure with its caption."""
+        """Returns a figure with its caption."""
         return Figure(drawn.name, self._marked(caption), drawn.svg)
 
     def table(
@@ -54,7 +54,7 @@ class SurveyBlocks:
         rows: Sequence[Sequence[TableCell]],
         note: str = "",
     ) -> Table:
-        """A table with its caption."""
+        """Returns a table with its caption."""
         name = f"synthetic-{name}" if self.is_synthetic else name
         return Table(name, self._marked(caption), heads, rows, note)
 
@@ -62,7 +62,7 @@ class SurveyBlocks:
         return f"SYNTHETIC (made-up raters): {caption}" if self.is_synthetic else caption
 
     def numbers(self, answers: Answers) -> Table:
-        """How many were asked, and what became of them."""
+        """Returns the table of how many raters were invited, agreed, withdrew and were analysed."""
         used = len({row.rater for row in answers.used})
         rows = [
             ("links given or taken", answers.invited),
@@ -78,7 +78,7 @@ class SurveyBlocks:
         )
 
     def about(self, counts: Sequence[tuple[str, Sequence[tuple[str, int]]]]) -> Details:
-        """Who answered."""
+        """Returns the table of the answers about the raters, folded."""
         rows = [
             [cell(text), cell(answer), cell(count)]
             for text, answers in counts
@@ -89,7 +89,7 @@ class SurveyBlocks:
         return Details("The same as a table", [table])
 
     def ratings(self, found: RatingTally) -> Table:
-        """Every road in every criterion."""
+        """Returns the table of ratings: every road in every criterion."""
         answers = found.units[0].question.answers
         firsts = {unit.item.id: unit.question.id for unit in reversed(found.units)}
         rows = [self._rating(unit, firsts[unit.item.id] == unit.question.id) for unit in found.units]
@@ -112,7 +112,7 @@ class SurveyBlocks:
         return self.table(f"{found.part}-ratings", f"Ratings: {NAMES[found.part]}", heads, rows, scale)
 
     def _rating(self, unit: Unit, is_first: bool) -> list[TableCell]:
-        """A row; the description is told once for each item."""
+        """Returns a row; the description is shown once for each item."""
         low, middle, high = unit.quartiles
         count, interval = unit.favourable
         share = count / unit.number if unit.number else float("nan")
@@ -129,7 +129,7 @@ class SurveyBlocks:
         ]
 
     def differences(self, found: RatingTally) -> list[Block]:
-        """Do the items differ in general? Friedman and Conover of three or more, Wilcoxon of two."""
+        """Tests whether the items differ: Friedman and Conover for three or more, Wilcoxon for two."""
         units = found.overall
         if len(units) < 2 or not found.raters:
             return ["One item alone cannot be compared with others."]
@@ -166,7 +166,7 @@ class SurveyBlocks:
         return [line, self.table(f"{found.part}-pairs", caption, heads, rows)]
 
     def agreement(self, tallies: Sequence[RatingTally]) -> Table:
-        """Krippendorff's alpha, criterion by criterion."""
+        """Returns the table of Krippendorff's alpha, criterion by criterion."""
         rows = []
         for found in tallies:
             for criterion in found.criteria:
@@ -195,7 +195,7 @@ class SurveyBlocks:
         ]
 
     def machine(self, tallies: Sequence[RatingTally]) -> list[Block]:
-        """People's mean score beside what was measured, and whether the two rise together."""
+        """Returns the mean scores of people beside the measured ones, with their rank correlation."""
         blocks: list[Block] = []
         for found in tallies:
             units = [unit for unit in found.units if unit.measured is not None and unit.number]
@@ -230,7 +230,7 @@ class SurveyBlocks:
         return blocks or ["The machine measured none of the criteria that people rated."]
 
     def remarks(self, answers: Answers) -> Block:
-        """What raters wrote."""
+        """Returns the table of remarks."""
         rows = [
             [cell(row.item or "at the end"), cell(row.prompt), cell(row.answer)]
             for row in sorted(answers.used, key=lambda row: (row.item, row.rater))

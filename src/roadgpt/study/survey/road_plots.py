@@ -1,4 +1,4 @@
-"""The two plots of a road as raters see them: all roads of a survey on the same axes, and no verdict on them.
+"""Draws the two plots of a road that raters see: all roads of a survey on the same axes, without a verdict.
 
 As in RoadGPT's thesis the axes are neutral: no road fills its plot more than another. Roads that fit are
 shown on the thesis' own (x and y from 0 to 220 m, 200 m along the road, 20 m of height).
@@ -27,7 +27,7 @@ STEPS = (10, 20, 25, 50, 100, 200, 500, 1000, 2000, 5000)  # m between lines of 
 
 @dataclass(frozen=True)
 class Axes:
-    """What all plots of a survey show, metres."""
+    """The axes of all plots of a survey, metres."""
 
     frame: Frame
     along: float
@@ -35,7 +35,7 @@ class Axes:
 
     @classmethod
     def of(cls, roads: Sequence[Road]) -> "Axes":
-        """The thesis' axes if every road fits, else the smallest square and the longest road."""
+        """Returns the thesis' axes if every road fits, otherwise the smallest that show every road."""
         lines = [road.at(stations_of(road)) for road in roads]
         points = np.concatenate(lines)[:, :2]
         frame = THESIS
@@ -50,7 +50,7 @@ class Axes:
 
 @in_our_style
 def draw_plots(road: Road, world: World, axes: Axes, folder: Path, name: str) -> tuple[str, str]:
-    """Write ``NAME-above.png`` and ``NAME-height.png``; gives their names."""
+    """Writes ``NAME-above.png`` and ``NAME-height.png``; returns the two names."""
     above, height = f"{name}-above.png", f"{name}-height.png"
     save(_above(road, world, axes.frame), folder / above)
     save(_heights(road, axes), folder / height)
@@ -81,7 +81,7 @@ def _above(road: Road, world: World, frame: Frame) -> Figure:
 
 
 def _heights(road: Road, shown: Axes) -> Figure:
-    """Height above the lowest point over the distance along the road."""
+    """Draws the height above the lowest point over the distance along the road."""
     s = stations_of(road)
     z: Array = road.at(s)[:, 2]
     z = z - z.min()

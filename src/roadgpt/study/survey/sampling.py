@@ -1,4 +1,4 @@
-"""Picks roads for a survey out of the folder of a study: one of each description, and pairs of one."""
+"""Draws roads for a survey from the folder of a study: one road of each description, and pairs of roads."""
 
 from pathlib import Path
 
@@ -17,17 +17,17 @@ DEEPEST = 4  # folders below the study's in which campaigns are looked for
 
 
 def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int = 2) -> SurveyPlan:
-    """A plan of valid roads, drawn at random out of every campaign in a folder.
+    """Returns a plan with valid roads that are drawn at random from every folder of runs below a folder.
 
     Args:
-        study: a campaign's folder, or one that holds several.
+        study: a folder of runs, or a folder that contains several.
         asks: who asks.
-        contact: where raters may ask back.
-        seed: the same seed draws the same roads.
-        pairs: campaigns of which two more roads are drawn to be compared.
+        contact: where raters may ask questions.
+        seed: seed of the draw; the same seed draws the same roads.
+        pairs: number of descriptions of which two more roads are drawn to be compared.
 
     Raises:
-        UsageError: there is no campaign with a valid road.
+        UsageError: there is no folder of runs with a valid road.
     """
     study = Path(study).resolve()
     alignment, similarity = list[RoadPlan](), list[PairPlan]()
@@ -48,13 +48,13 @@ def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pa
 
 
 def _campaigns(study: Path) -> list[Path]:
-    """Folders of campaigns, in the order of their names."""
+    """Returns the folders of runs, in the order of their names."""
     found = {card.parent for depth in range(DEEPEST) for card in study.glob(f"{'*/' * depth}{CARD}")}
     return sorted(found)
 
 
 def _drawn(campaign: Path, seed: int, most: int) -> list[tuple[str, Run]]:
-    """Runs of valid roads that were made from words, drawn without repeats; driven ones first."""
+    """Draws runs of valid roads that were made from words, without repetition; driven ones come first."""
     indices = np.random.default_rng(seed).permutation(finished(campaign))
     valid, driven = list[tuple[str, Run]](), list[tuple[str, Run]]()
     for index in indices:

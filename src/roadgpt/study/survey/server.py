@@ -24,14 +24,14 @@ WAITS_FOR_CLIENT = (h11.IDLE, h11.SEND_BODY)
 
 
 class LimitedConnection(H11Protocol):
-    """One connection of a rater. It is cut where the other side takes too long to send or to receive."""
+    """One connection of a rater. It is closed if the other side takes too long to send or to receive."""
 
     def __init__(self, *args: Any, **more: Any) -> None:
         super().__init__(*args, **more)
         self._timers: dict[str, TimerHandle] = {}
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Accepts a connection, or tells it to come again where there are too many."""
+        """Accepts a connection, or answers with status 503 if there are too many."""
         super().connection_made(transport)
         # else an answer, whose head and body are sent apart, waits 40 ms for the other side's kernel
         transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -84,7 +84,7 @@ class LimitedConnection(H11Protocol):
 
 
 class Server:
-    """Serves one survey; it listens from the start, and answers while ``serve_forever`` runs.
+    """Serves one survey. It listens from the start, and answers while ``serve_forever`` runs.
 
     Raises:
         UsageError: nobody can listen on this host and port.

@@ -1,4 +1,4 @@
-"""Opens a survey to its raters: links, the server, and an end that loses nothing."""
+"""Opens a survey to its raters: makes the links, and runs the server until Ctrl-C."""
 
 import ipaddress
 import re
@@ -55,19 +55,20 @@ def serve(
     is_open: bool = False,
     url: str = "",
 ) -> None:
-    """Serve until Ctrl-C; links of raters are told, and written into ``links.txt``.
+    """Serves a survey until Ctrl-C. It reports the links of raters and writes them into ``links.txt``.
 
     Args:
-        folder: of the survey.
-        tell: is told links and counts.
-        host: the address to listen on.
-        port: 0: one that is free.
-        raters: how many are to have a link of their own, those from earlier included.
-        is_open: may anyone join by one shared link?
-        url: where raters reach the server, if not at host and port.
+        folder: the survey's folder.
+        tell: called with each line of output.
+        host: address to listen on.
+        port: port to listen on; 0: a free one.
+        raters: how many raters have a link of their own, including those from earlier.
+        is_open: whether anyone may join by a shared link.
+        url: address at which raters reach the server, if not at host and port.
 
     Raises:
-        UsageError, RoadGPTError: as for ``opened``.
+        UsageError: as for ``opened``, or there are too many raters.
+        RoadGPTError: as for ``opened``, or the links cannot be written.
     """
     server = opened(folder, host, port, is_open)
     store = server.app.store
@@ -91,7 +92,7 @@ def serve(
 
 
 def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[str]:
-    """Links of all raters, new ones among them, written and told."""
+    """Writes the links of all raters, new ones among them, and returns the lines that show them."""
     path = folder / LINKS
     tokens = re.findall(r"/r/([\w-]+)\s*$", read_text(path), re.M) if path.is_file() else []
     tokens = [token for token in tokens if store.rater_of(token) is not None]
@@ -113,7 +114,7 @@ def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[s
 
 
 def _is_own(host: str) -> bool:
-    """Is it an address that only this machine reaches?"""
+    """Returns whether only this machine can reach an address."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:

@@ -1,4 +1,4 @@
-"""The answers of a survey in one SQLite file: what was confirmed is on the disk, whatever happens to us.
+"""Stores the answers of a survey in one SQLite file. A confirmed answer is on the disk, even after a crash.
 
 raters   digest (SHA-256 of the token: the token itself is not kept here), state, day on which they agreed,
          whether they joined by the shared link
@@ -39,16 +39,16 @@ CREATE TABLE IF NOT EXISTS answers (
 
 @dataclass(frozen=True)
 class Rater:
-    """Someone who was invited; nothing but the digest of their token tells who."""
+    """An invited person, known only by the digest of their token."""
 
     digest: str
     state: State
     agreed_on: str | None = None
-    """Day, as 2026-01-31."""
+    """The day on which they agreed, as 2026-01-31."""
 
     @property
     def code(self) -> str:
-        """What they are called in tables."""
+        """Their name in tables."""
         return code_of(self.digest)
 
 
@@ -56,7 +56,7 @@ NOBODY = Rater("0" * 64, "invited")
 
 
 def _private(path: Path) -> None:
-    """Let nobody but its owner read or write the file and its logs, which take their rights from it."""
+    """Lets only the owner read and write the file and its logs; new logs inherit the file's permissions."""
     os.close(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NONBLOCK", 0), 0o600))
     for each in (path, *(path.with_name(path.name + end) for end in ("-wal", "-shm"))):
         if each.exists():
@@ -64,7 +64,7 @@ def _private(path: Path) -> None:
 
 
 class AnswerStore:
-    """The file of answers; may be used by many threads, and by several processes at once."""
+    """The file of answers. Several threads and several processes may use it at once."""
 
     def __init__(self, path: Path | str) -> None:
         self._lock = threading.Lock()
@@ -81,19 +81,19 @@ class AnswerStore:
             ) from error
 
     def close(self) -> None:
-        """Close the file."""
+        """Closes the file."""
         with self._lock:
             self._file.close()
 
     def add_rater(self, joined: bool = False, token: str = "") -> str:
-        """Invite somebody, or let somebody join; gives their token, which is kept nowhere here."""
+        """Adds a rater and returns their token, which is not stored."""
         token = token or new_token()
         with self._writing() as file:
             file.execute("INSERT INTO raters (digest, joined) VALUES (?, ?)", (digest_of(token), joined))
         return token
 
     def rater_of(self, token: str) -> Rater | None:
-        """Whose token it is; None where it is nobody's. Takes as long for every token that is nobody's."""
+        """Returns the rater of a token; None if there is none. Unknown tokens all take the same time."""
         digest = digest_of(token)
         with self._lock:
             row = self._file.execute(
@@ -103,7 +103,7 @@ class AnswerStore:
         return rater if hmac.compare_digest(rater.digest, digest) else None
 
     def shared(self) -> str:
-        """The token of the shared link; the same whenever it is asked for."""
+        """Returns the token of the shared link, which stays the same."""
         with self._writing() as file:
             row = file.execute("SELECT token FROM doors").fetchone()
             token = str(row[0]) if row else new_token()
@@ -112,12 +112,12 @@ class AnswerStore:
         return token
 
     def links(self) -> int:
-        """How many were given a link of their own."""
+        """Returns the number of raters with a link of their own."""
         with self._lock:
             return int(self._file.execute("SELECT count(*) FROM raters WHERE NOT joined").fetchone()[0])
 
     def raters(self) -> list[Rater]:
-        """All who were invited."""
+        """Returns all invited raters."""
         with self._lock:
             rows = self._file.execute(
                 "SELECT digest, state, agreed_on FROM raters ORDER BY digest"
@@ -125,7 +125,7 @@ class AnswerStore:
         return [Rater(*row) for row in rows]
 
     def agree(self, rater: Rater) -> None:
-        """The rater agreed to take part, today; no effect for one who withdrew."""
+        """Records that a rater agrees today; no effect for one who withdrew."""
         with self._writing() as file:
             file.execute(
                 "UPDATE raters SET state = 'agreed', agreed_on = ? WHERE digest = ? AND state = 'invited'",
@@ -133,10 +133,10 @@ class AnswerStore:
             )
 
     def save(self, rater: Rater, answers: Mapping[str, str]) -> bool:
-        """Keep answers, all or none; an empty one takes an earlier one back. On the disk when this returns.
+        """Saves all answers or none; an empty one deletes an earlier one. They are on disk when this returns.
 
         Returns:
-            Whether they were kept: answers of someone who has not agreed, or who withdrew, are not.
+            Whether they were saved. Answers of a rater who has not agreed, or who withdrew, are not.
         """
         with self._writing() as file:
             state = file.execute("SELECT state FROM raters WHERE digest = ?", (rater.digest,)).fetchone()
@@ -153,13 +153,13 @@ class AnswerStore:
         return True
 
     def answers_of(self, rater: Rater) -> dict[str, str]:
-        """What a rater answered, by question."""
+        """Returns a rater's answers, by question."""
         with self._lock:
             rows = self._file.execute("SELECT question, value FROM answers WHERE rater = ?", (rater.digest,))
             return dict(rows.fetchall())
 
     def withdraw(self, rater: Rater) -> None:
-        """Delete all answers of a rater for good: their bytes are overwritten in file and journal."""
+        """Deletes all answers of a rater for good: their bytes are overwritten in file and journal."""
         with self._writing() as file:
             file.execute("DELETE FROM answers WHERE rater = ?", (rater.digest,))
             file.execute(
@@ -182,15 +182,15 @@ class AnswerStore:
 
 
 def new_token() -> str:
-    """A secret that nobody can guess, of letters that stand in addresses."""
+    """Returns a random token of characters that are allowed in addresses."""
     return secrets.token_urlsafe(TOKEN_BYTES)
 
 
 def code_of(digest: str) -> str:
-    """A short name: among 10,000 raters two are called alike once in five million surveys."""
+    """Returns a short name; two of 10,000 raters share one in one of five million surveys."""
     return digest[:12]
 
 
 def digest_of(token: str) -> str:
-    """SHA-256, hexadecimal."""
+    """Returns the SHA-256 of a token, hexadecimal."""
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).hexdigest()

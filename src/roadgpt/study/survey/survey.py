@@ -1,4 +1,4 @@
-"""The Survey as it is served: its texts, its roads, its questions. Kept as ``survey.json`` in its folder."""
+"""Defines a survey as it is served: its texts, roads and questions, kept in ``survey.json``."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -25,10 +25,10 @@ MEDIA = "media"
 
 
 class Medium(Frozen):
-    """A picture, a film or a 3-D view that raters are shown."""
+    """A picture, a film or a 3-D view for raters."""
 
     name: str
-    """Of its file in the folder of media."""
+    """Name of its file in the folder of media."""
     kind: Literal["picture", "film", "view"]
     title: str
 
@@ -42,13 +42,13 @@ class Item(Frozen):
     criteria: tuple[str, ...] = ()
     media: tuple[Medium, ...] = ()
     roads: tuple[str, ...] = ()
-    """Where the roads came from; not shown to raters."""
+    """Paths of the roads' runs; not shown to raters."""
     machine: Mapping[str, float] = {}
-    """What was measured, 0..1, by criterion; not shown to raters."""
+    """Measured scores, 0 to 1, by criterion; not shown to raters."""
 
     @property
     def questions(self) -> tuple[Question, ...]:
-        """What is asked about it."""
+        """The questions about it."""
         ask = alignment_questions if self.part == "alignment" else similarity_questions
         return ask(self.id, self.criteria)
 
@@ -62,29 +62,29 @@ class QuestionPage(Frozen):
 
 
 class Survey(Frozen):
-    """All that is shown and asked."""
+    """The texts, roads and questions of a survey."""
 
     format: Literal[1] = 1
     title: str
     asks: str
-    """Who asks: names, institute."""
+    """Who asks: names and institute."""
     contact: str
     purpose: str
     keeps: str
-    """What is done with the answers, and for how long they are kept."""
+    """What happens to the answers, and for how long they are kept."""
     has_check: bool = True
     about: tuple[Question, ...] = ABOUT
     items: tuple[Item, ...]
     lacks: str = ""
-    """What the media lack, in a sentence."""
+    """Which media are missing, in a sentence."""
 
     def of_part(self, part: Part) -> tuple[Item, ...]:
-        """The items of one part, in the order of the file."""
+        """Returns the items of one part, in the order of the file."""
         return tuple(item for item in self.items if item.part == part)
 
     @cached_property
     def pages(self) -> tuple[QuestionPage, ...]:
-        """Every page once, in the order of the file; raters are shown them in an order of their own."""
+        """All pages in the order of the file; ``page_order`` gives each rater another order."""
         pages = [QuestionPage(part="about", questions=self.about)] if self.about else []
         for part in ("alignment", "similarity"):
             pages += [
@@ -97,17 +97,17 @@ class Survey(Frozen):
 
     @cached_property
     def questions(self) -> Mapping[str, Question]:
-        """Every question by its id."""
+        """All questions by their ids."""
         return {question.id: question for page in self.pages for question in page.questions}
 
     @cached_property
     def media(self) -> Mapping[str, Medium]:
-        """Every file that may be sent, by its name."""
+        """All files that may be sent, by their names."""
         return {medium.name: medium for item in self.items for medium in item.media}
 
 
 def read_survey(folder: Path | str) -> Survey:
-    """The survey in a folder.
+    """Reads the survey in a folder.
 
     Raises:
         UsageError: there is none, or it cannot be read.

@@ -1,4 +1,4 @@
-"""Made-up raters, to try out the analysis before people answer. Never mixed with answers of people."""
+"""Makes up raters, to try out the analysis before people answer. They are never mixed with people."""
 
 import hashlib
 from collections.abc import Mapping
@@ -18,17 +18,17 @@ REMARK = "synthetic remark of a made-up rater"
 def synthetic(
     survey: Survey, number: int, seed: int = 0, agreement: float = 0.8, failing: float = FAILING
 ) -> Answers:
-    """Answers of raters who do not exist.
+    """Returns the answers of raters who do not exist.
 
-    Every rating has a hidden truth, another one for the next road. With the probability ``agreement`` a rater
-    says it, else any answer of the scale: 1 gives an alpha of 1, and 0 one near 0.
+    Every rating has a hidden true answer, which differs from road to road. A rater gives it with the
+    probability ``agreement``, and otherwise any answer of the scale: 1 gives an alpha of 1, and 0 one near 0.
 
     Args:
-        survey: what is asked.
-        number: of raters.
-        seed: the same seed gives the same answers.
-        agreement: 0..1.
-        failing: share of raters who fail the attention check, and answer at random.
+        survey: the survey.
+        number: number of raters.
+        seed: seed of the answers.
+        agreement: probability of the true answer, 0 to 1.
+        failing: share of raters who fail the attention check and answer at random.
 
     Raises:
         UsageError: the number or a share is out of range.
@@ -46,9 +46,9 @@ def synthetic(
 
 
 def _truths(survey: Survey, rng: np.random.Generator) -> dict[str, int]:
-    """Of every rating, the index of an answer: drawn for each criterion, then one further from road to road.
+    """Returns the index of each rating's true answer: random for each criterion, one further for each road.
 
-    Were all roads alike, raters could not show that they agree.
+    If all roads had the same truth, raters could not show that they agree.
     """
     start: dict[tuple[str, str], int] = {}
     truth: dict[str, int] = {}

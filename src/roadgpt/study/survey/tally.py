@@ -1,4 +1,4 @@
-"""Ratings as numbers: what was said of each road in each criterion, and who said what."""
+"""Counts ratings: how each road was rated in each criterion, and by whom."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -20,16 +20,16 @@ FAVOURABLE = 4  # a score from which an answer speaks for the road, or for liken
 
 @dataclass(frozen=True, eq=False)
 class Unit:
-    """One road, or pair, in one criterion, as all raters rated it."""
+    """The ratings of one road, or pair, in one criterion by all raters."""
 
     item: Item
     question: Question
     scores: Array
-    """1 to 5, of every rater; NaN where there is none."""
+    """Scores of all raters, 1 to 5; NaN where one is missing."""
 
     @property
     def criterion(self) -> str:
-        """What was rated."""
+        """The criterion that was rated."""
         return self.question.criterion
 
     @property
@@ -39,7 +39,7 @@ class Unit:
 
     @property
     def number(self) -> int:
-        """Raters."""
+        """Number of raters."""
         return len(self.given)
 
     @property
@@ -49,7 +49,7 @@ class Unit:
 
     @property
     def quartiles(self) -> tuple[float, float, float]:
-        """Lower quartile, median and upper quartile; NaN where nobody rated."""
+        """Lower quartile, median and upper quartile; NaN if nobody rated."""
         if not self.number:
             return (float("nan"),) * 3
         low, middle, high = np.quantile(self.given, [0.25, 0.5, 0.75])
@@ -57,13 +57,13 @@ class Unit:
 
     @property
     def favourable(self) -> tuple[int, Interval]:
-        """How many answers were 4 or 5, with Wilson's interval of their share."""
+        """Number of answers 4 or 5, and Wilson's interval of their share."""
         count = int((self.given >= FAVOURABLE).sum())
         return count, wilson(count, self.number) if self.number else Interval(float("nan"), float("nan"))
 
     @property
     def measured(self) -> float | None:
-        """What the machine says, 0..1."""
+        """The measured score, 0 to 1; None if it was not measured."""
         return self.item.machine.get(self.criterion)
 
 
@@ -77,21 +77,21 @@ class RatingTally:
 
     @property
     def overall(self) -> tuple[Unit, ...]:
-        """The general question about each item."""
+        """The overall question about each item."""
         return self.of(OVERALL)
 
     @property
     def criteria(self) -> tuple[str, ...]:
-        """All that were rated, the general one first."""
+        """All rated criteria, the overall one first."""
         return tuple(dict.fromkeys(unit.criterion for unit in self.units))
 
     def of(self, criterion: str) -> tuple[Unit, ...]:
-        """The units of one criterion."""
+        """Returns the units of one criterion."""
         return tuple(unit for unit in self.units if unit.criterion == criterion)
 
 
 def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
-    """Of every question about raters: its text, and how often each answer was given."""
+    """Returns the text of every question about the raters, and how often each answer was given."""
     given = Counter((row.question, row.answer) for row in answers.used if row.part == "about")
     return [
         (question.text, [(answer, given[question.id, answer]) for answer in question.answers])
@@ -101,7 +101,7 @@ def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
 
 
 def tally(answers: Answers, part: Rated) -> RatingTally:
-    """The ratings of one part by all raters who are analysed."""
+    """Returns the ratings of one part by all analysed raters."""
     scores = {
         (row.rater, row.question): row.score
         for row in answers.used
@@ -118,12 +118,12 @@ def tally(answers: Answers, part: Rated) -> RatingTally:
 
 
 def matrix(units: Sequence[Unit]) -> Array:
-    """Scores ``(people, units)``."""
+    """Returns the scores ``(people, units)``."""
     return np.stack([unit.scores for unit in units], axis=1)
 
 
 def agreement(units: Sequence[Unit]) -> float:
-    """Krippendorff's alpha of ordinal ratings; NaN where it cannot be told, as of one road alone."""
+    """Returns Krippendorff's alpha of ordinal ratings; NaN if it is undefined, as for a single unit."""
     if len(units) < 2 or not len(units[0].scores):
         return float("nan")
     return krippendorff(matrix(units), "ordinal")

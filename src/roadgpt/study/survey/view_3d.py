@@ -1,4 +1,4 @@
-"""The 3-D view for raters: without verdict, measures or marks, which would tell them what to answer."""
+"""Writes the 3-D view for raters, without verdict, measurements or marks that would suggest answers."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,7 +11,7 @@ UNTOLD = {"outcome": "", "description": "", "about": "", "words": "", "places": 
 
 
 def write_view(runs: Sequence[Run], titles: Sequence[str], path: Path) -> None:
-    """Write the page of one road or of two."""
+    """Writes the page of one road or of two."""
     write_whole(
         path,
         page_of([scene(run) | {"title": title} | UNTOLD for run, title in zip(runs, titles, strict=True)]),
