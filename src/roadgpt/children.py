@@ -1,4 +1,4 @@
-"""Processes that we start: out of reach of a terminal's Ctrl-C, and ended with all that they started."""
+"""Child processes. A terminal's Ctrl-C does not reach them, and they are ended with all that they started."""
 
 import os
 import signal
@@ -18,10 +18,14 @@ _running: "set[subprocess.Popen[bytes]]" = set()
 
 
 def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
-    """Start a process in a session of its own; ``how`` is as ``subprocess.Popen`` has it.
+    """Starts a process in a session of its own.
+
+    Args:
+        words: The command and its arguments.
+        **how: Further arguments of ``subprocess.Popen``.
 
     Raises:
-        OSError: the system refuses.
+        OSError: The system refuses.
     """
     process: subprocess.Popen[bytes] = subprocess.Popen(words, **_APART, **how)  # noqa: S603 - our callers' words
     _running.add(process)
@@ -29,10 +33,14 @@ def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
 
 
 def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
-    """Start a Python of ours that runs ``main()`` of a module and speaks through its standard streams.
+    """Starts a Python process that runs ``main()`` of a module and communicates through its standard streams.
+
+    Args:
+        entry: The module.
+        **how: Further arguments of ``subprocess.Popen``; ``env`` is added to the environment.
 
     Raises:
-        OSError: the system refuses.
+        OSError: The system refuses.
     """
     words = [
         sys.executable,
@@ -46,7 +54,7 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
 
 
 def kill(process: "subprocess.Popen[bytes]") -> None:
-    """End a process and what it started, and do not wait for it; one that is gone may be killed again."""
+    """Ends a process and its children without waiting. A process that has ended may be killed again."""
     if os.name == "posix":
         # its group may outlive it, so that it is asked for even where the process has ended
         with suppress(ProcessLookupError, PermissionError):
@@ -59,9 +67,10 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
 
 
 def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
-    """Ask a process that called ``ends_its_own`` to end with all that it has started; does not wait for it.
+    """Asks a process that called ``ends_its_own`` to end with all that it has started, without waiting.
 
-    On Unix what a process starts lives in a session of its own, which ``kill`` does not reach.
+    What such a process starts runs in sessions of its own, out of reach of ``kill``. On Windows ``kill``
+    reaches it.
     """
     if os.name == "posix" and process.poll() is None:
         with suppress(OSError):
@@ -69,7 +78,7 @@ def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
 
 
 def ends_its_own() -> None:
-    """In a process of ours: from now on SIGTERM ends it together with every process that it has started."""
+    """Makes SIGTERM end this process together with every process that it has started."""
     signal.signal(signal.SIGTERM, _end_all)
 
 
@@ -79,7 +88,7 @@ def _end_all(number: int, frame: object) -> None:
 
 
 def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
-    """End a process and what it started; its exit status, None where it does not go."""
+    """Ends a process and its children. Returns its exit status; None where it has not ended in time."""
     kill(process)
     with suppress(subprocess.TimeoutExpired):
         process.wait(patience)
@@ -88,22 +97,23 @@ def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int |
 
 
 def kill_all() -> None:
-    """End every process that was started here and is not seen off yet."""
+    """Ends every process that was started here and has not been waited for."""
     for process in [*_running]:
         kill(process)
 
 
 def ending(status: int | None) -> str:
-    """How a process ended, to follow its name: 'was ended by signal 9'."""
+    """Returns how a process ended, in words that follow its name: 'was ended by signal 9'."""
     if status is not None and status < 0:
         return f"was ended by signal {-status}"
     return f"ended with status {status}"
 
 
 def private_streams() -> tuple[IO[bytes], IO[bytes]]:
-    """In a process of ours: its standard input and output for us alone, unbuffered.
+    """Returns this process's standard input and output, unbuffered and for the caller alone.
 
-    From then on whatever else reads finds nothing, and whatever else prints goes to standard error.
+    From then on, anything else that reads standard input finds nothing, and anything else that prints writes
+    to standard error.
     """
     heard, said = os.dup(0), os.dup(1)
     nothing = os.open(os.devnull, os.O_RDONLY)

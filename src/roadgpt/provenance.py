@@ -1,39 +1,39 @@
 """Records where names come from. Code and servers that are named only by a file are not trusted.
 
-A run, a campaign, a plan or a folder may have been made by somebody else. Code that reads one records here
-which drivers and servers it names (``came_with``), and code that takes an option from the user records that
-too (``name``). Before a driver's file is run, or a key is sent to a server, ``stranger`` returns the file
-that names it where the user has not. Names that are given in a Python program came with no file, and are
-trusted.
+A run, a campaign, a plan or a folder may have been made by somebody else. Code that reads one records which
+drivers and servers it names (``add_from_file``), and code that takes an option from the user records that too
+(``add_from_user``). Before a driver's file is run, or a key is sent to a server, ``untrusted_file`` returns
+the file that names it where the user has not. Names that are given in a Python program came with no file, and
+are trusted.
 """
 
 from collections.abc import Callable
 
 
-class Names:
+class NameOrigins:
     """Names of one kind in one process: those that the user gave, and those that came with files."""
 
     def __init__(self) -> None:
         self._named: dict[str, str] = {}
         self._files: dict[str, str] = {}
 
-    def name(self, key: str, name: str = "") -> None:
+    def add_from_user(self, key: str, name: str = "") -> None:
         """Records that the user gave this key; ``name`` is the user's wording, if it differs from the key."""
         self._named[key] = name or key
 
-    def named(self, key: str) -> str | None:
+    def given_as(self, key: str) -> str | None:
         """Returns the user's wording for this key; None where the user did not give it."""
         return self._named.get(key)
 
-    def came_with(self, key: str, file: object) -> None:
+    def add_from_file(self, key: str, file: object) -> None:
         """Records that a file names this key. Only the first file is kept."""
         self._files.setdefault(key, str(file))
 
-    def stranger(self, key: str) -> str | None:
+    def untrusted_file(self, key: str) -> str | None:
         """Returns the file that names this key, where the user did not give it; else None."""
         return None if key in self._named else self._files.get(key)
 
-    def join(self, others: "Names") -> None:
+    def join(self, others: "NameOrigins") -> None:
         """Adds the names that another process has recorded."""
         self._named.update(others._named)
         self._files.update(others._files)
@@ -48,26 +48,26 @@ def _nobody(question: str) -> bool:
     return False
 
 
-class Asker:
+class Confirmation:
     """Asks the user to confirm something. Unless a program sets ``ask``, the answer is no."""
 
     def __init__(self) -> None:
         self.ask: Callable[[str], bool] = _nobody
 
 
-CODE = Names()
+CODE = NameOrigins()
 """Drivers in files, by the absolute path of the file and the name of the class."""
-SERVERS = Names()
+SERVERS = NameOrigins()
 """Servers of language models, by scheme, host and port."""
-USER = Asker()
+USER = Confirmation()
 
 
-def known() -> tuple[Names, Names]:
+def known() -> tuple[NameOrigins, NameOrigins]:
     """Returns all names that this process has recorded, to be handed to a process that works for it."""
     return CODE, SERVERS
 
 
-def join(names: tuple[Names, Names]) -> None:
+def join(names: tuple[NameOrigins, NameOrigins]) -> None:
     """Adds the names that were recorded by the process that this one works for."""
     for ours, theirs in zip((CODE, SERVERS), names, strict=True):
         ours.join(theirs)

@@ -81,7 +81,7 @@ def settings_with_origin(
         UsageError: a settings file cannot be read, or has a setting that does not exist.
     """
     if (flags or {}).get("base_url"):
-        SERVERS.name(str(origin_of(str((flags or {})["base_url"]))))
+        SERVERS.add_from_user(str(origin_of(str((flags or {})["base_url"]))))
     places = [_looked_up(layer) for layer in ([plan] if plan else []) + layers()]
     found: dict[str, Setting] = {}
     for name in FIELDS:
@@ -172,7 +172,7 @@ def trust_server(base_url: str, wanted: str | None, place: object) -> None:
     if wanted is None or origin_of(base_url) != origin_of(wanted):
         told = wanted or "no server of its own"
         raise UsageError(f"{place} names {told}, and not {base_url}; name that one, or leave out --base-url")
-    SERVERS.name(str(origin_of(base_url)))
+    SERVERS.add_from_user(str(origin_of(base_url)))
 
 
 def untrusted_source(base_url: str | None) -> str:
@@ -187,9 +187,9 @@ def untrusted_source(base_url: str | None) -> str:
     ]
     if wanted == origin_of(None) or any(name not in FOLDER for name in naming):
         return ""
-    if SERVERS.named(str(wanted)):
+    if SERVERS.given_as(str(wanted)):
         return ""
-    return SERVERS.stranger(str(wanted)) or next(iter(naming), "")
+    return SERVERS.untrusted_file(str(wanted)) or next(iter(naming), "")
 
 
 def layers() -> list[Layer]:

@@ -170,7 +170,7 @@ class ChatSettings(ChatValue):
         key.
         """
         if self.base_url:
-            SERVERS.came_with(str(origin_of(self.base_url)), file)
+            SERVERS.add_from_file(str(origin_of(self.base_url)), file)
         return self.model_copy(update={"record": None, "replay": None})
 
 

@@ -4,7 +4,7 @@ import signal
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
-from roadgpt.provenance import Names, join, known
+from roadgpt.provenance import NameOrigins, join, known
 from roadgpt.stopping import look, shielded
 
 T = TypeVar("T")
@@ -55,7 +55,7 @@ def shared(function: Callable[[T], U], items: Iterable[T], workers: int) -> Iter
     pool.shutdown()
 
 
-def _begun(names: tuple[Names, Names]) -> None:
+def _begun(names: tuple[NameOrigins, NameOrigins]) -> None:
     """Ctrl-C goes to all processes of a terminal, and the first one sees to the others. Whose code may run,
     they know from it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -25,17 +25,17 @@ def named(spec: str) -> None:
     class are enough; the user's file is then the one that is run.
     """
     if parted(spec)[0]:
-        CODE.name(_whole(spec))
-        CODE.name(_short(spec), spec)
+        CODE.add_from_user(_whole(spec))
+        CODE.add_from_user(_short(spec), spec)
 
 
 def came_with(spec: str, file: object) -> str:
     """A file names this driver; gives back the one that is meant: the user's, where they named it."""
-    if not parted(spec)[0] or CODE.named(_whole(spec)):
+    if not parted(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
-    theirs = CODE.named(_short(spec))
+    theirs = CODE.given_as(_short(spec))
     if theirs is None:
-        CODE.came_with(_whole(spec), file)
+        CODE.add_from_file(_whole(spec), file)
     return theirs or spec
 
 
@@ -47,13 +47,13 @@ def admit(spec: str) -> None:
     """
     if not parted(spec)[0]:
         return
-    file = CODE.stranger(_whole(spec))
+    file = CODE.untrusted_file(_whole(spec))
     if file is not None and not USER.ask(f"{file} names the driver {spec}. Run the code in that file?"):
         raise UsageError(
             f"{file} names the driver {spec}, and code is not run because a file says so; if you trust it, "
             f"name it yourself: --driver {spec}"
         )
-    CODE.name(_whole(spec))  # files that are read from now on may name it as well
+    CODE.add_from_user(_whole(spec))  # files that are read from now on may name it as well
 
 
 def expect(spec: str | None, drivers: set[str], place: object) -> None:

@@ -44,18 +44,18 @@ def _is_allowed(letter: str) -> bool:
 
 
 @dataclass(slots=True)
-class Element:
+class XmlElement:
     """One XML element. ``add`` returns the new child, so that a tree is written from the outside in."""
 
     name: str
     attributes: Mapping[str, Value] = field(default_factory=dict)
-    children: list["Element"] = field(default_factory=list)
+    children: list["XmlElement"] = field(default_factory=list)
     raw: str = ""
     """Content between the tags in place of children, already escaped."""
 
-    def add(self, name: str, attributes: Mapping[str, Value] | None = None, raw: str = "") -> "Element":
+    def add(self, name: str, attributes: Mapping[str, Value] | None = None, raw: str = "") -> "XmlElement":
         """Adds a child with these attributes and returns it."""
-        child = Element(name, attributes or {}, raw=raw)
+        child = XmlElement(name, attributes or {}, raw=raw)
         self.children.append(child)
         return child
 
@@ -71,7 +71,7 @@ class Element:
         return "\n".join(lines) + "\n"
 
 
-def _write(element: Element, indent: str, lines: list[str]) -> None:
+def _write(element: XmlElement, indent: str, lines: list[str]) -> None:
     said = "".join(
         f' {name}="{escaped(value) if isinstance(value, str) else number(value)}"'
         for name, value in element.attributes.items()

@@ -13,7 +13,7 @@ import numpy as np
 from roadgpt.export.ego import calm_speed, start_of
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
 from roadgpt.export.lanelets import LaneletPair, lanelet_pairs
-from roadgpt.export.markup import Element, number
+from roadgpt.export.markup import XmlElement, number
 from roadgpt.export.poses import Poses
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
@@ -36,7 +36,7 @@ class CommonRoad:
         path.write_bytes(document(road, world).to_text().encode())
 
 
-def document(road: Road, world: World) -> Element:
+def document(road: Road, world: World) -> XmlElement:
     """Returns the whole file: lanelets of the right lane from 1, then of the left lane, sign and problem.
 
     Raises:
@@ -45,7 +45,7 @@ def document(road: Road, world: World) -> Element:
     parts = lanelet_pairs(road, world)
     right, left = range(1, len(parts) + 1), range(len(parts) + 1, 2 * len(parts) + 1)
     sign = 2 * len(parts) + 1
-    root = Element(
+    root = XmlElement(
         "commonRoad",
         {
             "timeStepSize": STEP,
@@ -80,9 +80,9 @@ def _backward(part: LaneletPair) -> tuple[Array, Array]:
     return part.middle[::-1], part.left[::-1]
 
 
-def _lanelet(chain: Sequence[int], i: int, bounds: tuple[Array, Array], beside: int, sign: int) -> Element:
+def _lanelet(chain: Sequence[int], i: int, bounds: tuple[Array, Array], beside: int, sign: int) -> XmlElement:
     """Returns the i-th lanelet of a chain. Traffic beside its left bound drives in the opposite direction."""
-    out = Element("lanelet", {"id": chain[i]})
+    out = XmlElement("lanelet", {"id": chain[i]})
     for name, points, mark in zip(("leftBound", "rightBound"), bounds, ("dashed", "solid"), strict=True):
         bound = out.add(name)
         for point in points[:, :2].tolist():
@@ -99,8 +99,8 @@ def _lanelet(chain: Sequence[int], i: int, bounds: tuple[Array, Array], beside: 
     return out
 
 
-def _limit(id_: int, place: Array, world: World) -> Element:
-    out = Element("trafficSign", {"id": id_})
+def _limit(id_: int, place: Array, world: World) -> XmlElement:
+    out = XmlElement("trafficSign", {"id": id_})
     told = out.add("trafficSignElement")
     told.add("trafficSignID", raw=SPEED_LIMIT)
     told.add("additionalValue", raw=number(round(world.speed_limit, 6)))
@@ -109,11 +109,11 @@ def _limit(id_: int, place: Array, world: World) -> Element:
     return out
 
 
-def _problem(id_: int, road: Road, world: World, goal: int) -> Element:
+def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
     """Returns the planning problem: from rest to the last lanelet, within twice the time of a calm drive."""
     start = start_of(road)
     place = np.round(road.at(start, world.profile.middle(start)), 6)
-    out = Element("planningProblem", {"id": id_})
+    out = XmlElement("planningProblem", {"id": id_})
     state = out.add("initialState")
     state.add("position").extended(_point(place[:2].tolist()))
     heading = float(np.round(wrap_angle(road.heading(start)), 9))
@@ -129,8 +129,8 @@ def _problem(id_: int, road: Road, world: World, goal: int) -> Element:
     return out
 
 
-def _point(values: Sequence[float]) -> Element:
-    out = Element("point")
+def _point(values: Sequence[float]) -> XmlElement:
+    out = XmlElement("point")
     for name, value in zip("xy", values, strict=True):
         out.add(name, raw=number(value))
     return out

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from roadgpt.export.georeference import degrees
 from roadgpt.export.lanelets import lanelet_pairs
-from roadgpt.export.markup import Element
+from roadgpt.export.markup import XmlElement
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
@@ -30,7 +30,7 @@ class Lanelet2:
         path.write_bytes(document(road, world).to_text().encode())
 
 
-def document(road: Road, world: World) -> Element:
+def document(road: Road, world: World) -> XmlElement:
     """Returns the whole file. Readers determine which bound of a lanelet runs against the traffic.
 
     Raises:
@@ -44,7 +44,7 @@ def document(road: Road, world: World) -> Element:
         left = map_.way("left", pair.left, "solid")
         map_.lanelet(middle, right, limit)
         map_.lanelet(middle, left, limit)
-    root = Element("osm", {"version": "0.6", "generator": "RoadGPT", "upload": "false"})
+    root = XmlElement("osm", {"version": "0.6", "generator": "RoadGPT", "upload": "false"})
     return root.extended(*map_.nodes, *map_.ways, *map_.lanelets)
 
 
@@ -52,9 +52,9 @@ class _MapBuilder:
     """Collects nodes, ways and lanelets, each with a number of its own."""
 
     def __init__(self) -> None:
-        self.nodes: list[Element] = []
-        self.ways: list[Element] = []
-        self.lanelets: list[Element] = []
+        self.nodes: list[XmlElement] = []
+        self.ways: list[XmlElement] = []
+        self.lanelets: list[XmlElement] = []
         self._numbers = count(1)
         self._ends: dict[str, int] = {}
 
@@ -67,7 +67,7 @@ class _MapBuilder:
         nodes = [*known, *self._add_nodes(points[len(known) :])]
         self._ends[name] = nodes[-1]
         number = next(self._numbers)
-        way = Element("way", {"id": number, **KEEP})
+        way = XmlElement("way", {"id": number, **KEEP})
         for node in nodes:
             way.add("nd", {"ref": node})
         self.ways.append(_tagged(way, {"type": "line_thin", "subtype": kind}))
@@ -81,13 +81,13 @@ class _MapBuilder:
             numbers, longitude.tolist(), latitude.tolist(), points.tolist(), strict=True
         ):
             place = {"lat": f"{lat:.{DEGREE_DECIMALS}f}", "lon": f"{lon:.{DEGREE_DECIMALS}f}"}
-            node = Element("node", {"id": number, **KEEP, **place})
+            node = XmlElement("node", {"id": number, **KEEP, **place})
             self.nodes.append(_tagged(node, {"local_x": repr(x), "local_y": repr(y), "ele": repr(z)}))
         return numbers
 
     def lanelet(self, left: int, right: int, limit: str) -> None:
         """Adds the lane between two ways."""
-        lanelet = Element("relation", {"id": next(self._numbers), **KEEP})
+        lanelet = XmlElement("relation", {"id": next(self._numbers), **KEEP})
         for role, way in (("left", left), ("right", right)):
             lanelet.add("member", {"type": "way", "ref": way, "role": role})
         kind = {"type": "lanelet", "subtype": "road", "location": "nonurban", "region": "de"}
@@ -95,7 +95,7 @@ class _MapBuilder:
         self.lanelets.append(_tagged(lanelet, kind | rules))
 
 
-def _tagged(element: Element, tags: dict[str, str]) -> Element:
+def _tagged(element: XmlElement, tags: dict[str, str]) -> XmlElement:
     for key, value in tags.items():
         element.add("tag", {"k": key, "v": value})
     return element

@@ -11,7 +11,7 @@ from shapely.geometry import LineString
 
 from roadgpt.export.ego import CAR, SpeedProfile, calm_profile, goal_of, on_the_ground, start_of
 from roadgpt.export.exporters.opendrive import ROAD, OpenDrive
-from roadgpt.export.markup import Element, Value
+from roadgpt.export.markup import Value, XmlElement
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
@@ -42,7 +42,7 @@ class OpenScenario:
             path.with_name(f"{stem}.drive{self.suffix}").write_bytes(text.encode())
 
 
-def scenario(road: Road, world: World, map_: str) -> Element:
+def scenario(road: Road, world: World, map_: str) -> XmlElement:
     """Returns the scenario: the car starts at rest, slows down for bends, and drives to the end."""
     profile = calm_profile(road, world, start_of(road))
     # stations are those of the rear axle
@@ -57,7 +57,7 @@ def scenario(road: Road, world: World, map_: str) -> Element:
     for s in (start, road.length):
         points.add("Waypoint", {"routeStrategy": "shortest"}).extended(_in_lane(s))
     _act(story, "drive").extended(_profile(profile))
-    reached = Element("EntityCondition")
+    reached = XmlElement("EntityCondition")
     reached.add(
         "DistanceCondition",
         {
@@ -68,7 +68,7 @@ def scenario(road: Road, world: World, map_: str) -> Element:
             "relativeDistanceType": "longitudinal",
         },
     ).extended(_in_lane(road.length))
-    ego = Element("ByEntityCondition")
+    ego = XmlElement("ByEntityCondition")
     ego.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
     ego.extended(reached)
     most = round(float(profile.time[-1]) + PATIENCE, DECIMALS)
@@ -76,7 +76,7 @@ def scenario(road: Road, world: World, map_: str) -> Element:
     return root
 
 
-def replay(road: Road, world: World, poses: Poses, map_: str) -> Element:
+def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
     """Returns the scenario in which the car repeats its drive, moment by moment."""
     time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
     ground = on_the_ground(poses, CAR.rear_axle)
@@ -105,17 +105,17 @@ def _drives_off(ground: Array) -> int:
     return max(int(np.argmax(away)) - 1, 0)
 
 
-def _trajectory(time: Array, rows: Array) -> Element:
-    out = Element("TrajectoryRef")
+def _trajectory(time: Array, rows: Array) -> XmlElement:
+    out = XmlElement("TrajectoryRef")
     line = out.add("Trajectory", {"name": "drive", "closed": "false"}).add("Shape").add("Polyline")
     for moment, row in zip(time.tolist(), rows, strict=True):
         line.add("Vertex", {"time": moment}).extended(_in_world(row))
     return out
 
 
-def _frame(world: World, map_: str, description: str) -> tuple[Element, Element, Element]:
+def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlElement, XmlElement]:
     """Returns the document, the initial actions of the car, and its story."""
-    root = Element("OpenSCENARIO")
+    root = XmlElement("OpenSCENARIO")
     header: dict[str, Value] = {
         "revMajor": 1,
         "revMinor": 2,
@@ -134,9 +134,9 @@ def _frame(world: World, map_: str, description: str) -> tuple[Element, Element,
     return root, actions.add("Private", {"entityRef": EGO}), board.add("Story", {"name": "drive"})
 
 
-def _vehicle() -> Element:
+def _vehicle() -> XmlElement:
     """Returns our saloon, measured from its rear axle."""
-    out = Element("Vehicle", {"name": "saloon", "vehicleCategory": "car", "mass": CAR.mass})
+    out = XmlElement("Vehicle", {"name": "saloon", "vehicleCategory": "car", "mass": CAR.mass})
     box = out.add("BoundingBox")
     box.add("Center", {"x": round(CAR.middle - CAR.rear_axle, 3), "y": 0, "z": CAR.height / 2})
     box.add("Dimensions", {"width": CAR.width, "length": CAR.length, "height": CAR.height})
@@ -150,7 +150,7 @@ def _vehicle() -> Element:
     return out
 
 
-def _act(story: Element, name: str, begin: float = 0.0) -> Element:
+def _act(story: XmlElement, name: str, begin: float = 0.0) -> XmlElement:
     """Adds an empty private action of the car that begins so many seconds into the simulation."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
@@ -164,29 +164,29 @@ def _act(story: Element, name: str, begin: float = 0.0) -> Element:
     return action
 
 
-def _stop(root: Element, conditions: dict[str, Element]) -> None:
+def _stop(root: XmlElement, conditions: dict[str, XmlElement]) -> None:
     (board,) = (child for child in root.children if child.name == "Storyboard")
     board.extended(_trigger("StopTrigger", conditions))
 
 
-def _trigger(name: str, conditions: dict[str, Element]) -> Element:
+def _trigger(name: str, conditions: dict[str, XmlElement]) -> XmlElement:
     """Returns a trigger for which any of the conditions is enough."""
-    out = Element(name)
+    out = XmlElement(name)
     for said, condition in conditions.items():
         told: dict[str, Value] = {"name": said, "delay": 0, "conditionEdge": "none"}
         out.add("ConditionGroup").add("Condition", told).extended(condition)
     return out
 
 
-def _after(seconds: float) -> Element:
-    out = Element("ByValueCondition")
+def _after(seconds: float) -> XmlElement:
+    out = XmlElement("ByValueCondition")
     out.add("SimulationTimeCondition", {"value": seconds, "rule": "greaterThan"})
     return out
 
 
-def _speed(target: float) -> Element:
+def _speed(target: float) -> XmlElement:
     """Returns the action that sets a speed at once."""
-    out = Element("LongitudinalAction")
+    out = XmlElement("LongitudinalAction")
     action = out.add("SpeedAction")
     shape: dict[str, Value] = {"dynamicsShape": "step", "value": 0, "dynamicsDimension": "time"}
     action.add("SpeedActionDynamics", shape)
@@ -194,11 +194,11 @@ def _speed(target: float) -> Element:
     return out
 
 
-def _profile(profile: SpeedProfile) -> Element:
+def _profile(profile: SpeedProfile) -> XmlElement:
     """Returns speeds over time, with as few entries as keep them within KEPT of the plan."""
     graph = LineString(np.column_stack([profile.time, profile.speed])).simplify(KEPT)
     time, speed = np.array(graph.coords).T
-    out = Element("LongitudinalAction")
+    out = XmlElement("LongitudinalAction")
     action = out.add("SpeedProfileAction", {"followingMode": "position"})
     for duration, value in zip(np.diff(time, prepend=0.0).tolist(), speed.tolist(), strict=True):
         entry: dict[str, Value] = {"speed": round(value, DECIMALS), "time": round(duration, DECIMALS)}
@@ -206,14 +206,14 @@ def _profile(profile: SpeedProfile) -> Element:
     return out
 
 
-def _in_lane(s: float) -> Element:
-    out = Element("Position")
+def _in_lane(s: float) -> XmlElement:
+    out = XmlElement("Position")
     out.add("LanePosition", {"roadId": str(ROAD), "laneId": LANE, "s": s, "offset": 0})
     return out
 
 
-def _in_world(row: Array) -> Element:
+def _in_world(row: Array) -> XmlElement:
     """Returns the position of a row of x, y, z, heading, pitch, roll."""
-    out = Element("Position")
+    out = XmlElement("Position")
     out.add("WorldPosition", dict(zip("xyzhpr", row.tolist(), strict=True)))
     return out

@@ -18,7 +18,7 @@ import numpy as np
 from roadgpt.errors import ExportError
 from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import CAR, PULL, calm_speeds
-from roadgpt.export.markup import Element, Value, number
+from roadgpt.export.markup import Value, XmlElement, number
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
@@ -68,8 +68,8 @@ def netconvert() -> str | None:
     return found
 
 
-def _nodes(shape: Array) -> Element:
-    out = Element("nodes")
+def _nodes(shape: Array) -> XmlElement:
+    out = XmlElement("nodes")
     for name, point in (("start", shape[0]), ("end", shape[-1])):
         out.add("node", {"id": name, **dict(zip("xyz", point.tolist(), strict=True)), "type": "dead_end"})
     return out
@@ -100,11 +100,11 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
     return out
 
 
-def _edges(shape: Array, world: World, limits: Sequence[SpeedZone]) -> Element:
+def _edges(shape: Array, world: World, limits: Sequence[SpeedZone]) -> XmlElement:
     """Returns one edge in each direction along the centre line, split where limits change."""
     along = float(np.hypot(*np.diff(shape[:, :2], axis=0).T).sum())
     back = [SpeedZone(along - end, speed) for end, speed in _ends(limits, along)]
-    out = Element("edges")
+    out = XmlElement("edges")
     lanes: dict[str, Value] = {
         "numLanes": 1,
         "speed": 0,
@@ -129,8 +129,8 @@ def _ends(limits: Sequence[SpeedZone], length: float) -> list[tuple[float, float
     return [(end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
 
 
-def _trip(limits: Sequence[SpeedZone]) -> Element:
-    out = Element("routes")
+def _trip(limits: Sequence[SpeedZone]) -> XmlElement:
+    out = XmlElement("routes")
     car = {"length": CAR.length, "width": CAR.width, "accel": PULL, "decel": PULL}
     out.add("vType", {"id": "saloon", "vClass": "passenger", **car, "sigma": 0, "speedDev": 0})
     ego = out.add(
@@ -140,9 +140,9 @@ def _trip(limits: Sequence[SpeedZone]) -> Element:
     return out
 
 
-def _conversion(stem: str) -> Element:
+def _conversion(stem: str) -> XmlElement:
     """Returns the settings of netconvert: ``netconvert -c NAME.netccfg``."""
-    out = Element("configuration")
+    out = XmlElement("configuration")
     files = out.add("input")
     files.add("node-files", {"value": f"{stem}.nod.xml"})
     files.add("edge-files", {"value": f"{stem}.edg.xml"})
@@ -153,8 +153,8 @@ def _conversion(stem: str) -> Element:
     return out
 
 
-def _settings(stem: str) -> Element:
-    out = Element("configuration")
+def _settings(stem: str) -> XmlElement:
+    out = XmlElement("configuration")
     files = out.add("input")
     files.add("net-file", {"value": f"{stem}.net.xml"})
     files.add("route-files", {"value": f"{stem}.rou.xml"})

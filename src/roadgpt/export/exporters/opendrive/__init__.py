@@ -9,7 +9,7 @@ from roadgpt.export.exporters.opendrive.heights import elevations
 from roadgpt.export.exporters.opendrive.lanes import lanes, speed_kmh
 from roadgpt.export.exporters.opendrive.plan import geometries
 from roadgpt.export.georeference import PROJECTION
-from roadgpt.export.markup import Element
+from roadgpt.export.markup import XmlElement
 from roadgpt.export.poses import Poses
 from roadgpt.road import Road, World
 
@@ -27,13 +27,13 @@ class OpenDrive:
         path.write_bytes(document(road, world).to_text().encode())
 
 
-def document(road: Road, world: World) -> Element:
+def document(road: Road, world: World) -> XmlElement:
     """Returns the whole file.
 
     Raises:
         ExportError: The road has a number that is not finite.
     """
-    root = Element("OpenDRIVE")
+    root = XmlElement("OpenDRIVE")
     root.extended(_header(road, world))
     body = root.add(
         "road", {"name": "road", "length": road.length, "id": str(ROAD), "junction": "-1", "rule": "RHT"}
@@ -45,11 +45,11 @@ def document(road: Road, world: World) -> Element:
     return root
 
 
-def _header(road: Road, world: World) -> Element:
+def _header(road: Road, world: World) -> XmlElement:
     """Returns the header: revision, bounds of lanes and shoulders, and the georeference. It has no date."""
     x, y = road.centreline()[:, :2].T
     reach = world.profile.reach
-    header = Element(
+    header = XmlElement(
         "header",
         {
             "revMajor": 1,

@@ -4,7 +4,7 @@ import numpy as np
 
 from roadgpt.export.exporters.opendrive.plan import breaks_of
 from roadgpt.export.hermite import at, cubics
-from roadgpt.export.markup import Element
+from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import CubicProfile, GradeProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
@@ -13,11 +13,11 @@ TOLERANCE = 1e-4  # m, between heights and their cubics
 SAME = 1e-5  # m
 
 
-def elevations(road: Road) -> list[Element]:
+def elevations(road: Road) -> list[XmlElement]:
     """Returns the ``elevation`` elements of a road in order. The first is at station 0."""
     stations, table = _table(road)
     return [
-        Element("elevation", dict(zip("sabcd", row, strict=True)))
+        XmlElement("elevation", dict(zip("sabcd", row, strict=True)))
         for row in np.column_stack([stations, table]).tolist()
     ]
 

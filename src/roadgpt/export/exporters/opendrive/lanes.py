@@ -5,7 +5,7 @@ id      2      |    1    |    -1    |   -2
                          0
 """
 
-from roadgpt.export.markup import Element
+from roadgpt.export.markup import XmlElement
 from roadgpt.road import World
 from roadgpt.road.world import LINE
 
@@ -13,25 +13,25 @@ DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
 
-def lanes(world: World) -> Element:
+def lanes(world: World) -> XmlElement:
     """Returns the element ``lanes``."""
-    section = Element("laneSection", {"s": 0})
+    section = XmlElement("laneSection", {"s": 0})
     section.add("left").extended(*_shoulder(2, world), _driving(1, world))
     section.add("center").extended(_middle())
     section.add("right").extended(_driving(-1, world), *_shoulder(-2, world))
-    return Element("lanes").extended(section)
+    return XmlElement("lanes").extended(section)
 
 
-def _lane(number: int, kind: str) -> Element:
-    return Element("lane", {"id": number, "type": kind, "level": "false"})
+def _lane(number: int, kind: str) -> XmlElement:
+    return XmlElement("lane", {"id": number, "type": kind, "level": "false"})
 
 
-def _width(metres: float) -> Element:
-    return Element("width", {"sOffset": 0, "a": metres, "b": 0, "c": 0, "d": 0})
+def _width(metres: float) -> XmlElement:
+    return XmlElement("width", {"sOffset": 0, "a": metres, "b": 0, "c": 0, "d": 0})
 
 
-def _mark(kind: str, change: str) -> Element:
-    mark = Element(
+def _mark(kind: str, change: str) -> XmlElement:
+    mark = XmlElement(
         "roadMark",
         {
             "sOffset": 0,
@@ -49,18 +49,18 @@ def _mark(kind: str, change: str) -> Element:
     return mark
 
 
-def _middle() -> Element:
+def _middle() -> XmlElement:
     return _lane(0, "none").extended(_mark("broken", "both"))
 
 
-def _driving(number: int, world: World) -> Element:
+def _driving(number: int, world: World) -> XmlElement:
     lane = _lane(number, "driving").extended(_width(world.profile.lane_width), _mark("solid", "none"))
     lane.add("material", {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0})
     lane.add("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"})
     return lane
 
 
-def _shoulder(number: int, world: World) -> list[Element]:
+def _shoulder(number: int, world: World) -> list[XmlElement]:
     """Returns the shoulder, firm ground at the height of the road; nothing where it has no width."""
     width = world.profile.shoulder_width
     return [_lane(number, "shoulder").extended(_width(width))] if width >= NO_SHOULDER else []

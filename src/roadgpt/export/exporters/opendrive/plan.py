@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from roadgpt.export.hermite import cubics
-from roadgpt.export.markup import Element
+from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import Piece, PieceCurve, PlanCurve, SplineCurve
 from roadgpt.geometry.curve import Array
 
@@ -17,14 +17,14 @@ STEP = 2.0  # m between the stations at which a curve of an unknown class is cut
 SHORTEST = 1e-6  # m; a shorter piece is left out, and the next one starts in its place
 
 
-def geometries(plan: PlanCurve) -> Iterator[Element]:
+def geometries(plan: PlanCurve) -> Iterator[XmlElement]:
     """Yields the ``geometry`` elements of a plan in order."""
     if isinstance(plan, PieceCurve):
         return _pieces(plan)
     return _cubics(plan)
 
 
-def _pieces(plan: PieceCurve) -> Iterator[Element]:
+def _pieces(plan: PieceCurve) -> Iterator[XmlElement]:
     pieces = [part for piece in plan.pieces for part in _tellable(piece)]
     starts = np.r_[0.0, np.cumsum([piece.length for piece in pieces])][:-1]
     points, headings = plan.at(starts).tolist(), plan.heading(starts).tolist()
@@ -51,20 +51,20 @@ def _tellable(piece: Piece) -> list[Piece]:
     return [Piece(piece.length / parts, k, k) for k in curvatures.tolist()]
 
 
-def _geometry(s: float, x: float, y: float, heading: float, length: float) -> Element:
-    return Element("geometry", {"s": s, "x": x, "y": y, "hdg": heading, "length": length})
+def _geometry(s: float, x: float, y: float, heading: float, length: float) -> XmlElement:
+    return XmlElement("geometry", {"s": s, "x": x, "y": y, "hdg": heading, "length": length})
 
 
-def _shape(piece: Piece) -> Element:
+def _shape(piece: Piece) -> XmlElement:
     """Returns a line, arc or spiral. Readers divide by the curvature, so it is never almost zero."""
     bend = piece.length**2 / 6
     if abs(piece.k1 - piece.k0) * bend > STRAIGHT:
-        return Element("spiral", {"curvStart": piece.k0, "curvEnd": piece.k1})
+        return XmlElement("spiral", {"curvStart": piece.k0, "curvEnd": piece.k1})
     middle = (piece.k0 + piece.k1) / 2
-    return Element("arc", {"curvature": middle}) if abs(middle) * bend > STRAIGHT else Element("line")
+    return XmlElement("arc", {"curvature": middle}) if abs(middle) * bend > STRAIGHT else XmlElement("line")
 
 
-def _cubics(plan: PlanCurve) -> Iterator[Element]:
+def _cubics(plan: PlanCurve) -> Iterator[XmlElement]:
     """Yields cubics by arc length, each in the frame of its start: u points ahead, v to the left.
 
     They start and end with speed 1, and are so short that the parameter equals the arc length to a
@@ -78,7 +78,7 @@ def _cubics(plan: PlanCurve) -> Iterator[Element]:
     stations, found = cubics(plan.at, ways, breaks_of(plan), TOLERANCE)
     headings = plan.heading(stations).tolist()
     ends = stations[1:].tolist()
-    last: Element | None = None  # a line that may still be extended
+    last: XmlElement | None = None  # a line that may still be extended
     for s, end, heading, cubic in zip(stations.tolist(), ends, headings, found, strict=False):
         (x, y), ahead, c, d = cubic
         length = end - s
@@ -93,17 +93,17 @@ def _cubics(plan: PlanCurve) -> Iterator[Element]:
             last = None
         made = _geometry(s, float(x), float(y), heading, length)
         if is_line:
-            last = made.extended(Element("line"))
+            last = made.extended(XmlElement("line"))
         else:
             yield made.extended(_cubic(cu, cv, du, dv))
     if last is not None:
         yield last
 
 
-def _cubic(cu: float, cv: float, du: float, dv: float) -> Element:
+def _cubic(cu: float, cv: float, du: float, dv: float) -> XmlElement:
     along = {"aU": 0, "bU": 1, "cU": cu, "dU": du}
     across = {"aV": 0, "bV": 0, "cV": cv, "dV": dv}
-    return Element("paramPoly3", {**along, **across, "pRange": "arcLength"})
+    return XmlElement("paramPoly3", {**along, **across, "pRange": "arcLength"})
 
 
 def breaks_of(plan: PlanCurve) -> Array:
