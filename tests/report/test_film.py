@@ -23,7 +23,7 @@ from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
 from roadgpt.report.film import HOLD, SEAM, Film, Settings, encoding, film_of, split_film
 from roadgpt.report.film.glyphs import width_of, write
 from roadgpt.report.film.trip import TURN_LAG, Trip
-from roadgpt.report.lettering import inches
+from roadgpt.report.text_width import inches
 from roadgpt.road import Design, Segment
 from roadgpt.run import Run, Setup, prove, write_run
 

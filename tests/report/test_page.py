@@ -308,7 +308,7 @@ def test_a_map_that_shows_nothing_is_none(filled: list[float], is_one: bool) -> 
 def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None:
     """A car on a straight to the east: its way is drawn upwards, in the right lane, 240 px for 52 m."""
     from roadgpt.drive import COLUMNS, Box, Columns, Drive
-    from roadgpt.report.page.spot import spot, spot_of
+    from roadgpt.report.page.failure_site import draw_site, site_of
     from roadgpt.road import Design, Segment, World, build
 
     straight = Segment(distance=120.0, direction="straight")
@@ -316,8 +316,8 @@ def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None
     s = np.linspace(2.0, 70.0, 500)
     columns = {name: np.zeros(len(s)) for name in COLUMNS} | {"s": s, "x": 20 + s, "y": np.full(len(s), 98.0)}
     drive = Drive("nobody", "nothing", 0, Columns(columns), "out_of_lane", Box(4.0, 2.0))
-    found = spot_of(road, World(), drive, 70.0)
-    picture = ET.fromstring(spot(found, "a place"))
+    found = site_of(road, World(), drive, 70.0)
+    picture = ET.fromstring(draw_site(found, "a place"))
     (way,) = [e for e in picture.iter("{http://www.w3.org/2000/svg}polyline") if "s0" in e.get("stroke", "")]
     points = np.array([pair.split(",") for pair in (way.get("points") or "").split()], float)
     middle = 240 / 2

@@ -18,7 +18,7 @@ from matplotlib.text import Annotation, Text
 from roadgpt.check import Finding
 from roadgpt.report import birds_eye, draw, drawing, height_profile, strip
 from roadgpt.report.canvas import Header
-from roadgpt.report.lettering import fitted, inches
+from roadgpt.report.text_width import fitted, inches
 from roadgpt.road import Design, Road, Segment, World
 from roadgpt.run import Run, Setup, prove
 

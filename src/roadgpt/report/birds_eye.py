@@ -16,8 +16,8 @@ from roadgpt.report.border import name_border
 from roadgpt.report.canvas import HALO, INK, SOFT, Header, add_axes, new_figure
 from roadgpt.report.labels import Labels
 from roadgpt.report.places import MarkedPlace, places_of
+from roadgpt.report.plan_view import GROUND, Array, Frame, draw_ends, draw_road, stations_of
 from roadgpt.report.rim import OUTSIDE, draw_key, draw_rim, severities
-from roadgpt.report.scenery import GROUND, Array, Frame, draw_ends, draw_road, stations_of
 from roadgpt.run import Run
 
 Scale = Literal["equal", "thesis"]

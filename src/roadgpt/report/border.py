@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 
 from roadgpt.report.canvas import SOFT
 from roadgpt.report.labels import Box
-from roadgpt.report.lettering import inches
-from roadgpt.report.scenery import Array, Frame
+from roadgpt.report.plan_view import Array, Frame
+from roadgpt.report.text_width import inches
 
 BORDER = "border of the map"
 SIZE, HIGH, GAP = 8.5, 0.16, 0.05  # points; inches: of the letters, and from the border

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from roadgpt.errors import UsageError
-from roadgpt.report.lettering import fitted, inches
+from roadgpt.report.text_width import fitted, inches
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 from roadgpt.verdict import Severity, graded

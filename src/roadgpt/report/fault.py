@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from roadgpt.campaign.faults import FailureReason
 from roadgpt.report.birds_eye import birds_eye
 from roadgpt.report.canvas import in_our_style, save
-from roadgpt.report.scenery import Frame
+from roadgpt.report.plan_view import Frame
 from roadgpt.run import Run
 
 BEFORE, AFTER = 50.0, 20.0  # m of road that are shown

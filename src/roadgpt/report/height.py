@@ -18,7 +18,7 @@ from roadgpt.report.canvas import (
     new_figure,
 )  # fmt: skip
 from roadgpt.report.places import name_places, places_of
-from roadgpt.report.scenery import Array, stations_of
+from roadgpt.report.plan_view import Array, stations_of
 from roadgpt.run import Run
 
 WIDTH = 9.6  # inches

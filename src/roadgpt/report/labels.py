@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from roadgpt.report.canvas import HALO, INK
-from roadgpt.report.lettering import inches
-from roadgpt.report.scenery import Frame
+from roadgpt.report.plan_view import Frame
+from roadgpt.report.text_width import inches
 
 Array = NDArray[np.float64]
 

@@ -28,8 +28,8 @@ from roadgpt.report.canvas import (
     new_figure,
     save_all,
 )
-from roadgpt.report.lettering import fitted, inches
-from roadgpt.report.scenery import GROUND, Array
+from roadgpt.report.plan_view import GROUND, Array
+from roadgpt.report.text_width import fitted, inches
 from roadgpt.road import World
 from roadgpt.run.execution import FIELDS
 from roadgpt.run.folder import run_of_test

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from roadgpt.check import Finding
 from roadgpt.drive import Drive
 from roadgpt.report.canvas import DARKER, HALO, SEVERE, VERMILLION
-from roadgpt.report.lettering import fitted, plain
+from roadgpt.report.text_width import fitted, plain
 from roadgpt.run import Run
 from roadgpt.verdict import Verdict, percent
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from roadgpt.errors import UsageError
 from roadgpt.report.birds_eye import driven_path, mark
 from roadgpt.report.places import places_of
-from roadgpt.report.scenery import draw_ends, draw_road, stations_of
+from roadgpt.report.plan_view import draw_ends, draw_road, stations_of
 from roadgpt.road import Design, Road, World, build
 from roadgpt.run import Run
 

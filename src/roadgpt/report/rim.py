@@ -7,8 +7,8 @@ from matplotlib.lines import Line2D
 
 from roadgpt.drive import Drive
 from roadgpt.report.canvas import SEVERE, SOFT
-from roadgpt.report.lettering import inches
-from roadgpt.report.scenery import Array
+from roadgpt.report.plan_view import Array
+from roadgpt.report.text_width import inches
 from roadgpt.verdict import SEVERITIES, Severity, severity
 
 WIDTH = 8.0  # points

@@ -16,9 +16,9 @@ from roadgpt.report.canvas import (
     add_axes,
     new_figure,
 )  # fmt: skip
-from roadgpt.report.lettering import POINTS
 from roadgpt.report.places import name_places, places_of
-from roadgpt.report.scenery import Array, stations_of
+from roadgpt.report.plan_view import Array, stations_of
+from roadgpt.report.text_width import POINTS
 from roadgpt.run import Run
 
 WIDTH = 9.6  # inches

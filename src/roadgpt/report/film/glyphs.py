@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.font_manager import FontProperties, findfont, get_font
 from numpy.typing import NDArray
 
-from roadgpt.report.lettering import POINTS
+from roadgpt.report.text_width import POINTS
 
 Frame = NDArray[np.uint8]
 Weight = Literal["normal", "bold"]

@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgb
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, outcome_of
 from roadgpt.report.film.glyphs import Frame, fill, shade, width_of, write
 from roadgpt.report.film.trip import Readout
-from roadgpt.report.lettering import POINTS, fitted
+from roadgpt.report.text_width import POINTS, fitted
 from roadgpt.run import Run
 from roadgpt.verdict import percent, severity
 

@@ -9,7 +9,7 @@ A Page is a value: a summary of a few lines, sections of text, tables and figure
 
 Figures are SVG in the colours of the page. matplotlib draws ``forest`` (shares with intervals), ``heat`` (a
 matrix, or a map of cells), ``lines`` and ``bars``; ``gallery`` (small maps of roads, each a link) and
-``spot`` (the place of a failure) write SVG themselves.
+``draw_site`` (the place of a failure) write SVG themselves.
 """
 
 from roadgpt.report.page.html import html_of

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from roadgpt.report.canvas import UNDATED
-from roadgpt.report.lettering import POINTS, inches
+from roadgpt.report.text_width import POINTS, inches
 
 CSS = Path(__file__).parent / "style.css"
 SERIES = 6  # colours of the page that tell series apart

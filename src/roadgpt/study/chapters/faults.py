@@ -32,7 +32,7 @@ from roadgpt.report.page import (
     cell,
     linked,
 )
-from roadgpt.report.page.spot import spot, spot_of
+from roadgpt.report.page.failure_site import draw_site, site_of
 from roadgpt.run import Run
 from roadgpt.study.chapters.wording import percent, plural
 
@@ -133,7 +133,7 @@ def _card(folder: Path, told: FaultSummary, found: Faults) -> FigureCard:
     lines.append([ShellCommand(shlex.join(["roadgpt", "view", f"{folder}/{told.name}"]))])
     assert told.run.road is not None
     station = told.why.station if told.why else told.fault.typical[0].station
-    picture = spot(spot_of(told.run.road, told.run.world, told.run.drive, station), reason)
+    picture = draw_site(site_of(told.run.road, told.run.world, told.run.drive, station), reason)
     return FigureCard(title, picture, lines)
 
 

@@ -25,7 +25,7 @@ from roadgpt.report.canvas import (
     new_figure,
     save_all,
 )
-from roadgpt.report.lettering import fitted
+from roadgpt.report.text_width import fitted
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey.tally import RatingTally, Unit
 

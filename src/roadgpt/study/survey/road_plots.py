@@ -16,7 +16,7 @@ from roadgpt.report.birds_eye import THESIS
 from roadgpt.report.canvas import FAINT, INK, SOFT, add_axes, in_our_style, new_figure, save
 from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
 from roadgpt.report.labels import Labels
-from roadgpt.report.scenery import GROUND, Array, Frame, draw_ends, draw_road, stations_of
+from roadgpt.report.plan_view import GROUND, Array, Frame, draw_ends, draw_road, stations_of
 from roadgpt.road import Road, World
 
 SIDE = 4.2  # inches of both plots, so that they can be read on a phone

@@ -19,7 +19,7 @@ SCALE = 10.0  # m, of the bar
 
 
 @dataclass(frozen=True, eq=False)
-class Spot:
+class FailureSite:
     """The lines of the picture, points ``(n, 2)`` in metres."""
 
     left: Array
@@ -36,7 +36,7 @@ class Spot:
     """Heading of the road before the failure, radians; up in the picture."""
 
 
-def spot_of(road: Road, world: World, drive: Drive | None, station: float) -> Spot:
+def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:
     """Returns the place of a failure ``station`` metres along a road."""
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
     w = world.lane_width
@@ -48,7 +48,7 @@ def spot_of(road: Road, world: World, drive: Drive | None, station: float) -> Sp
         path = np.stack([drive["x"], drive["y"]], axis=1)[[*near, last]]
         car = drive.corners(last)
     heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
-    return Spot(left, middle, right, path, car, road.at(station, -w / 2)[:2], heading)
+    return FailureSite(left, middle, right, path, car, road.at(station, -w / 2)[:2], heading)
 
 
 def _step(drive: Drive, station: float) -> int:
@@ -57,7 +57,7 @@ def _step(drive: Drive, station: float) -> int:
     return int(reached[0]) if len(reached) else len(drive) - 1
 
 
-def spot(of: Spot, label: str) -> str:
+def draw_site(of: FailureSite, label: str) -> str:
     """Returns the picture as SVG; the road leads upwards to the failure."""
     turned = np.pi / 2 - of.heading
     turn = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])

@@ -8,7 +8,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from roadgpt.report.lettering import POINTS
+from roadgpt.report.text_width import POINTS
 from roadgpt.road import Road, World
 
 Array = NDArray[np.float64]
