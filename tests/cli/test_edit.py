@@ -78,6 +78,17 @@ def test_pictures_show_the_road_before_and_after() -> None:
     assert not [*Path("plain").rglob("*.png")]
 
 
+def test_pictures_of_a_changed_road_are_headed_by_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
+    titles: list[str] = []
+    monkeypatch.setattr("roadgpt.report.Drawing.of_run", lambda self, run, folder: titles.append(run.title))
+    assert invoke("edit", str(made()), WORDS, "--out", "new").exit_code == 0
+    assert titles == [WORDS, f"before: {WORDS}"]
+    assert invoke("view", "new/runs/0001", "--out", "v.html", "-q").exit_code == 0
+    assert f"<title>{WORDS} - RoadGPT</title>" in Path("v.html").read_text(encoding="utf-8")
+    Path("new/runs/0001/edit.json").write_text('{"request": 7}')
+    assert read_run("new/runs/0001").title == "a road without a description"
+
+
 def test_a_design_from_a_file_is_changed_and_driven() -> None:
     result = invoke("edit", "design.json", "make the first turn a right turn", "--json", "--no-plot")
     assert result.exit_code == 0

@@ -13,11 +13,11 @@ from pathlib import Path
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, World, read_blueprint
 from roadgpt.run.atomic import json_text, to_bytes
-from roadgpt.run.folder import Draw, is_run, only_run, read_run, write_run
+from roadgpt.run.folder import EDIT_CARD, Draw, is_run, only_run, read_run, write_run
 from roadgpt.run.folder_names import new_folder
 from roadgpt.run.model import Run, Setup
 
-BEFORE, CARD = "before", "edit.json"
+BEFORE = "before"
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class _Beside:
 
     def of_run(self, run: Run, folder: Path) -> None:
         """Writes them into the new run's folder."""
-        (folder / CARD).write_bytes(self.card)
+        (folder / EDIT_CARD).write_bytes(self.card)
         if self.draw is not None:
             self.draw.of_run(run, folder)
             (folder / BEFORE).mkdir()
@@ -126,8 +126,9 @@ def write_edit(
         "changes": list(changes),
         "design_before": before.design and before.design.to_json(),
     }
-    beside = _Beside(to_bytes(json_text(card)), before, draw)
-    return write_run(replace(run, index=1), folder, beside)
+    was = replace(before, source=f"before: {words}")
+    beside = _Beside(to_bytes(json_text(card)), was, draw)
+    return write_run(replace(run, index=1, source=words), folder, beside)
 
 
 __all__ = ["Original", "folder_for", "original", "original_of", "reject_used", "write_edit"]

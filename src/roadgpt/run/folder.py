@@ -31,6 +31,7 @@ from roadgpt.run.model import Outcome, Request, Run, Seconds
 from roadgpt.run.sbft_json import test_name, test_text
 from roadgpt.verdict import Verdict, most_beyond
 
+EDIT_CARD = "edit.json"
 FORMAT = 1
 RUNS = "runs"
 
@@ -196,10 +197,17 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
         designing=DesignReport.model_validate(card["designing"]) if "designing" in card else None,
         spent=Spent.model_validate(card["spent"]) if "spent" in card else None,
         versions=told.versions,
+        source=_change(value(EDIT_CARD)),
         trace=read_text(trace, LARGEST, "a file of a run") if trace.is_file() else "",
         seconds=strictly(Seconds, value("seconds.json") or {}),
     )
     return _completed(found)
+
+
+def _change(card: Any) -> str:
+    """Returns the words by which a road was changed; empty for any other road."""
+    words = card.get("request") if isinstance(card, dict) else None
+    return words if isinstance(words, str) else ""
 
 
 def _completed(run: Run) -> Run:

@@ -106,7 +106,7 @@ class Run:
     """Tokens, seconds and money of all questions for this road; None where none was asked."""
     versions: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
-    """Name of the file that the road was read from, to be shown; not written to the disk."""
+    """Name of the file that the road was read from, or the words by which it was changed; for headings."""
     trace: str = ""
     """The traceback of a simulator or a driver that failed."""
     is_lost: bool = False
@@ -124,7 +124,7 @@ class Run:
 
     @property
     def title(self) -> str:
-        """The description, or where there is none the name of the road's file; never empty."""
+        """The description, or else the road's source; never empty."""
         return self.words or self.source or "a road without a description"
 
     @property
