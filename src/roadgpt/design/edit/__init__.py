@@ -109,7 +109,7 @@ def _agreed(rows: Sequence[tuple[Change, Sequence[EditCandidate]]]) -> list[Sequ
     def own(step: EditStep, what: What) -> EditStep:
         if not isinstance(step, Adjust) or step.element.name not in both or what not in said:
             return step
-        return step.without("radius" if what == "angle" else "degrees")
+        return replace(step, radius=None) if what == "angle" else replace(step, degrees=None)
 
     return [[tuple(own(step, change.what) for step in way) for way in ways] for change, ways in rows]
 

@@ -14,7 +14,7 @@ from roadgpt.design.edit.bounding import is_beyond, within
 from roadgpt.design.edit.length_candidates import road_length_candidates
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.slope_candidates import road_slope_candidates, slope_candidates
-from roadgpt.design.edit.steps import Become, EditStep, Flip, bend, straight, stretch
+from roadgpt.design.edit.steps import Adjust, Become, EditStep, Flip, straight
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, is_turn
 from roadgpt.errors import EditError
@@ -135,10 +135,10 @@ def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]
         is_other = abs(degrees - seen.degrees) > 2.5 or abs(radius / seen.radius - 1) > 0.045
         if not is_other and not is_said:
             continue
-        slack = (1.0, 0.25 if free else 0.05, 0.1) if is_said else (3.0, 0.12, 0.1)
+        slack = (1.0, 0.25 if free else 0.05) if is_said else (3.0, 0.12)
         if change.what == "radius" and is_said:
-            slack = (4.0, 0.05, 0.1)
-        out.append(bend(element, degrees, radius, slack=slack))
+            slack = (4.0, 0.05)
+        out.append(Adjust(element, degrees, radius, slack=slack))
     if not out and pairs:
         where = f"the turn of {seen.degrees:.0f} degrees with a radius of {seen.radius:.0f} m"
         raise EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
@@ -258,11 +258,11 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[EditSte
             radius = seen.radius * length / before
             if radius < tight:  # then it also turns less far
                 degrees = seen.degrees * max(length / before / (tight / seen.radius), 0.3)
-                out.append(
-                    bend(element, degrees, max(tight, min(seen.radius, radius)), slack=(4.0, 0.12, 0.1))
-                )
+                out.append(Adjust(element, degrees, max(tight, min(seen.radius, radius)), slack=(4.0, 0.12)))
             else:
-                out.append(bend(element, seen.degrees, None, length, slack=(2.0, 0.1, 0.06)))
+                out.append(
+                    Adjust(element, seen.degrees, None, length, slack=(2.0, 0.1), length_slack=0.06 * length)
+                )
         return out
     if change.to is None and change.by is None and change.times is None:
         lengths = [max(length, min(SEEN + 1, before)) for length in lengths]
@@ -270,7 +270,10 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[EditSte
         raise EditError(
             f"a straight of {max(lengths[0], 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
         )
-    return [stretch(element, max(length, SEEN), max(slack, 0.02 * length)) for length in lengths]
+    return [
+        Adjust(element, length=max(length, SEEN), length_slack=max(slack, 0.02 * length))
+        for length in lengths
+    ]
 
 
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
@@ -285,7 +288,7 @@ def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandida
             assert seen is not None
             degrees, radius = seen.degrees * more, seen.radius * wider
             if is_turn(degrees - 3) and degrees <= MOST_ANGLE and radius >= min(least, seen.radius):
-                bends.append(bend(element, degrees, radius, slack=(3.0, 0.12, 0.1)))
+                bends.append(Adjust(element, degrees, radius, slack=(3.0, 0.12)))
         if len(bends) == len(elements):
             out.append((*flips, *bends))
     return tuple(out)

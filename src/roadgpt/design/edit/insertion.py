@@ -9,7 +9,7 @@ from roadgpt.design.edit.candidates import EditCandidate
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.spacing import SEPARATE, gap
-from roadgpt.design.edit.steps import EditStep, Goal, Insert, stretch, turn_segments
+from roadgpt.design.edit.steps import Adjust, EditStep, Goal, Insert, turn_segments
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
@@ -268,7 +268,7 @@ def _straight_ways(
         incline = {"up": 5.0, "down": -5.0, "flat": 0.0}[change.way]
     beside = elements[at] if before and elements[at].kind == "gap" else elements[at - 1]
     if change.is_whole and change.length is not None and beside.kind == "gap" and beside.seen is not None:
-        return ((stretch(beside, change.length),),)
+        return ((Adjust(beside, length=change.length),),)
     stands_alone = beside.kind == "gap" and beside.seen is None
     name = f"new {number} straight"
     out = []

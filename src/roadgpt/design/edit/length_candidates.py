@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import EditStep, bend, stretch
+from roadgpt.design.edit.steps import Adjust, EditStep
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
@@ -40,7 +40,9 @@ def road_length_candidates(
     for length in lengths:
         slack = max(2.0, SLACK * length)
         out += [
-            (*way, stretch(WHOLE_ROAD, length, slack)) for way in _ways(elements, length - own, world) if way
+            (*way, Adjust(WHOLE_ROAD, length=length, length_slack=slack))
+            for way in _ways(elements, length - own, world)
+            if way
         ]
     return tuple(out)
 
@@ -62,14 +64,14 @@ def _straights(gaps: Sequence[RoadElement], more: float) -> tuple[EditStep, ...]
     lengths = [gap.seen.length if gap.seen else gap.length for gap in gaps]
     if more >= 0:
         return tuple(
-            stretch(gap, length + more * length / sum(lengths), 3.0)
+            Adjust(gap, length=length + more * length / sum(lengths), length_slack=3.0)
             for gap, length in zip(gaps, lengths, strict=True)
         )
     spare = [max(length - KEPT, 0.0) for length in lengths]
     if sum(spare) < -more:
         return ()
     return tuple(
-        stretch(gap, length + more * own / sum(spare), 3.0)
+        Adjust(gap, length=length + more * own / sum(spare), length_slack=3.0)
         for gap, length, own in zip(gaps, lengths, spare, strict=True)
         if own
     )
@@ -87,7 +89,7 @@ def _everything(elements: Sequence[RoadElement], more: float, world: World) -> t
         wider = max(share, least / turn.seen.radius) if share < 1 else share
         if abs(wider - 1) < 0.02 or (share < 1) != (wider < 1):
             continue
-        out.append(bend(turn, None, turn.seen.radius * wider, slack=(2.0, 0.15, 0.1)))
+        out.append(Adjust(turn, None, turn.seen.radius * wider, slack=(2.0, 0.15)))
         more -= turn.length * (wider - 1)
     if gaps and abs(more) > 1:
         rest = _straights(gaps, more)
@@ -95,7 +97,7 @@ def _everything(elements: Sequence[RoadElement], more: float, world: World) -> t
             spare = sum(gap.seen.length - 12.0 for gap in gaps if gap.seen and gap.seen.length > 12)
             share = max(1 + more / max(spare, 1.0), 0.0)
             rest = tuple(
-                stretch(gap, 12.0 + (gap.seen.length - 12.0) * share, 3.0)
+                Adjust(gap, length=12.0 + (gap.seen.length - 12.0) * share, length_slack=3.0)
                 for gap in gaps
                 if gap.seen and gap.seen.length > 12
             )

@@ -5,7 +5,7 @@ from math import sqrt
 
 from roadgpt.design.edit.candidates import EditCandidate
 from roadgpt.design.edit.spacing import HIDDEN, SEPARATE
-from roadgpt.design.edit.steps import Become, EditStep, straight, stretch
+from roadgpt.design.edit.steps import Adjust, Become, EditStep, straight
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import Segment
@@ -33,7 +33,7 @@ def _without(element: RoadElement, elements: RoadElements, filler: float) -> Edi
             b.side for b in (*elements[max(at - 1, 0) : at], *elements[at + 1 : at + 2]) if b.kind == "turn"
         ]
         if len(sides) == 2 and sides[0] == sides[1]:
-            return stretch(element, HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), 0.6)
+            return Adjust(element, length=HIDDEN - 0.2 * min(filler / SEPARATE, 1.0), length_slack=0.6)
         return Become(element, bends)
     length = {0.0: 0.0, 1.0: _chord(element)}.get(filler, filler)
     kept: tuple[Segment, ...] = (straight(length, element.incline),) if length else ()

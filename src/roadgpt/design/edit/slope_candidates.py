@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.sloping import SlopeOfAll
-from roadgpt.design.edit.steps import EditStep, slope
+from roadgpt.design.edit.steps import Adjust, EditStep
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
 from roadgpt.road import World
@@ -29,28 +29,27 @@ def slope_candidates(change: Change, element: RoadElement, found: Measures, worl
         raise EditError(f"{change.to:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
     if change.to is not None and change.way != "flat":
         aim = sign * change.to
-        return [slope(element, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+        return [Adjust(element, grade=(aim, aim - slack, aim + slack)) for slack in (0.5, 0.9)]
     if change.by is not None:
         aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
         if abs(aim) > limit:
             raise EditError(
                 f"{abs(aim):.1f} % is steeper than the {limit:g} % that the rules allow; ask for less"
             )
-        return [slope(element, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+        return [Adjust(element, grade=(aim, aim - slack, aim + slack)) for slack in (0.5, 0.9)]
     if change.times is not None:
         aim = now * change.times
-        return [slope(element, aim, aim - slack, aim + slack) for slack in (0.5, 0.9)]
+        return [Adjust(element, grade=(aim, aim - slack, aim + slack)) for slack in (0.5, 0.9)]
     if change.way == "flat":
         if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in element.segments):
             return []
-        return [slope(element, 0.0, -slack, slack) for slack in (0.5, CLEARLY_LEVEL)]
+        return [Adjust(element, grade=(0.0, -slack, slack)) for slack in (0.5, CLEARLY_LEVEL)]
     if change.way and not change.more:
         if way(now) == change.way:
             return []
-        aims = [tuple(sorted((sign * low, sign * high))) + (sign * aim,) for aim, low, high in UPHILL]
-        return [slope(element, aim, low, high) for low, high, aim in aims]
+        return [Adjust(element, grade=(sign * a, sign * low, sign * high)) for a, low, high in UPHILL]
     if change.more > 0 and change.way and way(now) != change.way:
-        return [slope(element, sign * 6.0, *sorted((sign * 3.0, sign * 12.0)))]
+        return [Adjust(element, grade=(sign * 6.0, sign * 3.0, sign * 12.0))]
     return _steeper(change, element, now, sign, limit)
 
 
@@ -59,7 +58,7 @@ def _steeper(change: Change, element: RoadElement, now: float, sign: int, limit:
         if abs(now) < LEVEL:
             return []
         return [
-            slope(element, now * share, *sorted((now * (share - 0.3), now * min(share + 0.15, 0.9))))
+            Adjust(element, grade=(now * share, now * (share - 0.3), now * min(share + 0.15, 0.9)))
             for share in FLATTER
         ]
     out: list[EditStep] = []
@@ -68,7 +67,7 @@ def _steeper(change: Change, element: RoadElement, now: float, sign: int, limit:
         aim = min(aim if abs(now) >= LEVEL else STEEP_FROM * times / 1.5, limit - 0.3)
         if aim > abs(now) + 0.4:
             low, high = min(abs(now) + 0.4, aim - 0.2), min(aim + 1.5, limit)
-            out.append(slope(element, sign * aim, *sorted((sign * low, sign * high))))
+            out.append(Adjust(element, grade=(sign * aim, sign * low, sign * high)))
     if not out:
         raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
     return out

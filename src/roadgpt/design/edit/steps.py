@@ -5,7 +5,7 @@ itself and are corrected by what the finished road shows, as a short turn betwee
 long clothoids, measures otherwise than it is written.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, radians
 from typing import Literal, Protocol
@@ -58,30 +58,48 @@ def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], R
 
 @dataclass(frozen=True, slots=True)
 class Adjust:
-    """Gives one element other measures; those that are not wanted stay as they are."""
+    """Gives one element other measures; what is None stays as it is."""
 
     element: RoadElement
-    wanted: tuple[Goal, ...]
+    degrees: float | None = None
+    radius: float | None = None
+    length: float | None = None
+    grade: tuple[float, float, float] | None = None
+    """Percent: the value to aim at, and the two ends of what is good enough."""
+    slack: tuple[float, float] = (1.0, 0.05)
+    """Degrees, and share of the radius, by which it may miss."""
+    length_slack: float = 1.0
+    """Metres of length by which it may miss."""
 
     @property
     def goals(self) -> tuple[Goal, ...]:
         """The wanted measures that can be seen on the finished road."""
-        return tuple(goal for goal in self.wanted if self._is_seen(goal))
-
-    def _is_seen(self, goal: Goal) -> bool:
-        if goal.quantity == "grade":
-            return self.element.seen is not None
         is_hidden = self.element.seen is None and bool(self.element.segments)
-        return self.element.is_turn or (goal.aim >= LEAST_STRAIGHT and not is_hidden)
+        return tuple(
+            goal
+            for goal in self._wanted()
+            if (self.element.seen is not None if goal.quantity == "grade" else not is_hidden)
+            and (goal.quantity != "length" or self.element.is_turn or goal.aim >= LEAST_STRAIGHT)
+        )
 
-    def without(self, quantity: Quantity) -> "Adjust":
-        """Returns the same with this quantity left as it is."""
-        return replace(self, wanted=tuple(goal for goal in self.wanted if goal.quantity != quantity))
+    def _wanted(self) -> Iterator[Goal]:
+        name, (off, wide) = self.element.name, self.slack
+        pairs: tuple[tuple[Quantity, float | None, float], ...] = (
+            ("degrees", self.degrees, off),
+            ("radius", self.radius, wide * (self.radius or 0.0)),
+            ("length", self.length, self.length_slack),
+        )
+        for quantity, aim, by in pairs:
+            if aim is not None:
+                yield Goal(name, quantity, aim, aim - by, aim + by)
+        if self.grade:
+            aim, *ends = self.grade
+            yield Goal(name, "grade", aim, min(ends), max(ends))
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Returns the elements, of which this one is bent, stretched or sloped."""
         name = self.element.name
-        values = {goal.quantity: aims.get((name, goal.quantity), goal.aim) for goal in self.wanted}
+        values = {goal.quantity: aims.get((name, goal.quantity), goal.aim) for goal in self._wanted()}
         grade = values.pop("grade", None)
         if grade is not None:
             elements = changed(elements, name, lambda e: _sloped(e, grade, world))
@@ -92,43 +110,6 @@ class Adjust:
             more = values["length"] - (seen.length if seen else self.element.length)
             return changed(elements, name, lambda e: stretched(e, more))
         return elements
-
-
-def bend(
-    element: RoadElement,
-    degrees: float | None = None,
-    radius: float | None = None,
-    length: float | None = None,
-    slack: tuple[float, float, float] = (1.0, 0.05, 0.05),
-) -> Adjust:
-    """Returns the step to another angle, radius or length of a turn; what is None stays as it is.
-
-    Args:
-        element: the turn.
-        degrees: as measured.
-        radius: metres, as measured.
-        length: metres, as measured.
-        slack: degrees, share of the radius and share of the length by which it may miss.
-    """
-    off, wide, long = slack
-    wanted = []
-    if degrees is not None:
-        wanted.append(Goal(element.name, "degrees", degrees, degrees - off, degrees + off))
-    if radius is not None:
-        wanted.append(Goal(element.name, "radius", radius, radius * (1 - wide), radius * (1 + wide)))
-    if length is not None:
-        wanted.append(Goal(element.name, "length", length, length * (1 - long), length * (1 + long)))
-    return Adjust(element, tuple(wanted))
-
-
-def stretch(element: RoadElement, length: float, slack: float = 1.0) -> Adjust:
-    """Returns the step to another length of a straight, metres as measured."""
-    return Adjust(element, (Goal(element.name, "length", length, length - slack, length + slack),))
-
-
-def slope(element: RoadElement, grade: float, low: float, high: float) -> Adjust:
-    """Returns the step to another grade of one turn or straight, percent as measured."""
-    return Adjust(element, (Goal(element.name, "grade", grade, low, high),))
 
 
 def _bent(element: RoadElement, before: RoadElement, values: Mapping[Quantity, float]) -> RoadElement:
