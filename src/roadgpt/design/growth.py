@@ -20,7 +20,7 @@ from roadgpt.brief.words import Range
 from roadgpt.design.compose import asked_length, gap_between
 from roadgpt.design.draw import ANY_TURN, drawn_turn, hand_of, longest_turn, narrowed_turns
 from roadgpt.design.heights import Windows
-from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, Complex, MapPose, PlanLine, walk
+from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, Complex, MapPose, PlacedPlan, PlanLine, walk
 from roadgpt.design.sequence import TurnSequence
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
@@ -39,14 +39,6 @@ BULGE = 0.5  # m that the walked line may be off the road that is built
 DEAD_ENDS = 30  # of one attempt, before it is given up
 LEAST_LEFT = 25.0  # m of road behind the last turn
 LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
-
-
-class Grown(NamedTuple):
-    """A plan and its place on the map."""
-
-    elements: list[Element]
-    line: PlanLine
-    place: MapPose
 
 
 class _Way(NamedTuple):
@@ -77,7 +69,7 @@ class _Way(NamedTuple):
 
 def grown(
     order: TurnSequence, outline: Outline, windows: Windows, world: World, rng: np.random.Generator
-) -> Grown | None:
+) -> PlacedPlan | None:
     """Returns a road of the required length; None where it ran out of room, or where no length is required.
 
     Args:
@@ -119,14 +111,14 @@ class _Growth:
         self.extra = low + (high - low) * rng.random()
         self.apart = world.road_width + SPARE + COARSENESS + BULGE
 
-    def run(self) -> Grown | None:
+    def run(self) -> PlacedPlan | None:
         start, heading = self._start()
         way = self._grown(_Way((), np.zeros(1), np.array([start]), 0.0, start, heading))
         if way is None or way.length not in self.asked:
             return None
         theta = round(float(np.degrees(np.angle(heading))) % 360, 1) % 360
         place = MapPose(round(start.real, 2), round(start.imag, 2), theta)
-        return Grown(list(way.elements), walk(way.elements), place)
+        return PlacedPlan(way.elements, walk(way.elements), place)
 
     def _grown(self, start: _Way) -> _Way | None:
         """The whole road; where it does not go on, some turns are taken back and others tried."""

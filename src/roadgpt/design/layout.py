@@ -46,6 +46,14 @@ class MapPose(NamedTuple):
     theta: float
 
 
+class PlacedPlan(NamedTuple):
+    """The elements of a draft, their centre line, and where it lies on the map."""
+
+    elements: Sequence[Element]
+    line: PlanLine
+    place: MapPose
+
+
 def walk(elements: Sequence[Element]) -> PlanLine:
     """Returns the centre line of elements, in steps of about a metre."""
     knots, bends, length = bends_of(elements)

@@ -8,12 +8,10 @@ wishes that hardly fit are met in the end, and only those that cannot be are ref
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt import check
-from roadgpt.brief.element import Element
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.check.bumps import asks_for_bumps
@@ -25,7 +23,7 @@ from roadgpt.design.compose import composed
 from roadgpt.design.elements import cut
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
-from roadgpt.design.layout import MapPose, PlanLine, keeps_clear, place, smallest_box, walk
+from roadgpt.design.layout import PlacedPlan, PlanLine, keeps_clear, place, smallest_box, walk
 from roadgpt.design.sequence import drawn_sequence
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace, joined, too_abrupt
@@ -52,15 +50,6 @@ VERGES = 0.6  # of the drafts: so long, legs keep off each other's verges as wel
 FAILED_ON_HEIGHTS = 40  # slopes that broke a promise or the rule: then the speed may be what stood in the way
 SLOWER = (50.0, 30.0)  # km/h, that are tried in order to say so
 STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
-
-
-class _Draft(NamedTuple):
-    """A plan that fits on the map and keeps clear of itself."""
-
-    elements: list[Element]
-    line: PlanLine
-    place: MapPose
-    shape: PlanShape
 
 
 class Planner:
@@ -125,7 +114,7 @@ class _Search:
 
     def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
         """Returns the first draft that passes, or None."""
-        alike: list[tuple[float, int, _Draft]] = []
+        alike: list[tuple[float, int, PlacedPlan]] = []
         finished = 0
         most_alike = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
         choosy = CHOOSY * most_alike / (3 if len(self.others.reach) > CROWDED else 1)
@@ -134,13 +123,15 @@ class _Search:
         most = growths if grows else drafts + (growths if self.outline.length else 0)
         for number in range(most):
             haste = max(0.0, (number - NO_HASTE) / (drafts - NO_HASTE))
-            if grows or number >= drafts:
-                drafted = self._growth()
-            else:
-                drafted = self._plan(haste, with_verges=number < VERGES * drafts)
+            is_grown = grows or number >= drafts
+            drafted = self._growth() if is_grown else self._plan(haste)
             if drafted is None:
                 continue
-            away = nearest(drafted.shape, self.others, by_metres=len(alike) < choosy)
+            if not keeps_clear(drafted.line, self.world, not is_grown and number < VERGES * drafts):
+                self.failed["over itself"] += 1
+                continue
+            shape = shape_of(drafted.line.s, drafted.line.z)
+            away = nearest(shape, self.others, by_metres=len(alike) < choosy)
             if away < ENOUGH * min(1.0, 1.5 * (1 - len(alike) / most_alike)):
                 self.failed["like an earlier road"] += 1
                 alike.append((-away, number, drafted))
@@ -159,7 +150,7 @@ class _Search:
                 return found
         return None
 
-    def _growth(self) -> _Draft | None:
+    def _growth(self) -> PlacedPlan | None:
         """A plan that has grown on the map; only where a length was asked for."""
         if self.outline.length is None:
             return None
@@ -167,11 +158,7 @@ class _Search:
         found = grown(order, self.outline, self.windows, self.world, self.rng)
         if found is None:
             self.failed["too large"] += 1
-            return None
-        if not keeps_clear(found.line, self.world, with_verges=False):
-            self.failed["over itself"] += 1
-            return None
-        return _Draft(found.elements, found.line, found.place, shape_of(found.line.s, found.line.z))
+        return found
 
     def _speed_that_would_do(self) -> float | None:
         """A lower limit, km/h, at which the slopes asked for can be had, if they stood in the way."""
@@ -181,7 +168,7 @@ class _Search:
         worlds = [self.world.model_copy(update={"speed_limit": kmh / 3.6}) for kmh in limits]
         return next((k for k, w in zip(limits, worlds, strict=True) if fits(self.brief, w)), None)
 
-    def _plan(self, haste: float, with_verges: bool) -> _Draft | None:
+    def _plan(self, haste: float) -> PlacedPlan | None:
         order = drawn_sequence(self.outline, self.rng, plain=haste > 0.5)
         elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
         if elements is None:
@@ -193,12 +180,9 @@ class _Search:
             self.failed["too large"] += 1
             self.boxes.append(smallest_box(line))
             return None
-        if not keeps_clear(line, self.world, with_verges):
-            self.failed["over itself"] += 1
-            return None
-        return _Draft(elements, line, where, shape_of(line.s, line.z))
+        return PlacedPlan(elements, line, where)
 
-    def _finished(self, drafted: _Draft) -> tuple[Design, Road] | None:
+    def _finished(self, drafted: PlacedPlan) -> tuple[Design, Road] | None:
         """The Design and its Road, where some heights keep the promises and every rule passes its road."""
         segments = self._with_heights(drafted)
         if segments is None:
@@ -213,7 +197,7 @@ class _Search:
             return None
         return design, road
 
-    def _with_heights(self, drafted: _Draft) -> tuple[Segment, ...] | None:
+    def _with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
         pace = Pace.along(drafted.elements, self.world)
         for ease in (*EASES, EASES[-1]):
             sloped = drawn_heights(
