@@ -56,7 +56,7 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
 def kill(process: "subprocess.Popen[bytes]") -> None:
     """Ends a process and its children without waiting. A process that has ended may be killed again."""
     if os.name == "posix":
-        # its group may outlive it, so that it is asked for even where the process has ended
+        # its group may outlive it, so it is signalled even if the process has ended
         with suppress(ProcessLookupError, PermissionError):
             os.killpg(process.pid, signal.SIGKILL)
     elif process.poll() is None:

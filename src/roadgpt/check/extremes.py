@@ -50,7 +50,7 @@ def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
 
 
 def lowest(profile: ElevationProfile, length: float) -> tuple[float, float]:
-    """Returns station and height (m) of the lowest place of a profile over so many metres."""
+    """Returns station and height (m) of the lowest place of a profile over its first ``length`` metres."""
     if isinstance(profile, GradeProfile):
         s = _stations(profile, length)
         grade = profile.grade(s)

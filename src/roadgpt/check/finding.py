@@ -16,4 +16,4 @@ class Finding:
     x: float | None = None
     y: float | None = None
     stops: bool = False
-    """Whether nobody can drive the road in spite of it: there is no road, or no room for a car."""
+    """Whether the road cannot be driven at all: there is no road, or no room for a car."""

@@ -217,7 +217,7 @@ def _radius(curvature: Array) -> float:
 
 
 def _windows(line: _Line, width: int) -> Array:
-    """Returns the grade in percent over so many stations, at every place."""
+    """Returns the grade in percent over ``width`` stations, at every place."""
     return np.asarray(100 * (line.z[width:] - line.z[:-width]) / (line.s[width:] - line.s[:-width]))
 
 

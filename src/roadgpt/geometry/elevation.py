@@ -11,7 +11,7 @@ from roadgpt.geometry.curve import Array
 
 @dataclass(frozen=True, eq=False)
 class GradeProfile:
-    """Starts at height ``z0``; between the stations the grade changes linearly.
+    """A profile that starts at height ``z0`` and whose grade changes linearly between the stations.
 
     Args:
         z0: Height at the first station in metres.

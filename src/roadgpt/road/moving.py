@@ -9,7 +9,7 @@ from roadgpt.road.road import Road
 
 
 def moved(road: Road, x: float, y: float, z: float = 0.0) -> Road:
-    """Returns a road shifted by so many metres along each axis.
+    """Returns a road shifted by the given distances in metres along each axis.
 
     The road consists of pieces or goes through nodes. Nodes of two numbers have no height that could change.
     """

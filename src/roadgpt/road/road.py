@@ -36,7 +36,7 @@ MOST_POINTS = 200_000  # of a road that goes through points
 class Samples:
     """A road measured at stations ``s``.
 
-    Every array has shape ``(n,)``; lengths in metres, angles in radians.
+    Every array has shape ``(n,)``, in metres, radians, 1/m and ratios.
     """
 
     s: Array

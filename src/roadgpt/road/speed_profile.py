@@ -52,7 +52,7 @@ class PathGeometry(Protocol):
 
 @dataclass(frozen=True)
 class DrivingLimits:
-    """The accelerations that a driver uses at most, as shares of the load on the wheels."""
+    """What a driver uses at most: accelerations as shares of the wheel load, speed and engine power."""
 
     lateral: float
     """Lateral acceleration in a steady bend in g."""
@@ -83,7 +83,7 @@ def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: W
     ``lane_speed``.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
-    offset = world.profile.middle(step * np.arange(len(np.asarray(curvature))))
+    offset = world.profile.middle(step * np.arange(np.size(curvature)))
     return lane_speed(curvature, grade, step, offset, limits)
 
 

@@ -162,7 +162,7 @@ def test_a_gap_becomes_no_wriggle(tmp_path: Path, aside: float, least: float) ->
 
 
 def test_a_gap_of_half_a_metre_is_no_road(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"its line jumps by 0\.50 m at s = 40\.0; mend the file"):
+    with pytest.raises(UsageError, match=r"its line jumps by 0\.50 m at s = 40\.0; correct the file"):
         Pen().line(40).line(50, aside=0.5).read(tmp_path)
 
 

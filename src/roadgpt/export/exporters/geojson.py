@@ -41,18 +41,20 @@ class GeoJson:
         path.write_bytes((json.dumps(data, allow_nan=False) + "\n").encode())
 
 
-def _line(name: str, points: Array, told: dict[str, Any]) -> dict[str, Any]:
-    return _feature(name, {"type": "LineString", "coordinates": _on_globe(points)}, told)
+def _line(name: str, points: Array, properties: dict[str, Any]) -> dict[str, Any]:
+    return _feature(name, {"type": "LineString", "coordinates": _on_globe(points)}, properties)
 
 
-def _area(name: str, right: Array, left: Array, told: dict[str, Any]) -> dict[str, Any]:
+def _area(name: str, right: Array, left: Array, properties: dict[str, Any]) -> dict[str, Any]:
     """Returns the polygon between two edges, counter-clockwise as the standard requires."""
     ring = _on_globe(np.concatenate([right, left[::-1], right[:1]]))
-    return _feature(name, {"type": "Polygon", "coordinates": [ring]}, told)
+    return _feature(name, {"type": "Polygon", "coordinates": [ring]}, properties)
 
 
-def _feature(name: str, geometry: dict[str, Any], told: dict[str, Any]) -> dict[str, Any]:
-    rounded = {key: round(value, 3) if isinstance(value, float) else value for key, value in told.items()}
+def _feature(name: str, geometry: dict[str, Any], properties: dict[str, Any]) -> dict[str, Any]:
+    rounded = {
+        key: round(value, 3) if isinstance(value, float) else value for key, value in properties.items()
+    }
     return {"type": "Feature", "properties": {"name": name, **rounded}, "geometry": geometry}
 
 

@@ -151,7 +151,7 @@ def _vehicle() -> XmlElement:
 
 
 def _act(story: XmlElement, name: str, begin: float = 0.0) -> XmlElement:
-    """Adds an empty private action of the car that begins so many seconds into the simulation."""
+    """Adds an empty private action of the car that begins ``begin`` seconds into the simulation."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
     group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": EGO})

@@ -146,9 +146,8 @@ def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road,
         remarks.append(f"{error}; the reference line is taken instead")
     back = turns_back(found)
     if back is not None:
-        raise UsageError(
-            f"its line turns back by {math.degrees(back[1]):.0f} degrees at s = {back[0]:.1f}; mend the file"
-        )
+        turned = f"{math.degrees(back[1]):.0f} degrees at s = {back[0]:.1f}"
+        raise UsageError(f"its line turns back by {turned}; correct the file")
     fit = fitted(found)
     if fit is None:
         road, way = _rounded(found, heights.height(found.s)), "drawn as a spline"

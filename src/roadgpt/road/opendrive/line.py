@@ -72,7 +72,7 @@ def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
     for (s, before), (_, after) in pairwise(parts):
         gap, kink = float(np.hypot(*(after[0, :2] - before[-1, :2]))), wrap_angle(after[0, 2] - before[-1, 2])
         if gap > GAP:
-            what, advice = ("the edge of its lane", "") if lanes else ("its line", "; mend the file")
+            what, advice = ("the edge of its lane", "") if lanes else ("its line", "; correct the file")
             raise UsageError(f"{what} jumps by {gap:.2f} m at s = {s[-1]:.1f}{advice}")
         nothing = np.zeros(len(after) - 2)
         gaps.append(np.r_[gap, nothing])
@@ -124,7 +124,7 @@ def _moved_aside(s: Array, poses: Array, lanes: Lanes) -> Array:
 
 
 def _strays(element: GeometryElement, count: int) -> bool:
-    """Returns whether clothoids between so many poses would leave the line."""
+    """Returns whether clothoids between ``count`` poses would leave the line."""
     poses = element.poses(np.linspace(0.0, 1.0, 2 * count + 1))
     ends, middles = poses[::2], poses[1::2]
     if np.abs(np.diff(ends[:, 2])).max() < GENTLE:
