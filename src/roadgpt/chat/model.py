@@ -166,9 +166,7 @@ class ChatSettings(ChatValue):
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
 
     def came_with(self, file: object) -> Self:
-        """Returns settings from a file that may be somebody else's: no folders, and its server gets no
-        key.
-        """
+        """Returns settings from somebody else's file: without folders, and without a key for its server."""
         if self.base_url:
             SERVERS.add_from_file(str(origin_of(self.base_url)), file)
         return self.model_copy(update={"record": None, "replay": None})

@@ -49,9 +49,7 @@ def usable(key: Key) -> Key:
 
 
 def redacted(value: Any, key: Key) -> Any:
-    """Returns a text, or all texts in lists and dictionaries, without the key and anything that looks
-    like one.
-    """
+    """Returns a text, or all texts in lists and dictionaries, without the key and all that looks like one."""
     if isinstance(value, str):
         if len(key.value) >= SHORTEST and key.value in value:
             value = value.replace(key.value, GONE)

@@ -21,9 +21,7 @@ LONGEST = 420  # letters of a joined text
 
 
 def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.Generator) -> Pair:
-    """Returns a hand-written pair, in about half of the cases changed; ``others`` are further pairs by
-    language.
-    """
+    """Returns a hand-written pair, mostly varied at random; ``others`` are more pairs by language."""
     if rng.random() < 0.5:
         pair = _made(pair, mirrored(pair.text, pair.plan))
     if rng.random() < 0.4:
@@ -46,9 +44,7 @@ def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the pair with another count, if the count occurs once in the text and once in the plan;
-    else None.
-    """
+    """Returns the pair with another count; None unless the count occurs once in the text and in the plan."""
     counts = re.findall(r"(?:\bx|turns=)(\d+)(?![\d.])", pair.plan)
     if (
         len(counts) != 1

@@ -86,7 +86,7 @@ def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
 
 
 def described(brief: Brief, rng: np.random.Generator) -> Pair | None:
-    """Returns a description of some facts of a measured road with its plan; None if it has too many
+    """Returns a description of some facts of a measured road with its plan; None if it has no or too many
     clauses.
     """
     kept = {fact for fact, share in FACTS.items() if rng.random() < share}

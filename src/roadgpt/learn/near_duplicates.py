@@ -80,9 +80,7 @@ def _are_bare(one: Counter[tuple[str, ...]], other: Counter[tuple[str, ...]]) ->
 
 
 def report(texts: Mapping[str, Sequence[str]]) -> list[str]:
-    """Returns a sentence for each pair of near-duplicates; ``texts`` maps the name of a split to its
-    texts.
-    """
+    """Returns a sentence for each pair of near-duplicates; ``texts`` maps a split to its texts."""
     side = [name for name, its in texts.items() for _ in its]
     every = [text for its in texts.values() for text in its]
     return [

@@ -1,6 +1,4 @@
-"""Makes valid descriptions impossible by adding a requirement that contradicts them or that no road can
-meet.
-"""
+"""Makes valid descriptions impossible by an added requirement that contradicts them or cannot be met."""
 
 import json
 import re

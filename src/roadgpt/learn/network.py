@@ -163,7 +163,7 @@ class ReaderNetwork(nn.Module):
         return x
 
     def start(self, memory: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """Returns keys and values of the description for every decoder layer, each (batch, heads, pieces,
+        """Returns, for every decoder layer, keys and values of the description: (batch, heads, pieces,
         size).
         """
         return [layer.across_keys(memory) for layer in self.decoder]
@@ -178,15 +178,11 @@ class ReaderNetwork(nn.Module):
         return self.scores(x)
 
     def scores(self, x: Tensor) -> Tensor:
-        """Returns scores (..., tokens) for x (..., width); the token embeddings also serve as output
-        weights.
-        """
+        """Returns scores (..., tokens) for x (..., width); the token embeddings also serve for output."""
         return functional.linear(self.final(x), self.tokens.weight) * self.shape.width**-0.5 * 8 + self.bias
 
     def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
-        """Returns the scores of the next token at every place, (batch, length, tokens); piece 0 is
-        padding.
-        """
+        """Returns the scores of the next token at every place, (batch, length, tokens); piece 0 pads."""
         seen = (pieces == 0)[:, None, None, :] * -1e4
         return self.write(tokens, self.encode(pieces, seen), seen)
 

@@ -1,6 +1,4 @@
-"""Selects the part of BERT's vocabulary that descriptions of roads need: Latin letters, small numbers,
-slots.
-"""
+"""Selects the part of BERT's vocabulary that descriptions of roads need: Latin letters, numbers, slots."""
 
 import re
 from collections.abc import Sequence

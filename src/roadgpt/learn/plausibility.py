@@ -1,6 +1,4 @@
-"""Checks whether a randomly drawn Brief makes sense: it must not contradict itself or be too large for
-any map.
-"""
+"""Checks whether a randomly drawn Brief makes sense: no contradictions, nothing too large for a map."""
 
 from math import inf
 

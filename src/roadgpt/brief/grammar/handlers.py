@@ -31,9 +31,7 @@ KINDS: dict[str, tuple[Kind, bool]] = {
 
 
 def handle_kind(now: Phrase, item: Term) -> None:
-    """Applies a kind of feature to a phrase; 'hairpin bend' and 'zig-zag switchbacks' are one feature
-    each.
-    """
+    """Applies a kind of feature to a phrase; 'hairpin bend' and 'zig-zag switchbacks' are single features."""
     kind, many = KINDS[item.name]
     if now.kind in WAVY and kind not in STRAIGHT and kind not in ("turn", now.kind):
         now.alternating = now.kind != "winding"

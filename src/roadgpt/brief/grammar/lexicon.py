@@ -131,9 +131,7 @@ def _is_number(token: Token) -> bool:
 
 
 def similar(word: str) -> str | None:
-    """Returns a word about roads that may have been meant, such as 'turns' for 'trns'; None if none is
-    near.
-    """
+    """Returns a word about roads that may have been meant, such as 'turns' for 'trns', or None."""
     known = {w for listed in ROAD_WORDS.values() for w in listed.split() if len(w) > 3 and w.isalpha()}
     near = get_close_matches(word, sorted(known), n=1, cutoff=ALIKE)
     return near[0] if near else None

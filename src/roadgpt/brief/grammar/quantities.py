@@ -1,6 +1,4 @@
-"""Reads numbers with their bounds and units: 'no more than 3', 'between 40 and 60 metres', '1:8', 'one in
-ten'.
-"""
+"""Reads numbers with their bounds and units, such as 'no more than 3', '40 to 60 metres', 'one in ten'."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

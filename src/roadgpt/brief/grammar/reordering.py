@@ -1,6 +1,4 @@
-"""Puts things into place that are said before what they refer to, or out of driving order; runs at the
-end.
-"""
+"""Rearranges what was said before the thing it refers to, or out of driving order; runs at the end."""
 
 from dataclasses import replace
 
@@ -101,9 +99,7 @@ _SLOPES = {"crest": ("up", "down"), "dip": ("down", "up")}
 
 
 def turns_left_open(order: DrivingOrder, road_said: bool) -> bool:
-    """Returns True if turns may be added: to 'a road with a crest', but not to 'a straight road' or 'up,
-    down, up'.
-    """
+    """Returns True if more turns are allowed, as for 'a road with a crest' but not for 'a straight road'."""
     things = order.things
     if order.wishes.turns is not None or not things or any(t.kind not in STRAIGHT for t in things):
         return False
@@ -115,9 +111,7 @@ def turns_left_open(order: DrivingOrder, road_said: bool) -> bool:
 
 
 def as_one_turn(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Adds the turn that 'one' stands for: 'a long bend, followed by a short sharp one'. False if there
-    is none.
-    """
+    """Adds the turn that 'one' stands for, as in 'a long bend, then a short sharp one'; False if none."""
     last = order.last_turn
     said = phrase.sharpness or phrase.size or phrase.side
     alone = phrase.joint in ("then", "and") or (last is not None and not plural(last))

@@ -16,9 +16,7 @@ ASPECTS: tuple[tuple[str, Words, float], ...] = (
 
 
 def by_parts(voice: Voice) -> Composition:
-    """Returns three to eight turns in two parts that differ in some way; sometimes with a hairpin at an
-    end.
-    """
+    """Returns three to eight turns in two parts that differ, sometimes with a hairpin at an end."""
     total = voice.whole(3, 8)
     first = voice.whole(1, total - 1)
     turns = [DescribedTurn() for _ in range(total)]

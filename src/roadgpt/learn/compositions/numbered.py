@@ -15,9 +15,7 @@ GO = (("go", "goes"), ("turn", "turns"), ("are", "is"), ("bend", "bends"), ("go 
 
 
 def numbered_sides(voice: Voice) -> Composition:
-    """Returns three to eight turns; the sides of some are given by their numbers, those of the others
-    together.
-    """
+    """Returns three to eight turns, of which some have their sides given by their numbers."""
     total = voice.whole(3, 8)
     side = voice.pick(SIDES)
     names, chosen, is_one = _chosen(voice, total)
@@ -30,9 +28,7 @@ def numbered_sides(voice: Voice) -> Composition:
 
 
 def numbered_kinds(voice: Voice) -> Composition:
-    """Returns three to seven turns, some of which are different from the others; sometimes all have one
-    side.
-    """
+    """Returns three to seven turns, of which some differ from the others; sometimes all have one side."""
     total = voice.whole(3, 7)
     names, chosen, is_one = _chosen(voice, total)
     shape, kind, mods = _shape(voice, len(chosen) == 1)

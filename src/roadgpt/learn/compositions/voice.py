@@ -121,9 +121,7 @@ class Voice:
         return f"{', '.join(names[:-1])}{self.pick((' and ', ' and ', ', and ', ' & '))}{names[-1]}"
 
     def framed(self, text: str, plan: str, may_slope: bool = True) -> Composition:
-        """Returns the text with an opening, and sometimes with a purpose and a requirement for the whole
-        road.
-        """
+        """Returns the text with an opening, sometimes with a purpose and a requirement for the whole road."""
         if text.split()[0].strip(":;,").lower() not in BEGIN:
             text = self.say("openings") + text
         wishes: list[str] = []

@@ -1,5 +1,4 @@
-"""The model reader: reads descriptions in five languages with RoadGPT's own network, offline, in
-milliseconds.
+"""The model reader: reads descriptions in five languages with a network of our own, offline, in milliseconds.
 
 Rules take the numbers out of the text and put them into the plan that the network writes. The network can
 only write plans that can be read. The weights and their documentation are in ``weights/``.

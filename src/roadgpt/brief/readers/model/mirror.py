@@ -26,9 +26,7 @@ TOKENS = {"left": "right", "right": "left", "lefts=": "rights=", "rights=": "lef
 
 
 def mirrored(text: str, plan: str) -> tuple[str, str] | None:
-    """Returns text and plan with left and right swapped; None if the plan has no side or a word may not
-    mean one.
-    """
+    """Returns text and plan with sides swapped; None if the plan has no side, or a word is ambiguous."""
     if not re.search(r"\b(?:left|right|lefts|rights)\b", plan):
         return None
     swapped = in_mirror(text)

@@ -38,7 +38,7 @@ class WrittenPlan:
 
     @property
     def score(self) -> float:
-        """The log-probability, corrected for length: each further token costs something, however sure it
+        """The log-probability, corrected for length, since each further token lowers it however sure it
         is.
         """
         return sum(self.log_chances) / float(max(1, len(self.log_chances)) ** FAVOUR)
@@ -145,7 +145,7 @@ class Draft:
 
     @property
     def score(self) -> float:
-        """The log-probability, corrected for length: each further token costs something, however sure it
+        """The log-probability, corrected for length, since each further token lowers it however sure it
         is.
         """
         return sum(self.chances) / float(max(1, len(self.chances)) ** FAVOUR)

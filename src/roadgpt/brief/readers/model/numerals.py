@@ -186,9 +186,7 @@ ITALIAN_TENS = [
 
 
 def plain(text: str) -> str:
-    """Returns the text in lower case without accents; its length stays the same, so places in it stay
-    valid.
-    """
+    """Returns the text in lower case without accents; it keeps its length, so places in it stay valid."""
     return "".join(_plain_letter(letter) for letter in text)
 
 

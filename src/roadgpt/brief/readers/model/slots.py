@@ -1,5 +1,4 @@
-"""Takes the numbers out of a description before the model reads it; the model copies them and writes none
-itself.
+"""Takes the numbers out of a description before the model reads it, so that the model only copies numbers.
 
     "three bends in 300 ft at 1:8"  ->  3 bends in [1] metres at [2] percent        [1] = 91.4, [2] = 12.5
 

@@ -1,5 +1,6 @@
-"""Reads tolerances: "four turns, plus or minus one" is three to five; "60 m ± 5 m" is 60 m, which has our
-tolerance.
+"""Reads tolerances: "four turns, plus or minus one" is three to five; "60 m ± 5 m" is 60 m.
+
+Lengths and angles have a tolerance of their own (``brief.words``), so the one in the text is dropped.
 """
 
 from collections.abc import Sequence

@@ -1,5 +1,4 @@
-"""Reads the sum of all turning angles: "adding up to 270 degrees", "a total heading change of at least 300
-deg".
+"""Reads the sum of all turning angles, as in "a total heading change of at least 300 deg".
 
 The network has no word for it, so it is taken out of the description before the network reads the rest.
 """
@@ -52,9 +51,7 @@ class TotalTurning(NamedTuple):
 
 
 def total_turning(words: str) -> TotalTurning | None:
-    """Returns what a description says about the sum of all turning angles; None if it says nothing about
-    it.
-    """
+    """Returns what a description says about the sum of all turning angles; None if it says nothing."""
     text = slotted(words)
     line = " ".join(word.text for word in text.words)
     found = next((match for way in WAYS if (match := way.search(line))), None)
