@@ -8,10 +8,19 @@ validated against the pydantic model.
 
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, ConfigDict
 
 KEPT = ("type", "enum", "const", "description")
 MOST_DEPTH = 5  # OpenAI's limit on nesting
+
+
+def fixed_description(text: str) -> ConfigDict:
+    """Returns the configuration of a model whose schema is described by this text, not by its docstring.
+
+    Recorded answers are found by a hash of the question, of which the schema is a part. So a docstring may
+    change, but the text of the schema may not.
+    """
+    return ConfigDict(json_schema_extra={"description": text})
 
 
 def schema_of(model: type[BaseModel]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, model_validator
 
+from roadgpt.chat.json_schema import fixed_description
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, read_design
 from roadgpt.road.design import KEY, MAX_SEGMENTS
@@ -28,6 +29,8 @@ Way = Annotated[Literal["left", "right", "straight"], BeforeValidator(_plain_dir
 class AnswerSegment(BaseModel):
     """One segment of a language model's answer."""
 
+    model_config = fixed_description("One segment of an answer.")
+
     distance: Number = Field(description="Length along the road, metres.")
     direction: Way = Field(description="left, right or straight.")
     incline: Number = Field(description="Slope in percent, uphill positive.")
@@ -37,12 +40,16 @@ class AnswerSegment(BaseModel):
 class AnswerStart(BaseModel):
     """The starting point and the heading of a road."""
 
+    model_config = fixed_description("Where a road starts, and which way it looks.")
+
     starting_point: list[Number] = Field(description="x, y and z of the start, metres.")
     theta: Number = Field(description="Degrees: 0 along +x, 90 along +y.")
 
 
 class AnswerRoad(AnswerStart):
     """The answer of a language model that is asked for a whole road."""
+
+    model_config = fixed_description("A whole road.")
 
     segments: list[AnswerSegment] = Field(description="In driving order.")
 
@@ -58,6 +65,8 @@ class AnswerRoad(AnswerStart):
 
 class AnswerStep(AnswerSegment):
     """The answer of a language model that is asked for the next segment, and whether it is the last one."""
+
+    model_config = fixed_description("The next segment, and whether it is the last one.")
 
     last: bool = Field(description="Is the road finished with this segment?")
 

@@ -6,7 +6,7 @@ executed. If the answer is not a valid plan, the model gets it back with a sente
 
 from collections.abc import Sequence
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief
@@ -14,6 +14,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import KINDS, read_plan
 from roadgpt.brief.readers.grammar import EXAMPLE, MOST_CHARACTERS
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
+from roadgpt.chat.json_schema import fixed_description
 from roadgpt.errors import BriefError
 
 MOST_PLAN = 1000  # characters of a plan; the longest useful ones have a few hundred
@@ -76,8 +77,7 @@ SAID = {
 class PlanAnswer(BaseModel):
     """The answer that the model is asked for."""
 
-    # the schema is part of what a recording is found by, so this text stays as it is
-    model_config = ConfigDict(json_schema_extra={"description": "What the model is asked for."})
+    model_config = fixed_description("What the model is asked for.")
 
     along: list[str] = Field(description="What comes along the road, in driving order.")
     road: str = Field(description="What holds for the whole road.")

@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field
 
 from roadgpt import check
 from roadgpt.chat import Chat, ChatSettings, Message, ReplyError, UnparsableError
+from roadgpt.chat.json_schema import fixed_description
 from roadgpt.check.measures import Measures
 from roadgpt.design.answer import AnswerSegment, Number
 from roadgpt.design.asking import rules
@@ -35,11 +36,15 @@ says. Change no more than the request asks for."""
 class EditedSegment(AnswerSegment):
     """A segment of a road as a language model changed it."""
 
+    model_config = fixed_description("A segment of the changed road.")
+
     was: int = Field(description="Number of the old segment that it is; 0 of a new one.")
 
 
 class EditedRoad(BaseModel):
     """A road as a language model changed it."""
+
+    model_config = fixed_description("The changed road.")
 
     touched: list[int] = Field(description="Numbers of the old segments that the request speaks of.")
     theta: Number = Field(description="Degrees, of the start; as it was, but for good reasons.")
