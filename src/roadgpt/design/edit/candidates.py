@@ -10,10 +10,13 @@ from math import radians
 from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures
-from roadgpt.design.edit.bounding import is_beyond, within
 from roadgpt.design.edit.length_candidates import road_length_candidates
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.slope_candidates import road_slope_candidates, slope_candidates
+from roadgpt.design.edit.slope_candidates import (
+    bounded_slope_candidates,
+    road_slope_candidates,
+    slope_candidates,
+)
 from roadgpt.design.edit.steps import Adjust, Become, EditStep, Flip, straight
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, is_turn
@@ -71,9 +74,9 @@ def change_candidates(
         EditError: no road can be like that.
     """
     if change.bound:
-        elements = [element for element in elements if is_beyond(change, element, found)]
+        elements = [element for element in elements if _is_beyond(change, element, found)]
         if change.what == "slope" and elements:
-            return within(change, elements)
+            return bounded_slope_candidates(change, elements)
     match change.what:
         case "angle" | "radius" | "shape":
             return _each(elements, lambda element: _bends(change, element, world))
@@ -92,6 +95,22 @@ def change_candidates(
             return _flipped(wrong, world) if wrong else ()
         case _:
             return _each(elements, _straightened)
+
+
+def _is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
+    """Returns whether an element is beyond the bound of a change."""
+    assert change.to is not None
+    seen = element.seen
+    if change.what == "slope":
+        slopes = [abs(segment.incline) for segment in element.segments]
+        return any((now - change.to) * change.bound < 0 for now in slopes)
+    if seen is None:
+        return False
+    if change.target is not None and change.target.noun == "road" and change.what == "length":
+        now = found.length
+    else:
+        now = {"angle": seen.degrees, "radius": seen.radius, "length": seen.length}[change.what]
+    return (now - change.to) * change.bound < 0
 
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:

@@ -1,12 +1,12 @@
-"""The ways in which a slope can be made another one, the preferred one first."""
+"""Candidates that change slopes, the preferred one first."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.sloping import SlopeOfAll
-from roadgpt.design.edit.steps import Adjust, EditStep
-from roadgpt.design.road_elements import RoadElement
+from roadgpt.design.edit.steps import Adjust, Aims, EditStep, Goal, with_incline
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -15,6 +15,46 @@ FLATTER = (0.5, 0.6, 0.4, 0.75)
 UPHILL = ((5.0, 3.0, 12.0), (4.0, 3.0, 12.0), (6.5, 3.0, 12.0), (5.0, 1.3, 13.0))
 LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
 STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
+
+
+@dataclass(frozen=True, slots=True)
+class SlopeOfAll:
+    """Changes the slopes of many elements: each incline is multiplied, increased and then clipped."""
+
+    names: frozenset[str]
+    times: float = 1.0
+    more: float = 0.0
+    low: float = -100.0
+    high: float = 100.0
+    way: int = 0
+    """1 or -1 makes every slope one uphill or downhill first."""
+
+    @property
+    def goals(self) -> tuple[Goal, ...]:
+        """None, because inclines of many segments measure as they are written."""
+        return ()
+
+    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
+        """Returns the elements with each segment's incline changed by itself."""
+        limit = 100 * world.max_grade - 0.2
+
+        def one(incline: float) -> float:
+            if self.way:
+                incline = self.way * abs(incline)
+            by = self.more if incline >= 0 else -self.more
+            incline = incline * self.times + by
+            if self.way:
+                incline = self.way * min(max(abs(incline), self.low), self.high)
+            else:
+                incline = min(max(incline, self.low), self.high)
+            return min(max(incline, -limit), limit)
+
+        return tuple(
+            b.with_segments(with_incline(s, one(s.incline)) for s in b.segments)
+            if b.name in self.names
+            else b
+            for b in elements
+        )
 
 
 def slope_candidates(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
@@ -106,3 +146,15 @@ def road_slope_candidates(
         (SlopeOfAll(names, times=1 + (times - 1) * change.dose, low=-limit, high=limit),)
         for times, _ in STEEPER
     )
+
+
+def bounded_slope_candidates(
+    change: Change, elements: Sequence[RoadElement]
+) -> tuple[tuple[EditStep, ...], ...]:
+    """Returns the candidates that bring slopes within the bound of a change."""
+    assert change.to is not None
+    names = frozenset(element.name for element in elements)
+    if change.bound < 0:
+        return ((SlopeOfAll(names, low=-change.to, high=change.to),),)
+    up = sum(element.incline * element.length for element in elements) >= 0
+    return ((SlopeOfAll(names, way=1 if up else -1, low=change.to),),)
