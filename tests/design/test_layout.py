@@ -72,7 +72,7 @@ def test_a_placed_road_lies_inside_the_map(elements: list[Element], seed: int) -
 @given(elements_strategy())
 def test_what_keeps_clear_really_does(elements: list[Element]) -> None:
     line = walk(elements)
-    if not keeps_clear(line, World(), with_verges=True):
+    if not keeps_clear(line, World(), with_shoulders=True):
         return
     points = np.stack([line.z.real, line.z.imag], axis=1)
     far = 30  # m along the road
@@ -83,7 +83,7 @@ def test_what_keeps_clear_really_does(elements: list[Element]) -> None:
 
 def test_a_loop_does_not_keep_clear() -> None:
     loop = [Element(60.0), turn_element(270, 1, 20, 5, None), Element(60.0)]
-    assert not keeps_clear(walk(loop), World(), with_verges=False)
+    assert not keeps_clear(walk(loop), World(), with_shoulders=False)
     assert keeps_clear(walk([Element(60.0), turn_element(170, 1, 20, 5, None), Element(60.0)]), World(), True)
 
 

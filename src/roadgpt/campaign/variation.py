@@ -126,7 +126,7 @@ def placed(
     """Returns the road of elements at a random place; None where it breaks a requirement or a rule."""
     line = walk([as_written(element) for element in elements])
     where = place(line, setting.world, rng)
-    if where is None or not keeps_clear(line, setting.world, with_verges=False):
+    if where is None or not keeps_clear(line, setting.world, with_shoulders=False):
         return None
     return validated(design_of(elements, where, setting.world), setting)
 

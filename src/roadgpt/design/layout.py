@@ -24,7 +24,7 @@ NEIGHBOURS = (
 MANY = 700  # points from which on near ones are looked up in a tree: all pairs of them would take long
 SOME = 300  # points of a long line that are laid on the map before all are
 COARSENESS = 0.6  # m that the coarse points may see legs further apart than they are
-SPARE = 0.7  # m that carriageways are kept apart at least, where there is no room for the verges
+SPARE = 0.7  # m that carriageways are kept apart at least, where there is no room for the shoulders
 DIAGONALS = np.array([45.0, 135.0, 225.0, 315.0])  # headings at which a straight road has most room
 HEADINGS = 72  # that are tried on a map where the first one does not fit
 
@@ -85,11 +85,11 @@ def _headings(s: Array, knots: Array, bends: Array) -> Array:
     return np.asarray(reached[i] + u * (bends[i] + u * slopes[i] / 2))
 
 
-def keeps_clear(line: PlanLine, world: World, with_verges: bool) -> bool:
+def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
     """Returns whether no two parts of the road overlap: carriageways, and with the shoulders if asked for."""
     z = line.z[::COARSE]
     spacing = COARSE * (line.s[1] - line.s[0])
-    apart = world.road_width + (world.verge if with_verges else SPARE) + COARSENESS
+    apart = world.road_width + (world.verge if with_shoulders else SPARE) + COARSENESS
     first = int(NEIGHBOURS / spacing) + 1
     if len(z) <= first:
         return True

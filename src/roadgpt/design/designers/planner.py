@@ -46,7 +46,7 @@ TRIED = 110  # drafts that are drawn for each of these
 GROWN = 20  # drafts of a road whose length was asked for, that grow on the map where no other was found
 GROWN_ON_TRIAL = 5  # of these, where it is tried whether there is room
 NO_HASTE = 16  # drafts that are drawn freely
-VERGES = 0.6  # of the drafts: so long, legs keep off each other's verges as well
+SHOULDERS = 0.6  # of the drafts: for so long, legs keep off each other's shoulders as well
 FAILED_ON_HEIGHTS = 40  # slopes that broke a promise or the rule: then the speed may be what stood in the way
 SLOWER = (50.0, 30.0)  # km/h, that are tried in order to say so
 STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
@@ -127,7 +127,7 @@ class _Search:
             drafted = self._growth() if is_grown else self._plan(haste)
             if drafted is None:
                 continue
-            if not keeps_clear(drafted.line, self.world, not is_grown and number < VERGES * drafts):
+            if not keeps_clear(drafted.line, self.world, not is_grown and number < SHOULDERS * drafts):
                 self.failed["over itself"] += 1
                 continue
             shape = shape_of(drafted.line.s, drafted.line.z)
