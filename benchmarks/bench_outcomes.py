@@ -76,7 +76,7 @@ TITLES = (
     "driver",
     "km/h",
     "friction",
-    "verge (m)",
+    "shoulder (m)",
     "failed",
     "share",
     "causes",

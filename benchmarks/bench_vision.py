@@ -24,7 +24,7 @@ import numpy as np
 
 import roadgpt.gym  # noqa: F401  makes the environment known to Gymnasium
 from roadgpt.drive import Drive, simulate
-from roadgpt.drive.custom import load_driver
+from roadgpt.drive.loading import load_driver
 from roadgpt.road import Road, World
 from roadgpt.run import Setup, brief_of, perform
 from roadgpt.verdict import judge

@@ -14,7 +14,7 @@ import gzip
 import numpy as np
 
 from beamng_labels import auc, road_of
-from roadgpt.sbft.sdc.risk import BY_LINE, Weighing, learnt, order, signs_of
+from roadgpt.sbft.sdc.risk import LINE_ONLY, RiskModel, fit_model, order, risk_features
 
 
 def apfd(ranked: np.ndarray) -> float:
@@ -24,9 +24,9 @@ def apfd(ranked: np.ndarray) -> float:
     return float(1 - places.sum() / (count * len(places)) + 1 / (2 * count))
 
 
-def told(name: str, weighing: Weighing, signs: list, failed: np.ndarray) -> str:
-    scores = weighing.scores(signs)
-    chosen = weighing.worth(signs)
+def told(name: str, model: RiskModel, features: list, failed: np.ndarray) -> str:
+    scores = model.scores(features)
+    chosen = model.select(features)
     return (
         f"{name}: AUC {auc(scores, failed):.2f}, APFD {apfd(failed[order(scores)]):.2f}; "
         f"selects {len(chosen)} of {len(failed)}, {failed[chosen].mean():.0%} of them fail "
@@ -45,11 +45,11 @@ def main(labels: str, every: int) -> None:
         failed = np.array([row["failed"] == "1" for row in some])
         halves.append((points, failed))
     (known, known_failed), (rest, failed) = (
-        ([signs_of(points) for points in roads], outcomes) for roads, outcomes in halves
+        ([risk_features(points) for points in roads], outcomes) for roads, outcomes in halves
     )
-    weighing = learnt(known, known_failed.tolist())
-    print(told("by the planned line alone", BY_LINE, rest, failed))
-    print(told(f"after {len(known)} known outcomes", weighing, rest, failed))
+    model = fit_model(known, known_failed.tolist())
+    print(told("by the planned line alone", LINE_ONLY, rest, failed))
+    print(told(f"after {len(known)} known outcomes", model, rest, failed))
 
 
 if __name__ == "__main__":

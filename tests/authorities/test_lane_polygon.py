@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
-from roadgpt.drive.lane import Lane
+from roadgpt.drive.lane_polygon import LanePolygon
 from roadgpt.road import Road, World
 
 NODES = [(20, 30), (60, 40), (95, 75), (90, 120), (120, 150), (170, 140), (190, 90)]
 ROAD = Road.through(NODES)
-LANE = Lane.along(ROAD, World())
+LANE = LanePolygon.along(ROAD, World())
 # The lane as one polygon, three times finer than the strip under test.
 S = np.linspace(0.0, ROAD.length, 3 * (len(LANE.edges) - 1) + 1)
 POLYGON = Polygon(np.vstack([ROAD.at(S)[:, :2], ROAD.at(S, -4.0)[::-1, :2]]))

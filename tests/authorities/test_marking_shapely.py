@@ -1,4 +1,4 @@
-"""Shapely's polygons against ``roadgpt.drive.marking``: how far a car reaches beyond its lane's markings."""
+"""Compares the distance that a car reaches beyond its lane's markings with Shapely's polygons."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from authorities.test_verdict_shapely import bent, random_drive
 from drive.slippery_bicycle import SlipperyBicycle
 from roadgpt.drive import Box
 from roadgpt.drive.drivers.beamng_like import BeamngLike
-from roadgpt.drive.marking import Marking
+from roadgpt.drive.marking_monitor import MarkingMonitor
 from roadgpt.road import Road, World
 from roadgpt.verdict import judge
 
@@ -37,8 +37,8 @@ def test_body_and_tyres_reach_as_far_as_shapely_says(radius: float, hand: int) -
     road, world = bent(radius, hand), World()
     drive = random_drive(road, seed=round(radius) + hand)
     lane = between_markings(road)
-    body = Marking.for_body(road, world, drive.car).along(drive)
-    tyres = Marking.for_tyres(road, world, drive.car).along(drive)
+    body = MarkingMonitor.for_body(road, world, drive.car).along(drive)
+    tyres = MarkingMonitor.for_tyres(road, world, drive.car).along(drive)
     for step in range(len(drive)):
         box = Polygon(drive.corners(step))
         sides = [box.exterior.interpolate(share, normalized=True) for share in np.linspace(0, 1, 400)]
@@ -56,7 +56,7 @@ def test_body_and_tyres_reach_as_far_as_shapely_says(radius: float, hand: int) -
 def test_a_share_outside_and_a_distance_beyond_the_edge_line_go_together(hand: int) -> None:
     road = bent(16.0, hand)
     drive = SlipperyBicycle().simulate(road, World(), BeamngLike(), 0, keep_driving=True)
-    right_only = Marking.for_body(road, World(), drive.car)._replace(left=9.0)
+    right_only = MarkingMonitor.for_body(road, World(), drive.car)._replace(left=9.0)
     both = right_only._replace(left=0.0)
     is_out = drive["outside"] > 1e-3
     assert is_out.any()
@@ -82,7 +82,7 @@ def test_a_car_that_leans_is_turned_about_its_centre_of_gravity() -> None:
     road = Road.through([[10, 20], [60, 20], [110, 20]])
     box = Box(4.7, 1.86, height=0.5, under=0.4, tyres=1.8)
     pose = np.array([[40.0, 18.0, 0.0, 0.0, 0.1, 30.0]])
-    feet = Marking.for_tyres(road, World(), box).beyond(pose)[0]
+    feet = MarkingMonitor.for_tyres(road, World(), box).beyond(pose)[0]
     assert feet == pytest.approx(-2.0 + 0.9 * np.cos(0.1) + 0.5 * np.sin(0.1) - 0.06)
-    body = Marking.for_body(road, World(), box).beyond(pose)[0]
+    body = MarkingMonitor.for_body(road, World(), box).beyond(pose)[0]
     assert body == pytest.approx(-2.0 + 0.93 * np.cos(0.1) + 0.4 * np.sin(0.1) - 0.06)

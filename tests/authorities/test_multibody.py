@@ -32,7 +32,10 @@ def test_both_are_the_same_car():
     assert car.mass == pytest.approx(p.m, rel=1e-6)
     assert car.wheelbase == pytest.approx(p.a + p.b)
     # The whole car's yaw inertia: the body's, and the wheels' masses at their places.
-    wheels = sum(2 * axle.wheel_mass * (axle.place**2 + axle.track**2 / 4) for axle in (car.front, car.rear))
+    wheels = sum(
+        2 * axle.unsprung_mass * (axle.position**2 + axle.track_width**2 / 4)
+        for axle in (car.front, car.rear)
+    )
     assert car.yaw_inertia + wheels == pytest.approx(p.I_z)
 
 

@@ -11,8 +11,8 @@ from roadgpt.campaign.plan_file import read_plan
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.rerun import run_again
 from roadgpt.cli import app
-from roadgpt.drive.custom import load_driver, located
-from roadgpt.drive.trust import named
+from roadgpt.drive.loading import absolute_spec, load_driver
+from roadgpt.drive.permission import permit
 from roadgpt.errors import UsageError
 
 DRIVER = """
@@ -48,7 +48,7 @@ def test_a_path_in_a_plan_begins_at_the_plan(there: Path) -> None:
     assert Path(own.rpartition(":")[0]).is_absolute()
     with pytest.raises(UsageError, match=r"plan\.toml names the driver"):
         load_driver(own)
-    named(own)
+    permit(own)
     assert type(load_driver(own)).__name__ == "Mine"
 
 
@@ -91,4 +91,4 @@ class _Nobody:
     ],
 )
 def test_a_driver_on_the_shelf_stays_a_name(spec: str, wanted: str) -> None:
-    assert located(spec, Path("/a/b")) == wanted
+    assert absolute_spec(spec, Path("/a/b")) == wanted

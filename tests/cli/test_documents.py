@@ -102,8 +102,8 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.brief.readers.grammar import MOST_CHARACTERS
     from roadgpt.chat import conversation, request_error, response_limits, strict_json
     from roadgpt.chat.providers.openai import MOST_REQUESTS
-    from roadgpt.drive import seat
     from roadgpt.drive.drive import UNPACKED
+    from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, WHOLE_DRIVE
     from roadgpt.errors import ChatError, GivenUpError
     from roadgpt.report.overview import MOST_PAGES, PER_PAGE
     from roadgpt.road.design import MAX_SEGMENTS
@@ -116,7 +116,12 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     cli_app = importlib.import_module("roadgpt.cli.app")
     text = (ROOT / "docs" / "reference" / "limits.md").read_text(encoding="utf-8")
     found = [row.replace(",", "") for row in re.findall(r"^\| [^|]+ \| ([\d,; ]+) \|$", text, re.MULTILINE)]
-    seconds = [seat.BEFORE_START, seat.BEFORE_START, seat.ONE_ANSWER, seat.WHOLE_DRIVE]
+    seconds = [
+        BEFORE_START,
+        BEFORE_START,
+        ONE_ANSWER,
+        WHOLE_DRIVE,
+    ]
     said = "; ".join(f"{limit:g}" for limit in seconds)
     files = [LARGEST, MOST_POINTS, round(STEEPEST), UNPACKED // 1_000_000, response_limits.OF_AN_ERROR]
     tries = [MAX_SEGMENTS, MOST_ROUNDS, GIVE_UP, MOST]

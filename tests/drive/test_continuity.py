@@ -12,9 +12,9 @@ from roadgpt.drive import Columns, Drive, simulate
 from roadgpt.drive.continuity import check_motion
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
+from roadgpt.drive.simulators.beamng import BeamngSettings, BeamngSimulator
+from roadgpt.drive.simulators.beamng.loaded_road import LoadedRoad
 from roadgpt.drive.simulators.beamng.session import leave_all
-from roadgpt.drive.simulators.beamng.stage import Stage
 from roadgpt.drive.simulators.mujoco import MujocoSimulator
 from roadgpt.errors import SimulationError
 from roadgpt.road import Road, World
@@ -68,22 +68,22 @@ def test_a_run_with_a_jump_ends_in_error(monkeypatch: pytest.MonkeyPatch) -> Non
     run = prove(STRAIGHT, 1, setup=Setup(driver="reference"))
     assert (run.outcome, run.verdict) == ("ERROR", None)
     assert "moved the car by 500." in run.description
-    assert "nothing is said of the driver" in run.description
+    assert "says nothing about the driver" in run.description
 
 
 def test_a_car_that_beamng_puts_elsewhere_is_an_error(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    step = Stage.step
+    step = LoadedRoad.step
     steps = 0
 
-    def teleported(self: Stage) -> Any:
+    def teleported(self: LoadedRoad) -> Any:
         nonlocal steps
         steps += 1
         moment = step(self)
         return moment._replace(x=moment.x + 500.0) if steps > 40 else moment
 
-    monkeypatch.setattr(Stage, "step", teleported)
+    monkeypatch.setattr(LoadedRoad, "step", teleported)
     with FakeBeamNG() as fake:
-        settings = Settings(home=fake_home(tmp_path), host="127.0.0.1", port=fake.port)
+        settings = BeamngSettings(home=fake_home(tmp_path), host="127.0.0.1", port=fake.port)
         with pytest.raises(SimulationError, match="no car can do that"):
             simulate(STRAIGHT, World(), Reference(), simulator=BeamngSimulator(settings))
         leave_all()
@@ -92,7 +92,9 @@ def test_a_car_that_beamng_puts_elsewhere_is_an_error(tmp_path: Any, monkeypatch
 def test_places_that_do_not_follow_the_speed_are_an_error(driven: Drive) -> None:
     check_motion(driven)
     frozen = {name: np.full(len(driven), driven[name][0]) for name in ("x", "y", "z")}
-    with pytest.raises(SimulationError, match=r"speeds that make \d+ m, and of a way of 0 m"):
+    with pytest.raises(
+        SimulationError, match=r"speeds that amount to \d+ m, but positions that amount to 0 m"
+    ):
         check_motion(changed(driven, **frozen))
     # a speed that nobody believes excuses no jump
     late = np.arange(len(driven)) >= len(driven) // 2

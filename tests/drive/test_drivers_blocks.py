@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.drive import View
-from roadgpt.drive.driving_line import Line, line_along, stations
+from roadgpt.drive.driving_line import DrivingLine, line_along, stations
 from roadgpt.drive.pedals import pedals
-from roadgpt.drive.pursuit import pursued
+from roadgpt.drive.pursuit import pursuit_curvature
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import SLOWEST, DrivingLimits, plan_speed
@@ -45,7 +45,7 @@ def test_the_pursued_circle_leaves_along_the_car_and_meets_the_line(
     x, y, z = road.at(s, t).tolist()
     heading = float(road.heading(s)) + turned
     view = View(0, x, y, z, heading, 10, 0, s, t, road, World(), 0, 0.02, 10, 0)
-    bend = pursued(line, view, ahead)
+    bend = pursuit_curvature(line, view, ahead)
     aim = road.at(s + ahead, -2.0)[:2]
     # A circle through the car whose tangent there is the heading: its middle is 1 / bend to the left.
     left = np.array([-math.sin(heading), math.cos(heading)])
@@ -160,7 +160,7 @@ def test_the_engine_bounds_the_forward_sweep() -> None:
     assert gained == pytest.approx(50.0 / weak[i], rel=0.01)
 
 
-def still(line: Line, v: float) -> list[float]:
+def still(line: DrivingLine, v: float) -> list[float]:
     return [v] * len(line.x)
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from drive.slippery_bicycle import SlipperyBicycle
-from roadgpt.drive.custom import load_driver
 from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.loading import load_driver
 from roadgpt.errors import PartError, UsageError
 from roadgpt.road import Road, World
 

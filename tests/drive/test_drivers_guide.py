@@ -5,7 +5,7 @@ from pathlib import Path
 
 from drive.slippery_bicycle import SlipperyBicycle
 from roadgpt.drive import View
-from roadgpt.drive.custom import load_driver
+from roadgpt.drive.loading import load_driver
 from roadgpt.road import Design, Segment, World, build
 from roadgpt.verdict import judge
 

@@ -13,12 +13,12 @@ import pytest
 from scipy.signal import correlate
 
 from roadgpt.drive import Drive, View, simulate
-from roadgpt.drive.custom import load_driver
-from roadgpt.drive.eyes import Eyes
+from roadgpt.drive.camera_sensor import CameraSensor
+from roadgpt.drive.loading import load_driver
 from roadgpt.export.ego import CAR
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.scene import Camera as Pinhole
-from roadgpt.scene import Place, Pose
+from roadgpt.scene import CameraPlacement, Pose
 from roadgpt.verdict import judge
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "vision"
@@ -61,7 +61,7 @@ def test_the_ground_lies_where_the_camera_sees_it() -> None:
     ground = module.Ground(camera)
     wide = 2 * math.atan(math.tan(camera.field_of_view / 2) * camera.width / camera.height)
     pinhole = Pinhole(
-        camera.width, camera.height, wide, "bonnet", Place(camera.ahead, camera.up, -camera.down)
+        camera.width, camera.height, wide, "bonnet", CameraPlacement(camera.ahead, camera.up, -camera.down)
     )
     eye = pinhole.eye(Pose(0.0, 0.0, CAR.gravity_height, 0.0))
     for x, y in ((3.0, 0.0), (5.0, -1.8), (9.0, 2.0), (13.0, -6.0)):
@@ -105,7 +105,7 @@ def test_the_lane_is_found_in_a_picture(
     s = 30.0 + (around + 14.0) / 2
     bend = float(road.curvature(s + 5.0))
     camera = module.LaneFinder.camera
-    image = Eyes(camera, road, World()).see(pose(road, s, t, turned))
+    image = CameraSensor(camera, road, World()).see(pose(road, s, t, turned))
     ground = module.Ground(camera)
     own = bend / (1 + 2 * bend)  # of the lane, whose middle lies 2 m to the right
     lane = module.Lane(-1.9 - t, 0.03 - turned, 0.85 * own + 0.004)  # about what was seen before
@@ -145,7 +145,7 @@ def test_it_keeps_the_lane_of_an_easy_road(spec: str, drives: Callable[[str], Dr
 def test_it_looks_at_nothing_but_picture_and_speeds(spec: str) -> None:
     road, world = road_of((60.0, 0.0, 0.0)), World()
     driver = made(spec)
-    image = Eyes(driver.camera, road, world).see(pose(road, 10.0, -2.0, 0.0))
+    image = CameraSensor(driver.camera, road, world).see(pose(road, 10.0, -2.0, 0.0))
     nothing: Any = None
     blind = View(
         time=math.nan, x=math.nan, y=math.nan, z=math.nan, heading=math.nan, speed=6.0, yaw_rate=0.01,

@@ -78,7 +78,7 @@ def test_it_starts_like_roadgpt():
     done = drive(BEND, Follows())
     x, y, z = BEND.at(2.5, -2.0)
     assert (done["x"][0], done["y"][0]) == (pytest.approx(x, abs=0.06), pytest.approx(y, abs=0.06))
-    assert done["z"][0] == pytest.approx(z + ETK_LIKE.height, abs=0.05)
+    assert done["z"][0] == pytest.approx(z + ETK_LIKE.cg_height, abs=0.05)
     assert done["heading"][0] == pytest.approx(math.radians(20), abs=1e-3)
     assert done["pitch"][0] == pytest.approx(math.atan(0.05), abs=6e-3)
     assert done["speed"][0] < 1e-3
@@ -145,7 +145,7 @@ def test_who_never_steers_leaves_the_lane_and_the_drive_ends_there():
 def test_the_drive_tells_how_far_the_wheels_turn():
     done = drive(BEND, Does(9.0, 0.4), keep_driving=True)
     assert done.car.lock == pytest.approx(done["steer"].max(), abs=1e-9)
-    other = MujocoSimulator(replace(ETK_LIKE, steer_limit=0.5))
+    other = MujocoSimulator(replace(ETK_LIKE, max_steer_angle=0.5))
     done = other.simulate(BEND, WORLD, Does(-9.0, 0.4), seed=0, keep_driving=True)
     assert (done.car.lock, done["steer"].min()) == (0.5, pytest.approx(-0.5))
 
@@ -308,7 +308,7 @@ def test_a_driver_that_hangs_on_the_way_costs_one_driver_error():
 def test_a_car_that_makes_no_sense_is_told_so_and_leaves_no_log(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     broken = MujocoSimulator(replace(ETK_LIKE, drag_area=math.nan))
-    with pytest.raises(SimulationError, match="the physics broke down at"):
+    with pytest.raises(SimulationError, match="the physics became unstable at"):
         broken.simulate(BEND, WORLD, Follows(), seed=0)
     assert not list(tmp_path.iterdir())
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from roadgpt.drive.simulators.mujoco import ETK_LIKE, plane
-from roadgpt.drive.simulators.mujoco.loop import FX, FY, LOAD
+from roadgpt.drive.simulators.mujoco.dynamics import FX, FY, LOAD
 
 G = 9.81
 KMH = 1 / 3.6
@@ -67,7 +67,7 @@ def test_full_braking_from_100(friction, shortest, longest):
 
 def test_abs_lets_the_car_steer_while_it_brakes():
     turned = {}
-    for name, car in (("with", ETK_LIKE), ("without", replace(ETK_LIKE, abs_slip=0.0))):
+    for name, car in (("with", ETK_LIKE), ("without", replace(ETK_LIKE, abs_slip_threshold=0.0))):
         vehicle = rolling(80, car=car)
         for _ in range(75):
             vehicle.move(0.08, 0.0, 1.0)
@@ -108,7 +108,7 @@ def test_step_steer_answers_like_a_saloon():
 
 def test_esc_keeps_the_nose_ahead_where_the_car_without_it_spins():
     worst = {}
-    for name, car in (("with", ETK_LIKE), ("without", replace(ETK_LIKE, esc=0.0))):
+    for name, car in (("with", ETK_LIKE), ("without", replace(ETK_LIKE, esc_gain=0.0))):
         vehicle = rolling(70, car=car)
         slips = []
         for step in range(250):
@@ -165,10 +165,10 @@ def test_loads_add_up_to_the_weight_and_shift_as_statics_says():
     assert loads.sum() == pytest.approx(ETK_LIKE.mass * G, rel=0.01)
     lateral = seen["yaw_rate"] * seen["vx"]
     # Body at its height and wheels at their centres, over one track.
-    wheels = 2 * (ETK_LIKE.front.wheel_mass + ETK_LIKE.rear.wheel_mass)
-    moment = (ETK_LIKE.body_mass * ETK_LIKE.height + wheels * 0.312) * lateral
-    moment += ETK_LIKE.body_mass * G * (ETK_LIKE.height - 0.08) * seen["roll"]  # the body leans out
-    shifted = (loads[1] + loads[3] - loads[0] - loads[2]) * ETK_LIKE.front.track / 2
+    wheels = 2 * (ETK_LIKE.front.unsprung_mass + ETK_LIKE.rear.unsprung_mass)
+    moment = (ETK_LIKE.sprung_mass * ETK_LIKE.cg_height + wheels * 0.312) * lateral
+    moment += ETK_LIKE.sprung_mass * G * (ETK_LIKE.cg_height - 0.08) * seen["roll"]  # the body leans out
+    shifted = (loads[1] + loads[3] - loads[0] - loads[2]) * ETK_LIKE.front.track_width / 2
     assert shifted == pytest.approx(moment, rel=0.05)
     across = vehicle.wheels[:, FY].sum()
     assert across == pytest.approx(ETK_LIKE.mass * lateral, rel=0.04)
@@ -203,7 +203,7 @@ def test_the_front_wheels_turn_at_a_limited_rate_and_no_further_than_their_stop(
     assert vehicle.see()["steer"] == pytest.approx(0.8 * 0.2, abs=1e-9)
     for _ in range(100):
         vehicle.move(9.0, 0.0, 0.0)
-    assert vehicle.see()["steer"] == pytest.approx(ETK_LIKE.steer_limit, abs=1e-9)
+    assert vehicle.see()["steer"] == pytest.approx(ETK_LIKE.max_steer_angle, abs=1e-9)
 
 
 def test_a_slow_circle_is_as_tight_as_the_steering_says():

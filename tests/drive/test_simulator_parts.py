@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.drive.lane import Lane
-from roadgpt.drive.ribbon import place_on, ribbon_of
+from roadgpt.drive.lane_polygon import LanePolygon
+from roadgpt.drive.sampled_road import locate_on, sample_road
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, tables
-from roadgpt.drive.simulators.mujoco.systems import stability, valve
+from roadgpt.drive.simulators.mujoco.chassis_control import esc_torques, slip_valve
 from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
 from roadgpt.export.ego import CAR
 from roadgpt.road import Design, Road, Segment, World, build
 
 TYRE = ETK_LIKE.front.tyre
-LOAD = ETK_LIKE.load(ETK_LIKE.front)
+LOAD = ETK_LIKE.static_wheel_load(ETK_LIKE.front)
 _, AXLES = tables(ETK_LIKE)
 
 
@@ -40,10 +40,22 @@ def magic_formula(slip, stiffness, peak, shape, bend):
 @pytest.mark.parametrize("slip", [-0.3, -0.05, 0.002, 0.03, 0.1, 0.5])
 def test_pure_slips_follow_the_textbook(slip):
     fx, fy = steady(slip, 0.0)
-    expected = magic_formula(slip, TYRE.stiffness_x * LOAD, TYRE.grip_x * LOAD, TYRE.shape_x, TYRE.bend_x)
+    expected = magic_formula(
+        slip,
+        TYRE.slip_stiffness * LOAD,
+        TYRE.peak_friction_x * LOAD,
+        TYRE.shape_factor_x,
+        TYRE.curvature_factor_x,
+    )
     assert (fx, fy) == (pytest.approx(expected, rel=1e-6), pytest.approx(0.0, abs=1e-9))
     fx, fy = steady(0.0, slip)
-    expected = magic_formula(slip, TYRE.stiffness_y * LOAD, TYRE.grip_y * LOAD, TYRE.shape_y, TYRE.bend_y)
+    expected = magic_formula(
+        slip,
+        TYRE.cornering_stiffness * LOAD,
+        TYRE.peak_friction_y * LOAD,
+        TYRE.shape_factor_y,
+        TYRE.curvature_factor_y,
+    )
     assert (fx, fy) == (pytest.approx(0.0, abs=1e-9), pytest.approx(expected, rel=1e-6))
 
 
@@ -57,9 +69,10 @@ def test_pure_slips_follow_the_textbook(slip):
 @settings(max_examples=60, deadline=None)
 def test_no_force_leaves_the_friction_ellipse(slip_x, slip_y, load, friction, speed):
     fx, fy = steady(slip_x, slip_y, load, friction, speed)
-    fade = 1 - TYRE.grip_fade * (load / LOAD - 1)
+    fade = 1 - TYRE.friction_load_sensitivity * (load / LOAD - 1)
     used = math.hypot(
-        fx / (friction * TYRE.grip_x * fade * load), fy / (friction * TYRE.grip_y * fade * load)
+        fx / (friction * TYRE.peak_friction_x * fade * load),
+        fy / (friction * TYRE.peak_friction_y * fade * load),
     )
     assert used <= 1 + 1e-9
     if abs(slip_x) > 1e-3:
@@ -84,7 +97,7 @@ def test_a_tyre_in_the_air_does_nothing():
 def test_a_slip_builds_up_over_the_relaxation_length():
     x = y = 0.0
     speed, dt = 20.0, 0.002
-    steps = round(TYRE.relaxation_y / (speed * dt))
+    steps = round(TYRE.relaxation_length_y / (speed * dt))
     for _ in range(steps):
         _, _, x, y = tyre_forces(AXLES[0], 1.0, LOAD, 0.0, speed, -0.05 * speed, speed, x, y, dt)
     assert y == pytest.approx(0.05 * (1 - math.exp(-1)), rel=0.05)
@@ -93,25 +106,25 @@ def test_a_slip_builds_up_over_the_relaxation_length():
 def test_a_valve_closes_on_slip_and_opens_again():
     opening = 1.0
     for _ in range(100):
-        opening = valve(opening, 0.3, 0.1, 0.002)
+        opening = slip_valve(opening, 0.3, 0.1, 0.002)
     assert opening < 0.2
     for _ in range(1000):
-        opening = valve(opening, 0.0, 0.1, 0.002)
+        opening = slip_valve(opening, 0.0, 0.1, 0.002)
     assert opening == 1.0
-    assert valve(0.5, 0.9, 0.0, 0.002) == 1.0
+    assert slip_valve(0.5, 0.9, 0.0, 0.002) == 1.0
 
 
 def test_esc_brakes_the_wheel_that_turns_the_car_back():
     car = tables(ETK_LIKE)[0][0]
-    without = tables(replace(ETK_LIKE, esc=0.0))[0][0]
-    left_front, right_front, *_, kept = stability(car, 20.0, 0.6, 0.3)  # oversteer in a left turn
+    without = tables(replace(ETK_LIKE, esc_gain=0.0))[0][0]
+    left_front, right_front, *_, kept = esc_torques(car, 20.0, 0.6, 0.3)  # oversteer in a left turn
     assert (left_front, right_front > 0, kept < 1) == (0.0, True, True)
-    left_front, right_front, *_ = stability(car, 20.0, -0.6, -0.3)
+    left_front, right_front, *_ = esc_torques(car, 20.0, -0.6, -0.3)
     assert (left_front > 0, right_front) == (True, 0.0)
-    *_, left_rear, right_rear, kept = stability(car, 20.0, 0.1, 0.5)  # understeer in a left turn
+    *_, left_rear, right_rear, kept = esc_torques(car, 20.0, 0.1, 0.5)  # understeer in a left turn
     assert (left_rear > 0, right_rear, kept < 1) == (True, 0.0, True)
-    assert stability(car, 20.0, 0.31, 0.3) == (0.0, 0.0, 0.0, 0.0, 1.0)
-    assert stability(without, 20.0, 2.0, 0.3) == (0.0, 0.0, 0.0, 0.0, 1.0)
+    assert esc_torques(car, 20.0, 0.31, 0.3) == (0.0, 0.0, 0.0, 0.0, 1.0)
+    assert esc_torques(without, 20.0, 2.0, 0.3) == (0.0, 0.0, 0.0, 0.0, 1.0)
 
 
 def winding_road() -> Road:
@@ -129,11 +142,11 @@ def winding_road() -> Road:
 
 
 ROAD = winding_road()
-RIBBON = ribbon_of(ROAD)
+RIBBON = sample_road(ROAD)
 
 
 def on_ribbon(x, y, near):
-    return place_on(RIBBON.table, RIBBON.first, RIBBON.step, x, y, near)
+    return locate_on(RIBBON.table, RIBBON.first, RIBBON.step, x, y, near)
 
 
 @given(st.floats(0.0, 1.0), st.floats(-7.0, 7.0), st.floats(-2.0, 2.0))
@@ -141,7 +154,7 @@ def on_ribbon(x, y, near):
 def test_the_ribbon_knows_the_road(share, t, off):
     s = share * ROAD.length
     x, y, z = ROAD.at(s, t).tolist()
-    s_found, t_found, height, slope, heading = place_on(
+    s_found, t_found, height, slope, heading = locate_on(
         RIBBON.table, RIBBON.first, RIBBON.step, x, y, s + off
     )
     assert s_found == pytest.approx(s, abs=5e-4)
@@ -180,7 +193,7 @@ def test_the_share_outside_on_a_straight_is_plain_geometry(t, expected):
     road = build(
         Design(starting_point=(50, 50, 0), theta=0, segments=(Segment(distance=60, direction="straight"),))
     )
-    lane = Lane.along(road, World())
+    lane = LanePolygon.along(road, World())
     box = np.array([[-2.35, -0.93], [2.35, -0.93], [2.35, 0.93], [-2.35, 0.93]]) + [80.0, 50.0 + t]
     assert lane.outside(box, 30.0) == pytest.approx(expected, abs=1e-9)
 
@@ -189,23 +202,23 @@ def test_the_lane_ends_with_the_road():
     road = build(
         Design(starting_point=(50, 50, 0), theta=0, segments=(Segment(distance=60, direction="straight"),))
     )
-    lane = Lane.along(road, World())
+    lane = LanePolygon.along(road, World())
     box = np.array([[-2.35, -0.93], [2.35, -0.93], [2.35, 0.93], [-2.35, 0.93]]) + [110.0, 48.0]
     assert lane.outside(box, 60.0) == pytest.approx(0.5, abs=1e-9)
 
 
 def test_files_speak_of_the_car_that_drives() -> None:
     told, driven = CAR, ETK_LIKE
-    assert (told.length, told.width, told.height) == (driven.length, driven.width, driven.roof)
+    assert (told.length, told.width, told.height) == (driven.length, driven.width, driven.overall_height)
     assert (told.front_axle, told.rear_axle, told.middle) == (
-        driven.front.place,
-        driven.rear.place,
-        driven.box_ahead,
+        driven.front.position,
+        driven.rear.position,
+        driven.box_offset,
     )
     assert (told.mass, told.gravity_height, told.track, told.lock) == (
         driven.mass,
-        driven.height,
-        driven.front.track,
-        driven.steer_limit,
+        driven.cg_height,
+        driven.front.track_width,
+        driven.max_steer_angle,
     )
-    assert told.wheel == 2 * driven.wheel_radius
+    assert told.wheel == 2 * driven.unloaded_radius

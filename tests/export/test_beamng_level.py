@@ -98,6 +98,15 @@ def test_the_middle_line_is_broken_as_in_our_opendrive_files(tmp_path: Path) -> 
         np.testing.assert_allclose(end, road.at([first, last]), atol=0.05)
 
 
+def test_painted_lines_end_where_the_judged_markings_do(tmp_path: Path) -> None:
+    found, (left, right) = objects(level(tmp_path)), WORLD.marking_edges
+    dash = next(name for name in found if name.startswith("middle"))
+    for name, outer in (("right", right), ("left", -right), (dash, left)):
+        x, y, _, width = np.array(found[name]["nodes"])[1:-1].T
+        t = ROADS["arcs"].locate(x, y)[1]
+        assert np.allclose(t + np.sign(outer) * width / 2, outer, atol=0.01), name
+
+
 @pytest.mark.parametrize("incline", [0.0, 8.0, -8.0])
 def test_the_ground_lies_at_the_road_and_what_is_higher_stands_on_it(tmp_path: Path, incline: float) -> None:
     parts = tuple(Segment(distance=60, direction="straight", incline=slope) for slope in (0, incline))

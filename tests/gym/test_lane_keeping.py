@@ -77,7 +77,7 @@ def test_an_episode_is_the_drive_that_simulate_makes_of_its_commands() -> None:
 
 
 def test_the_numbers_are_those_of_the_road_and_the_car() -> None:
-    from roadgpt.gym.seen import AHEAD, LABELS, SCALES
+    from roadgpt.gym.observation import AHEAD, LABELS, SCALES
 
     env = made("a hilly road with 3 turns", world={"friction": 0.6, "speed_limit": 15})
     rows = episode(env, good, most=260, seed=2)

@@ -144,6 +144,13 @@ def test_the_road_is_drawn_where_it_is(driven: Run) -> None:
     assert (points[1:] + points[:-1]) / 2 == pytest.approx(driven.road.at(middle), abs=0.02)
 
 
+def test_the_markings_are_those_that_are_judged(driven: Run) -> None:
+    made = view.scene(driven)
+    left, right = driven.world.marking_edges  # the page paints its edge lines up to the lane's width
+    assert made["marking"]["width"] == 2 * left
+    assert made["world"]["lane_width"] == -right
+
+
 def test_the_drive_is_that_of_the_run(driven: Run) -> None:
     drive = view.scene(driven)["drive"]
     assert driven.drive is not None

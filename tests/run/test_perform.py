@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from roadgpt.brief.model import Brief
-from roadgpt.drive.apart import driver_of
+from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
 from roadgpt.road import Road, World
 from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, campaign, perform, prove, read_run, seed_of

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.sbft.host import NAMES as FOLDER
+from roadgpt.sbft.generator_process import NAMES as FOLDER
 from sbft.interpreters import old_pythons
 from sbft.official_names import ELSEWHERE, NAMES
 
@@ -32,7 +32,7 @@ def made(owner):
               "DecalRoad": ("road",),
               "OutOfBoundsMonitor": (None, None), "SimulationData": ("drive",), "TestValidator": (200,),
               "RoadTestVisualizer": (200,), "OOBAnalyzer": (".",)}
-    more = {"line": object(), "time_budget": 9} if owner.__name__ == "BeamngExecutor" else {}
+    more = {"connection": object(), "time_budget": 9} if owner.__name__ == "BeamngExecutor" else {}
     return owner(*values.get(owner.__name__, ()), **more)
 
 wrong = []

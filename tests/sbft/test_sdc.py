@@ -20,7 +20,7 @@ from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.errors import UsageError
 from roadgpt.road import Road
 from roadgpt.sbft.sdc import messages
-from roadgpt.sbft.sdc.risk import BY_LINE, PLAIN, UNKNOWN, Signs, learnt, order, signs_of
+from roadgpt.sbft.sdc.risk import LINE_ONLY, PLAIN, UNKNOWN, RiskFeatures, fit_model, order, risk_features
 from roadgpt.sbft.sdc.service import serve
 
 PROTO = Path(messages.__file__).with_name("competition.proto")
@@ -146,13 +146,13 @@ def test_it_learns_from_known_outcomes(client: tuple[Any, Any]) -> None:
 
 def test_weighing_finds_the_sign_that_counts() -> None:
     rng = np.random.default_rng(3)
-    table = rng.normal(size=(200, len(Signs._fields)))
+    table = rng.normal(size=(200, len(RiskFeatures._fields)))
     failed = table[:, 2] + 0.3 * rng.normal(size=200) > 0.5
-    weighing = learnt([Signs(*row) for row in table], failed.tolist())
-    scores = weighing.scores([Signs(*row) for row in table])
+    model = fit_model([RiskFeatures(*row) for row in table], failed.tolist())
+    scores = model.scores([RiskFeatures(*row) for row in table])
     first = order(scores)[: int(failed.sum())]
     assert failed[first].mean() > 0.8
-    chosen = weighing.worth([Signs(*row) for row in table])
+    chosen = model.select([RiskFeatures(*row) for row in table])
     assert failed[chosen].mean() > 0.9
     assert len(chosen) >= 10
 
@@ -162,11 +162,11 @@ def test_what_is_selected_fails_far_more_often_than_what_is_not() -> None:
     rng = np.random.default_rng(11)
     shares, counts, misses = [], [], 0
     for _ in range(40):
-        table = rng.normal(size=(1500, len(Signs._fields)))
+        table = rng.normal(size=(1500, len(RiskFeatures._fields)))
         failed = rng.random(1500) < 1 / (1 + np.exp(3.0 - 0.9 * table[:, 0]))
-        signs = [Signs(*row) for row in table]
-        weighing = learnt(signs[:1200], failed[:1200].tolist())
-        chosen = failed[1200:][weighing.worth(signs[1200:])]
+        features = [RiskFeatures(*row) for row in table]
+        model = fit_model(features[:1200], failed[:1200].tolist())
+        chosen = failed[1200:][model.select(features[1200:])]
         shares.append(chosen.mean())
         counts.append(len(chosen))
         misses += not chosen.any()
@@ -192,25 +192,25 @@ def test_the_line_is_where_the_car_drives() -> None:
     s, t = drive["s"], drive["t"]
     counts = (s > 25) & (s < road.length - 8)
     farthest = np.abs(t[counts] + PLAIN.lane_width / 2).max()
-    assert signs_of(arc(30)).near == pytest.approx(farthest, abs=0.6)
+    assert risk_features(arc(30)).near == pytest.approx(farthest, abs=0.6)
 
 
 def test_roads_that_cannot_be_used_lie_in_the_middle() -> None:
-    signs = [signs_of(arc(16)), signs_of([(0.0, 0.0)]), signs_of(arc(1e5, 0.01))]
-    assert order(BY_LINE.scores(signs)).tolist() == [0, 1, 2]
+    features = [risk_features(arc(16)), risk_features([(0.0, 0.0)]), risk_features(arc(1e5, 0.01))]
+    assert order(LINE_ONLY.scores(features)).tolist() == [0, 1, 2]
 
 
 def test_too_little_teaches_nothing() -> None:
-    assert learnt([UNKNOWN] * 5, [True, False] * 2 + [True]) is BY_LINE
-    assert learnt([UNKNOWN] * 50, [True] * 50) is BY_LINE
-    assert np.isfinite(learnt([UNKNOWN] * 50, [True, False] * 25).scores([UNKNOWN])).all()
+    assert fit_model([UNKNOWN] * 5, [True, False] * 2 + [True]) is LINE_ONLY
+    assert fit_model([UNKNOWN] * 50, [True] * 50) is LINE_ONLY
+    assert np.isfinite(fit_model([UNKNOWN] * 50, [True, False] * 25).scores([UNKNOWN])).all()
 
 
 def test_the_same_road_has_the_same_signs() -> None:
-    assert signs_of(arc(30)) == signs_of(arc(30))
-    assert signs_of(arc(16)).near > signs_of(arc(60)).near
+    assert risk_features(arc(30)) == risk_features(arc(30))
+    assert risk_features(arc(16)).near > risk_features(arc(60)).near
     # the spline bends more where arcs begin
-    assert signs_of(arc(20)).tightest == pytest.approx(1 / 20, rel=0.15)
+    assert risk_features(arc(20)).tightest == pytest.approx(1 / 20, rel=0.15)
 
 
 def test_a_port_in_use_is_told_of() -> None:

@@ -14,7 +14,7 @@ from misbehaving import SEARCHER, write
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 from roadgpt.sbft import Competition, Experiment, compete
-from roadgpt.sbft.host import NAMES
+from roadgpt.sbft.generator_process import NAMES
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "sbft"
 POSIX = os.name == "posix"
@@ -37,7 +37,7 @@ def counted(folder: Path) -> dict[str, str]:
 
 
 ENDS = {
-    "enough": ("pass", "done", "enough"),
+    "enough": ("pass", "done", "finished by itself"),
     "raises": ("raise KeyError('lane')", "raised", r"KeyError \(.*misbehaves.py, line \d+\): 'lane'"),
     "exits": ("sys.exit(3)", "exit", r"sys.exit\(3\)"),
     "leaves": ("os._exit(9)", "died", "exit status 9"),
@@ -49,8 +49,8 @@ ENDS = {
         "raised",
         "ValueError.*noise",
     ),
-    "closed": ("os.close(0); os.close(1); os.close(2)", "done", "enough"),
-    "thread": ("threading.Thread(target=time.sleep, args=(600,)).start()", "done", "enough"),
+    "closed": ("os.close(0); os.close(1); os.close(2)", "done", "finished by itself"),
+    "thread": ("threading.Thread(target=time.sleep, args=(600,)).start()", "done", "finished by itself"),
     "assertion": ("RoadTestFactory.create_road_test([(1, 2, 3), (4, 5, 6)])", "raised", "AssertionError"),
     "double point": ("RoadTestFactory.create_road_test([(50, 50), (50, 50)])", "raised", "ValueError"),
     "too long": ("RoadTestFactory.create_road_test([(0, 0), (1e9, 0)])", "raised", "ValueError"),

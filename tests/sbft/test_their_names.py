@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from roadgpt.run.execution import FIELDS
-from roadgpt.sbft.host import NAMES
+from roadgpt.sbft.generator_process import NAMES
 
 # The folder of names stands first on the path, as in a generator's process.
 HEAD = f"import sys; sys.path.insert(0, {str(NAMES)!r})\n"

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Road, Segment, World, build
-from roadgpt.scene import Camera, Place, Pose, Scene
+from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
 
 CAMERA = Camera(320, 180)
 WORLD = World()
@@ -43,7 +43,7 @@ def on(road: Road, s: float, t: float = -2.0, **more: float) -> Pose:
     return Pose(x, y, z + HIGH, float(road.heading(s)), math.atan(float(road.grade(s))), **more)
 
 
-def projected(camera: Camera, place: Place, pose: Pose, points: np.ndarray) -> np.ndarray:
+def projected(camera: Camera, place: CameraPlacement, pose: Pose, points: np.ndarray) -> np.ndarray:
     """Columns, rows and depths of points, by rotations in Euler's way."""
     body = Rotation.from_euler("ZYX", [pose.heading, -pose.pitch, pose.roll])
     eye = np.array(pose[:3]) + body.apply([place.ahead, 0, place.up - HIGH])
@@ -80,7 +80,7 @@ def markings(road: Road, s0: float) -> np.ndarray:
 def test_markings_are_seen_where_a_pinhole_puts_them(
     bent: Scene, s: float, t: float, turned: float, pitch: float, roll: float
 ) -> None:
-    place = Place(0.4, 2.2, -0.12)
+    place = CameraPlacement(0.4, 2.2, -0.12)
     camera = Camera(640, 360, math.radians(80), "bonnet", place)
     at = on(bent.road, s, t)
     pose = at._replace(heading=at.heading + turned, pitch=at.pitch + pitch, roll=roll)
@@ -98,7 +98,7 @@ def test_markings_are_seen_where_a_pinhole_puts_them(
 def test_what_lies_behind_a_crest_is_hidden() -> None:
     over = Road.through([[x, 0, 9 * math.exp(-(((x - 60) / 22) ** 2))] for x in range(0, 141, 10)])
     scene = Scene.of(over, WORLD)
-    place = Place(0.4, 1.3, 0.0)
+    place = CameraPlacement(0.4, 1.3, 0.0)
     camera = Camera(640, 360, math.radians(40), "bonnet", place)
     pose = on(over, 20.0)
     eye = np.array(pose[:3]) + [place.ahead, 0, place.up - HIGH]
@@ -188,7 +188,7 @@ def test_the_car_is_seen_from_behind_with_a_shadow_and_its_lights_brake(straight
 
 
 def test_its_wheels_roll_and_those_in_front_steer(straight: Scene) -> None:
-    camera = Camera(320, 180, math.radians(50), "chase", Place(-7.0, 1.4, -0.1))
+    camera = Camera(320, 180, math.radians(50), "chase", CameraPlacement(-7.0, 1.4, -0.1))
     pose = on(straight.road, 40.0)
     car = pose._replace(heading=pose.heading + math.pi / 2)  # its nose to the left: we see its right side
     still, rolled, round_, steered = (

@@ -6,7 +6,7 @@ import pytest
 from roadgpt.drive import simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.marking import Marking
+from roadgpt.drive.marking_monitor import MarkingMonitor
 from roadgpt.road import World
 from roadgpt.verdict import Verdict, consult, graded, judge, severity
 from roadgpt.verdict.margin import margins
@@ -108,7 +108,7 @@ def test_a_drive_ends_where_a_tyre_departs_and_goes_on_where_it_is_told_to() -> 
             once = simulate(road, WATCHED, driver())
             verdict = judge(road, once, WATCHED)
             assert (once.ended, verdict.cause) == ("out_of_lane", "out of lane")
-            beyond = Marking.for_tyres(road, WATCHED, once.car).along(once)
+            beyond = MarkingMonitor.for_tyres(road, WATCHED, once.car).along(once)
             assert (beyond[:-1] <= 0).all()
             assert 0 < beyond[-1] < 0.1
             assert verdict.margin < 0

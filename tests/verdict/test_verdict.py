@@ -13,7 +13,7 @@ from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import UsageError
 from roadgpt.road import Road, World
 from roadgpt.verdict import Verdict, consult, judge
-from roadgpt.verdict.margin import Stand, margins, reach
+from roadgpt.verdict.margin import LateralExtent, allowed_overhang, margins
 
 STRAIGHT = Road.through([[10, 20], [60, 20], [110, 20]])  # along +x, 100 m, y of its middle is 20
 BOX = Box(4.7, 1.86)
@@ -172,8 +172,8 @@ def test_the_verdict_agrees_with_its_record() -> None:
 )
 def test_the_reach_is_where_the_share_of_a_grid_is_the_tolerance(angle: float, tolerance: float) -> None:
     a, b = 2.35 * math.sin(angle), 0.93 * math.cos(angle)
-    box = Stand(np.zeros(1), np.array([max(a, b)]), np.array([max(min(a, b), 1e-6)]))
-    far = float(reach(tolerance, box)[0])
+    box = LateralExtent(np.zeros(1), np.array([max(a, b)]), np.array([max(min(a, b), 1e-6)]))
+    far = float(allowed_overhang(tolerance, box)[0])
     u = np.linspace(-1, 1, 801)[:-1] + 1 / 800
     across = a * u[:, None] + b * u[None, :]
     assert np.mean(across + far > 0) == pytest.approx(tolerance, abs=0.01)

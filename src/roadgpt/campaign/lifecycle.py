@@ -23,8 +23,8 @@ from roadgpt.campaign.traces import OLD_SUFFIX, SUFFIX, TRACES
 from roadgpt.chat import Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.drive import refuse_ignored
-from roadgpt.drive.apart import driver_of
-from roadgpt.drive.trust import admit
+from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup, brief_of
 from roadgpt.run.atomic import held, refuse_links, sweep
@@ -101,7 +101,7 @@ def _admit(plan: Plan) -> None:
     """
     if plan.drives:
         for driver in plan.drivers:
-            admit(driver)
+            require_permission(driver)
     if plan.chat is not None and plan.chat.replay is None and plan.asks_a_model:
         key_for(plan.chat.base_url)
 

@@ -15,7 +15,7 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.campaign.model import UNLIMITED, Budget, Cell, Goal
 from roadgpt.chat import ChatSettings, asks_a_model
-from roadgpt.drive import trust
+from roadgpt.drive import permission
 from roadgpt.errors import UsageError
 from roadgpt.road import Geometry, World
 from roadgpt.run.model import Request, Setup
@@ -63,7 +63,7 @@ class Plan(Frozen):
     def came_with(self, file: object) -> "Plan":
         """Returns the Plan as read from a file that may be somebody else's; see ``Setup.came_with``."""
         chat = self.chat and self.chat.came_with(file)
-        drivers = tuple(trust.came_with(driver, file) for driver in self.drivers)
+        drivers = tuple(permission.driver_from_file(driver, file) for driver in self.drivers)
         return self.model_copy(update={"chat": chat, "drivers": drivers})
 
     @property

@@ -11,7 +11,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from roadgpt.campaign.model import MOST_TESTS, Budget, Goal
 from roadgpt.campaign.plan import PATIENCE, WITH_GOAL, WITHOUT_GOAL, Plan, Seed
 from roadgpt.chat import ChatSettings
-from roadgpt.drive.custom import located
+from roadgpt.drive.loading import absolute_spec
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_text
 from roadgpt.road import Geometry, World
@@ -130,7 +130,7 @@ def _plan(table: PlanTable, folder: Path) -> Plan:
     return Plan(
         prompts=table.prompts or ("",),
         designers=table.designers,
-        drivers=tuple(located(driver, folder) for driver in table.drivers),
+        drivers=tuple(absolute_spec(driver, folder) for driver in table.drivers),
         simulators=table.simulators,
         generators=table.generators or (WITH_GOAL if table.goal else WITHOUT_GOAL,),
         seeds=table.seeds,

@@ -40,11 +40,11 @@ def beamng_command(out: Path, repeats: int) -> None:
     \b
     roadgpt doctor beamng --beamng-home C:\\BeamNG.tech.v0.39 --beamng-user C:\\BeamNG.user
     """
-    from roadgpt.drive.simulators.beamng import Settings
+    from roadgpt.drive.simulators.beamng import BeamngSettings
     from roadgpt.drive.simulators.beamng.selftest import REPORT, run
 
     out.mkdir(parents=True, exist_ok=True)
-    checks = run(Settings.of(), out, repeats, _tell)
+    checks = run(BeamngSettings.of(), out, repeats, _tell)
     click.echo(f"report: {out / f'{REPORT}.md'} and .json; please send it to RoadGPT's makers")
     problems = sum(not check.is_fine for check in checks)
     if problems:

@@ -44,7 +44,7 @@ def change(wish: Wish, screen: Screen) -> Path:
     Raises:
         RoadGPTError: the words or the road cannot be used; then nothing is written.
     """
-    from roadgpt.drive.trust import admit, expect
+    from roadgpt.drive.permission import check_named_driver, require_permission
     from roadgpt.run import Setup, prove
     from roadgpt.run.editing import folder_for, original, reject_used, write_edit
     from roadgpt.run.sbft_json import test_name
@@ -54,9 +54,9 @@ def change(wish: Wish, screen: Screen) -> Path:
     before = _of_test(wish.road) or original(wish.road, wish.world, Setup())
     for remark in before.remarks:
         screen.say(f"{wish.road}: {remark}")
-    expect(wish.driver, {before.setup.driver}, wish.road)
+    check_named_driver(wish.driver, {before.setup.driver}, wish.road)
     if wish.drives and before.setup.drives:
-        admit(before.setup.driver)
+        require_permission(before.setup.driver)
     made = _edited(before, wish, screen)
     drives = wish.drives and before.setup.drives
     setup = before.setup.model_copy(update={"designer": wish.designer, "chat": wish.chat, "drives": drives})

@@ -39,7 +39,7 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
         return
     from roadgpt.errors import UsageError
     from roadgpt.run.atomic import write_whole
-    from roadgpt.sbft.host import NAMES
+    from roadgpt.sbft.generator_process import NAMES
 
     if path.exists():
         raise UsageError(f"{path} is there already; give another name")

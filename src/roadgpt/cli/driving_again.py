@@ -39,13 +39,13 @@ def drive_again(
     """
     from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.campaign.rerun import is_same, run_again
-    from roadgpt.drive.trust import expect
+    from roadgpt.drive.permission import check_named_driver
     from roadgpt.report import drawing
     from roadgpt.run import write_run
 
     tests = _named(names, choice)
     for folder_ in {place.folder for place in tests}:
-        expect(driver, drivers_of(folder_), folder_)
+        check_named_driver(driver, drivers_of(folder_), folder_)
     draw = drawing(axes, formats) if formats else None
     for place in tests:
         cell, number = place.cell, place.number or 0

@@ -81,14 +81,14 @@ def analyse_failures(place: Path, look: Look) -> None:
     """
     from roadgpt.campaign.faults import analyse, fault_log, faults_in, write_tables
     from roadgpt.campaign.faults.failures import drivers_of
-    from roadgpt.drive.trust import admit
+    from roadgpt.drive.permission import require_permission
 
     found = faults_in(place)
     if not found.failures:
         look.say("no road failed: there is no fault to look into")
         return
     for driver in sorted(drivers_of(place)):
-        admit(driver)  # here, where the user can be asked, and not in each of the workers
+        require_permission(driver)  # here, where the user can be asked, and not in each of the workers
     look.say(f"{found.sentence}; looking into a typical one of each fault", is_news=True)
     draw = _draws(bool(look.formats))
     tasks = [

@@ -47,9 +47,9 @@ def whole(low: int, high: int, what: str) -> Callable[[str], int]:
 def driver(value: str) -> str:
     """The type of an option that names a driver: whoever types it may have its code run."""
     if ".py" in value:
-        from roadgpt.drive.trust import named
+        from roadgpt.drive.permission import permit
 
-        named(value)
+        permit(value)
     return value
 
 
@@ -57,9 +57,9 @@ def driver_again(value: str) -> str:
     """The same, for what a file names: as a path that holds from anywhere."""
     from pathlib import Path
 
-    from roadgpt.drive.custom import located
+    from roadgpt.drive.loading import absolute_spec
 
-    return driver(located(value, Path.cwd()))
+    return driver(absolute_spec(value, Path.cwd()))
 
 
 DESIGN, SITE, DRIVE, MODEL = "Design and check", "World", "Drive and verdict", "Language model"

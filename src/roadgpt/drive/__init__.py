@@ -1,6 +1,7 @@
-"""The room that drives: a car, a road and a driver give a Drive.
+"""Drives cars: a road, a driver and a simulator give a Drive. Verb: ``simulate``.
 
-Two shelves. ``simulators/`` hold the car and its physics; ``drivers/`` hold those who sit in it:
+Two kinds of plug-ins belong to this room. A simulator (``simulators/``) is a car and its physics; a driver
+(``drivers/``) controls the car:
 
     class Simulator:
         def simulate(self, road, world, driver, seed, keep_driving=False) -> Drive
@@ -13,19 +14,23 @@ Two shelves. ``simulators/`` hold the car and its physics; ``drivers/`` hold tho
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from roadgpt import plugins
-from roadgpt.drive.apart import driver_of
 from roadgpt.drive.continuity import check_motion
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
-from roadgpt.drive.view import Camera, Command, View
+from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.view import CameraSpec, Command, View
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
+# The name that CameraSpec had before; users' drivers may import it.
+Camera = CameraSpec
+
 __all__ = [
     "COLUMNS",
     "Box",
     "Camera",
+    "CameraSpec",
     "Columns",
     "Command",
     "Drive",
@@ -39,33 +44,40 @@ __all__ = [
 
 @runtime_checkable
 class Driver(Protocol):
-    """Who sits in the car. A driver may also have ``start(road, world, seed)``, called once before time 0,
-    and an attribute ``name`` (else its class's name is recorded)."""
+    """Controls the car.
+
+    A driver may also have a method ``start(road, world, seed)``, which is called once before time 0, and an
+    attribute ``name``. Without the attribute, the name of its class is recorded.
+    """
 
     def steer(self, view: View) -> Command:
-        """What to do for the next 20 ms."""
+        """Returns the command for the next 20 ms."""
         ...
 
 
 @runtime_checkable
 class Simulator(Protocol):
-    """A car and its physics. One that cannot heed some field of the World, such as "friction", names it in an
-    attribute ``ignores``: then who sets it is told so."""
+    """Simulates a car and its physics.
+
+    A simulator that cannot apply some field of the World, such as "friction", lists the field in an attribute
+    ``ignores``. Users who set such a field get an error.
+    """
 
     def simulate(
         self, road: "Road", world: "World", driver: Driver, seed: int, keep_driving: bool = False
     ) -> Drive:
-        """Drive from the start of the road until the drive ends.
+        """Drives from the start of the road until the drive ends.
 
-        At every control step it is asked, in this order: is the car at the goal, is it stuck, is more than
-        ``world.oob_tolerance`` of its box outside the right lane or, with ``world.lane_departure``, a front
-        tyre beyond a marking (unless ``keep_driving``), has it fallen, is time out? The first yes ends the
-        drive.
+        At every control step the simulator checks these conditions in this order: the car is at the goal; the
+        car is stuck; more than ``world.oob_tolerance`` of its box is outside the right lane or, with
+        ``world.lane_departure``, a front tyre is beyond a marking (both unless ``keep_driving``); the car has
+        fallen; the time is up. The first condition that holds ends the drive.
 
         Raises:
-            DriverError: the driver raised, answered with what is no command, or hung.
-            SimulatorError: the simulator itself failed; after three in a row nobody asks it any more.
-            SimulationError: the physics broke down.
+            DriverError: the driver raised an exception, returned something that is not a command, or hung.
+            SimulatorError: the simulator itself failed; after three failures in a row it is not used any
+                more.
+            SimulationError: the physics became unstable.
         """
         ...
 
@@ -78,19 +90,22 @@ def simulate(
     simulator: str | Simulator = "mujoco",
     keep_driving: bool = False,
 ) -> Drive:
-    """One driver on one road; the same arguments give the same Drive, bit for bit, on one machine.
+    """Drives a road with one driver; the same arguments give the same Drive, bit for bit, on one machine.
 
     Args:
-        driver: a driver, its class, the name of one on the shelf ``drivers``, or a user's PATH.py:CLASS.
-        seed: handed to the driver and recorded; the car's physics draws no random number.
-        simulator: a simulator, or the name of one on the shelf ``simulators``.
-        keep_driving: go on after the car has left the lane.
+        road: the road.
+        world: lane width, friction, speed limit and tolerances.
+        driver: a driver, its class, the name of a driver plug-in, or a user's PATH.py:CLASS.
+        seed: passed to the driver and recorded; the car's physics uses no random numbers.
+        simulator: a simulator, or the name of a simulator plug-in.
+        keep_driving: whether to continue after the car has left the lane.
 
     Raises:
-        PartError: no simulator or driver of that name.
-        UsageError: the user's file makes no driver, or the simulator cannot heed what the world says.
-        DriverError: the driver raised, answered with what is no command, or hung.
-        SimulationError: the physics broke down, or moved the car as none can move.
+        PartError: there is no simulator or driver of that name.
+        UsageError: the user's file does not define a driver, or the simulator cannot apply a setting of the
+            world.
+        DriverError: the driver raised an exception, returned something that is not a command, or hung.
+        SimulationError: the physics became unstable, or moved the car as no car can move.
     """
     made: Any = driver_of(driver) if isinstance(driver, str) else driver
     if isinstance(made, type):
@@ -105,14 +120,14 @@ def simulate(
 
 
 def refuse_ignored(simulator: Any, world: "World") -> None:
-    """What a simulator cannot heed is refused where somebody sets it.
+    """Checks that the world sets nothing that the simulator cannot apply.
 
     Args:
-        simulator: the part, or its class.
-        world: a field that is as usual counts as not set.
+        simulator: the simulator or its class.
+        world: a field with its default value counts as not set.
 
     Raises:
-        UsageError: names the setting.
+        UsageError: the world sets such a field; the message names it.
     """
     from roadgpt.road import World
 

@@ -1,8 +1,8 @@
-"""Machine code where it can be had, plain Python where not: the same functions either way.
+"""Compiles inner loops to machine code where possible; elsewhere the same functions run as plain Python.
 
-All or nothing, and decided once: where numba or llvmlite is missing or does not load, or MuJoCo's library
-cannot be called at its addresses, everything is plain Python, far slower. ``ROADGPT_NO_NUMBA=1`` forces it.
-``roadgpt doctor`` tells which is used.
+The decision is made once and for all functions together. If numba or llvmlite is missing or does not load, or
+if MuJoCo's functions cannot be called by their addresses, everything runs as plain Python, which is far
+slower. ``ROADGPT_NO_NUMBA=1`` forces this. ``roadgpt doctor`` shows which of the two is used.
 """
 
 import logging
@@ -17,7 +17,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def _numba() -> tuple[Any, Any, str]:
-    """Numba, the call of a function at its address, and in words why there are none."""
+    """Returns numba, a function that calls another one by its address, and, where there are none, the reason
+    in words."""
     if os.environ.get("ROADGPT_NO_NUMBA", "") not in ("", "0"):
         return None, None, "ROADGPT_NO_NUMBA is set"
     try:
@@ -27,20 +28,20 @@ def _numba() -> tuple[Any, Any, str]:
 
             call = intrinsic_call()
             addresses()
-    except Exception as error:  # what a broken installation raises cannot be foreseen
+    except Exception as error:  # a broken installation may raise anything
         return None, None, f"{type(error).__name__}: {error}"
     return numba, call, ""
 
 
 numba, call_at, WHY_NOT = _numba()
 COMPILES = numba is not None
-"""Does this process compile its inner loops? If not, WHY_NOT tells why."""
+"""Whether this process compiles its inner loops; if not, WHY_NOT gives the reason."""
 
 COMPILING = "compiling the simulator for this machine, once after an installation: 10 to 30 s"
 
 
 def _announce() -> None:
-    """Have the log say why the first drive of an installation takes long, before numba begins to compile."""
+    """Logs why the first drive after an installation takes long, before numba begins to compile."""
     from numba.core.event import Event, Listener, register
 
     class Announcement(Listener):
@@ -62,18 +63,20 @@ if COMPILES:
 
 
 def compiled(function: Function) -> Function:
-    """The function as machine code, kept on disk for the next process where the disk allows it."""
+    """Returns the function as machine code, which is cached on disk for later processes if the disk allows
+    it."""
     if not COMPILES:
         return function
     try:
         made: Function = numba.njit(cache=True, nogil=True)(function)
-    except RuntimeError:  # no folder to keep it in can be written to
+    except RuntimeError:  # there is no writable folder for the cache
         made = numba.njit(nogil=True)(function)
     return made
 
 
 def inlined(function: Function) -> Function:
-    """A small function that only compiled functions call; kept with them, never on its own."""
+    """Returns a small function for use by compiled functions only; it is cached with them and not by
+    itself."""
     if not COMPILES:
         return function
     made: Function = numba.njit(nogil=True)(function)

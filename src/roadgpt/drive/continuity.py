@@ -1,6 +1,6 @@
-"""A car is where its speed takes it: a drive in which it jumps, or stands though it is fast, is none.
+"""Checks that a drive is physically possible: the car moves as its speed says, without jumps.
 
-The bound between two samples is what a car can do, with room to spare:
+The bound between two samples is what a car can do, with some slack:
 
     way <= speed * dt + 1/2 A dt^2 + SLACK        speed: the larger of both samples, at most FASTEST
 """
@@ -11,27 +11,26 @@ from roadgpt.drive.drive import Drive
 from roadgpt.errors import SimulationError
 
 HARDEST = 300.0  # m/s^2, A: 30 g, more than a car survives in one piece
-SLACK = 0.5  # m by which samples may be read at other moments than they say
-FASTEST = 200.0  # m/s; the fastest cars that can be bought reach 135, one that falls 100 m 44
-STANDING = 20.0  # m of way by its speed ...
-SHARE = 1 / 3  # ... of which the car must have gone at least so much
+SLACK = 0.5  # m, tolerance for samples that were taken at slightly other times than they state
+FASTEST = 200.0  # m/s; the fastest production cars reach 135, a car that falls 100 m reaches 44
+STANDING = 20.0  # m of distance according to the speed, from which the check applies ...
+SHARE = 1 / 3  # ... and the share of it that the car must have moved
 
-FAILED = ", so the simulation failed and nothing is said of the driver; drive the road again"
+FAILED = ", so the simulation failed, which says nothing about the driver; drive the road again"
 
 
 def check_motion(drive: Drive) -> None:
-    """Whether the positions of a drive are those of a car.
+    """Checks that the positions of a drive are those of a car.
 
     Raises:
-        SimulationError: a position or a speed is no number, the car jumped, or it did not move as its speed
-            says.
+        SimulationError: a position or a speed is not a finite number, the car jumped, or it did not move as
+            its speed says.
     """
     place = np.stack([drive[name] for name in ("x", "y", "z")], axis=-1)
     time, speed = drive["time"], np.abs(drive["speed"])
     if not (np.isfinite(place).all() and np.isfinite(time).all() and np.isfinite(speed).all()):
         raise SimulationError(
-            f"{drive.simulator} told of a car that is nowhere: a position, a time or a speed of its drive "
-            f"is no number{FAILED}"
+            f"{drive.simulator} reported a position, a time or a speed that is not a finite number{FAILED}"
         )
     way = np.linalg.norm(np.diff(place, axis=0), axis=1)
     dt = np.maximum(np.diff(time), 0.0)
@@ -47,6 +46,6 @@ def check_motion(drive: Drive) -> None:
     told = float((np.minimum(speed[1:], speed[:-1]) * dt).sum())
     if told > STANDING and way.sum() < SHARE * told:
         raise SimulationError(
-            f"{drive.simulator} told of speeds that make {told:.0f} m, and of a way of "
-            f"{way.sum():.0f} m: no car does both{FAILED}"
+            f"{drive.simulator} reported speeds that amount to {told:.0f} m, but positions that amount to "
+            f"{way.sum():.0f} m{FAILED}"
         )

@@ -1,4 +1,4 @@
-"""The Drive: what one driver did on one road, as columns of numbers."""
+"""Defines the Drive: the motion of one car with one driver on one road, as columns of numbers."""
 
 import io
 import json
@@ -39,7 +39,7 @@ COLUMNS = {
     "t": "m, left of the centre line",
     "outside": "0..1, share of the car's box outside the right lane",
 }
-"""Names of the columns, in their order, with what they hold."""
+"""Names of the columns in their order, each with its unit and meaning."""
 
 LARGEST, UNPACKED = 50_000_000, 200_000_000  # bytes of the file, and of what is in it: seven hours of driving
 
@@ -48,9 +48,10 @@ FORMAT = 2
 
 
 class Box(NamedTuple):
-    """The car's outline, and where its front wheels stand and how far they turn.
+    """The outline of the car, and the position and lock angle of its front wheels.
 
-    What a file of an older version does not say has the numbers of RoadGPT's saloon.
+    The defaults are the numbers of RoadGPT's saloon; they apply where a file of an older version lacks a
+    field.
     """
 
     length: float
@@ -58,21 +59,21 @@ class Box(NamedTuple):
     width: float
     """Metres."""
     ahead: float = 0.0
-    """Metres, from the centre of gravity forward to the middle of the box."""
+    """Metres from the centre of gravity forward to the middle of the box."""
     lock: float = 0.6
-    """Radians, the angle of the front wheels at full lock; saloons have 0.5 to 0.7."""
+    """Radians, the angle of the front wheels at full lock; 0.5 to 0.7 for saloons."""
     axle: float = 1.36
-    """Metres, from the centre of gravity forward to the front axle."""
+    """Metres from the centre of gravity forward to the front axle."""
     tyres: float = 1.805
-    """Metres, across the front axle from the outer edge of one tyre to that of the other."""
+    """Metres between the outer edges of the two front tyres."""
     height: float = 0.56
-    """Metres, of the centre of gravity above the road."""
+    """Metres from the road up to the centre of gravity."""
     under: float = 0.42
-    """Metres, of the centre of gravity above the car's underside."""
+    """Metres from the underside of the car up to the centre of gravity."""
 
 
 class Columns(Mapping[str, FloatArray]):
-    """Read-only arrays of one length by name."""
+    """Maps names to read-only arrays of equal length."""
 
     __slots__ = ("_arrays",)
 
@@ -99,9 +100,9 @@ class Columns(Mapping[str, FloatArray]):
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """One driver on one road: poses every 20 ms, seed, how it ended.
+    """One driver on one road: poses every 20 ms, the seed, and how the drive ended.
 
-    ``drive["x"]`` is a column, shape (n,); COLUMNS says which there are and in which unit.
+    ``drive["x"]`` is a column of shape (n,); COLUMNS lists the columns and their units.
     """
 
     driver: str
@@ -123,15 +124,15 @@ class Drive:
 
     @property
     def duration(self) -> float:
-        """Seconds, simulated."""
+        """Simulated seconds."""
         return float(self.columns["time"][-1])
 
     @property
     def lane_steps(self) -> int:
-        """How many steps count for the lane, from the first on.
+        """Number of steps that count for the lane, from the first on.
 
-        All of them, but for the last where the car came to the goal or was stuck: the SBFT competition asks
-        for the goal first, then for motion, then for the lane.
+        All steps count, except the last one where the car reached the goal or was stuck: the SBFT competition
+        checks for the goal first, then for motion, then for the lane.
         """
         return max(len(self) - 1, 1) if self.ended in ("goal", "stuck") else len(self)
 
@@ -141,9 +142,10 @@ class Drive:
         return float(self.columns["outside"][: self.lane_steps].max())
 
     def corners(self, step: int) -> FloatArray:
-        """The four corners of the car's box in plan at one step, shape (4, 2), counter-clockwise.
+        """Returns the four corners of the car's box in plan at one step, shape (4, 2), counter-clockwise.
 
-        For pictures; level ground is assumed (the column ``outside`` counts pitch and roll as well).
+        The corners are for pictures and assume level ground; the column ``outside`` takes pitch and roll into
+        account.
         """
         front = self.car.ahead + self.car.length / 2
         rear = front - self.car.length
@@ -155,7 +157,7 @@ class Drive:
         return turned
 
     def to_bytes(self) -> bytes:
-        """A compressed .npz; the same Drive gives the same bytes."""
+        """Returns the drive as a compressed .npz file; the same Drive gives the same bytes."""
         header = {
             "format": FORMAT,
             "driver": self.driver,
@@ -173,10 +175,10 @@ class Drive:
 
     @classmethod
     def load(cls, path: Path | str) -> "Drive":
-        """Read a file that holds what `to_bytes` gave.
+        """Reads a file that holds the bytes of `to_bytes`.
 
         Raises:
-            UsageError: there is no such file, or it holds no Drive.
+            UsageError: there is no such file, or it does not hold a Drive.
         """
         try:
             with opened(Path(path), LARGEST, "a drive") as file, np.load(file, allow_pickle=False) as archive:

@@ -1,7 +1,7 @@
-"""The line that a driver wants to follow: the road, moved sideways by so many metres at every station.
+"""Computes driving lines: the centre line of the road, shifted sideways by a given offset at every station.
 
-Drivers look it up every 20 ms, so it is measured once per road and kept as plain lists: an index is all it
-takes.
+Drivers look the line up every 20 ms. It is therefore computed once per road and kept as plain lists, in which
+a lookup is one index.
 """
 
 import math
@@ -22,8 +22,8 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
-    """Lists over equal stations of the road; number ``i`` belongs to station ``i * step``."""
+class DrivingLine:
+    """Lists over equally spaced stations of the road; entry ``i`` belongs to station ``i * step``."""
 
     step: float
     """Metres of road between stations."""
@@ -34,16 +34,16 @@ class Line:
     heading: list[float]
     """Radians, continuous."""
     curvature: list[float]
-    """1/m, of the line itself, positive to the left."""
+    """1/m, curvature of the line itself, positive to the left."""
     stretch: list[float]
     """Metres of line per metre of road."""
     grade: list[float]
-    """Of the road, as a ratio."""
+    """Grade of the road as a ratio."""
     crest: list[float]
     """Vertical curvature of the road in 1/m, negative on a crest."""
 
     def place(self, s: float) -> tuple[int, float]:
-        """Index below station ``s`` and the share of the way to the next."""
+        """Returns the index below station ``s``, and the fraction of the step from it to ``s``."""
         at = s / self.step
         last = len(self.x) - 2
         if at <= 0.0:
@@ -53,16 +53,17 @@ class Line:
 
 
 def stations(road: "Road") -> FloatArray:
-    """The stations of the road that a line is measured at, both ends included, shape ``(n,)``."""
+    """Returns the stations of the road at which a line is computed, both ends included, shape ``(n,)``."""
     return np.linspace(0.0, road.length, max(2, math.ceil(road.length / STEP)) + 1)
 
 
-def line_along(road: "Road", offset: ArrayLike) -> Line:
-    """The line at an offset to the left of the centre line, running on straight behind the end.
+def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
+    """Returns the line at an offset to the left of the centre line; it continues straight beyond the road's
+    end.
 
     Args:
         road: the road.
-        offset: metres; a number, or one per station of ``stations(road)``.
+        offset: metres; one number, or one per station of ``stations(road)``.
     """
     s = stations(road)
     step = float(s[1])
@@ -76,7 +77,7 @@ def line_along(road: "Road", offset: ArrayLike) -> Line:
     more = math.ceil(BEYOND / step)
     far = step * np.arange(1, more + 1)[:, None] * [[np.cos(heading[-1]), np.sin(heading[-1])]]
     xy = np.concatenate([xy, xy[-1] + far])
-    return Line(
+    return DrivingLine(
         step,
         _longer(t, more, t[-1]),
         xy[:, 0].tolist(),

@@ -1,4 +1,4 @@
-"""Where MuJoCo's functions lie in memory, for compiled code that calls them there."""
+"""Finds the addresses of MuJoCo's functions in memory, so that compiled code can call them."""
 
 import ctypes
 import functools
@@ -6,16 +6,17 @@ from pathlib import Path
 from typing import Any
 
 FUNCTIONS = ("mj_step1", "mj_step2", "mj_kinematics")
-LIBRARIES = ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll")  # by system; the name tells the version
+LIBRARIES = ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll")  # by system; names contain the version
 
 
 @functools.cache
 def addresses() -> tuple[int, ...]:
-    """The addresses of FUNCTIONS in the library that MuJoCo's own bindings use.
+    """Returns the addresses of FUNCTIONS in the library that MuJoCo's own bindings use.
 
     Raises:
-        OSError: the library is not there, or does not load.
-        AttributeError: it has no such function, or the bindings do not tell where a model lies.
+        OSError: the library is missing or does not load.
+        AttributeError: the library lacks such a function, or the bindings do not expose the address of a
+            model.
     """
     import mujoco
 
@@ -31,7 +32,7 @@ def addresses() -> tuple[int, ...]:
 
 
 def intrinsic_call() -> Any:
-    """A function for compiled code that calls ``void function(model, data)``; all three are addresses.
+    """Returns a function for compiled code that calls ``void function(model, data)``, given three addresses.
 
     Raises:
         ImportError: numba or llvmlite is missing.

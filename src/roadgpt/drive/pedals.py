@@ -1,20 +1,21 @@
-"""From a planned speed to throttle and brake."""
+"""Converts a planned speed to throttle and brake."""
 
-from roadgpt.drive.driving_line import Line
+from roadgpt.drive.driving_line import DrivingLine
 
-LAG = 0.12  # s that engine and brakes need; the plan is looked up that far ahead
+LAG = 0.12  # s, response time of engine and brakes; the plan is looked up that far ahead
 FULL_THROTTLE = 6.8  # m/s^2 at low speed, of a strong saloon
 POWER = 85.0  # W/kg at the wheels
-FULL_BRAKE = 13.0  # m/s^2, of the brakes if the tyres held
-DRAG = 3e-4  # 1/m, of air over mass
-ROLLING = 0.11  # m/s^2
+FULL_BRAKE = 13.0  # m/s^2, deceleration of the brakes with unlimited tyre friction
+DRAG = 3e-4  # 1/m, aerodynamic drag per mass and speed squared
+ROLLING = 0.11  # m/s^2, rolling resistance per mass
 GRAVITY = 9.81  # m/s^2
-GAIN = 1.5  # 1/s, acceleration per error of speed
-COAST = 0.3  # m/s^2 of wanted braking that lifting the foot is answer enough for
+GAIN = 1.5  # 1/s, acceleration per speed error
+COAST = 0.3  # m/s^2, demanded deceleration up to which the driver lifts the throttle and does not brake
 
 
-def pedals(line: Line, speed: list[float], s: float, v: float) -> tuple[float, float]:
-    """Throttle and brake, 0..1 each, that follow a plan: what it needs ahead, and feedback on the error.
+def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[float, float]:
+    """Returns throttle and brake, 0..1 each, that follow a speed plan by feed-forward and feedback on the
+    speed error.
 
     Args:
         line: the line that the speeds belong to.

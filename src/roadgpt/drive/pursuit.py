@@ -1,22 +1,22 @@
-"""Pure pursuit: the circle that leads from the car to a point of its line ahead.
+"""Pure pursuit: computes the circle that leads from the car to a point of its line ahead.
 
 Source: R. C. Coulter, "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01 (1992).
 """
 
 import math
 
-from roadgpt.drive.driving_line import Line
+from roadgpt.drive.driving_line import DrivingLine
 from roadgpt.drive.view import View
 
-NEAREST = 1.0  # m, the least distance that is reckoned with
+NEAREST = 1.0  # m, lower bound of the distance to the point
 
 
-def pursued(line: Line, view: View, ahead: float) -> float:
-    """Curvature of the circle, in 1/m, positive to the left.
+def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
+    """Returns the curvature of the circle in 1/m, positive to the left.
 
     Args:
         line: the line to follow.
-        view: where the car is.
+        view: the present state of the car.
         ahead: metres of road to the point.
     """
     i, share = line.place(view.s + ahead)

@@ -1,4 +1,4 @@
-"""What a driver sees, and what it answers, at every control step."""
+"""Defines what a driver gets, and what it returns, at every control step."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -7,9 +7,10 @@ if TYPE_CHECKING:
 
 
 class View(NamedTuple):
-    """The car and its road now; made anew for every control step (20 ms), so a driver may keep it.
+    """The present state of the car and its road; a new View is made for every control step (20 ms), so a
+    driver may keep it.
 
-    The place is that of the car's centre of gravity.
+    The position is that of the car's centre of gravity.
     """
 
     time: float
@@ -29,11 +30,11 @@ class View(NamedTuple):
     s: float
     """Metres along the centre line."""
     t: float
-    """Metres to the left of the centre line; the right lane's middle is ``-world.lane_width / 2``."""
+    """Metres to the left of the centre line; the middle of the right lane is ``-world.lane_width / 2``."""
     road: "Road"
     world: "World"
     steer: float
-    """Radians, the angle at which the front wheels stand now (left positive)."""
+    """Radians, the present angle of the front wheels, left positive."""
     dt: float
     """Seconds to the next control step."""
     vx: float
@@ -41,12 +42,13 @@ class View(NamedTuple):
     vy: float
     """Metres per second, to the car's left."""
     image: Any = None
-    """What the driver's camera sees, shape (height, width, 3), uint8; None where it has no attribute
+    """The driver's camera image, shape (height, width, 3), uint8; None if the driver has no attribute
     ``camera``."""
 
 
-class Camera(NamedTuple):
-    """What a driver asks for with an attribute ``camera``; the competition's by default."""
+class CameraSpec(NamedTuple):
+    """The camera that a driver asks for with an attribute ``camera``; the defaults are those of the
+    competition."""
 
     width: int = 320
     """Pixels."""
@@ -54,20 +56,21 @@ class Camera(NamedTuple):
     field_of_view: float = 1.22
     """Radians, from the top of the image to the bottom."""
     ahead: float = 0.3
-    """Metres before the centre of gravity."""
+    """Metres ahead of the centre of gravity."""
     up: float = 1.3
     """Metres above the road."""
     down: float = 0.05
-    """Radians by which it looks down."""
+    """Radians by which the camera is tilted downwards."""
     every: int = 2
-    """Control steps from one image to the next: 2 are 25 images a second. BeamNG gives one at each."""
+    """Control steps from one image to the next; 2 gives 25 images a second. BeamNG gives an image at every
+    step."""
 
 
 class Command(NamedTuple):
-    """A driver's answer; held until the next control step."""
+    """The driver's answer, which holds until the next control step."""
 
     steer: float
-    """Radians at the front wheels, left positive; the car turns them at a limited rate."""
+    """Radians at the front wheels, left positive; the car turns its wheels at a limited rate."""
     throttle: float = 0.0
     """0 to 1."""
     brake: float = 0.0

@@ -1,10 +1,10 @@
-"""The car's seat as Gymnasium has it.
+"""A Gymnasium environment in which an agent drives the car.
 
     import gymnasium, roadgpt.gym
     env = gymnasium.make("roadgpt/LaneKeeping-v0", prompt="two hairpins")
 
-Wants the extra ``gym``. Gymnasium no longer looks for environments of other packages, so this room registers
-its own when it is imported.
+It needs the extra ``gym``. Gymnasium no longer searches other packages for environments, so this package
+registers its own when it is imported.
 """
 
 from roadgpt.errors import UsageError

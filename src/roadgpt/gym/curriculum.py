@@ -1,4 +1,5 @@
-"""A curriculum by description: the next one when the agent has come to the goal often enough."""
+"""A curriculum of descriptions: it continues with the next one when the agent reaches the goal often
+enough."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -10,18 +11,18 @@ from roadgpt.errors import UsageError
 
 
 class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """Starts with the first description and goes on to the next.
+    """Starts with the first description and advances to the next ones.
 
-    ``info["level"]`` is the number of the description, from 0.
+    ``info["level"]`` is the index of the present description, from 0.
 
     Args:
-        env: a LaneKeeping.
+        env: a LaneKeeping environment.
         prompts: descriptions, the easiest first.
-        share: of the last episodes that must reach the goal before it goes on.
-        episodes: how many those are.
+        share: share of the last episodes that must reach the goal before it advances.
+        episodes: number of episodes that are counted.
 
     Raises:
-        UsageError: no description, or numbers that make no sense.
+        UsageError: there is no description, or a number is out of range.
     """
 
     def __init__(
@@ -35,13 +36,13 @@ class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._last: deque[bool] = deque(maxlen=episodes)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Any]:
-        """A road of the present level."""
+        """Starts an episode on a road of the present description."""
         chosen = {"prompt": self.prompts[self.level], **(options or {})}
         seen, info = self.env.reset(seed=seed, options=chosen)
         return seen, {**info, "level": self.level}
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """As the environment; at the end of an episode it is counted."""
+        """Runs a step of the environment; at the end of an episode, its result is counted."""
         seen, reward, terminated, truncated, info = self.env.step(action)
         if terminated or truncated:
             self._count(info.get("ended") == "goal")

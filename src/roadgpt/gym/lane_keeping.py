@@ -1,4 +1,4 @@
-"""The environment ``roadgpt/LaneKeeping-v0``: keep the right lane of a road that a description asks for."""
+"""The environment ``roadgpt/LaneKeeping-v0``: keep the right lane of a road that meets a description."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,61 +10,62 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from roadgpt.brief import sentence
-from roadgpt.drive.eyes import Eyes
+from roadgpt.drive.camera_sensor import CameraSensor
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE
-from roadgpt.drive.simulators.mujoco.course import Course
+from roadgpt.drive.simulators.mujoco.drive_monitor import DriveMonitor
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
-from roadgpt.drive.view import Camera
+from roadgpt.drive.view import CameraSpec
 from roadgpt.errors import DesignError, UsageError
-from roadgpt.gym.seen import LABELS, MOST, Preview
+from roadgpt.gym.observation import LABELS, MOST, Preview
 from roadgpt.road import Road, World
 from roadgpt.run import Setup, brief_of, perform
 
 OBSERVATIONS = ("state", "camera")
-WAYS = ("rgb_array",)
+RENDER_MODES = ("rgb_array",)
 STEPS = 2  # control steps of 20 ms per step of the environment: 25 Hz, as a camera has it
 FAILED, ARRIVED = -10.0, 10.0
-ASIDE = 0.1  # of reward per metre beside the lane's middle, per step
-ROUGH = 0.02  # per rad/s of the front wheels
-TRIES = 5  # seeds of one road, before a description is given up
+ASIDE = 0.1  # penalty per metre beside the middle of the lane, per step
+ROUGH = 0.02  # penalty per rad/s of the front wheels
+TRIES = 5  # seeds per road, before a description is given up
 SEEDS = 2**31 - 1
-FILM = (640, 360)  # pixels of what render() gives
+FILM = (640, 360)  # pixels of the image of render()
 
 State = NDArray[np.float32] | NDArray[np.uint8]
 
 
 class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
-    """One road after another, all keeping what the description promises; the seed of ``reset`` draws it.
+    """Gives one road after another, all of which meet the description; the seed of ``reset`` selects them.
 
-    Action: two numbers from -1 to 1. The first is the angle of the front wheels in parts of full lock (0.62
+    Action: two numbers from -1 to 1. The first is the angle of the front wheels as a share of full lock (0.62
     rad), left positive; the second is throttle above 0 and brake below.
 
-    Observation ``state``: 24 numbers, see ``roadgpt.gym.seen.LABELS``, each divided by a usual size.
-    Observation ``camera``: a picture (height, width, 3) from behind the windscreen.
+    Observation ``state``: 24 numbers, see ``roadgpt.gym.observation.LABELS``, each divided by a typical size.
+    Observation ``camera``: an image (height, width, 3) from behind the windscreen.
 
-    Reward of a step: metres gained along the lane, less 0.1 per metre beside the lane's middle, less a little
-    for rough steering; +10 at the goal, -10 where the car leaves its lane, falls or gets stuck. An episode
-    ends (``terminated``) as a drive does; where time runs out it is ``truncated``.
+    Reward of a step: metres gained along the lane, minus 0.1 per metre beside the middle of the lane, minus a
+    little for rough steering; +10 at the goal, -10 if the car leaves its lane, falls or gets stuck. An
+    episode ends (``terminated``) as a drive does; if the time runs out, it is ``truncated``.
 
-    ``info`` has s, t (m, of the car on its road), outside (share of the car outside its lane), speed (m/s),
+    ``info`` has s, t (m, position on the road), outside (share of the car outside its lane), speed (m/s),
     progress (m gained in this step), prompt, and at the end ``ended``: "goal", "out_of_lane", "fell", "stuck"
-    or "timeout"; from ``reset`` also ``understood``, the description as it was read. The road itself is
-    ``env.unwrapped.road``.
+    or "timeout". After ``reset`` it also has ``understood``, the description as it was understood. The road
+    itself is ``env.unwrapped.road``.
 
     Args:
-        prompt: one description, or several that take turns by the seed.
+        prompt: one description, or several, from which the seed selects.
         observation: "state" or "camera".
         render_mode: "rgb_array" or None.
-        world: fields of ``roadgpt.road.World`` that are not to be the usual, such as ``{"friction": 0.6}``.
-        camera: of the observation; the competition's 320 x 160 pixels unless told otherwise.
-        reader: of the descriptions.
+        world: fields of ``roadgpt.road.World`` with other than their default values, such as ``{"friction":
+            0.6}``.
+        camera: camera of the observation; by default the competition's, with 320 x 160 pixels.
+        reader: reader of the descriptions.
 
     Raises:
-        BriefError: a description cannot be read, or asks for what the world does not allow.
-        UsageError: an argument is none of these.
+        BriefError: a description cannot be read, or demands something that the world does not allow.
+        UsageError: an argument is invalid.
     """
 
-    metadata: dict[str, Any] = {"render_modes": [*WAYS], "render_fps": round(1 / (STEPS * CONTROL))}  # noqa: RUF012
+    metadata: dict[str, Any] = {"render_modes": [*RENDER_MODES], "render_fps": round(1 / (STEPS * CONTROL))}  # noqa: RUF012
 
     def __init__(
         self,
@@ -72,17 +73,17 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         observation: str = "state",
         render_mode: str | None = None,
         world: Mapping[str, Any] | None = None,
-        camera: Camera | None = None,
+        camera: CameraSpec | None = None,
         reader: str = "model",
     ) -> None:
         if observation not in OBSERVATIONS:
             raise UsageError(f"there is no observation '{observation}'; there are: {', '.join(OBSERVATIONS)}")
-        if render_mode is not None and render_mode not in WAYS:
-            raise UsageError(f"there is no render_mode '{render_mode}'; there are: {', '.join(WAYS)}")
+        if render_mode is not None and render_mode not in RENDER_MODES:
+            raise UsageError(f"there is no render_mode '{render_mode}'; there are: {', '.join(RENDER_MODES)}")
         self.render_mode = render_mode
         self._world = _world_of(world or {})
         self._setup = Setup(reader=reader, drives=False)
-        self._camera = None if observation == "state" else (camera or Camera(every=1))
+        self._camera = None if observation == "state" else (camera or CameraSpec(every=1))
         self.set_prompts([prompt] if isinstance(prompt, str) else prompt)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         if self._camera is None:
@@ -93,10 +94,10 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         self.road: Road | None = None
 
     def set_prompts(self, prompts: Sequence[str]) -> None:
-        """Other descriptions, from the next ``reset`` on.
+        """Replaces the descriptions, from the next ``reset`` on.
 
         Raises:
-            BriefError: one cannot be read, or asks for what the world does not allow.
+            BriefError: one cannot be read, or demands something that the world does not allow.
             UsageError: there is none.
         """
         if not prompts:
@@ -106,7 +107,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[State, dict[str, Any]]:
-        """A new road, and the car at its start. ``options["prompt"]`` is a description for this road only."""
+        """Makes a new road and places the car at its start; ``options["prompt"]`` is a description for this
+        road only."""
         super().reset(seed=seed)
         brief = self._briefs[int(self.np_random.integers(len(self._briefs)))]
         if options and "prompt" in options:
@@ -114,17 +116,17 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         self._words = brief.words
         self.road = road = self._drawn(brief)
         self._vehicle = Vehicle.on(road, self._world, ETK_LIKE)
-        self._course = Course(road, self._world, ETK_LIKE.box)
-        self._vehicle.put(self._course.start, -self._world.lane_width / 2)
+        self._monitor = DriveMonitor(road, self._world, ETK_LIKE.box)
+        self._vehicle.put(self._monitor.start, -self._world.lane_width / 2)
         self._preview = Preview(road)
-        self._eyes = None if self._camera is None else Eyes(self._camera, road, self._world)
+        self._sensor = None if self._camera is None else CameraSensor(self._camera, road, self._world)
         self._scene: Any = None
         self._step, self._row, self._gain = 0, self._vehicle.see(), 0.0
-        self._ended = self._course.ended(self._vehicle.row, 0, self._vehicle.has_fallen)
+        self._ended = self._monitor.ended(self._vehicle.row, 0, self._vehicle.has_fallen)
         return self._seen(), {**self._info(), "understood": sentence(brief)}
 
     def _drawn(self, brief: Any) -> Road:
-        """A valid road of the Brief, by the next seeds of this environment."""
+        """Returns a valid road of the Brief, trying several seeds of this environment."""
         said = ""
         for _ in range(TRIES):
             seed = int(self.np_random.integers(SEEDS))
@@ -139,10 +141,12 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         raise DesignError(f"no road of '{brief.words}' could be drawn: {said}")
 
     def step(self, action: NDArray[np.float32]) -> tuple[State, float, bool, bool, dict[str, Any]]:
-        """Two control steps (40 ms) with an action; a drive that is over stays so, and rewards nothing more.
+        """Runs two control steps (40 ms) with an action; after the end of a drive nothing moves, and the
+        reward is 0.
 
         Raises:
-            UsageError: no road yet, or an action that is not two finite numbers; beyond 1 they are cut.
+            UsageError: there is no road yet, or the action is not two finite numbers; numbers beyond ±1 are
+                clipped.
         """
         if self.road is None:
             raise UsageError("the environment has no road yet; call reset() first")
@@ -151,9 +155,9 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         for _ in range(STEPS):
             if self._ended is not None:
                 break
-            self._vehicle.move(turn * ETK_LIKE.steer_limit, max(pedal, 0.0), max(-pedal, 0.0))
+            self._vehicle.move(turn * ETK_LIKE.max_steer_angle, max(pedal, 0.0), max(-pedal, 0.0))
             self._step += 1
-            self._ended = self._course.ended(self._vehicle.row, self._step, self._vehicle.has_fallen)
+            self._ended = self._monitor.ended(self._vehicle.row, self._step, self._vehicle.has_fallen)
         self._row = row = self._vehicle.see()
         aside = abs(row["t"] + self._world.lane_width / 2)
         self._gain = row["s"] - before
@@ -164,8 +168,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         return self._seen(), float(reward), is_over, self._ended == "timeout", self._info()
 
     def _seen(self) -> State:
-        if self._eyes is not None:
-            return self._eyes.see(self._row).copy()
+        if self._sensor is not None:
+            return self._sensor.see(self._row).copy()
         return self._preview.numbers(self._row, self._world)
 
     def _info(self) -> dict[str, Any]:
@@ -174,7 +178,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         return told if self._ended is None else {**told, "ended": self._ended}
 
     def render(self) -> Any:
-        """What a camera behind the car sees, (360, 640, 3); None without a render mode."""
+        """Returns the image of a camera behind the car, (360, 640, 3); None without a render mode."""
         if self.render_mode is None or self.road is None:
             return None
         from roadgpt.scene import Camera as Pinhole
@@ -187,7 +191,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
 
 
 def _world_of(fields: Mapping[str, Any]) -> World:
-    """The world with these fields."""
+    """Returns the world with these fields."""
     try:
         return World(**fields)
     except ValidationError as error:
@@ -197,7 +201,7 @@ def _world_of(fields: Mapping[str, Any]) -> World:
 
 
 def _checked(action: Any) -> list[float]:
-    """Steering and pedals, -1 to 1 each."""
+    """Returns steering and pedals, -1 to 1 each."""
     try:
         numbers = np.asarray(action, float)
     except (TypeError, ValueError):

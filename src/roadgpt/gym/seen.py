@@ -1,55 +1,5 @@
-"""What an agent is told as numbers: the car in its lane, and the road ahead of it."""
+"""The old name of ``roadgpt.gym.observation``, kept for scripts that import it."""
 
-import numpy as np
-from numpy.typing import NDArray
+from roadgpt.gym.observation import AHEAD, LABELS, MOST, SCALES, Preview
 
-from roadgpt.geometry import wrap_angle
-from roadgpt.road import Road, World
-
-Floats = NDArray[np.float32]
-
-AHEAD = (2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 60.0)  # m before the car
-LABELS = (
-    "speed", "speed_limit", "offset", "heading_error", "yaw_rate", "steer", "vy", "friction",
-    *(f"curvature_{metres:g}" for metres in AHEAD),
-    *(f"grade_{metres:g}" for metres in AHEAD),
-)  # fmt: skip
-"""Names of the numbers, in their order."""
-SCALES = np.array(
-    [20.0, 20.0, 2.0, 0.5, 0.5, 0.5, 2.0, 1.0, *[0.05] * len(AHEAD), *[0.15] * len(AHEAD)], np.float32
-)
-"""What each is divided by: m/s, m/s, m, rad, rad/s, rad, m/s, 1, 1/m, ratio."""
-MOST = 20.0  # of any of them, after that
-
-
-class Preview:
-    """Curvature and grade of one road, looked up quickly."""
-
-    def __init__(self, road: Road, step: float = 0.5) -> None:
-        """Sampled every ``step`` metres; behind the end the road goes on straight and level."""
-        s = np.arange(0.0, road.length + max(AHEAD) + step, step)
-        on = s <= road.length
-        held = np.minimum(s, road.length)
-        self._step = step
-        self._bends = np.where(on, road.curvature(held), 0.0)
-        self._grades = np.where(on, road.grade(held), 0.0)
-        self._headings = road.heading(held)
-        self._ahead = np.round(np.array(AHEAD) / step).astype(int)
-
-    def numbers(self, row: dict[str, float], world: World) -> Floats:
-        """The observation ``(24,)`` for a row of a drive, by name of its columns."""
-        last = len(self._bends) - 1
-        here = min(max(round(row["s"] / self._step), 0), last)
-        ahead = np.minimum(here + self._ahead, last)
-        car = (
-            row["speed"],
-            world.speed_limit,
-            row["t"] + world.lane_width / 2,
-            float(wrap_angle(row["heading"] - self._headings[here])),
-            row["yaw_rate"],
-            row["steer"],
-            row["vy"],
-            world.friction,
-        )
-        every = np.concatenate([car, self._bends[ahead], self._grades[ahead]])
-        return np.clip(every / SCALES, -MOST, MOST).astype(np.float32)
+__all__ = ["AHEAD", "LABELS", "MOST", "SCALES", "Preview"]

@@ -24,7 +24,7 @@ from roadgpt.design import designer_of
 from roadgpt.design.offers import no_room
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import refuse_ignored, simulate
-from roadgpt.drive.apart import driver_of
+from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.road import Design, Geometry, Road, World, build, in_short_segments
 from roadgpt.run.campaign_runs import Campaign

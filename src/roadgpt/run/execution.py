@@ -30,26 +30,6 @@ from roadgpt.verdict import consult
 RATE = 10.0  # Hz, of the records; the Drive itself has 50
 STEERING_RATIO = 15.0  # steering wheel to front wheels
 
-FIELDS = (
-    "timer",
-    "pos",
-    "dir",
-    "vel",
-    "steering",
-    "steering_input",
-    "brake",
-    "brake_input",
-    "throttle",
-    "throttle_input",
-    "wheelspeed",
-    "vel_kmh",
-    "is_oob",
-    "oob_counter",
-    "max_oob_percentage",
-    "oob_distance",
-    "oob_percentage",
-)
-
 
 class ExecutionRecord(NamedTuple):
     """One moment of a drive; the fields are in the competition's order."""
@@ -71,6 +51,9 @@ class ExecutionRecord(NamedTuple):
     max_oob_percentage: float
     oob_distance: float
     oob_percentage: float
+
+
+FIELDS = ExecutionRecord._fields
 
 
 def records_of(road: Road, drive: Drive, world: World) -> list[ExecutionRecord]:

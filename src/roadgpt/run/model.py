@@ -8,7 +8,7 @@ from roadgpt.brief.model import Brief, Frozen
 from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
-from roadgpt.drive import trust
+from roadgpt.drive import permission
 from roadgpt.road import Design, Geometry, Road, World
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Setup(Frozen):
 
         See ``roadgpt.provenance``; a driver is trusted if the user named its file.
         """
-        driver = trust.came_with(self.driver, file)
+        driver = permission.driver_from_file(self.driver, file)
         chat = self.chat and self.chat.came_with(file)
         return self.model_copy(update={"driver": driver, "chat": chat})
 

@@ -24,9 +24,9 @@ def versions_of(setup: Setup) -> dict[str, str]:
 
 def _beamng() -> dict[str, str]:
     """Returns the version of BeamNG's client, which decides on that of the game, and its settings."""
-    from roadgpt.drive.simulators.beamng.settings import Settings
+    from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 
-    return {**_libraries(("beamngpy",)), "beamng": Settings.of().summary()}
+    return {**_libraries(("beamngpy",)), "beamng": BeamngSettings.of().summary()}
 
 
 @cache

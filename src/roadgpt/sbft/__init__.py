@@ -1,10 +1,11 @@
-"""The SBFT tool competition in both directions. Makes a Competition, and tests for theirs. Verb: ``compete``.
+"""Supports the SBFT tool competition in both directions. Makes a Competition. Verb: ``compete``.
 
-Their generators run in our simulator: ``compete`` starts a generator in a process of its own, hands it an
-executor under the competition's names, and drives what it brings. Ours runs in their pipeline:
-``RoadGPTTestGenerator``. ``sdc`` serves the competition on choosing tests.
+The competition's generators run in RoadGPT's simulator: ``compete`` starts a generator in a process of its
+own, passes it an executor under the competition's names, and drives the roads that it submits. RoadGPT runs
+in the competition's pipeline: ``RoadGPTTestGenerator``. The package ``sdc`` serves the competition on test
+selection.
 
-Each name is imported when it is first used: a generator's own process needs few of them.
+Each name is imported when it is first used, because a generator's own process needs few of them.
 """
 
 from importlib import import_module

@@ -1,7 +1,9 @@
-"""Answers what other interpreters ask of RoadGPT, one JSON value per line: sums for generators, and roads.
+"""Answers requests of other interpreters to RoadGPT, one JSON value per line: calculations for generators,
+and roads.
 
-Started as ``python -m roadgpt.sbft.answers`` by ``names/roadgpt_client.py``, which is the other end. Where
-RoadGPT is installed in the generator's own interpreter, ``answer`` is called there, and nothing is started.
+``names/roadgpt_client.py``, which is the other end, starts it as ``python -m roadgpt.sbft.answers``. If
+RoadGPT is installed in the generator's own interpreter, ``answer`` is called there instead, and no process is
+started.
 """
 
 import os
@@ -16,15 +18,15 @@ from roadgpt.check.ribbon import quads_of
 from roadgpt.check.sbft import keeps_clear
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.geometry import interpolate
-from roadgpt.sbft.line import Message, received, send
+from roadgpt.sbft.json_lines import Message, received, send
 
-LONGEST = 50_000.0  # m of control polyline; the spline through more would fill the memory
+LONGEST = 50_000.0  # m of control polyline; the spline through a longer one would fill the memory
 
 Points = list[list[float]]
 
 
 def answer(asked: Message) -> Message:
-    """The answer under ``answer``; or a sentence under ``error``."""
+    """Returns the answer under the key ``answer``, or a sentence under ``error``."""
     values = dict(asked)
     op = values.pop("op", None)
     if op not in OPS:
@@ -33,22 +35,22 @@ def answer(asked: Message) -> Message:
         return {"answer": OPS[op](**values)}
     except RoadGPTError as error:
         return {"error": str(error)}
-    except Exception as error:  # whoever asked is told, and may ask again
+    except Exception as error:  # report it to the other end, which may ask again
         return {"error": f"RoadGPT cannot answer '{op}': {error!r}"}
 
 
 def hello() -> str:
-    """The version."""
+    """Returns RoadGPT's version."""
     from roadgpt import __version__
 
     return __version__
 
 
 def nodes(points: Any) -> Points:
-    """The competition's interpolated points ``(m, 2)`` of control points ``(n, 2)``, metres.
+    """Returns the competition's interpolated points ``(m, 2)`` for control points ``(n, 2)``, metres.
 
     Raises:
-        UsageError: no spline goes through them.
+        UsageError: there is no spline through the points.
     """
     table = np.asarray(points, float)[:, :2]
     if not np.isfinite(table).all():
@@ -59,24 +61,24 @@ def nodes(points: Any) -> Points:
 
 
 def verdict(points: Any, map_size: float) -> tuple[bool, str]:
-    """What the competition's validator says of control points."""
+    """Returns the result of the competition's validator for control points: (is valid, message)."""
     return sbft_verdict(np.asarray(points, float), map_size)
 
 
 def clear(left: Any, right: Any) -> bool:
-    """Does a road between edge points ``(n, 2)`` keep clear of itself?"""
+    """Returns whether a road between edge points ``(n, 2)`` does not intersect itself."""
     return keeps_clear(quads_of(np.asarray(left, float), np.asarray(right, float)))
 
 
 def distance(one: Any, other: Any) -> float:
-    """The competition's edit distance of two rows of points ``(n, 2)``."""
+    """Returns the competition's edit distance of two sequences of points ``(n, 2)``."""
     from roadgpt.run.sparseness import distances, steps_of
 
     return float(distances(steps_of(one), [steps_of(other)])[0])
 
 
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
-    """Where a car left its lane, as the competition's analysis finds it."""
+    """Returns where a car left its lane, as the competition's analysis finds it; None if it did not."""
     from roadgpt.run.execution import ExecutionRecord
     from roadgpt.run.sparseness import departure
 
@@ -89,7 +91,11 @@ def left_lane(points: Any, records: Any, before: float, after: float) -> Message
 
 
 def spread(segments: Any) -> tuple[float, float]:
-    """Mean and deviation of how much failures differ: segments ``(n, 2)`` in the order of their tests."""
+    """Returns mean and standard deviation of the competition's sparseness of failures.
+
+    Args:
+        segments: points ``(n, 2)`` of each failure, in the order of the tests.
+    """
     from roadgpt.run.sparseness import Sparseness
 
     found = Sparseness()
@@ -102,10 +108,10 @@ _ROADS: list[Iterator[Any]] = []
 
 
 def begin(map_size: int | None = None, **asked: Any) -> None:
-    """Bring roads of a description from now on; the environment is heeded before what is asked.
+    """Starts a sequence of roads for a description; environment variables take precedence over ``asked``.
 
     Raises:
-        UsageError: a setting cannot be.
+        UsageError: a setting is unknown or invalid.
     """
     from roadgpt.sbft.generator import RoadGPTTestGenerator
 
@@ -118,11 +124,11 @@ def begin(map_size: int | None = None, **asked: Any) -> None:
 
 
 def another() -> Points:
-    """Control points of the next road.
+    """Returns the control points of the next road.
 
     Raises:
-        UsageError: none was begun.
-        BriefError, DesignError: as RoadGPTTestGenerator says.
+        UsageError: ``begin`` was not called, or there are no more roads.
+        BriefError, DesignError: as for RoadGPTTestGenerator.
     """
     if not _ROADS:
         raise UsageError("no description was given; begin with one")
@@ -146,7 +152,7 @@ OPS: dict[Any, Callable[..., Any]] = {
 
 
 def main() -> None:
-    """Answer until nobody asks any more. Whatever parts print goes to standard error."""
+    """Answers until the input ends. What plug-ins print goes to standard error."""
     hears, tells = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     for line in hears:

@@ -1,4 +1,4 @@
-"""A Competition: one generator at work, test after test, until its budget is over or it ends."""
+"""Defines the Competition: one generator at work, test after test, until its budget is used up or it ends."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -11,14 +11,14 @@ from roadgpt.road import Road, World
 from roadgpt.run import Draw, Request, Run, Setup, check_parts, prove
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.sbft.experiment import Ending, Experiment
-from roadgpt.sbft.host import GoneError, Host
-from roadgpt.sbft.line import Message
+from roadgpt.sbft.generator_process import GeneratorExitedError, GeneratorProcess
+from roadgpt.sbft.json_lines import Message
 from roadgpt.sbft.results import LOG, Results, new_folder
-from roadgpt.sbft.trial import tried
+from roadgpt.sbft.single_test import run_test
 from roadgpt.stopping import look
 
 USUAL = World(map_size=200.0)
-GROUND = 0.0  # m: the competition's roads lie on the level, and points without heights are at this one
+GROUND = 0.0  # m: the competition's roads are level, and points without heights are at this height
 PLAIN = Setup(rules="sbft")
 WARM = [[60.0, 100.0], [100.0, 100.0], [140.0, 100.0]]  # a road to compile the simulator on
 LARGEST_ID = 999_999_999
@@ -31,7 +31,7 @@ OVER: Message = {"is_over": True}
 
 @dataclass
 class Competition:
-    """Iterate over it to make it work; each Run is on the disk when it is handed out."""
+    """Iterate over it to run the generator; each Run is on the disk when it is yielded."""
 
     experiment: Experiment
     request: Request
@@ -43,26 +43,26 @@ class Competition:
     _deadline: float = field(default=0.0, repr=False)
     _losses: LostDrives[int] = field(default_factory=LostDrives, repr=False)
     _is_begun: bool = field(default=False, repr=False)
-    """Is there a generator, whose results or whose log somebody may want to see?"""
+    """Whether a generator was loaded, so that there are results or a log to keep."""
 
     def __iter__(self) -> Iterator[Run]:
-        """The Runs, as tests end.
+        """Yields the Runs as tests end.
 
         Raises:
             UsageError: the generator cannot be loaded.
-            PartError: a part is not installed.
+            PartError: a plug-in is not installed.
             GivenUpError: the simulator failed three times in a row.
             RoadGPTError: a file cannot be written, or the simulator or the driver fails on a first road.
         """
         try:
-            host = Host(self.folder / LOG, self.experiment.python)
+            host = GeneratorProcess(self.folder / LOG, self.experiment.python)
         except UsageError:
             self.results.discard()
             raise
         try:
             self._begin(host)
             yield from self._work(host)
-        except GoneError as error:
+        except GeneratorExitedError as error:
             self.ending = self._gone(error.status)
         except OSError as error:
             raise RoadGPTError(
@@ -77,8 +77,8 @@ class Competition:
         if self.ending is not None and not self.ending.is_of_a_generator:
             raise UsageError(self.ending.sentence)
 
-    def _begin(self, host: Host) -> None:
-        """Load the generator, and have the simulator ready before the clock runs."""
+    def _begin(self, host: GeneratorProcess) -> None:
+        """Loads the generator, and prepares the simulator before the clock starts."""
         task = self.experiment.model_dump(
             include={"module_name", "class_name", "module_path", "time_budget", "test_budget", "debug"}
         )
@@ -93,7 +93,7 @@ class Competition:
         heard = host.hear(LOADING)
         if heard is None:
             self._is_begun = True
-            self.ending = Ending(how="hung", sentence=f"it was not loaded within {LOADING:g} s")
+            self.ending = Ending(how="hung", sentence=f"not loaded within {LOADING:g} s")
         elif heard["op"] == "end":
             self.ending = self._ended(heard)
         else:
@@ -101,7 +101,7 @@ class Competition:
             self._deadline = time.monotonic() + (self.experiment.time_budget or float("inf"))
             host.tell({"go": True})
 
-    def _work(self, host: Host) -> Iterator[Run]:
+    def _work(self, host: GeneratorProcess) -> Iterator[Run]:
         while self.ending is None:
             look()
             heard = host.hear(self._wait())
@@ -113,11 +113,12 @@ class Competition:
                 yield from self._test(heard, host.tell)
 
     def _test(self, asked: Message, answer: Callable[[Message], None]) -> Iterator[Run]:
-        """Drive one test, unless the budget is over; the one in which the time ran out is dropped."""
+        """Drives one test, unless the budget is used up; the test during which the time runs out is
+        dropped."""
         if self._is_over:
             answer(OVER)
             return
-        run = tried(
+        run = run_test(
             asked["points"], self._number(asked["id"]), self.request, asked["generating"], asked["is_test"]
         )
         if time.monotonic() >= self._deadline:
@@ -130,12 +131,12 @@ class Competition:
         if self._losses.count(run.index, run.is_lost):
             raise self._losses.given_up(
                 run.description,
-                f"the tests until then are in {self.folder}; a generator cannot go on, so see to the "
-                "simulator and let it begin anew",
+                f"the tests until then are in {self.folder}; a generator cannot be resumed, so repair the "
+                "simulator and start it again",
             )
 
     def _number(self, asked: Any) -> int:
-        """The generator's own number of a test, where a file can have it and none has."""
+        """Returns the generator's own number of a test if it is valid and unused, else the next free one."""
         is_number = isinstance(asked, int) and not isinstance(asked, bool) and 0 < asked <= LARGEST_ID
         return asked if is_number and not self.results.has(asked) else self.results.last + 1
 
@@ -148,7 +149,7 @@ class Competition:
         return not self._has_tests_left or time.monotonic() >= self._deadline
 
     def _wait(self) -> float:
-        """Seconds that the generator has to say something."""
+        """Returns the seconds within which the generator must send its next message."""
         left = self._deadline - time.monotonic() + self.experiment.grace
         return min(left, self.experiment.patience if self._has_tests_left else self.experiment.grace)
 
@@ -158,9 +159,9 @@ class Competition:
 
     def _silent(self) -> Ending:
         if self._is_over:
-            sentence = "the budget is over; it had not noticed, and was stopped"
+            sentence = "budget used up; it did not notice, and was stopped"
             return Ending(how="budget", sentence=sentence)
-        return Ending(how="hung", sentence=f"it brought no test within {self._patience}, and was stopped")
+        return Ending(how="hung", sentence=f"it submitted no test within {self._patience}, and was stopped")
 
     def _gone(self, status: int | None) -> Ending:
         if not self._is_begun and self.experiment.python is not None:
@@ -172,8 +173,8 @@ class Competition:
         said = heard.get("said", "")
         name = f"{self.experiment.class_name} of {self.experiment.module_name}"
         sentences = {
-            "done": "it had enough",
-            "budget": "the budget is over",
+            "done": "finished by itself",
+            "budget": "budget used up",
             "exit": f"it called sys.exit({said})",
             "raised": f"it raised {said}",
             "unloadable": f"the generator {name} cannot be loaded: {said}; check --module-name, --class-name "
@@ -191,18 +192,18 @@ def compete(
     out: Path | None = None,
     draw: Draw | None = None,
 ) -> Competition:
-    """Let a generator loose on the simulator; the work begins when the Competition is iterated over.
+    """Runs a test generator in the simulator; the work begins when the Competition is iterated over.
 
     Args:
-        experiment: which generator, and its budget.
-        world: map, speed limit, tolerance; the roads lie on its ground.
-        setup: who drives in what; the rules are the competition's.
-        seed: the driver's.
-        out: an empty folder, or one to be made; None: the competition's name for it, under ``results``.
-        draw: draws every test, as ``report.drawing()`` does; None draws none.
+        experiment: the generator and its budget.
+        world: map, speed limit, tolerance; the roads lie on level ground.
+        setup: driver and simulator; the rules are the competition's.
+        seed: the driver's seed.
+        out: an empty folder, or one to be made; None: the competition's folder name, under ``results``.
+        draw: draws every test, as ``report.drawing()`` does; None: no drawings.
 
     Raises:
-        UsageError: there is no budget, or a part or the folder cannot be used.
+        UsageError: there is no budget, or a plug-in or the folder cannot be used.
     """
     if experiment.time_budget is None and experiment.test_budget is None:
         raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")
@@ -217,7 +218,7 @@ def compete(
 
 
 def _answer(run: Run, test: dict[str, Any]) -> Message:
-    """What the generator is told of its test."""
+    """Returns the answer to the generator for its test."""
     return {
         "is_over": False,
         "is_valid": run.is_valid,
@@ -233,4 +234,4 @@ def _answer(run: Run, test: dict[str, Any]) -> Message:
 def _died(status: int | None) -> str:
     if status is not None and status < 0:
         return f"its process was ended by signal {-status}"
-    return f"its process ended without a word (exit status {status})"
+    return f"its process ended without an answer (exit status {status})"

@@ -1,4 +1,5 @@
-"""The Experiment: which generator is let loose, for how long; and the Ending: how that ended."""
+"""Defines the Experiment, which is a generator with its budget, and the Ending, which is how its work
+ended."""
 
 from typing import Annotated, Literal
 
@@ -16,22 +17,22 @@ class Experiment(Frozen):
     """One generator and its budget."""
 
     module_name: str
-    """As Python imports it."""
+    """Name under which Python imports it."""
     class_name: str
     module_path: str | None = None
-    """A folder that Python is to look for modules in, too."""
+    """An additional folder in which Python searches for modules."""
     python: str | None = None
-    """The interpreter that it runs in; None: RoadGPT's own."""
+    """The interpreter that the generator runs in; None: RoadGPT's own."""
     time_budget: Positive | None = None
     """Seconds of wall time for generating and driving."""
     test_budget: Annotated[int, Field(ge=1)] | None = None
-    """How many tests, invalid ones included; a fair budget on every machine."""
+    """Number of tests, invalid ones included; a fair budget on every machine."""
     patience: Positive = 600.0
-    """Seconds of wall time in which a generator must bring its next test."""
+    """Seconds of wall time within which a generator must submit its next test."""
     grace: Positive = 30.0
-    """Seconds of wall time for a generator to notice that its budget is over."""
+    """Seconds of wall time within which a generator must notice that its budget is used up."""
     debug: bool = False
-    """Its log holds more."""
+    """Whether its log is more detailed."""
 
 
 class Ending(Frozen):
@@ -42,10 +43,10 @@ class Ending(Frozen):
 
     @property
     def is_fine(self) -> bool:
-        """Did it work until it had enough, or until its budget was over?"""
+        """Whether it worked until it finished by itself, or until its budget was used up."""
         return self.how in FINE
 
     @property
     def is_of_a_generator(self) -> bool:
-        """Was there a generator that could work at all?"""
+        """Whether a generator could be loaded at all."""
         return self.how not in UNBEGUN

@@ -1,9 +1,9 @@
-"""Our generator in the competition's own pipeline: descriptions become tests.
+"""RoadGPT's generator in the competition's own pipeline: descriptions become tests.
 
     python competition.py --module-name roadgpt.sbft --class-name RoadGPTTestGenerator ...
 
-What it makes is said by the environment (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER, ROADGPT_READER)
-or by a class of the user's own:
+Its roads are controlled by environment variables (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER,
+ROADGPT_READER) or by a subclass:
 
     class Hairpins(RoadGPTTestGenerator):
         description = "three hairpins"
@@ -28,16 +28,16 @@ log = logging.getLogger(__name__)
 USUAL = "a winding road with at least 3 turns"
 MAP_SIZE = 200  # m, the competition's
 DECIMALS = 5
-DENSE = 2.0  # m between road points: closer than this, the competition's spline keeps our radii
+DENSE = 2.0  # m, largest distance of road points at which the competition's spline keeps the radii
 MOST_POINTS = 500
-GIVE_UP = 20  # roads in a row that cannot be
-REMEMBERED = 50  # designs that the next one is not to repeat
+GIVE_UP = 20  # failed roads in a row after which it gives up
+REMEMBERED = 50  # previous designs that the next one must not repeat
 
 Points = list[tuple[float, float]]
 
 
 class RoadGPTTestGenerator:
-    """Brings roads that keep a description, one after another, until the budget is over."""
+    """Submits roads that meet a description, one after another, until the budget is used up."""
 
     description = USUAL
     seed = 0
@@ -45,7 +45,8 @@ class RoadGPTTestGenerator:
     reader = "model"
 
     def __init__(self, executor: Any = None, map_size: int | None = None) -> None:
-        """As the competition makes it; the environment is heeded before the class's own values."""
+        """Has the signature that the competition calls; environment variables take precedence over class
+        attributes."""
         self.executor = executor
         self.map_size = map_size or MAP_SIZE
         self.description = os.environ.get("ROADGPT_DESCRIPTION", self.description)
@@ -54,10 +55,10 @@ class RoadGPTTestGenerator:
         self.seed = _whole(os.environ.get("ROADGPT_SEED"), self.seed)
 
     def start(self) -> None:
-        """Test after test.
+        """Submits test after test.
 
         Raises:
-            BriefError: the description cannot be read, or asks for what the map does not allow.
+            BriefError: the description cannot be read, or demands something that the map does not allow.
             DesignError: no road can be designed.
         """
         create: Callable[[Points], Any] = import_module(
@@ -70,10 +71,10 @@ class RoadGPTTestGenerator:
             log.info("%s: %s", outcome, said)
 
     def roads(self) -> Iterator[Points]:
-        """Road points without end: at most 2 m apart, at most 500, and valid for the competition.
+        """Yields road points without end: at most 2 m apart, at most 500, and valid for the competition.
 
         Raises:
-            BriefError, DesignError: as ``start``.
+            BriefError, DesignError: as for ``start``.
         """
         world = World(map_size=float(self.map_size))
         setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))
@@ -105,7 +106,7 @@ class RoadGPTTestGenerator:
 
 
 def road_points(road: Road) -> Points | None:
-    """Points for the competition's spline, in metres; None where 500 would be too few."""
+    """Returns points for the competition's spline, in metres; None if 500 are too few for the road."""
     if road.length > DENSE * (MOST_POINTS - 1):
         return None
     return [(round(float(x), DECIMALS), round(float(y), DECIMALS)) for x, y in road.control_points()]
@@ -120,7 +121,7 @@ def _whole(text: str | None, usual: int) -> int:
 
 
 def _chat(made: RoadGPTTestGenerator) -> Any:
-    """The language model of the user's settings, where one is asked."""
+    """Returns the language model of the user's settings if one is needed, else None."""
     from roadgpt import plugins
     from roadgpt.chat import asks_a_model, configured
 

@@ -1,8 +1,8 @@
-"""The competition's folder of results: its files, its fields in its order, its columns.
+"""Writes a folder of results with the competition's files, fields and columns, in its order.
 
 results/MODULE_CLASS_STAMP/
-  test.NNNN.json  generation_stats.csv  oob_stats.csv  experiment_description.csv    theirs
-  campaign.json  runs/NNNN/  overview.png  generator.log                             ours
+  test.NNNN.json  generation_stats.csv  oob_stats.csv  experiment_description.csv    the competition's
+  campaign.json  runs/NNNN/  overview.png  generator.log                             RoadGPT's
 """
 
 import csv
@@ -21,18 +21,20 @@ from roadgpt.run.folder import RUNS, Draw, write_run
 from roadgpt.run.model import Request
 from roadgpt.run.tables import DESCRIPTION, TABLES, Tally
 from roadgpt.sbft.experiment import Experiment
-from roadgpt.sbft.trial import plan_of, records_at_their_height, told
+from roadgpt.sbft.single_test import interpolated_points, records_at_their_height, sbft_description
 
 HOME = Path("results")
 LOG = "generator.log"
 
 
 def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
-    """The folder, made now, and all that were made for it, the innermost first; the competition's name for it
-    where none is given.
+    """Makes the folder for results, by default under the competition's name for it.
+
+    Returns:
+        The folder, and all folders that were made for it, the innermost first.
 
     Raises:
-        UsageError: it holds something, or cannot be made.
+        UsageError: it is not empty, or cannot be made.
     """
     stamp = time.time_ns() // 1_000_000
     name = f"{experiment.module_name}_{experiment.class_name}_{stamp}".replace("/", "-").replace("\\", "-")
@@ -50,12 +52,12 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
 
 
 class Results:
-    """Writes as tests end; what is there is whole at any time."""
+    """Writes the results as tests end; the files are complete at any time."""
 
     def __init__(
         self, folder: Path, request: Request, draw: Draw | None = None, made: tuple[Path, ...] = ()
     ) -> None:
-        """Results in an empty folder; ``made`` are those that were made for it, the innermost first."""
+        """Uses an empty folder; ``made`` are the folders that were made for it, the innermost first."""
         self.folder = folder
         self._made = made
         self._request = request
@@ -64,7 +66,7 @@ class Results:
         self._numbers: set[int] = set()
 
     def add(self, run: Run) -> dict[str, Any]:
-        """Write a test; gives back what stands in its file."""
+        """Writes a test; returns the content of its file."""
         test = test_of(run)
         write_run(run, self.folder, self._draw, json_text(test, indent=None))
         self._tally.add(run)
@@ -74,15 +76,15 @@ class Results:
 
     @property
     def last(self) -> int:
-        """The largest number of a test so far."""
+        """The largest test number so far."""
         return max(self._numbers, default=0)
 
     def has(self, number: int) -> bool:
-        """Is there a test of this number?"""
+        """Returns whether a test of this number exists."""
         return number in self._numbers
 
     def describe(self, experiment: Experiment) -> None:
-        """Write what was asked for."""
+        """Writes the description of the experiment."""
         self._tally.write(self.folder)
         self._write_card(is_finished=False)
         row = described(experiment, self._request)
@@ -93,11 +95,11 @@ class Results:
         write_whole(self.folder / DESCRIPTION, text.getvalue())
 
     def close(self) -> None:
-        """All tests are there."""
+        """Records that all tests are written."""
         self._write_card(is_finished=True)
 
     def discard(self) -> None:
-        """Nothing was begun: leave nothing behind that was not there before."""
+        """Removes all that was written, for a generator that did not start."""
         names = (CARD, DESCRIPTION, *TABLES, LOG)
         take_away((self.folder / name for name in names), (self.folder / RUNS, *self._made))
 
@@ -107,8 +109,8 @@ class Results:
 
 
 def test_of(run: Run) -> dict[str, Any]:
-    """A test as the competition writes it; of an invalid one, the first five fields."""
-    plan = plan_of(run)
+    """Returns a test as the competition writes it; for an invalid one, only the first five fields."""
+    plan = interpolated_points(run)
     test: dict[str, Any] = {
         "is_valid": run.is_valid,
         "validation_message": run.validation_message,
@@ -122,13 +124,13 @@ def test_of(run: Run) -> dict[str, Any]:
     return test | {
         "execution_data": records,
         "test_outcome": run.outcome,
-        "description": told(run),
+        "description": sbft_description(run),
         "features": features_of(plan, records),
     }
 
 
 def described(experiment: Experiment, request: Request) -> dict[str, Any]:
-    """The columns of experiment_description.csv: theirs in their order, then ours."""
+    """Returns the columns of experiment_description.csv: the competition's in their order, then RoadGPT's."""
     setup, world = request.setup, request.world
     is_beamng = setup.simulator == "beamng"
     theirs = {

@@ -1,4 +1,5 @@
-"""The saloon's shapes: a hull drawn through cross-sections, a cabin with windows, and what is put on them."""
+"""The shapes of the saloon: a hull lofted through cross-sections, a cabin with windows, and the parts mounted
+on them."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
 from roadgpt.scene.mesh import grid
-from roadgpt.scene.paint import GLASS, HEAD, HIGH, PAINT, PLATE, TAIL, TRIM
+from roadgpt.scene.palette import GLASS, HEAD, HIGH, PAINT, PLATE, TAIL, TRIM
 
 # Cross-sections from the tail to the nose: x; height of the underside, half width of the sill; half width and
 # height where it is widest; of the shoulder; of the deck's edge; height of the deck's middle. All m.
@@ -39,31 +40,32 @@ CROWN = 0.055  # m that the roof's middle is higher than its edge
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
-    """A surface with normals."""
+class CarPart:
+    """A part of the car's surface, with normals."""
 
     points: Array
     normals: Array
     triangles: NDArray[np.int64]
     kinds: NDArray[np.int64]
 
-    def moved(self, by: Array) -> "Part":
-        """The same elsewhere."""
-        return Part(self.points + by, self.normals, self.triangles, self.kinds)
+    def moved(self, by: Array) -> "CarPart":
+        """Returns the part, moved by a vector in metres."""
+        return CarPart(self.points + by, self.normals, self.triangles, self.kinds)
 
 
-def surface(net: Array, kind: int) -> Part:
-    """Smooth, over a net ``(rows, columns, 3)``; columns run to the left of rows, seen from outside."""
+def surface(net: Array, kind: int) -> CarPart:
+    """Returns the smooth surface over a net of points ``(rows, columns, 3)``; columns run to the left of rows
+    as seen from outside."""
     along, across = np.gradient(net, axis=0), np.gradient(net, axis=1)
     normals = np.cross(along, across)
     size = np.linalg.norm(normals, axis=-1, keepdims=True)
     normals = (normals / np.maximum(size, 1e-12)).reshape(-1, 3)
     patch = grid(net, np.zeros_like(net), kind)
-    return Part(patch.points, normals, patch.triangles, patch.kinds)
+    return CarPart(patch.points, normals, patch.triangles, patch.kinds)
 
 
-def body() -> Iterator[Part]:
-    """Hull and cabin."""
+def body() -> Iterator[CarPart]:
+    """Yields hull and cabin."""
     rings = np.stack([_ring(*section) for section in SECTIONS])
     ends = [np.repeat(ring.mean(axis=0)[None], len(ring), axis=0) for ring in (rings[0], rings[-1])]
     yield surface(np.concatenate([ends[0][None], rings, ends[1][None]]), PAINT)
@@ -71,20 +73,22 @@ def body() -> Iterator[Part]:
 
 
 def _ring(x: float, *numbers: float) -> Array:
-    """A cross-section: from the middle of the underside over the right side and the deck, and back."""
+    """Returns a closed cross-section: from the middle of the underside over the right side and the deck, and
+    back."""
     half = np.column_stack([np.full(8, x), _half(*numbers)])
     return np.concatenate([half * [1, -1, 1], half[-2::-1]])
 
 
 def _half(*numbers: float) -> Array:
-    """Its left half (y, z), from the middle of the underside to that of the deck: (8, 2)."""
+    """Returns the left half (y, z) of a cross-section, from the middle of the underside to that of the deck:
+    (8, 2)."""
     low, sill, wide, wide_z, shoulder, shoulder_z, deck, deck_z, middle = numbers
     side = [(0, low), (sill, low), (sill + 0.04, low + 0.12), (wide, wide_z), (shoulder, shoulder_z)]
     return np.array([*side, (deck, deck_z), (deck / 2, middle - 0.25 * (middle - deck_z)), (0, middle)])
 
 
-def _cabin() -> Iterator[Part]:
-    """Windows in painted frames, and the roof."""
+def _cabin() -> Iterator[CarPart]:
+    """Yields windows in painted frames, and the roof."""
     (front_low, front_top), (rear_low, rear_top) = FRONT, REAR
     for side in (-1.0, 1.0):
         low = np.array([[rear_low, side * SILL, BELT], [front_low, side * SILL, BELT - 0.005]])
@@ -106,8 +110,9 @@ def _cabin() -> Iterator[Part]:
 
 def _glazed(
     low: Array, top: Array, along: Sequence[float], up: Sequence[float], glazed: set[int], is_turned: bool
-) -> Iterator[Part]:
-    """A wall between two edges, cut at shares of both; bulges a little; some of its middle row is glass."""
+) -> Iterator[CarPart]:
+    """Yields a slightly curved wall between two edges, divided at given shares of both; part of its middle
+    row is glass."""
     a, b = np.array(along), np.array(up)
     foot = low[0] + a[:, None] * (low[1] - low[0])
     head = top[0] + a[:, None] * (top[1] - top[0])
@@ -124,13 +129,13 @@ def _glazed(
             kind = GLASS if i in glazed and j == 1 else PAINT
             triangles = whole.triangles[at : at + 2]
             used, where = np.unique(triangles, return_inverse=True)
-            yield Part(
+            yield CarPart(
                 whole.points[used], whole.normals[used], where.reshape(2, 3), np.full(2, kind, np.int64)
             )
 
 
-def trim() -> Iterator[Part]:
-    """Bumpers, plate, seams, grille, wheel arches and mirrors."""
+def trim() -> Iterator[CarPart]:
+    """Yields bumpers, plate, seams, grille, wheel arches and mirrors."""
     wide = np.array([-0.76, -0.7, -0.6, -0.3, 0.0, 0.3, 0.6, 0.7, 0.76])
     yield _on_hull(-0.97 * wide, (0.315, 0.36, 0.41), TRIM, -1)
     yield _on_hull(-wide, (0.672, 0.684), TRIM, -1)
@@ -144,8 +149,8 @@ def trim() -> Iterator[Part]:
         yield from _box(np.array([0.74, side * 0.985, 1.0]), np.array([0.09, 0.11, 0.065]), PAINT)
 
 
-def lamps() -> Iterator[Part]:
-    """Tail lamps around the corners, a third one in the rear window, and headlamps."""
+def lamps() -> Iterator[CarPart]:
+    """Yields tail lamps around the corners, a third one in the rear window, and headlamps."""
     tail, head = np.array([0.40, 0.55, 0.70, 0.77, 0.82, 0.855]), np.array([0.46, 0.56, 0.66, 0.74, 0.80])
     for side in (-1.0, 1.0):
         yield _on_hull(np.sort(side * tail)[::-1], (0.71, 0.77, 0.83), TAIL, -1)
@@ -154,8 +159,8 @@ def lamps() -> Iterator[Part]:
     yield surface(np.stack([high, high + [0.035, 0.0, 0.028]], axis=1), HIGH)
 
 
-def _on_hull(across: Array, heights: tuple[float, ...], kind: int, end: int, lift: float = 0.012) -> Part:
-    """A strip on the tail (end -1, from left to right) or on the nose (end 1, from right to left)."""
+def _on_hull(across: Array, heights: tuple[float, ...], kind: int, end: int, lift: float = 0.012) -> CarPart:
+    """Returns a strip on the tail (end -1, from left to right) or on the nose (end 1, from right to left)."""
     x = np.linspace(SECTIONS[0][0], SECTIONS[-1][0], 4701)[::-end]
     table = np.array(SECTIONS)
     wide = np.empty((len(heights), len(x)))
@@ -170,17 +175,17 @@ def _on_hull(across: Array, heights: tuple[float, ...], kind: int, end: int, lif
     return surface(net, kind)
 
 
-def _disc(x: float, y: float, z: float, radius: float, kind: int) -> Part:
-    """Upright, facing away from the car."""
+def _disc(x: float, y: float, z: float, radius: float, kind: int) -> CarPart:
+    """Returns an upright disc that faces away from the car."""
     angle = np.linspace(0.0, 2 * np.pi, 25) * (-1 if y > 0 else 1)
     rim = np.column_stack([x + radius * np.cos(angle), np.full(25, y), z + radius * np.sin(angle)])
     rim[:, 2] = np.maximum(rim[:, 2], 0.18)
     middle = np.repeat([[x, y, z]], 25, axis=0)
     part = surface(np.stack([rim, middle], axis=1), kind)
-    return Part(part.points, np.tile([0.0, np.sign(y), 0.0], (50, 1)), part.triangles, part.kinds)
+    return CarPart(part.points, np.tile([0.0, np.sign(y), 0.0], (50, 1)), part.triangles, part.kinds)
 
 
-def _box(middle: Array, half: ArrayLike, kind: int) -> Iterator[Part]:
+def _box(middle: Array, half: ArrayLike, kind: int) -> Iterator[CarPart]:
     for axis in range(3):
         for sign in (-1.0, 1.0):
             u, v, w = (np.eye(3)[(axis + k) % 3] * np.asarray(half) for k in range(3))

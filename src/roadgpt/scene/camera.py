@@ -1,4 +1,4 @@
-"""Poses and cameras: where a picture is taken from."""
+"""Poses of cars, and the cameras mounted on them."""
 
 import math
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ NARROWEST, WIDEST = math.radians(5), math.radians(150)
 
 
 class Pose(NamedTuple):
-    """Where a car is, and what is seen of how it is driven; a drive has columns of these names.
+    """The pose of a car, and what can be seen of its controls; a drive has columns of these names.
 
-    Positions are those of the centre of gravity in metres, angles in radians: heading 0 along +x and
-    counter-clockwise, pitch positive nose up, roll positive left side up.
+    Positions are those of the centre of gravity in metres. Angles are in radians: heading 0 along +x and
+    counter-clockwise, pitch positive with the nose up, roll positive with the left side up.
     """
 
     x: float
@@ -30,36 +30,37 @@ class Pose(NamedTuple):
     pitch: float = 0.0
     roll: float = 0.0
     steer: float = 0.0
-    """rad, of the front wheels, left positive."""
+    """rad, angle of the front wheels, left positive."""
     speed: float = 0.0
     """m/s."""
     brake: float = 0.0
     """0..1."""
     wheel: float = 0.0
-    """rad that the wheels have rolled."""
+    """rad by which the wheels have rolled."""
 
 
-class Place(NamedTuple):
-    """Of a camera on its car."""
+class CameraPlacement(NamedTuple):
+    """Position and tilt of a camera on its car."""
 
     ahead: float
     """m ahead of the centre of gravity."""
     up: float
     """m above the ground under the car."""
     tilt: float
-    """rad against the car, upwards positive."""
+    """rad relative to the car, positive upwards."""
 
 
-MOUNTS: dict[str, Place] = {
-    "bonnet": Place(0.72, 1.28, -0.060),
-    "chase": Place(-8.4, 2.95, -0.17),
-    "above": Place(0.0, 34.0, -math.pi / 2),
+MOUNTS: dict[str, CameraPlacement] = {
+    "bonnet": CameraPlacement(0.72, 1.28, -0.060),
+    "chase": CameraPlacement(-8.4, 2.95, -0.17),
+    "above": CameraPlacement(0.0, 34.0, -math.pi / 2),
 }
-"""Over the bonnet and fixed to the body; behind the car and level; above it, its nose at the top."""
+"""Placements by name: the hood camera ("bonnet"), fixed to the body; behind the car and level across; above
+the car, with its nose at the top of the image."""
 
 
-class Eye(NamedTuple):
-    """A camera in the world: a pinhole."""
+class CameraPose(NamedTuple):
+    """A pinhole camera in world coordinates."""
 
     position: Array
     """(3,), metres."""
@@ -71,10 +72,10 @@ class Eye(NamedTuple):
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera with square pixels, mounted to a car.
+    """A pinhole camera with square pixels, mounted on a car.
 
     Raises:
-        UsageError: the picture or the field of view has a size that no camera has, or the mount is unknown.
+        UsageError: the image size or the field of view is out of range, or the mount is unknown.
     """
 
     width: int = 640
@@ -83,43 +84,44 @@ class Camera:
     field_of_view: float = math.radians(70)
     """rad, horizontal."""
     mount: Mount = "bonnet"
-    place: Place | None = None
-    """Where it sits, if not where MOUNTS says."""
+    placement: CameraPlacement | None = None
+    """Placement on the car; None stands for that of MOUNTS."""
 
     def __post_init__(self) -> None:
         if not (1 <= self.width <= LARGEST and 1 <= self.height <= LARGEST):
             raise UsageError(
-                f"a picture of {self.width} by {self.height} pixels cannot be drawn; give 1 to {LARGEST} each"
+                f"an image of {self.width} by {self.height} pixels cannot be drawn; give 1 to {LARGEST} each"
             )
         if not NARROWEST <= self.field_of_view <= WIDEST:
             raise UsageError(
-                f"a camera cannot see {math.degrees(self.field_of_view):.4g} degrees; give 5 to 150"
+                f"the field of view of {math.degrees(self.field_of_view):.4g} degrees is out of range: "
+                "give 5 to 150"
             )
         if self.mount not in MOUNTS:
-            raise UsageError(f"a camera cannot be mounted '{self.mount}'; say {', '.join(MOUNTS)}")
+            raise UsageError(f"there is no camera mount '{self.mount}'; choose one of {', '.join(MOUNTS)}")
 
     @property
     def focal(self) -> float:
-        """Focal length, pixels."""
+        """Focal length in pixels."""
         return self.width / 2 / math.tan(self.field_of_view / 2)
 
-    def eye(self, pose: Pose) -> Eye:
-        """The camera in the world, on a car at a pose."""
-        place = self.place or MOUNTS[self.mount]
+    def eye(self, pose: Pose) -> CameraPose:
+        """Returns the camera in world coordinates, on a car with this pose."""
+        placement = self.placement or MOUNTS[self.mount]
         if self.mount == "bonnet":
             axes = axes_of(pose.heading, pose.pitch, pose.roll)
         else:
             axes = axes_of(pose.heading, pose.pitch if self.mount == "chase" else 0.0, 0.0)
         forward, left, up = axes
-        position = np.array([pose.x, pose.y, pose.z]) + place.ahead * forward
-        position = position + (place.up - CAR.gravity_height) * up
-        sin, cos = math.sin(place.tilt), math.cos(place.tilt)
+        position = np.array([pose.x, pose.y, pose.z]) + placement.ahead * forward
+        position = position + (placement.up - CAR.gravity_height) * up
+        sin, cos = math.sin(placement.tilt), math.cos(placement.tilt)
         looking = np.array([-left, sin * forward - cos * up, cos * forward + sin * up])
-        return Eye(position, looking, self.focal)
+        return CameraPose(position, looking, self.focal)
 
 
 def axes_of(heading: float, pitch: float, roll: float) -> Array:
-    """Forward, left and up of a body, as rows of (3, 3)."""
+    """Returns the unit vectors forward, left and up of a body, as rows of (3, 3)."""
     ch, sh, cp, sp = math.cos(heading), math.sin(heading), math.cos(pitch), math.sin(pitch)
     cr, sr = math.cos(roll), math.sin(roll)
     return np.array(

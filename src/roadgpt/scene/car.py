@@ -1,6 +1,7 @@
-"""The car that is seen: a plain saloon of the simulator's size, with wheels that turn and lights that brake.
+"""The car that is drawn: a saloon of the simulator's size, with rolling and steering wheels and brake lights.
 
-Its frame has the middle of the car's length on the ground as origin, x forward, y left, z up; metres.
+The origin of its coordinates is on the ground below the middle of its length; x points forward, y left, z up;
+metres.
 """
 
 from dataclasses import dataclass
@@ -11,31 +12,32 @@ from numpy.typing import NDArray
 
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
-from roadgpt.scene.body import Part, body, lamps, trim
-from roadgpt.scene.camera import Eye, Pose, axes_of
+from roadgpt.scene.body import CarPart, body, lamps, trim
+from roadgpt.scene.camera import CameraPose, Pose, axes_of
 from roadgpt.scene.light import SUN, daylight
 from roadgpt.scene.mesh import Mesh, Patch
-from roadgpt.scene.paint import BRAKE, GLOSS, PALETTE, SHINING
+from roadgpt.scene.palette import BRAKE, GLOSS, PALETTE, SHINING
 from roadgpt.scene.wheel import wheel
 
-MIRRORED = 0.05  # share of the sky's light that paint and glass throw back, seen straight on (index 1.5)
+MIRRORED = 0.05  # share of light that paint and glass reflect at normal incidence (refractive index 1.5)
 
 
 @dataclass(frozen=True, eq=False)
 class Saloon:
-    """Its surface at rest, with normals, and which points turn with which wheel."""
+    """The surface of the car at rest, with normals, and the points that turn with each wheel."""
 
     mesh: Mesh
-    """The attributes are not filled in: they depend on where the car is."""
+    """Its attributes are empty, because they depend on the pose."""
     normals: Array
     gloss: Array
     shade: Array
-    """Share of the light that is left near the ground and under the sills."""
+    """Share of the light that remains near the ground and under the sills."""
     wheels: tuple[tuple[slice, Array, bool], ...]
     """Points of each wheel, its hub, and whether it steers."""
 
-    def placed(self, pose: Pose, eye: Eye) -> tuple[Array, Array]:
-        """Points ``(n, 3)`` in the world, and their attributes: shine, nothing, light."""
+    def placed(self, pose: Pose, eye: CameraPose) -> tuple[Array, Array]:
+        """Returns the points ``(n, 3)`` in world coordinates, and their attributes ``(n, 3)``: reflection, 1
+        unused, light."""
         points, normals = self.mesh.points.copy(), self.normals.copy()
         for part, hub, steers in self.wheels:
             turn = _turn(pose.wheel, pose.steer if steers else 0.0)
@@ -49,8 +51,8 @@ class Saloon:
         light = daylight(normals) * self.shade
         return points, np.stack([self._shine(points, normals, eye), light, light], axis=1)
 
-    def _shine(self, points: Array, normals: Array, eye: Eye) -> Array:
-        """What glossy points throw back of the sky, the ground and the sun."""
+    def _shine(self, points: Array, normals: Array, eye: CameraPose) -> Array:
+        """Returns the light of sky, ground and sun that glossy points reflect."""
         away = eye.position - points
         away /= np.linalg.norm(away, axis=1, keepdims=True)
         facing = np.clip((away * normals).sum(axis=1), 0.0, 1.0)
@@ -63,7 +65,8 @@ class Saloon:
 
 
 def _turn(rolled: float, steer: float) -> Array:
-    """Of a wheel that has rolled forward by an angle and is turned to the left by another."""
+    """Returns the rotation of a wheel that has rolled forward by one angle and is steered to the left by
+    another."""
     c, s = np.cos(rolled), np.sin(rolled)
     roll: Array = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
     c, s = np.cos(steer), np.sin(steer)
@@ -72,8 +75,8 @@ def _turn(rolled: float, steer: float) -> Array:
 
 @cache
 def saloon() -> Saloon:
-    """The only one there is."""
-    parts: list[Part] = [*body(), *trim(), *lamps()]
+    """Returns the one model of a car."""
+    parts: list[CarPart] = [*body(), *trim(), *lamps()]
     count = sum(len(part.points) for part in parts)
     wheels = []
     for ahead, steers in ((CAR.front_axle - CAR.middle, True), (CAR.rear_axle - CAR.middle, False)):
@@ -96,7 +99,7 @@ def saloon() -> Saloon:
 
 
 def palette_of(pose: Pose | None) -> NDArray[np.float64]:
-    """The colours of everything that is plain, brake lights lit if the car brakes."""
+    """Returns the colours of all plain surfaces, with the brake lights on if the car brakes."""
     colours = PALETTE.copy()
     if pose is not None and pose.brake > BRAKE:
         for row, light in SHINING.items():

@@ -1,4 +1,4 @@
-"""Machine code for the inner loops: plain Python would take minutes for one picture."""
+"""Compiles the inner loops to machine code; plain Python would take minutes per image."""
 
 import warnings
 from collections.abc import Callable
@@ -19,18 +19,19 @@ NUMBA = _numba()
 
 
 def compiled(function: Function) -> Function:
-    """The function as machine code, kept on disk for the next process where the disk allows it.
+    """Returns the function as machine code, which is cached on disk for later processes if the disk allows
+    it.
 
-    Without fast mathematics: the same picture has the same bytes.
+    Fast mathematics is off, so that the same image has the same bytes.
     """
     try:
         made: Function = NUMBA.njit(cache=True, nogil=True, error_model="numpy")(function)
-    except RuntimeError:  # no folder to keep it in can be written to
+    except RuntimeError:  # there is no writable folder for the cache
         made = NUMBA.njit(nogil=True, error_model="numpy")(function)
     return made
 
 
 def inlined(function: Function) -> Function:
-    """A small function that only compiled functions call; becomes a part of them."""
+    """Returns a small function that is inlined into the compiled functions that call it."""
     made: Function = NUMBA.njit(nogil=True, error_model="numpy", forceinline=True)(function)
     return made

@@ -1,4 +1,4 @@
-"""Triangles in patches: what can be skipped as a whole where the camera does not look."""
+"""Triangles in patches; a patch that the camera does not see is skipped as a whole."""
 
 from dataclasses import dataclass
 
@@ -8,21 +8,21 @@ from numpy.typing import ArrayLike, NDArray
 from roadgpt.geometry.curve import Array
 
 ROAD, GRASS, POST, PLAIN = 0, 1, 2, 3
-"""Kinds of surface; PLAIN and all above are colours of a palette."""
+"""Kinds of surface; PLAIN and all above it are colours of a palette."""
 
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """Triangles that lie together."""
+    """Triangles that lie close together."""
 
     points: Array
     """(n, 3), metres."""
     attributes: Array
-    """(n, 3): two coordinates on the surface, and how light it is."""
+    """(n, 3): two surface coordinates, and the light."""
     triangles: NDArray[np.int64]
-    """(m, 3), counter-clockwise seen from where they can be seen."""
+    """(m, 3), counter-clockwise as seen from the visible side."""
     kinds: NDArray[np.int64]
-    """(m,)."""
+    """(m,): kind of surface of each triangle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,13 +34,13 @@ class Mesh:
     triangles: NDArray[np.int64]
     kinds: NDArray[np.int64]
     ranges: NDArray[np.int64]
-    """(p, 4): first point, end of points, first triangle, end of triangles."""
+    """(p, 4): first point, end of points, first triangle, end of triangles, per patch."""
     spheres: Array
-    """(p, 4): centre and radius."""
+    """(p, 4): centre and radius of a sphere around each patch."""
 
     @classmethod
     def of(cls, patches: list[Patch]) -> "Mesh":
-        """All patches, which are one at least, in their order."""
+        """Returns a mesh of the patches in their order; there must be at least one."""
         ends = np.cumsum([(len(p.points), len(p.triangles)) for p in patches], axis=0)
         starts = np.concatenate([np.zeros((1, 2), np.int64), ends[:-1]])
         ranges = np.stack([starts[:, 0], ends[:, 0], starts[:, 1], ends[:, 1]], axis=1)
@@ -59,8 +59,8 @@ class Mesh:
 
 
 def grid(points: Array, attributes: Array, kind: int) -> Patch:
-    """The surface over a net of points ``(rows, columns, 3)``, seen from where columns run counter-clockwise
-    of rows."""
+    """Returns the surface over a net of points ``(rows, columns, 3)``, visible from the side where columns
+    run counter-clockwise of rows."""
     rows, columns = points.shape[:2]
     at = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]
@@ -71,5 +71,5 @@ def grid(points: Array, attributes: Array, kind: int) -> Patch:
 
 
 def attributes(u: ArrayLike, v: ArrayLike, light: ArrayLike) -> Array:
-    """Three columns as one array ``(..., 3)``."""
+    """Stacks three columns into one array ``(..., 3)``."""
     return np.stack(np.broadcast_arrays(*(np.asarray(a, float) for a in (u, v, light))), axis=-1)

@@ -1,4 +1,4 @@
-"""Noise at the fineness that a pixel has, and how much of a pixel a marking covers: for compiled code."""
+"""Noise at the resolution of a pixel, and the share of a pixel that a marking covers: for compiled code."""
 
 import math
 
@@ -10,12 +10,12 @@ from roadgpt.scene.textures import SIDE
 
 Tiles = NDArray[np.float32]
 
-COARSEST = 6.0  # halvings after which nothing is left of a tile
+COARSEST = 6.0  # halvings after which a tile is uniform
 
 
 @inlined
 def plain_noise(tiles: Tiles, tile: int, start: int, side: int, u: float, v: float) -> float:
-    """One version of a tile at (u, v) in its texels, between four of them."""
+    """Returns one version of a tile at (u, v) in its texels, interpolated between four of them."""
     fu, fv = math.floor(u), math.floor(v)
     du, dv = u - fu, v - fv
     mask = side - 1
@@ -29,7 +29,7 @@ def plain_noise(tiles: Tiles, tile: int, start: int, side: int, u: float, v: flo
 
 @inlined
 def fine_noise(tiles: Tiles, tile: int, u: float, v: float, level: float) -> float:
-    """A tile at (u, v) in texels, where a pixel is 2**level of them wide."""
+    """Returns a tile at (u, v) in texels, where a pixel is 2**level texels wide."""
     if level <= 0.0:
         return plain_noise(tiles, tile, 0, SIDE, u, v)
     if not level < COARSEST:
@@ -46,33 +46,33 @@ def fine_noise(tiles: Tiles, tile: int, u: float, v: float, level: float) -> flo
 
 @inlined
 def share(x: float, low: float, high: float, wide: float) -> float:
-    """How much of the window of width ``wide`` around x lies between low and high."""
+    """Returns the share of the window of width ``wide`` around x that lies between low and high."""
     return max(min(x + wide / 2, high) - max(x - wide / 2, low), 0.0) / wide
 
 
 @inlined
 def dashed(x: float, dash: float, period: float) -> float:
-    """Length of all dashes from 0 to x; the first begins at 0."""
+    """Returns the total length of all dashes from 0 to x; the first dash begins at 0."""
     whole = math.floor(x / period)
     return whole * dash + min(x - whole * period, dash)
 
 
 @inlined
 def bump(x: float, wide: float) -> float:
-    """1 at 0, and from there smoothly to 0 at ``wide``."""
+    """Returns 1 at 0, falling smoothly to 0 at ``wide``."""
     part = max(1.0 - x * x * (1.0 / (wide * wide)), 0.0)
     return part * part
 
 
 @inlined
 def length_of(x: float, y: float) -> float:
-    """Of a vector, within 4 percent."""
+    """Returns the length of a vector, within 4 percent."""
     x, y = abs(x), abs(y)
     return max(0.96 * max(x, y) + 0.40 * min(x, y), max(x, y))
 
 
 @inlined
 def smooth(low: float, high: float, x: float) -> float:
-    """From 0 at low to 1 at high, without a kink."""
+    """Returns 0 at low and 1 at high, with a continuous slope."""
     part = min(max((x - low) / (high - low), 0.0), 1.0)
     return part * part * (3.0 - 2.0 * part)

@@ -1,9 +1,9 @@
-"""Which triangle is seen where: four samples for each pixel, the nearest wins.
+"""Rasterises triangles with four samples per pixel; the nearest triangle wins.
 
-A triangle whose corners are P0, P1, P2 as the camera sees them (right, down, forward) gives every quantity a
-that is linear on it as a / w = g . ray, where P_i . g = a_i, w is the depth, and ray = (x, y, 1) belongs to a
-pixel. That holds for corners behind the camera too, so only the outline is ever clipped.
-Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997.
+For a triangle with corners P0, P1, P2 in camera coordinates (right, down, forward), every quantity a that is
+linear on it satisfies a / w = g . ray, where P_i . g = a_i, w is the depth, and ray = (x, y, 1) belongs to a
+pixel. This also holds for corners behind the camera, so only the outline needs to be clipped. Source: M.
+Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997.
 """
 
 import numpy as np
@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from roadgpt.geometry.curve import Array
 from roadgpt.scene.compiled import compiled, inlined
 
-NEAR = 0.12  # m; what is nearer than this is not drawn
+NEAR = 0.12  # m; anything nearer is not drawn
 SAMPLES = 4
-# Of a pixel's width, in its four rows: a rotated grid, so that upright and level edges get four steps each.
+# Shares of a pixel's width in its four rows: a rotated grid gives upright and level edges four steps each.
 OFFSETS = 0.375, 0.875, 0.125, 0.625
-PLANE = 12  # numbers of a triangle: depth, two coordinates and light, three of each
+PLANE = 12  # numbers per triangle: three each for depth, two coordinates and light
 
 Depth = NDArray[np.float32]
 Numbers = NDArray[np.int32]
@@ -26,7 +26,8 @@ Numbers = NDArray[np.int32]
 def _fill(
     x: Array, y: Array, corners: int, a: float, b: float, c: float, number: int, depth: Depth, ids: Numbers
 ) -> None:
-    """Mark the samples inside a convex outline where the triangle, depth 1 / (a x + b y + c), is nearer."""
+    """Marks the samples inside a convex outline where the triangle, with depth 1 / (a x + b y + c), is
+    nearer."""
     rows, columns = depth.shape
     top, bottom = y[0], y[0]
     for k in range(1, corners):
@@ -59,7 +60,7 @@ def _fill(
 
 @inlined
 def _is_outside(sphere: Array, eye: Array, reach_x: float, reach_y: float) -> bool:
-    """Does a ball lie wholly outside of the picture?"""
+    """Returns whether a sphere lies wholly outside the image."""
     dx, dy, dz = sphere[0] - eye[0], sphere[1] - eye[1], sphere[2] - eye[2]
     right = dx * eye[3] + dy * eye[4] + dz * eye[5]
     down = dx * eye[6] + dy * eye[7] + dz * eye[8]
@@ -74,7 +75,7 @@ def _is_outside(sphere: Array, eye: Array, reach_x: float, reach_y: float) -> bo
 
 @inlined
 def _beyond(x: float, y: float, ahead: float, reach_x: float, reach_y: float) -> int:
-    """A bit for each border of the picture beyond which a point lies, and one if it is too near."""
+    """Returns a bit for each border of the image that a point lies beyond, and one if it is too near."""
     code = 1 if x > reach_x * ahead else (2 if -x > reach_x * ahead else 0)
     code += 4 if y > reach_y * ahead else (8 if -y > reach_y * ahead else 0)
     if x > reach_x * ahead and -x > reach_x * ahead:  # behind the camera it may be both
@@ -86,7 +87,7 @@ def _beyond(x: float, y: float, ahead: float, reach_x: float, reach_y: float) ->
 
 @inlined
 def _outline(three: Array, focal: float, middle_x: float, middle_y: float, x: Array, y: Array) -> int:
-    """Where the corners lie in the picture, as far as they are before the camera; how many there are."""
+    """Finds the corners of the outline in the image, clipped at the near plane; returns their number."""
     corners = 0
     for k in range(3):
         p, q = three[k], three[(k + 1) % 3]
@@ -107,7 +108,7 @@ def _outline(three: Array, focal: float, middle_x: float, middle_y: float, x: Ar
 
 @inlined
 def _holds_samples(x: Array, y: Array, corners: int, rows: int, columns: int) -> bool:
-    """May a sample lie in the outline? Far triangles mostly slip between them."""
+    """Returns whether a sample may lie in the outline; most distant triangles lie between samples."""
     left, right, top, bottom = x[0], x[0], y[0], y[0]
     for k in range(1, corners):
         left, right = min(left, x[k]), max(right, x[k])
@@ -127,17 +128,22 @@ def draw(
     ranges: NDArray[np.int64], spheres: Array, eye: Array, depth: Depth, ids: Numbers, planes: Array,
     seen: Array, seen_kinds: NDArray[np.int64], count: int,
 ) -> int:  # fmt: skip
-    """Draw the patches of a `Mesh` into the samples; how many triangles have been seen up to now.
+    """Draws the patches of a `Mesh` into the samples; returns the number of triangles drawn so far.
 
     Args:
-        points, attributes, triangles, kinds, ranges, spheres: the mesh.
+        points: of the mesh, as are attributes, triangles, kinds, ranges and spheres.
+        attributes: see `Mesh`.
+        triangles: see `Mesh`.
+        kinds: see `Mesh`.
+        ranges: see `Mesh`.
+        spheres: see `Mesh`.
         eye: position, axes to the right, downwards and forward, focal length in pixels: (13,).
-        depth: 1 / m, ``(4 * height, width)``, written where a triangle is nearer than what was there.
-        ids: numbers of what is seen there, likewise.
-        planes: (n, PLANE), how the triangles of these numbers lie, written.
-        seen: room for the corners of a patch, (n, 3).
-        seen_kinds: (n,), written like ``planes``.
-        count: how many triangles have been seen before.
+        depth: 1 / m, ``(4 * height, width)``; written where a triangle is nearer than before.
+        ids: number of the visible triangle, same shape; written likewise.
+        planes: (n, PLANE), plane equations of the numbered triangles; written.
+        seen: working memory for the corners of a patch, (n, 3).
+        seen_kinds: (n,), kinds of surface of the numbered triangles; written.
+        count: number of triangles drawn before.
     """
     rows, columns = depth.shape
     focal, middle_x, middle_y = eye[12], columns / 2.0, rows / 8.0

@@ -1,4 +1,4 @@
-"""The Scene: a road as cameras see it."""
+"""Defines the Scene: a road that can be rendered."""
 
 import threading
 from dataclasses import dataclass, field
@@ -13,12 +13,12 @@ from roadgpt.road import Road, World
 from roadgpt.road.land import Land
 from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
-from roadgpt.scene.meadow import Meadow
 from roadgpt.scene.mesh import Mesh
 from roadgpt.scene.raster import PLANE, SAMPLES, draw
-from roadgpt.scene.ribbon import road_patches
+from roadgpt.scene.road_mesh import road_patches
 from roadgpt.scene.shade import shade, to_screen
 from roadgpt.scene.sprites import overlay
+from roadgpt.scene.terrain import LitTerrain
 from roadgpt.scene.textures import noise, screen_table
 from roadgpt.scene.trees import Trees, pictures, plant
 
@@ -29,8 +29,8 @@ FARTHEST = 1e7  # m, and rad
 
 
 @dataclass(eq=False)
-class Sheet:
-    """Room for one picture; each thread has its own, so that pictures can be drawn side by side."""
+class RenderBuffers:
+    """Working memory for one image; each thread has its own, so that several images can be drawn at once."""
 
     depth: NDArray[np.float32]
     ids: NDArray[np.int32]
@@ -42,7 +42,7 @@ class Sheet:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Built once for a road; draws any number of pictures of it, from several threads if need be."""
+    """Built once for a road; renders any number of images of it, also from several threads."""
 
     road: Road
     world: World
@@ -53,65 +53,65 @@ class Scene:
 
     @classmethod
     def of(cls, road: Road, world: World) -> "Scene":
-        """The scene of a road; the same road and world always give the same pictures.
+        """Builds the scene of a road; the same road and world always give the same images.
 
         Raises:
             ExportError: the road has a number that is not finite.
         """
         land = Land.around(road, world)
-        meadow = Meadow(land)
-        ground = Mesh.of([*road_patches(road, world, meadow), *meadow.patches()])
+        terrain = LitTerrain(land)
+        ground = Mesh.of([*road_patches(road, world, terrain), *terrain.patches()])
         return cls(road, world, land, ground, plant(road, world, land))
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
-        """A picture ``(height, width, 3)`` of bytes, red first, from a camera on a car at ``pose``.
+        """Renders an image ``(height, width, 3)`` of bytes, red first, from a camera on a car at ``pose``.
 
         Args:
-            camera: which one.
-            pose: of the car that carries it.
-            out: where the picture goes, contiguous; a new array if there is none.
-            car: of the car that is seen, and its shadow; None draws none.
+            camera: the camera.
+            pose: pose of the car that carries the camera.
+            out: contiguous array for the image; None: a new array.
+            car: pose of the car that is drawn, with its shadow; None: no car is drawn.
 
         Raises:
             UsageError: a number of a pose is not finite, or ``out`` has another shape.
         """
         if not all(np.abs(each).max() <= FARTHEST for each in (pose, car) if each is not None):
-            raise UsageError("a pose has a number that is not finite, or lies beyond 10,000 km")
+            raise UsageError("a number of a pose is not finite, or beyond 10,000 km")
         shape = (camera.height, camera.width, 3)
         if out is None:
             out = np.empty(shape, np.uint8)
         if out.shape != shape or out.dtype != np.uint8:
-            raise UsageError(f"the picture is bytes of the shape {shape}; give such an array")
-        sheet = self._sheet(camera)
+            raise UsageError(f"out must be an array of bytes of shape {shape}")
+        buffers = self._buffers(camera)
         eye = camera.eye(pose)
         numbers = np.concatenate([eye.position, eye.axes.ravel(), [eye.focal]])
-        sheet.depth.fill(0.0)
-        sheet.ids.fill(-1)
-        count = _draw(self.ground, self.ground.points, self.ground.attributes, numbers, sheet, 0)
+        buffers.depth.fill(0.0)
+        buffers.ids.fill(-1)
+        count = _draw(self.ground, self.ground.points, self.ground.attributes, numbers, buffers, 0)
         if car is not None:
             made = saloon()
-            count = _draw(made.mesh, *made.placed(car, eye), numbers, sheet, count)
+            count = _draw(made.mesh, *made.placed(car, eye), numbers, buffers, count)
         shade(
-            sheet.ids, sheet.depth, sheet.planes, sheet.kinds, palette_of(car), noise(), numbers,
-            np.concatenate([[self.world.lane_width, self.road.length], _shade_of(car)]), sheet.picture,
+            buffers.ids, buffers.depth, buffers.planes, buffers.kinds, palette_of(car), noise(), numbers,
+            np.concatenate([[self.world.lane_width, self.road.length], _shade_of(car)]), buffers.picture,
         )  # fmt: skip
         trees = self.trees
         order = np.argsort((eye.position - trees.places) @ eye.axes[2], kind="stable")
         overlay(
             order, trees.places, trees.sizes, trees.looks, trees.tints, pictures(),
-            numbers, sheet.depth, sheet.picture,
+            numbers, buffers.depth, buffers.picture,
         )  # fmt: skip
-        to_screen(sheet.picture, screen_table(), out)
+        to_screen(buffers.picture, screen_table(), out)
         return out
 
-    def _sheet(self, camera: Camera) -> Sheet:
-        """This thread's room for a picture of this size."""
+    def _buffers(self, camera: Camera) -> RenderBuffers:
+        """Returns this thread's working memory for an image of this size."""
         key = (camera.width, camera.height)
-        kept: dict[tuple[int, int], Sheet] = self._own.__dict__.setdefault("sheets", {})
+        kept: dict[tuple[int, int], RenderBuffers] = self._own.__dict__.setdefault("sheets", {})
         if key not in kept:
             high, wide = camera.height, camera.width
             count = len(self.ground.triangles) + len(saloon().mesh.triangles)
-            kept[key] = Sheet(
+            kept[key] = RenderBuffers(
                 np.empty((SAMPLES * high, wide), np.float32),
                 np.empty((SAMPLES * high, wide), np.int32),
                 np.empty((high, wide, 3), np.float32),
@@ -122,20 +122,22 @@ class Scene:
         return kept[key]
 
 
-def _draw(mesh: Mesh, points: Array, attributes: Array, eye: Array, sheet: Sheet, count: int) -> int:
-    """Draw a mesh whose points lie elsewhere than it says, if it is a car."""
+def _draw(
+    mesh: Mesh, points: Array, attributes: Array, eye: Array, buffers: RenderBuffers, count: int
+) -> int:
+    """Draws a mesh whose points may have moved, as those of a car have."""
     spheres = mesh.spheres
     if points is not mesh.points:
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
         spheres = np.r_[middle, np.linalg.norm(points - middle, axis=1).max()][None]
     return draw(
         points, attributes, mesh.triangles, mesh.kinds, mesh.ranges, spheres,
-        eye, sheet.depth, sheet.ids, sheet.planes, sheet.seen, sheet.kinds, count,
+        eye, buffers.depth, buffers.ids, buffers.planes, buffers.seen, buffers.kinds, count,
     )  # fmt: skip
 
 
 def _shade_of(car: Pose | None) -> NDArray[np.float64]:
-    """The car as its shadow needs it."""
+    """Returns the numbers of the car that its shadow depends on."""
     out = np.zeros(9)
     if car is not None:
         forward, _, up = axes_of(car.heading, car.pitch, car.roll)

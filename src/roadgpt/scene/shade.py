@@ -1,7 +1,7 @@
-"""What colour each pixel has: what is seen there, the light on it, the car's shadow, and the haze before it.
+"""Computes the colour of each pixel: surface, light, the car's shadow, and haze.
 
-A surface is coloured from its coordinates, not from a picture: markings are averaged over the pixel exactly,
-noise is read at the fineness that the pixel has. Colours are linear until `to_screen`.
+Surfaces are coloured from their coordinates, not from textures: the coverage of a pixel by markings is
+computed exactly, and noise is read at the resolution of the pixel. Colours are linear until `to_screen`.
 """
 
 import math
@@ -19,28 +19,29 @@ from roadgpt.scene.raster import OFFSETS
 from roadgpt.scene.surfaces import Colour, grass, road, sky
 from roadgpt.scene.textures import STEPS
 
-THINNEST = 0.008  # m: a pixel that sees less than this sees no finer marking
+THINNEST = 0.008  # m: smallest pixel width for which markings are computed
 HAZE = 1000.0  # m
 AMBER = 0.69, 0.80  # m, of a post's reflector
 DARK = 0.62, 0.86  # m, of its dark band
 BLOCK = 4  # pixels
-LEAN = 0.6  # of the meadow's pattern with the height: else it would be drawn out on steep banks
-ALIKE = 0.08  # difference of depths of one ground
+LEAN = 0.6  # shift of the grass pattern with the height: else steep embankments would stretch it
+ALIKE = 0.08  # relative difference of depths within one surface
 RIDGES = 0.12  # upward part of a direction, below which the sky is drawn pixel by pixel
-REACH = 20.0  # m^2: farther from the car's middle there is no shadow
-HIGHEST = 1.6  # m: the sun stands high enough that no shadow is longer than this
+REACH = 20.0  # m^2: at a larger squared distance from the car's middle there is no shadow
+HIGHEST = 1.6  # m: the longest shadow, given the elevation of the sun
 SLICES = 5
 
 
 @inlined
 def _box(x: float, y: float, long: float, wide: float, soft: float) -> float:
-    """1 inside of a box around the origin, 0 outside, soft in between."""
+    """Returns 1 inside a box around the origin and 0 outside, with soft edges."""
     return smooth(-0.5, 0.5, (long - abs(x)) / soft) * smooth(-0.5, 0.5, (wide - abs(y)) / soft)
 
 
 @inlined
 def _shadow(car: Array, x: float, y: float, z: float) -> float:
-    """How much light is left at a place on the ground: the car hides the sun, and the sky under it."""
+    """Returns the share of light that remains at a point on the ground: the car blocks the sun, and the sky
+    under it."""
     dx, dy, dz = x - car[0], y - car[1], z - car[2]
     if dx * dx + dy * dy > REACH or abs(dz) > HIGHEST:
         return 1.0
@@ -73,7 +74,8 @@ def _post(side: float, height: float, light: float) -> Colour:
 
 @inlined
 def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
-    """A colour seen through air, of which ``thin`` is left; the air is warmer towards the sun."""
+    """Returns a colour seen through air, of which the share ``thin`` remains; the air is warmer towards the
+    sun."""
     thick = 1.0 - thin
     r, g = r * thin + (0.60 + warm) * thick, g * thin + (0.71 + 0.9 * warm) * thick
     return r, g, b * thin + (0.79 + 0.7 * warm) * thick
@@ -81,7 +83,8 @@ def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
 
 @inlined
 def air(distance: float, toward: float) -> tuple[float, float]:
-    """For `hazy`: what is left after so many metres, and how warm it is with the sun at a cosine."""
+    """Returns for `hazy` the share that remains after so many metres, and the warmth at a given cosine to the
+    sun."""
     d = distance * (1.0 / HAZE)
     toward = max(toward, 0.0)
     return 1.0 / (1.0 + d * (0.9 + 2.2 * d)), 0.10 * toward * toward
@@ -92,7 +95,8 @@ def _ground(
     n: int, px: float, py: float, w: float, dx: float, dy: float, dz: float, level: float, planes: Array,
     is_road: bool, tiles: Tiles, eye: Array, numbers: Array,
 ) -> Colour:  # fmt: skip
-    """Colour of road or meadow in the direction (dx, dy, dz), whose depth is 1, at the depth w."""
+    """Returns the colour of road or terrain at the depth w in the direction (dx, dy, dz), which has depth
+    1."""
     light = (planes[n, 9] * px + planes[n, 10] * py + planes[n, 11]) * w
     x, y, z = eye[0] + dx * w, eye[1] + dy * w, eye[2] + dz * w
     if is_road:
@@ -151,18 +155,22 @@ def shade(
     ids: NDArray[np.int32], depth: NDArray[np.float32], planes: Array, kinds: NDArray[np.int64],
     palette: Array, tiles: Tiles, eye: Array, numbers: Array, picture: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Colour all pixels of ``picture`` (height, width, 3) from the four samples of each.
+    """Colours all pixels of ``picture`` (height, width, 3) from the four samples of each.
 
-    What changes slowly, haze and fineness, is worked out once for BLOCK pixels side by side.
+    Haze and resolution change slowly, so they are computed once for BLOCK pixels side by side.
 
     Args:
-        ids, depth, planes, kinds: what `raster.draw` has seen, and of which kind.
-        palette: (n, 6) colours, and what they shine of their own.
-        tiles: `textures.noise`.
+        ids: triangle of each sample, from `raster.draw`.
+        depth: depth of each sample, from `raster.draw`.
+        planes: plane equations of the triangles, from `raster.draw`.
+        kinds: kind of surface of each triangle.
+        palette: (n, 6): colours, and the light that they emit.
+        tiles: those of `textures.noise`.
         eye: as for `raster.draw`.
-        numbers: lane width and length of the road; ground under the car (3), where it heads to (2), length,
-            width, how far its middle is ahead, and 1 if it throws a shadow.
-        picture: linear light, written.
+        numbers: lane width and length of the road; then for the shadow: point on the ground under the car
+            (3), its direction (2), length, width, distance of its middle ahead of that point, and 1 if there
+            is a car.
+        picture: linear light; written.
     """
     rows, columns = picture.shape[0], picture.shape[1]
     pixel = 1.0 / eye[12]
@@ -216,7 +224,8 @@ def shade(
 
 @compiled
 def to_screen(picture: NDArray[np.float32], table: NDArray[np.uint8], out: NDArray[Any]) -> None:
-    """Linear light to bytes; what is nearly white or brighter is bent back a little first."""
+    """Converts linear light to bytes; values above 0.7 are compressed first, so that highlights keep their
+    shades."""
     rows, columns = picture.shape[0], picture.shape[1]
     for row in range(rows):
         for i in range(columns):

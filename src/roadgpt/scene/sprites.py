@@ -1,4 +1,4 @@
-"""Pictures that stand upright in the scene, laid over it from the farthest to the nearest."""
+"""Draws upright pictures (trees) over the image, from the farthest to the nearest."""
 
 import math
 
@@ -19,7 +19,8 @@ NEAREST = 2.0  # m
 def _texel(
     pictures: NDArray[np.float32], look: int, start: int, side: int, u: float, v: float, k: int
 ) -> float:
-    """Part k of a picture at (u, v) in its texels, between four of them; nothing outside."""
+    """Returns channel k of a picture at (u, v) in its texels, interpolated between four of them; 0
+    outside."""
     fu, fv = math.floor(u - 0.5), math.floor(v - 0.5)
     du, dv = u - 0.5 - fu, v - 0.5 - fv
     out = 0.0
@@ -36,14 +37,18 @@ def overlay(
     order: NDArray[np.int64], places: Array, sizes: Array, looks: NDArray[np.int64], tints: Array,
     pictures: NDArray[np.float32], eye: Array, depth: NDArray[np.float32], picture: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Lay trees over a picture in linear light, in this order, where nothing nearer is seen.
+    """Draws trees over an image in linear light, in this order, where nothing nearer is visible.
 
     Args:
-        order: numbers of trees, the farthest first.
-        places, sizes, looks, tints: as `Trees` has them.
-        pictures: `trees.pictures`.
-        eye, depth: as for `raster.draw`.
-        picture: (height, width, 3), changed.
+        order: indices of trees, the farthest first.
+        places: see `Trees`.
+        sizes: see `Trees`.
+        looks: see `Trees`.
+        tints: see `Trees`.
+        pictures: those of `trees.pictures`.
+        eye: as for `raster.draw`.
+        depth: as for `raster.draw`.
+        picture: the image (height, width, 3); changed.
     """
     rows, columns = picture.shape[0], picture.shape[1]
     foot, top = np.empty(3), np.empty(3)

@@ -1,7 +1,8 @@
-"""Colours of sky, meadow and road, linear, before the sun's light falls on them: for compiled code."""
+"""Colours of sky, terrain and road, linear, before sunlight is applied: for compiled code."""
 
 import math
 
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.scene.compiled import inlined
 from roadgpt.scene.light import SUN_X, SUN_Y, SUN_Z
 from roadgpt.scene.patterns import Tiles, bump, dashed, fine_noise, plain_noise, share, smooth
@@ -9,8 +10,10 @@ from roadgpt.scene.textures import CLOUD, GRAIN, MEADOW, SIDE
 
 Colour = tuple[float, float, float]
 
-LINE, DASH, PERIOD = 0.15, 4.0, 12.0  # m: width and length of dashes, and from one to the next (RMS-1)
-INSET = 0.10  # m of asphalt outside of an edge line
+# Wider than the judged line (road.world.LINE), and not at the very edge of the lane: the network of
+# examples/vision was trained on such images, and with judged lines drives 0.24 m farther to the right.
+LINE, INSET = 0.15, 0.10  # m: width of a line, and asphalt outside of an edge line
+PERIOD = DASH + GAP  # m from one dash to the next
 WHEEL, TRACK, OIL = 0.79, 0.55, 0.60  # m from the middle of a lane to its wheel tracks; where they fade out
 GRAVEL = 0.45  # m between asphalt and grass
 STONE = 90.0  # texels of asphalt's grain to a metre
@@ -19,7 +22,8 @@ RIDGES = SIDE / (2.0 * math.pi)  # texels of the far hills to a radian
 
 @inlined
 def sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
-    """In a unit direction: blue above, bright and hazy at the horizon and around the sun, thin clouds."""
+    """Returns the colour in a unit direction: blue above, bright and hazy at the horizon and around the sun,
+    thin clouds."""
     h = max(dz, 0.0)
     pale = 1.0 / (1.0 + 5.5 * h)
     r, g, b = 0.115 + 0.505 * pale, 0.29 + 0.445 * pale, 0.62 + 0.21 * pale
@@ -44,7 +48,8 @@ def sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
 
 @inlined
 def grass(tiles: Tiles, x: float, y: float, level: float) -> Colour:
-    """At (x, y); ``level`` is the logarithm to base 2 of a pixel's width in metres."""
+    """Returns the colour of grass at (x, y); ``level`` is the logarithm to base 2 of a pixel's width in
+    metres."""
     wide = plain_noise(tiles, CLOUD, 0, SIDE, x * 0.83, y * 0.83)
     blades = fine_noise(tiles, MEADOW, x * 31.0, y * 31.0, level + 4.95)
     dry = min(max(0.42 + 0.27 * wide + 0.06 * blades, 0.0), 1.0)
@@ -54,7 +59,8 @@ def grass(tiles: Tiles, x: float, y: float, level: float) -> Colour:
 
 @inlined
 def asphalt(tiles: Tiles, s: float, t: float, half: float, level: float) -> float:
-    """Grain and patches, darker in the wheel tracks and where oil drips; red, green and blue alike."""
+    """Returns the brightness of asphalt: grain and patches, darker in the wheel tracks and where oil
+    drips."""
     grain = fine_noise(tiles, GRAIN, s * STONE, t * STONE, level + 6.5)
     patches = plain_noise(tiles, CLOUD, 0, SIDE, s * 1.3, t * 5.1)
     lane = abs(t) - half / 2
@@ -67,7 +73,8 @@ def asphalt(tiles: Tiles, s: float, t: float, half: float, level: float) -> floa
 def paved(
     tiles: Tiles, s: float, t: float, wide_s: float, wide_t: float, level: float, half: float, length: float
 ) -> Colour:
-    """Of the carriageway with its markings at (s, t); a pixel is ``wide_s`` by ``wide_t`` metres."""
+    """Returns the colour of the carriageway with its markings at (s, t); a pixel is ``wide_s`` by ``wide_t``
+    metres."""
     tone = asphalt(tiles, s, t, half, level)
     r, g, b = tone, tone * 1.005, tone * 1.03
     line, outer = min(LINE, half / 4), half - min(INSET, half / 8)
@@ -96,8 +103,8 @@ def paved(
 
 
 @inlined
-def verge(tiles: Tiles, x: float, y: float, beside: float, ragged: float, level: float) -> Colour:
-    """Gravel that gives way to grass, ``beside`` metres from the carriageway."""
+def shoulder(tiles: Tiles, x: float, y: float, beside: float, ragged: float, level: float) -> Colour:
+    """Returns the colour of gravel that turns into grass, ``beside`` metres from the carriageway."""
     r, g, b = grass(tiles, x, y, level)
     bare = 1.0 - smooth(0.1, 0.9, beside / GRAVEL + 3.5 * ragged)
     if bare > 0.0:
@@ -119,13 +126,13 @@ def road(
     half: float,
     length: float,
 ) -> Colour:
-    """Of carriageway and verge at (s, t), which is (x, y)."""
+    """Returns the colour of carriageway or shoulder at (s, t), which is (x, y) in world coordinates."""
     beside = abs(t) - half
     if beside < -0.3 - wide_t:
         return paved(tiles, s, t, wide_s, wide_t, level, half, length)
     ragged = 0.05 * fine_noise(tiles, CLOUD, s * 7.0, t * 7.0 + 90.0, level + 2.8)
     part = min(max((ragged * 0.5 - beside) / wide_t + 0.5, 0.0), 1.0)
-    r, g, b = verge(tiles, x, y, beside, ragged, level)
+    r, g, b = shoulder(tiles, x, y, beside, ragged, level)
     if part > 0.0:
         pr, pg, pb = paved(tiles, s, t, wide_s, wide_t, level, half, length)
         r, g, b = r + (pr - r) * part, g + (pg - g) * part, b + (pb - b) * part

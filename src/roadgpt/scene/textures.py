@@ -1,4 +1,4 @@
-"""Seeded noise with all its smaller versions, and the table from linear light to a screen's bytes."""
+"""Seeded noise at several resolutions, and the table from linear light to the bytes of a screen."""
 
 from collections.abc import Callable
 from functools import cache
@@ -16,9 +16,10 @@ STEPS = 4096  # of the table
 
 @cache
 def noise() -> NDArray[np.float32]:
-    """Tiles ``(3, n)`` of mean 0 and spread 1, each followed by its halved versions down to 1 texel.
+    """Returns tiles ``(3, n)`` of mean 0 and standard deviation 1, each followed by its halved versions down
+    to 1 texel.
 
-    Grain of stones, clouds of all sizes, and blades of grass in tufts.
+    They hold the grain of stones, clouds of all sizes, and blades of grass in tufts.
     """
     rng = np.random.default_rng(SEED)
     grain = _shaped(rng, lambda f: np.exp(-((f / 0.42) ** 2)) + 1.9 * np.exp(-((f / 0.13) ** 2)))
@@ -29,7 +30,7 @@ def noise() -> NDArray[np.float32]:
 
 
 def _shaped(rng: np.random.Generator, gain: Callable[[Array], Array]) -> Array:
-    """White noise of which each frequency, in cycles for each texel, is let through as ``gain`` says."""
+    """Returns white noise filtered by ``gain``, a function of frequency in cycles per texel."""
     f = np.hypot(np.fft.fftfreq(SIDE)[:, None], np.fft.fftfreq(SIDE)[None, :])
     spectrum = np.fft.fft2(rng.standard_normal((SIDE, SIDE))) * gain(f)
     spectrum[0, 0] = 0.0
@@ -48,14 +49,14 @@ def _halved(tile: Array) -> Array:
 
 @cache
 def screen_table() -> NDArray[np.uint8]:
-    """Bytes ``(STEPS,)`` of linear light from 0 to 1, by the curve of sRGB (IEC 61966-2-1)."""
+    """Returns bytes ``(STEPS,)`` for linear light from 0 to 1, by the curve of sRGB (IEC 61966-2-1)."""
     light = np.arange(STEPS) / (STEPS - 1)
     curve = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     return np.round(255 * curve).astype(np.uint8)
 
 
 def linear(*colour: int) -> tuple[float, float, float]:
-    """The linear light of a screen's colour, each part 0 to 255."""
+    """Returns the linear light of a screen colour, whose channels are 0 to 255."""
     c = np.array(colour) / 255
     light = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
     return float(light[0]), float(light[1]), float(light[2])

@@ -1,4 +1,4 @@
-"""Trees beside the road, where nobody drives: what they look like, and where they stand."""
+"""Trees beside the road: their pictures and their positions. Cars cannot reach them."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -15,28 +15,28 @@ from roadgpt.scene.light import SUN
 SEED = 11
 SIDE = 128  # texels, of a picture
 BROAD, CONIFERS = 3, 2  # pictures of each
-CLEAR = 9.0  # m from the verge to the nearest tree
-EACH = 210.0  # m^2 of land for a tree
+CLEAR = 9.0  # m from the outer edge of the shoulder to the nearest tree
+EACH = 210.0  # m^2 of land per tree
 MOST = 900
 BORDER = 4  # far columns of the land, where no trees stand
 
 
 @dataclass(frozen=True, eq=False)
 class Trees:
-    """Pictures that stand upright and face the camera."""
+    """Upright pictures that face the camera."""
 
     places: Array
-    """(n, 3): foot, metres."""
+    """(n, 3): position of the foot, metres."""
     sizes: Array
     """(n,): height and width, metres."""
     looks: NDArray[np.int64]
-    """(n,): which picture."""
+    """(n,): index of the picture."""
     tints: Array
-    """(n,): how light it is."""
+    """(n,): brightness."""
 
 
 def plant(road: Road, world: World, land: Land) -> Trees:
-    """In loose groups all over the land, but not near the road."""
+    """Places trees in loose groups all over the land, but not near the road."""
     rng = np.random.default_rng(SEED)
     x0, x1, y0, y1 = land.x[BORDER], land.x[-BORDER - 1], land.y[BORDER], land.y[-BORDER - 1]
     count = int(min(MOST, (x1 - x0) * (y1 - y0) / EACH))
@@ -57,7 +57,8 @@ def plant(road: Road, world: World, land: Land) -> Trees:
 
 @cache
 def pictures() -> NDArray[np.float32]:
-    """(looks, n, 4): red, green, blue and cover, colours times cover, followed by all halved versions."""
+    """Returns pictures (looks, n, 4): red, green, blue (multiplied by coverage) and coverage, followed by all
+    halved versions."""
     rng = np.random.default_rng(SEED)
     drawn = [_tree(*_crown(rng), rng, (0.085, 0.15, 0.035)) for _ in range(BROAD)]
     drawn += [_tree(*_cone(rng), rng, (0.035, 0.085, 0.035)) for _ in range(CONIFERS)]
@@ -74,7 +75,8 @@ def _halved(picture: Array) -> Array:
 
 
 def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Tufts of a broad-leaved tree: places (x, y, z) in -1..1 and 0..1 upwards, and radii."""
+    """Returns tufts of a broad-leaved tree: positions (x, y, z) in -1..1 and 0..1 upwards, normals, and
+    radii."""
     boughs = rng.normal(size=(14, 3))
     boughs *= (0.62 * rng.random(14) ** 0.4 / np.linalg.norm(boughs, axis=1))[:, None]
     tufts = boughs[rng.integers(14, size=420)]
@@ -85,7 +87,7 @@ def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
 
 
 def _cone(rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Twigs of a conifer, wider below, in tiers."""
+    """Returns twigs of a conifer, in tiers that are wider below: positions, normals and radii."""
     up = 1.0 - rng.random(520) ** 0.62
     tier = 0.78 + 0.22 * (1.0 - (up * 9.0) % 1.0)
     turn = rng.uniform(0, 2 * np.pi, 520)
@@ -103,7 +105,7 @@ def _cone(rng: np.random.Generator) -> tuple[Array, Array, Array]:
 def _tree(
     places: Array, normals: Array, radii: Array, rng: np.random.Generator, leaf: tuple[float, ...]
 ) -> Array:
-    """A picture (SIDE, SIDE, 4) of tufts, the nearest last, lit from above and from the side of the sun."""
+    """Returns a picture (SIDE, SIDE, 4) of tufts, the nearest drawn last, lit from above and from the sun."""
     picture = np.zeros((SIDE, SIDE, 4))
     rows, columns = np.mgrid[0:SIDE, 0:SIDE] + 0.5
     across, up = 2 * columns / SIDE - 1, 1 - rows / SIDE

@@ -6,8 +6,8 @@ import numpy as np
 
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
-from roadgpt.scene.body import Part, surface
-from roadgpt.scene.paint import GAP, RIM, TYRE
+from roadgpt.scene.body import CarPart, surface
+from roadgpt.scene.palette import GAP, RIM, TYRE
 
 AROUND = 30  # corners
 OUTER, INNER = 0.155, -0.09  # m from the hub's middle outward: the tyre's faces
@@ -15,8 +15,8 @@ RIM_RADIUS, HUB_RADIUS = 0.232, 0.06  # m
 SPOKE = 0.5  # of a fifth of the rim
 
 
-def wheel(side: float) -> Iterator[Part]:
-    """Around its hub; ``side`` is 1 for the left wheels, -1 for the right ones."""
+def wheel(side: float) -> Iterator[CarPart]:
+    """Yields the parts of a wheel around its hub; ``side`` is 1 for left wheels, -1 for right ones."""
     radius = CAR.wheel / 2
     yield _turned([(radius, INNER), (radius, OUTER - 0.03), (radius - 0.03, OUTER)], side, TYRE)
     yield _turned([(radius - 0.03, OUTER), (RIM_RADIUS, OUTER - 0.005)], side, TYRE)
@@ -31,8 +31,8 @@ def wheel(side: float) -> Iterator[Part]:
         yield surface(np.stack([outer, inner], axis=1), RIM)
 
 
-def _turned(profile: list[tuple[float, float]], side: float, kind: int) -> Part:
-    """A profile of radii and places outward, turned about the axle."""
+def _turned(profile: list[tuple[float, float]], side: float, kind: int) -> CarPart:
+    """Returns the surface of revolution of a profile of (radius, distance outwards) about the axle."""
     angles = np.linspace(0.0, 2 * np.pi, AROUND + 1)
     return surface(np.stack([_ring(r, y, angles, side) for r, y in profile], axis=1), kind)
 

@@ -1,10 +1,10 @@
-"""The room that judges: a road, a Drive on it and the World give a Verdict. Verb: ``judge``.
+"""Judges drives: a road, a Drive on it and the World give a Verdict. Verb: ``judge``.
 
-The oracle is that of the SBFT tool competition: the car fails when the share of its box outside the right
-lane is above the tolerance at any control step, when it falls, when it moves less than 1 m in 10 s, or when
-time runs out; it passes when it comes within 8 m of the road's end. Both lanes' far side counts: the left
-lane is outside. Where the World asks for it, the car fails at a lane departure, too. How far outside a car
-was is told of every drive, on the one scale in ``severity.py``.
+The test oracle is that of the SBFT tool competition. The car fails if the share of its box outside the right
+lane exceeds the tolerance at any control step, if it falls, if it moves less than 1 m in 10 s, or if the time
+runs out; it passes if it comes within 8 m of the road's end. The left lane counts as outside, like the
+shoulder. If the World demands it, the car also fails at a lane departure. For every drive, the verdict states
+how far outside the car was, on the scale of ``severity.py``.
 """
 
 from importlib import import_module
@@ -33,7 +33,7 @@ __all__ = [
     "severity",
 ]
 
-# Values and the scale load at once, for commands that only tell; judging waits until somebody judges.
+# Values and the scale load at once, for commands that only show results; judging loads when it is needed.
 _LATER = {"judge": "judging", "most_beyond": "judging", "Oracle": "oracle", "consult": "oracle"}
 
 

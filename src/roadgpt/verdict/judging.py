@@ -1,11 +1,11 @@
-"""From a Drive to a Verdict."""
+"""Turns a Drive into a Verdict."""
 
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.errors import UsageError
-from roadgpt.verdict.margin import NOTHING, margins
+from roadgpt.verdict.margin import EPSILON, margins
 from roadgpt.verdict.oracle import consult, has_departed, is_outside
 from roadgpt.verdict.severity import percent
 from roadgpt.verdict.verdict import Cause, Side, Verdict
@@ -21,9 +21,9 @@ CAUSES: dict[str, Cause] = {
     "timeout": "timeout",
 }
 
-LEAST = 0.005  # m beyond a marking that are told as any
+LEAST = 0.005  # m beyond a marking, from which the distance is stated
 
-# The competition's own words; it adds the name of the simulation. A car that falls has left the lane, for it.
+# The competition's own words; it adds the name of the simulation. For it, a car that falls has left the lane.
 SBFT: dict[Cause | None, str] = {
     None: "Successful test",
     "out of lane": "Car drove out of the lane",
@@ -36,14 +36,21 @@ SBFT: dict[Cause | None, str] = {
 def judge(
     road: "Road", drive: "Drive", world: "World", known: tuple[int, Cause | None] | None = None
 ) -> Verdict:
-    """Whether the car kept its lane, by how many metres, and where it first did not.
+    """Judges whether the car kept its lane, by how many metres, and where it first failed.
 
-    What comes first decides: a car that left its lane and later came to the goal, fell or got stuck (it was
-    told to keep driving) failed out of its lane. At one and the same step the competition asks for the goal
-    first, then for motion, then for the lane: that step counts neither for the margin nor for ``max_oob``.
+    The first failure decides: if a car leaves its lane and later reaches the goal, falls or gets stuck (with
+    ``keep_driving``), the verdict is that it left its lane. Within one step the competition checks for the
+    goal first, then for motion, then for the lane: that step counts neither for the margin nor for
+    ``max_oob``.
+
+    Args:
+        road: the road.
+        drive: a drive on it.
+        world: the tolerances to judge by.
+        known: step and cause of the first failure (None for a drive that did not fail), if already known.
 
     Raises:
-        UsageError: the drive was ended at another, smaller tolerance than ``world.oob_tolerance``.
+        UsageError: the drive was ended at a smaller tolerance than ``world.oob_tolerance``.
     """
     step, cause = known or _first_failure(road, drive, world)
     every = margins(road, drive, world)
@@ -51,7 +58,7 @@ def judge(
     left = _left(drive, step, world)
     side: Side | None = ("left" if left else "right") if cause in ("out of lane", "fell") else None
     if cause == "fell":
-        least = min(least, -NOTHING)
+        least = min(least, -EPSILON)
     beyond = most_beyond(road, drive, world)
     if cause is None:
         description = _kept(road, drive, world, least, beyond)
@@ -74,15 +81,16 @@ def judge(
 
 
 def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:
-    """Metres that the car's body reached beyond the outer edge of a marking at most, 0 where it never did."""
-    from roadgpt.drive.marking import Marking
+    """Returns the largest distance in metres by which the car's body reached beyond the outer edge of a
+    marking; 0 if it never did."""
+    from roadgpt.drive.marking_monitor import MarkingMonitor
 
-    body = Marking.for_body(road, world, drive.car).along(drive, floor=0.0)
+    body = MarkingMonitor.for_body(road, world, drive.car).along(drive, floor=0.0)
     return max(float(body[: drive.lane_steps].max()), 0.0)
 
 
 def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, Cause | None]:
-    """The step at which the drive failed and why; the last step and None when it did not."""
+    """Returns the step at which the drive failed and the cause; the last step and None if it did not fail."""
     last = len(drive) - 1
     out = is_outside(road, drive, world)
     if out.any():
@@ -100,7 +108,8 @@ def _left(drive: "Drive", step: int, world: "World") -> bool:
 
 
 def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: float) -> str:
-    """Of a PASS: also how far outside the car was, since a tolerance lets it pass there."""
+    """Describes a PASS; it also states how far outside the car was, because a tolerance lets such a car
+    pass."""
     reached = f"to the goal after {drive['s'][-1]:.0f} m"
     if not drive.max_outside:
         return f"kept its lane {reached}, never closer than {margin:.2f} m to failing"

@@ -1,12 +1,13 @@
-r"""How many metres the car was from failing, at every step of a drive.
+r"""Computes the margin: the distance in metres from failing, at every step of a drive.
 
-    margin = how much farther to its side the car, standing as it does, could be moved before it fails
+    margin = how much farther sideways the car, with its present pose, could be moved before it fails
 
-It fails when more than the tolerance of its box is outside the right lane, or when its box reaches over the
-end of firm ground (carriageway and verge; on a mesh road without verge that end comes first, to the right).
-The share of a turned box beyond a straight line is the tail of a trapezoid, so the place where the share is
-the tolerance is known exactly; the bend of the lane under the box is counted to second order. Where lane
-departures count, it fails as soon as a front tyre's outer edge passes that of a marking.
+The car fails when more than the tolerance of its box is outside the right lane, or when its box reaches over
+the end of the ground (carriageway and shoulder; on a mesh road without a shoulder, that end comes first on
+the right). The share of a rotated box beyond a straight line is the tail of a trapezoid, so the position at
+which the share equals the tolerance is known exactly; the curvature of the lane under the box is taken into
+account to second order. If lane departures count, the car fails as soon as the outer edge of a front tyre
+passes that of a marking.
 
                  ____________
                 /|          |\          density of the box across the lane, at an angle psi to it:
@@ -28,24 +29,25 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 FloatArray = NDArray[np.float64]
-THINNEST = 1e-9  # m, half-width of a box seen exactly end-on
-NOTHING = 1e-9  # m, the least by which a car that failed is said to have failed
-LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves on the inside of a bend
+THINNEST = 1e-9  # m, lower bound of a half-width, for a box seen exactly end-on
+EPSILON = 1e-9  # m, smallest amount of a negative margin
+LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per metre of road
 
 
-class Stand(NamedTuple):
-    """How the car's box lies across the lane, per step; shapes ``(n,)``."""
+class LateralExtent(NamedTuple):
+    """The car's box across the lane, per step; shapes ``(n,)``."""
 
     middle: FloatArray
-    """m to the left of the centre line, of the box's middle, the lane's bend under it counted."""
+    """m to the left of the centre line, middle of the box, with the curvature of the lane under it taken into
+    account."""
     long: FloatArray
-    """m, half of what the longer pair of the box's sides takes up across the lane."""
+    """m, half the extent across the lane of the pair of sides with the larger extent."""
     short: FloatArray
-    """m, likewise of the shorter pair."""
+    """m, half the extent across the lane of the other pair."""
 
 
-def stand(road: "Road", drive: "Drive") -> Stand:
-    """Where the car's box lies across its lane."""
+def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
+    """Returns the extent of the car's box across its lane, at every step."""
     s, t, box = drive["s"], drive["t"], drive.car
     psi = wrap_angle(drive["heading"] - road.heading(s))
     bend = road.curvature(s)
@@ -55,12 +57,12 @@ def stand(road: "Road", drive: "Drive") -> Stand:
     spread = (box.ahead * cos) ** 2 + ((box.length * cos) ** 2 + (box.width * sin) ** 2) / 12
     middle = t + box.ahead * sin - bend * spread / 2
     a, b = np.abs(box.length * sin) / 2, np.abs(box.width * cos) / 2
-    return Stand(middle, np.maximum(a, b), np.maximum(np.minimum(a, b), THINNEST))
+    return LateralExtent(middle, np.maximum(a, b), np.maximum(np.minimum(a, b), THINNEST))
 
 
-def reach(tolerance: float, box: Stand) -> FloatArray:
-    """Metres that the box's middle may be beyond the lane's edge before the share outside is the
-    tolerance."""
+def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
+    """Returns the distance in metres from the lane's edge to the box's middle, positive outwards, at which
+    the share outside equals the tolerance."""
     tail = min(tolerance, 1 - tolerance)
     a, b = box.long, box.short
     in_slope = a + b - np.sqrt(8 * a * b * tail)
@@ -70,16 +72,17 @@ def reach(tolerance: float, box: Stand) -> FloatArray:
 
 
 def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
-    """Metres to failing at every step, shape ``(n,)``; negative exactly where the oracle says outside."""
-    box = stand(road, drive)
+    """Returns the metres to failing at every step, shape ``(n,)``; negative exactly where the oracle says
+    outside."""
+    box = lateral_extent(road, drive)
     half = world.lane_width / 2
-    in_lane = half + reach(world.oob_tolerance, box) - np.abs(box.middle + half)
+    in_lane = half + allowed_overhang(world.oob_tolerance, box) - np.abs(box.middle + half)
     ground = world.lane_width + world.verge - np.abs(box.middle) - box.long - box.short
     if world.lane_departure:
-        from roadgpt.drive.marking import Marking
+        from roadgpt.drive.marking_monitor import MarkingMonitor
 
-        in_lane = np.minimum(in_lane, -Marking.for_tyres(road, world, drive.car).along(drive))
+        in_lane = np.minimum(in_lane, -MarkingMonitor.for_tyres(road, world, drive.car).along(drive))
     outside = is_outside(road, drive, world)
     inside = np.maximum(np.minimum(in_lane, ground), 0.0)
     # The oracle's polygon and the formula differ by millimetres; the oracle decides on which side of 0 it is.
-    return np.asarray(np.where(outside, np.minimum(in_lane, -NOTHING), inside), float)
+    return np.asarray(np.where(outside, np.minimum(in_lane, -EPSILON), inside), float)

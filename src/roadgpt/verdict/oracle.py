@@ -1,7 +1,7 @@
-"""The competition's out-of-bounds record at every control step, as it stands in the execution data of a test.
+"""Computes the competition's out-of-bounds record at every control step, as in the execution data of a test.
 
-Source: SBFT tool competition, self_driving/oob_monitor.py, with the right lane as its lane. Where the World
-asks for lane departures, the car is out at these, too.
+Source: SBFT tool competition, self_driving/oob_monitor.py, with the right lane as its lane. If the World
+demands lane departures, the car is also out of bounds at these.
 """
 
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,28 +13,28 @@ if TYPE_CHECKING:
     from roadgpt.drive import Drive
     from roadgpt.road import Road, World
 
-ROUNDING = 1e-3  # m, by which the poses of a drive that was kept in whole steps may be off
+ROUNDING = 1e-3  # m, error of the poses in a stored drive, which are rounded
 
 
 class Oracle(NamedTuple):
-    """Arrays over the steps of a drive, shapes ``(n,)``."""
+    """The record, as arrays over the steps of a drive, shapes ``(n,)``."""
 
     is_oob: NDArray[np.bool_]
-    """The share outside is above the tolerance, or a lane departure counts; never at the step of the goal or
-    of being stuck, where the competition does not ask for the lane any more."""
+    """Whether the share outside exceeds the tolerance, or a lane departure counts. Always False at the step
+    of the goal or of being stuck, at which the competition does not check the lane any more."""
     oob_counter: NDArray[np.int64]
-    """How many times, up to now, the car went outside."""
+    """How many times the car has gone outside so far."""
     max_oob_percentage: NDArray[np.float64]
-    """Largest share while outside, since it last went outside, 0..1; 0 before the first time.
-    That is the competition's: its own code forgets the earlier maximum."""
+    """Largest share outside since the car last went outside, 0..1; 0 before the first time. As in the
+    competition's own code, the maximum of earlier times is forgotten."""
     oob_distance: NDArray[np.float64]
-    """Half a lane minus the distance of the car's centre from the middle of the right lane, metres."""
+    """Metres: half a lane width minus the distance of the car's centre from the middle of the right lane."""
     oob_percentage: NDArray[np.float64]
     """Share of the car's box outside the right lane, 0..1."""
 
 
 def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
-    """The record of a whole drive."""
+    """Returns the record of a whole drive."""
     share = drive["outside"]
     out = is_outside(road, drive, world)
     went = out & ~np.concatenate([[False], out[:-1]])
@@ -51,7 +51,8 @@ def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
 
 
 def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
-    """Where the car is out of its lane, per step: for the competition, or by a departure that counts."""
+    """Returns for each step whether the car is out of its lane, by the competition's oracle or by a lane
+    departure that counts."""
     out: NDArray[np.bool_] = drive["outside"] > world.oob_tolerance
     out |= has_departed(road, drive, world)
     out[drive.lane_steps :] = False
@@ -59,14 +60,14 @@ def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_
 
 
 def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
-    """Where the outer edge of a front tyre is beyond that of a marking, per step; nowhere in a World that
-    does not ask for it."""
+    """Returns for each step whether the outer edge of a front tyre is beyond that of a marking; False
+    everywhere if the World does not demand lane departures."""
     if not world.lane_departure:
         return np.zeros(len(drive), bool)
-    from roadgpt.drive.marking import Marking
+    from roadgpt.drive.marking_monitor import MarkingMonitor
 
-    beyond = Marking.for_tyres(road, world, drive.car).along(drive)
+    beyond = MarkingMonitor.for_tyres(road, world, drive.car).along(drive)
     gone: NDArray[np.bool_] = beyond > 0
-    # A drive that was ended by its departure has departed at its last step, whatever was rounded since.
+    # A drive that ended with a departure has departed at its last step, in spite of rounding.
     gone[-1] |= drive.ended == "out_of_lane" and beyond[-1] > -ROUNDING
     return gone

@@ -1,8 +1,9 @@
-"""How far outside its lane a car was, on the one scale that pictures, pages, tables and terminals colour by.
+"""Grades how far outside its lane a car was, on the one scale that pictures, pages, tables and terminals
+colour by.
 
 A tolerance says when a test has failed; it does not say that the car kept its lane. With the SBFT
-competition's tolerance of 0.95 a car may pass with nearly all of its body outside, and such a PASS is not to
-look like that of a car that never left its lane.
+competition's tolerance of 0.95, a car may pass with nearly its whole body outside, and such a PASS must look
+different from that of a car that never left its lane.
 """
 
 import math
@@ -10,25 +11,25 @@ from typing import Literal, get_args
 
 Severity = Literal["inside", "partly outside", "mostly outside"]
 SEVERITIES: tuple[Severity, ...] = get_args(Severity)
-"""From the least to the worst."""
+"""All grades, from the best to the worst."""
 
 MOSTLY = 0.5
-"""Share of the car's box outside its lane above which most of the car is outside."""
+"""Share of the car's box outside its lane above which most of the car counts as outside."""
 
 
 def severity(share: float) -> Severity:
-    """Of a share of the car's box outside its lane, 0 to 1."""
+    """Returns the grade of a share of the car's box outside its lane, 0 to 1."""
     if share > MOSTLY:
         return "mostly outside"
     return "partly outside" if share > 0 else "inside"
 
 
 def graded(outcome: str, share: float | None) -> str:
-    """An outcome as it is told: a PASS says how far outside the car was, where it was.
+    """Returns the outcome as it is shown: a PASS states how far outside the car was, if it was.
 
     Args:
-        outcome: PASS, FAIL or any other.
-        share: largest share of the car's box outside its lane; None where that is not known.
+        outcome: PASS, FAIL or any other outcome.
+        share: largest share of the car's box outside its lane; None if it is not known.
     """
     if outcome != "PASS" or not share:
         return outcome
@@ -36,7 +37,7 @@ def graded(outcome: str, share: float | None) -> str:
 
 
 def percent(share: float) -> str:
-    """A share in per cent; one that is not 0 is never told as 0 %, and one below 1 never as 100 %."""
+    """Returns a share in per cent; only 0 is shown as 0 %, and only 1 as 100 %."""
     told = f"{100 * share:.0f}"
     if told == "0" and share > 0:
         told = f"{100 * share:.1g}"

@@ -1,4 +1,4 @@
-"""The Verdict: whether the car kept its lane, by how many metres, and where it first did not."""
+"""Defines the Verdict: whether the car kept its lane, by how many metres, and where it first failed."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -17,60 +17,60 @@ Side = Literal["left", "right"]
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of one drive. Places are those of the car's centre of gravity where it first failed."""
+    """The result of one drive. Positions are those of the car's centre of gravity where it first failed."""
 
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     outcome: Outcome
     cause: Cause | None
-    """None when the car kept its lane to the goal."""
+    """None if the car kept its lane to the goal."""
     description: str
     """One sentence."""
     sbft_description: str
-    """What the SBFT tool competition writes into ``description``, without the name of the simulation."""
+    """The ``description`` of the SBFT tool competition, without the name of the simulation."""
     max_oob: float
-    """Largest share of the car's box outside the right lane, 0..1, over the whole drive but the step at which
-    it came to the goal or was stuck."""
+    """Largest share of the car's box outside the right lane, 0..1, over the whole drive except the step at
+    which it reached the goal or was stuck."""
     margin: float
-    """Metres, see `roadgpt.verdict.margin`: how far sideways the car still was from failing where it came
-    closest; negative exactly when it left its lane or fell."""
+    """Metres, see `roadgpt.verdict.margin`: how much farther sideways the car could have been before failing,
+    at the step where it was closest; negative exactly if it left its lane or fell."""
     oob_counter: int
-    """How many times the car went from inside the tolerance to outside it."""
+    """How many times the share outside rose above the tolerance."""
     beyond: float | None = None
-    """Metres that the car's body reached beyond the outer edge of a marking of its lane, at most and at the
-    same steps as ``max_oob``; 0 where it never did. The centre line bounds the lane on its left, the edge
-    line on its right. None in a file of an older version that has no drive beside it."""
+    """Metres by which the car's body reached beyond the outer edge of a marking of its lane, the maximum over
+    the same steps as ``max_oob``; 0 if it never did. The centre line bounds the lane on its left, the edge
+    line on its right. None in a file of an older version without a drive beside it."""
     at_s: float | None = None
-    """Metres along the road where it failed; None when it kept its lane."""
+    """Metres along the road where it failed; None if it kept its lane."""
     at_xy: tuple[float, float] | None = None
     """Metres."""
     at_time: float | None = None
     """Seconds since the start."""
     side: Side | None = None
-    """Where it left its lane or fell; None for other outcomes."""
+    """The side on which it left its lane or fell; None for other outcomes."""
 
     @property
     def severity(self) -> Severity:
-        """How far outside its lane the car was, whatever the outcome."""
+        """How far outside its lane the car was, independent of the outcome."""
         return severity(self.max_oob)
 
     @property
     def kept(self) -> bool:
-        """The car kept its lane, and came to the goal."""
+        """Whether the car kept its lane and reached the goal."""
         return self.outcome == "PASS"
 
     def to_json(self) -> dict[str, Any]:
-        """Plain data, ``kept`` included; ``Verdict.from_json`` gives the verdict back."""
+        """Returns plain data, ``kept`` included, from which ``Verdict.from_json`` restores the verdict."""
         data = asdict(self)
         data["at_xy"] = None if self.at_xy is None else list(self.at_xy)
         return {"kept": self.kept, **data}
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """The verdict that ``to_json`` wrote.
+        """Restores the verdict that ``to_json`` returned.
 
         Raises:
-            UsageError: a field is missing or unknown, or holds what a verdict cannot.
+            UsageError: a field is missing or unknown, or its value is invalid.
         """
         try:
             fields = {key: value for key, value in data.items() if key != "kept"}

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 from roadgpt.drive.simulators.beamng.session import session_of
-from roadgpt.drive.simulators.beamng.settings import Settings
+from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.road import Road
 from roadgpt.run import Setup, prove
 
@@ -17,7 +17,7 @@ from roadgpt.run import Setup, prove
 def main() -> None:
     folder, number, workers = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     run = prove(Road.through([[40, 100], [70, 100], [100, 100]]), setup=Setup(simulator="beamng"))
-    slot = session_of(Settings.of())._slot
+    slot = session_of(BeamngSettings.of())._slot
     assert slot is not None
     told = {"outcome": run.outcome, "port": slot.port, "user": str(slot.user)}
     (folder / f"worker-{number}.json").write_text(json.dumps(told))

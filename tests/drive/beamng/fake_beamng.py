@@ -17,7 +17,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[2]))
 from drive.beamng.fake_car import World, objects_of
-from drive.beamng.fake_server import LEVELS, FakeServer, Fault, RefusedError, Settings
+from drive.beamng.fake_server import LEVELS, BeamngSettings, FakeServer, Fault, RefusedError
 
 VEHICLES = ("etk800", "pickup")
 VERSIONS = {"v1.24": "0.37", "v1.26": "0.38", "v1.27": "0.39"}  # folders of the user
@@ -31,7 +31,7 @@ class FakeBeamNG(FakeServer):
         self.world = self.loaded = self.fps = None
         self.is_running = self.is_paused = self.is_even = False
         self.user = user
-        super().__init__(Settings(**settings), port)
+        super().__init__(BeamngSettings(**settings), port)
 
     # --- the game engine ---------------------------------------------------------------------------------
 

@@ -36,7 +36,7 @@ class Fault:
 
 
 @dataclass
-class Settings:
+class BeamngSettings:
     """How this fake is set up."""
 
     protocol: str = "v1.27"

@@ -20,10 +20,10 @@ from drive.beamng.fake_beamng import VERSIONS, FakeBeamNG, Fault, fake_home
 from roadgpt.cli.app import app
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
+from roadgpt.drive.simulators.beamng import BeamngSettings, BeamngSimulator
 from roadgpt.drive.simulators.beamng import session as sessions
+from roadgpt.drive.simulators.beamng.compatibility import VERSION_PAIRS, mismatch_advice
 from roadgpt.drive.simulators.beamng.launch import command_line
-from roadgpt.drive.simulators.beamng.pairs import PAIRS, cure
 from roadgpt.drive.simulators.beamng.session import leave_all
 from roadgpt.drive.simulators.beamng.slots import take
 from roadgpt.drive.simulators.beamng.watchdog import OverdueError, Watchdog
@@ -34,36 +34,38 @@ OURS = Connection.PROTOCOL_VERSION
 SHORT = Road.through([[40, 100], [70, 100], [100, 100]])
 
 
-def drive(settings: Settings) -> str:
+def drive(settings: BeamngSettings) -> str:
     return BeamngSimulator(settings).simulate(SHORT, World(), Reference(), 1).ended
 
 
 def test_settings_come_from_the_environment() -> None:
     told = {"ROADGPT_BEAMNG_PORT": "4000", "ROADGPT_BEAMNG_NOGPU": "1", "BNG_HOME": "/games/b"}
-    settings = Settings.of(told)
+    settings = BeamngSettings.of(told)
     assert (settings.port, settings.nogpu, settings.home) == (4000, True, Path("/games/b"))
-    assert not Settings.of({**told, "ROADGPT_BEAMNG_HOST": "other"}).launches
+    assert not BeamngSettings.of({**told, "ROADGPT_BEAMNG_HOST": "other"}).launches
     with pytest.raises(UsageError, match="ROADGPT_BEAMNG_RATE cannot be '5'"):
-        Settings.of({"ROADGPT_BEAMNG_RATE": "5"})
+        BeamngSettings.of({"ROADGPT_BEAMNG_RATE": "5"})
 
 
 def test_every_pair_has_its_cure() -> None:
-    said = cure("v1.24", "v1.27", "1.36")
-    assert "BeamNG.tech 0.37 speaks protocol v1.24" in said
+    said = mismatch_advice("v1.24", "v1.27", "1.36")
+    assert "BeamNG.tech 0.37 uses protocol v1.24" in said
     assert "pip install beamngpy==1.34.1'" in said
     assert "install BeamNG.tech 0.39" in said
-    assert "pip install beamngpy==1.36'" in cure("v1.27", "v1.26", "1.35.1")
-    assert "pip install beamngpy==1.24', or install BeamNG.tech 0.39" in cure("v1.19", "v1.27", "1.36")
-    assert "BeamNG.tech 0.36 or 0.35 speaks protocol v1.23" in cure("v1.23", "v1.27", "1.36")
-    assert "0.39 with 1.36" in cure("v9", "v1.27", "1.36")
-    assert {pair.protocol: pair.tech for pair in PAIRS[:3]} == VERSIONS
+    assert "pip install beamngpy==1.36'" in mismatch_advice("v1.27", "v1.26", "1.35.1")
+    assert "pip install beamngpy==1.24', or install BeamNG.tech 0.39" in mismatch_advice(
+        "v1.19", "v1.27", "1.36"
+    )
+    assert "BeamNG.tech 0.36 or 0.35 uses protocol v1.23" in mismatch_advice("v1.23", "v1.27", "1.36")
+    assert "0.39 with 1.36" in mismatch_advice("v9", "v1.27", "1.36")
+    assert {pair.protocol: pair.tech for pair in VERSION_PAIRS[:3]} == VERSIONS
 
 
 @pytest.mark.parametrize("other", sorted({*VERSIONS, "v1.19", "v2.0"} - {OURS}))
 def test_another_version_is_told_of_with_the_cure(other: str) -> None:
     with FakeBeamNG(protocol=other) as fake:
-        with pytest.raises(PartError, match=f"protocol {other}, and the installed beamngpy .* speaks {OURS}"):
-            drive(Settings(port=fake.port))
+        with pytest.raises(PartError, match=f"protocol {other}, and the installed beamngpy .* uses {OURS}"):
+            drive(BeamngSettings(port=fake.port))
         assert {kind for _, kind in fake.transcript} == {"Hello"}
 
 
@@ -72,7 +74,7 @@ def test_a_game_that_is_not_tech_is_told_of() -> None:
         FakeBeamNG(protocol=OURS, tech=False) as fake,
         pytest.raises(PartError, match="needs BeamNG\\.tech"),
     ):
-        drive(Settings(port=fake.port))
+        drive(BeamngSettings(port=fake.port))
 
 
 def test_a_stranger_on_the_port_is_told_of(port: int) -> None:
@@ -85,54 +87,54 @@ def test_a_stranger_on_the_port_is_told_of(port: int) -> None:
 
     with socket.create_server(("127.0.0.1", port)) as server:
         threading.Thread(target=chat, args=(server,), daemon=True).start()
-        with pytest.raises(SimulationError, match="does not speak as BeamNG\\.tech does"):
-            drive(Settings(port=port))
+        with pytest.raises(SimulationError, match="is not BeamNG\\.tech"):
+            drive(BeamngSettings(port=port))
 
 
 def test_nobody_on_the_port_and_no_home_are_told_of(tmp_path: Path, port: int) -> None:
     with pytest.raises(SimulationError, match=f"nobody listens on 127.0.0.1:{port}; give --beamng-home"):
-        drive(Settings(port=port))
+        drive(BeamngSettings(port=port))
     with pytest.raises(PartError, match=r"no BeamNG in .*: --beamng-home is the folder"):
-        drive(Settings(port=port, home=tmp_path))
+        drive(BeamngSettings(port=port, home=tmp_path))
     with pytest.raises(UsageError, match="has a space"):
-        drive(Settings(port=port, home=tmp_path, user=tmp_path / "a b"))
+        drive(BeamngSettings(port=port, home=tmp_path, user=tmp_path / "a b"))
 
 
 def test_a_beamng_that_ends_at_once_or_never_listens_is_told_of(tmp_path: Path, port: int) -> None:
     home = fake_home(tmp_path / "slow", protocol=OURS, slow_start=60)
     with pytest.raises(SimulationError, match=f"does not listen on port {port} after 0.5 s"):
-        drive(Settings(port=port, home=home, start_timeout=0.5))
+        drive(BeamngSettings(port=port, home=home, start_timeout=0.5))
     (home / "settings.json").write_text("no JSON")
     with pytest.raises(SimulationError, match="BeamNG ended at once \\(exit status 1\\)"):
-        drive(Settings(port=port, home=home))
+        drive(BeamngSettings(port=port, home=home))
 
 
 def test_a_slow_start_is_waited_for(tmp_path: Path, port: int) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, slow_start=1.0)
-    assert drive(Settings(port=port, home=home, rate=20)) == "goal"
+    assert drive(BeamngSettings(port=port, home=home, rate=20)) == "goal"
 
 
 def test_a_beamng_that_hangs_while_it_starts_costs_one_more_try(tmp_path: Path, port: int) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault("hang", "GetLevels", 0, 1)])
-    assert drive(Settings(port=port, home=home, rate=20, start_timeout=1.5)) == "goal"
+    assert drive(BeamngSettings(port=port, home=home, rate=20, start_timeout=1.5)) == "goal"
     assert len((home / "started.jsonl").read_text().splitlines()) == 2
 
 
 def test_a_port_that_is_taken_is_passed_over(tmp_path: Path, port: int) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS)
     with socket.create_server(("127.0.0.1", port)):
-        assert drive(Settings(port=port, home=home, rate=20)) == "goal"
+        assert drive(BeamngSettings(port=port, home=home, rate=20)) == "goal"
     words = json.loads((home / "started.jsonl").read_text().splitlines()[0])["words"]
     assert words[words.index("-tport") + 1] == str(port + 1)
     sessions.leave_all()
-    slot = take(Settings(port=port, home=home))
+    slot = take(BeamngSettings(port=port, home=home))
     assert slot.port == port  # let go of, it can be had again
     slot.release()
 
 
 def test_nothing_of_ours_runs_on_after_a_session(tmp_path: Path, port: int) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS)
-    drive(Settings(port=port, home=home, rate=20))
+    drive(BeamngSettings(port=port, home=home, rate=20))
     (started,) = (home / "started.jsonl").read_text().splitlines()
     sessions.leave_all()
     with pytest.raises(ProcessLookupError):
@@ -142,14 +144,15 @@ def test_nothing_of_ours_runs_on_after_a_session(tmp_path: Path, port: int) -> N
 def test_what_a_killed_worker_left_behind_is_ended(tmp_path: Path, port: int) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS)
     code = (
-        "import os, signal; from roadgpt.drive.simulators.beamng import Settings; "
+        "import os, signal; from roadgpt.drive.simulators.beamng import BeamngSettings; "
         "from roadgpt.drive.simulators.beamng.session import session_of; "
-        f"session_of(Settings(port={port}, home={str(home)!r})).ready(); os.kill(os.getpid(), signal.SIGKILL)"
+        f"session_of(BeamngSettings(port={port}, home={str(home)!r})).ready(); "
+        "os.kill(os.getpid(), signal.SIGKILL)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == -signal.SIGKILL
     (started,) = (home / "started.jsonl").read_text().splitlines()
     os.kill(json.loads(started)["pid"], 0)  # it lives on
-    assert drive(Settings(port=port, home=home, rate=20)) == "goal"
+    assert drive(BeamngSettings(port=port, home=home, rate=20)) == "goal"
     first, second = map(json.loads, (home / "started.jsonl").read_text().splitlines())
     assert first["pid"] != second["pid"]
     assert first["words"] == second["words"]  # on the same port, which was free again
@@ -160,7 +163,7 @@ def test_the_command_line_is_the_clients(tmp_path: Path) -> None:
     from beamngpy import BeamNGpy
 
     for given in ({"headless": True}, {"nogpu": True}, {"gfx": "vk"}, {}):
-        settings = Settings(home=tmp_path, **given)
+        settings = BeamngSettings(home=tmp_path, **given)
         ours = command_line(Path("b"), settings, 4, tmp_path)
         if OURS == "v1.27":  # the first that knows all of these options
             theirs = BeamNGpy("127.0.0.1", 4, user=str(tmp_path), **given)
@@ -169,7 +172,7 @@ def test_the_command_line_is_the_clients(tmp_path: Path) -> None:
 
 
 def test_without_a_gpu_and_with_vulkan_keeps_both(tmp_path: Path) -> None:
-    words = command_line(Path("b"), Settings(home=tmp_path, nogpu=True, gfx="vk"), 4, None)
+    words = command_line(Path("b"), BeamngSettings(home=tmp_path, nogpu=True, gfx="vk"), 4, None)
     assert " ".join(words).endswith("-headless -gfx vk -gfx null")
 
 
@@ -178,7 +181,9 @@ def test_a_client_that_nobody_tried_is_warned_of_and_driven(
 ) -> None:
     monkeypatch.setattr("roadgpt.drive.simulators.beamng.session.version", lambda name: "1.99")
     with FakeBeamNG(protocol=OURS) as fake, caplog.at_level("WARNING", logger="roadgpt"):
-        drive = BeamngSimulator(Settings(port=fake.port, rate=20)).simulate(SHORT, World(), BeamngLike(), 7)
+        drive = BeamngSimulator(BeamngSettings(port=fake.port, rate=20)).simulate(
+            SHORT, World(), BeamngLike(), 7
+        )
         leave_all()
     assert drive.ended == "goal"
     assert any("beamngpy 1.99 has not been tried with RoadGPT" in one.message for one in caplog.records)
@@ -187,8 +192,10 @@ def test_a_client_that_nobody_tried_is_warned_of_and_driven(
 def test_the_documents_name_the_same_pairs() -> None:
     text = (Path(__file__).parents[3] / "docs" / "how-to" / "use-beamng.md").read_text()
     rows = re.findall(r"^\| (\d\S*) \| (\S+) \| (\S+) \| (.*?) \|", text, flags=re.M)
-    assert [(tech, client, protocol) for tech, client, protocol, _ in rows] == [pair[:3] for pair in PAIRS]
-    assert [said.startswith("yes") for *_, said in rows] == [pair.is_tried for pair in PAIRS]
+    assert [(tech, client, protocol) for tech, client, protocol, _ in rows] == [
+        pair[:3] for pair in VERSION_PAIRS
+    ]
+    assert [said.startswith("yes") for *_, said in rows] == [pair.is_tried for pair in VERSION_PAIRS]
 
 
 def test_the_watchdog_ends_a_call_that_hangs_and_lets_others_be() -> None:
@@ -213,7 +220,7 @@ def test_the_watchdog_ends_a_call_that_hangs_and_lets_others_be() -> None:
         other.due_in(5)
     with pytest.raises(KeyError), other.within(5, "others"):
         raise KeyError
-    assert not other.has_bitten
+    assert not other.has_fired
     ours.close()
     theirs.close()
 

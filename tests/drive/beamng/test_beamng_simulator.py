@@ -16,8 +16,8 @@ from roadgpt.campaign import Budget, Plan, begin
 from roadgpt.drive import Camera, Command, View, simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.marking import Marking
-from roadgpt.drive.simulators.beamng import BeamngSimulator, Settings
+from roadgpt.drive.marking_monitor import MarkingMonitor
+from roadgpt.drive.simulators.beamng import BeamngSettings, BeamngSimulator
 from roadgpt.drive.simulators.beamng.session import leave_all, session_of
 from roadgpt.errors import DriverError, PartError, SimulationError, UsageError
 from roadgpt.export.exporters.beamng.files import items
@@ -64,7 +64,7 @@ def fake() -> Iterator[FakeBeamNG]:
 
 
 def simulator(fake: FakeBeamNG, **settings: Any) -> BeamngSimulator:
-    return BeamngSimulator(Settings(port=fake.port, **settings))
+    return BeamngSimulator(BeamngSettings(port=fake.port, **settings))
 
 
 def test_beamngs_ai_drives_in_place_of_its_imitation(fake: FakeBeamNG) -> None:
@@ -154,7 +154,7 @@ def test_a_lane_departure_ends_the_drive_at_the_very_moment(fake: FakeBeamNG) ->
     for keep_driving in (False, True):
         made = simulator(fake, aggression=1.0, rate=20)
         drive = made.simulate(road, watched, BeamngLike(), 7, keep_driving)
-        beyond = Marking.for_tyres(road, watched, drive.car).along(drive)
+        beyond = MarkingMonitor.for_tyres(road, watched, drive.car).along(drive)
         first = int(np.argmax(beyond > 0))
         assert 0 < beyond[first] < 1e-3
         assert drive["outside"][first] < 0.2
@@ -189,7 +189,7 @@ def test_who_does_not_move_is_stuck_and_an_ai_that_never_sets_off_is_an_error(fa
 
     assert simulator(fake).simulate(SHORT, WORLD, Asleep(), 7).ended == "stuck"
     with FakeBeamNG(protocol=OURS, is_blind=True) as blind:
-        with pytest.raises(SimulationError, match=r"did not set off.*selftest"):
+        with pytest.raises(SimulationError, match=r"did not start to move.*selftest"):
             simulator(blind).simulate(SHORT, WORLD, BeamngLike(), 7)
         leave_all()
 
@@ -200,7 +200,7 @@ def test_a_driver_steers_to_its_left_whichever_way_the_input_turns(sign: float, 
     spy = Spy()
     with FakeBeamNG(protocol=OURS, steer_sign=sign, told_sign=told) as fake:
         drive = simulator(fake).simulate(HILLS, WORLD, spy, 7)
-        gain = session_of(Settings(port=fake.port)).gain
+        gain = session_of(BeamngSettings(port=fake.port)).gain
         leave_all()
     assert gain == pytest.approx(sign * 0.6, rel=0.05)
     assert drive.ended == "goal"
@@ -251,7 +251,7 @@ PLACES = [("LoadScenario", 1), ("CreateScenario", 1), ("SetAiWaypoint", 1)]
 )
 def test_a_fault_costs_one_more_try(tmp_path: Path, port: int, kind: str, on: str, nth: int) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
-    made = BeamngSimulator(Settings(home=home, port=port, rate=20, poll_timeout=0.6, load_timeout=5))
+    made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, poll_timeout=0.6, load_timeout=5))
     drive = made.simulate(SHORT, WORLD, BeamngLike(), 7)
     assert drive.ended == "goal"
     assert len((home / "started.jsonl").read_text().splitlines()) == 2
@@ -265,14 +265,14 @@ def test_a_fault_while_loading_costs_one_more_try(
 ) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
     short = {"poll_timeout": 0.6, "load_timeout": 0.6, "first_load_timeout": 0.6}
-    made = BeamngSimulator(Settings(home=home, port=port, rate=20, **short))
+    made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, **short))
     assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
 
 
 def test_a_second_fault_is_an_error_of_this_road_and_the_next_is_driven(tmp_path: Path, port: int) -> None:
     faults = [Fault("die", "Step", 1, 9), Fault("hang", "SensorRequest", 2, 9)]
     home = fake_home(tmp_path / "home", protocol=OURS, faults=faults)
-    made = BeamngSimulator(Settings(home=home, port=port, rate=20, poll_timeout=0.6))
+    made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, poll_timeout=0.6))
     with pytest.raises(
         SimulationError, match=r"failed 2 times .* no answer within 0\.6 s while it was driving"
     ):
@@ -289,7 +289,7 @@ def test_somebody_elses_beamng_that_hangs_is_left_and_found_again(port: int) -> 
 
 def test_beamng_is_started_anew_after_so_many_roads(tmp_path: Path, port: int) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS)
-    made = BeamngSimulator(Settings(home=home, port=port, rate=20, recycle=2))
+    made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, recycle=2))
     for _ in range(5):
         assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
     assert len((home / "started.jsonl").read_text().splitlines()) == 3
@@ -347,7 +347,7 @@ def test_the_first_road_may_take_longer_to_load_and_the_screen_says_so(
     tmp_path: Path, port: int, caplog: pytest.LogCaptureFixture
 ) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, slow_load=2.0)
-    given = Settings(home=home, port=port, load_timeout=1.0, rate=20)
+    given = BeamngSettings(home=home, port=port, load_timeout=1.0, rate=20)
     with caplog.at_level("WARNING", logger="roadgpt"):
         for _ in range(2):
             assert BeamngSimulator(given).simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"

@@ -9,8 +9,8 @@ from scipy.stats import beta
 from roadgpt import plugins
 from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturbance_of
 from roadgpt.drive import Simulator, simulate
-from roadgpt.drive.apart import driver_of
-from roadgpt.drive.trust import admit
+from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.permission import require_permission
 from roadgpt.errors import RoadGPTError, SimulatorError
 from roadgpt.run import Run
 from roadgpt.run.lost_drives import LostDrives
@@ -81,7 +81,7 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
     Raises:
         UsageError: a plug-in is not installed, or the driver's file makes no driver.
     """
-    admit(run.request.setup.driver)  # other processes know nothing of where it comes from
+    require_permission(run.request.setup.driver)  # other processes know nothing of where it comes from
     return Stability(tuple(spread(once, [(run, number) for number in range(1, times + 1)])))
 
 

@@ -135,7 +135,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     """The plan in a file; options that it could name itself have no place beside it."""
     from roadgpt.campaign.plan_file import read_plan
     from roadgpt.chat.config import Layer, configured
-    from roadgpt.drive.trust import expect
+    from roadgpt.drive.permission import check_named_driver
 
     chat = {flag.field for flag in CHAT}
     for parameter in ctx.command.params:
@@ -149,7 +149,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     told = {flag.field: flag.read(rest[flag.field]) for flag in CHAT if rest.get(flag.field) is not None}
     if ctx.get_parameter_source("drivers") is ParameterSource.COMMANDLINE:
         for one in rest["drivers"]:
-            expect(one, {*written.plan.drivers}, path)
+            check_named_driver(one, {*written.plan.drivers}, path)
     if not written.plan.asks_a_model:
         return written.plan
     return written.plan.model_copy(update={"chat": configured(told, Layer(str(path), written.chat))})
@@ -158,7 +158,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
 def _described(text: str, rest: dict[str, Any]) -> "Plan":
     from roadgpt.campaign.model import Budget
     from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL, Plan
-    from roadgpt.drive.custom import located
+    from roadgpt.drive.loading import absolute_spec
 
     goal, seconds, tests = rest["goal"], rest["seconds"], rest["tests"]
     world = world_of(rest)
@@ -166,7 +166,7 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
     return Plan(
         prompts=(text,),
         designers=(rest["designer"],),
-        drivers=tuple(located(driver, Path.cwd()) for driver in rest["drivers"]),
+        drivers=tuple(absolute_spec(driver, Path.cwd()) for driver in rest["drivers"]),
         simulators=(rest["simulator"],),
         generators=(rest["generator"] or (WITH_GOAL if goal else WITHOUT_GOAL),),
         seeds=(rest["seed"],),

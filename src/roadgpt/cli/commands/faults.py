@@ -57,8 +57,8 @@ def command(
     roadgpt faults roadgpt-runs/hairpins-7 --repeat 30 --minimise -j 2
     """
     from roadgpt.campaign.faults.failures import drivers_of
-    from roadgpt.drive.trust import expect
+    from roadgpt.drive.permission import check_named_driver
 
     if driver is not None:
-        expect(driver, drivers_of(place), place)
+        check_named_driver(driver, drivers_of(place), place)
     analyse_failures(place, Look(repeat, minimise, workers, () if no_plot else picture_formats, quiet))

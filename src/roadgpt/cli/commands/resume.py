@@ -55,11 +55,11 @@ def command(
     from roadgpt.campaign.lifecycle import plan_of, work
     from roadgpt.campaign.record import Record
     from roadgpt.chat.config import trust_server
-    from roadgpt.drive.trust import expect
+    from roadgpt.drive.permission import check_named_driver
 
     with Record.opened(campaign) as record:
         plan = plan_of(record)
-    expect(driver, {*plan.drivers}, campaign)
+    check_named_driver(driver, {*plan.drivers}, campaign)
     if base_url is not None:
         trust_server(base_url, plan.chat.base_url if plan.chat else None, campaign)
     given = {name: value for name, value in limits.items() if value is not None}

@@ -1,2 +1,1 @@
-"""The shelf of drivers: one file each, every one a class with ``start(road, world, seed)`` and
-``steer(view)``."""
+"""Driver plug-ins: one file each, every one a class with ``start(road, world, seed)`` and ``steer(view)``."""

@@ -1,4 +1,4 @@
-"""The default driver under test: cuts corners and brakes late, as BeamNG's AI was recorded to do."""
+"""The default driver under test: cuts corners and brakes late, as BeamNG's AI did in recordings."""
 
 import math
 from dataclasses import replace
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.drive.driving_line import FloatArray, line_along, stations
-from roadgpt.drive.pursuit import pursued
+from roadgpt.drive.pursuit import pursuit_curvature
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -18,38 +18,42 @@ USUAL = 70 / 3.6  # m/s, the limit under which BeamNG's AI was recorded
 BRAKING = 0.9  # g; recordings of BeamNG's AI: 8.5 to 10.8 m/s^2
 TRACTION = 0.7  # g; recordings: 6.7 to 7.2 m/s^2
 SMOOTHING = 5.0  # m, half-width of the Hann window over the lane's curvature
-HALF_TRACK = 0.90  # m from the car's middle to the outside of its right wheels
+HALF_TRACK = 0.90  # m from the car's middle to the outer edge of its right wheels
 PURSUIT_CUTS = 8.5  # m^2: the car runs inside its line by this times its curvature (measured: 8.0, r = 0.995)
-TIGHTEST = 0.2  # 1 + 2k of the lane is kept above this, where the centre line turns tighter than the lane can
+TIGHTEST = 0.2  # lower bound of 1 + 2k, for centre lines that turn more tightly than the lane can
 
 
 class BeamngLike:
-    """Cuts the inside of every bend, as BeamNG's AI was recorded to do.
+    """Cuts the inside of every bend, as BeamNG's AI did in recordings.
 
-    It drives a line that lies inside by ``cut * tanh(k / sharpness)`` metres, k the curvature of the right
-    lane's middle; aims at a point of it ahead; takes bends at a share of gravity.
+    It follows a line that lies inside the lane's middle by ``cut * tanh(k / sharpness)`` metres, where k is
+    the curvature of the middle of the right lane. It steers towards a point of this line ahead, and takes
+    bends at a given lateral acceleration.
 
-    What it imitates: BeamNG's AI at aggression 0.7 under a limit of 70 km/h, as the SBFT tool competition
-    runs it. Its parameters were fitted to the recorded outcomes of 2,388 flat roads, and tried on 2,129
-    others: a fair stand-in on average, no oracle for one road (docs/explanation/fair-judge.md has the
-    figures). It fails as BeamNG's AI does, by the corners it cuts: the left lane counts as outside, and so
-    does the verge.
+    It imitates BeamNG's AI at aggression 0.7 under a speed limit of 70 km/h, as the SBFT tool competition
+    uses it. Its parameters were fitted to the recorded outcomes of 2,388 flat roads, and tested on 2,129
+    others: on average it is a fair substitute, but it cannot predict the outcome of a single road
+    (docs/explanation/fair-judge.md has the figures). Like BeamNG's AI it fails by cutting corners: the left
+    lane counts as outside, and so does the shoulder.
 
-    Two habits are assumed, since all recordings are of one limit and of dry asphalt: the faster it may go,
-    the more it cuts (``eagerness``), and it takes every road for dry (``assumed_friction``).
+    Two of its properties are assumed, because all recordings have one speed limit and a dry road: the higher
+    the speed limit, the more it cuts (``eagerness``), and it takes every road for dry (``assumed_friction``).
 
     Args:
-        cut: metres, at 70 km/h; sharpness: 1/m.
-        aside: metres that its line keeps to the right of the lane's middle.
-        joining: metres from the road's start in which it swings from the lane's middle into its line.
-        eagerness: the cut grows with this power of the speed limit; 0: it does not.
+        cut: metres, at 70 km/h.
+        sharpness: 1/m.
+        aside: metres by which its line lies to the right of the lane's middle.
+        joining: metres from the road's start in which it moves from the lane's middle to its line.
+        eagerness: the cut grows with this power of the speed limit; 0 makes it constant.
         risk: lateral acceleration in bends, in g (aggression 0.7 drives 0.64); at most 0.95 of the friction.
-        headway: seconds to the point ahead; nearest: metres, its least distance.
-        compensation: s^2/m, steer added per lateral acceleration.
-        throttle, brake: pedal per m/s of speed error.
-        edge_room: metres that the right wheels keep from the carriageway's edge where the world has no verge
-            (a mesh road that floats); None drives its flat-ground habits there too, and falls.
-        assumed_friction: friction that it plans for; None: the world's, which it then knows.
+        headway: seconds to the point ahead.
+        nearest: metres, the smallest distance to the point ahead.
+        compensation: s^2/m, steering angle added per lateral acceleration.
+        throttle: throttle per m/s of speed error.
+        brake: brake per m/s of speed error.
+        edge_room: metres that the right wheels keep from the edge of the carriageway where the world has no
+            shoulder (a floating mesh road); with None it drives there as on flat ground, and falls.
+        assumed_friction: friction that it plans for; None stands for the friction of the world.
         wheelbase: metres.
     """
 
@@ -79,7 +83,7 @@ class BeamngLike:
         self.edge_room, self.assumed_friction, self.wheelbase = edge_room, assumed_friction, wheelbase
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Plan line and speed."""
+        """Plans line and speed."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, self.offsets(road, world))
         friction = world.friction if self.assumed_friction is None else self.assumed_friction
@@ -91,14 +95,15 @@ class BeamngLike:
         self._line, self._speed = line, plan_speed(replace(line, crest=[0.0] * len(line.crest)), limits)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
-        """Curvature of the lane's middle at the line's stations as it sees it, 1/m: without short bends."""
+        """Returns the curvature of the lane's middle at the line's stations in 1/m, smoothed so that short
+        bends vanish."""
         s = stations(road)
         bend = road.curvature(s)
         stretch = np.maximum(1 + world.lane_width / 2 * bend, TIGHTEST)
         return _smoothed(bend / stretch, float(s[1]))
 
     def offsets(self, road: "Road", world: "World") -> FloatArray:
-        """Metres to the left of the centre line at the line's stations."""
+        """Returns the offsets of its line, metres to the left of the centre line, at the line's stations."""
         s, bend = stations(road), self.bend(road, world)
         middle = -world.lane_width / 2
         cut = self.cut * (world.speed_limit / USUAL) ** self.eagerness
@@ -109,14 +114,15 @@ class BeamngLike:
         return np.asarray(offset, float)
 
     def _joined(self, s: FloatArray) -> FloatArray:
-        """Share of the way from the lane's middle, where it is parked, to its line; eases in and out."""
+        """Returns the share, 0..1, of the lateral move from the lane's middle, where the car is parked, to
+        its line."""
         share = np.clip(s / self.joining, 0.0, 1.0) if self.joining > 0 else np.ones_like(s)
         return np.asarray(share * share * (3 - 2 * share), float)
 
     def steer(self, view: View) -> Command:
-        """Aim at the point of the line ahead; chase the planned speed."""
+        """Steers towards the point of the line ahead; follows the planned speed."""
         line, v = self._line, view.speed
-        bend = pursued(line, view, max(self.headway * v, self.nearest))
+        bend = pursuit_curvature(line, view, max(self.headway * v, self.nearest))
         steer = math.atan(self.wheelbase * bend) + self.compensation * v * v * bend
         here, _ = line.place(view.s)
         error = self._speed[here] - v
@@ -126,7 +132,7 @@ class BeamngLike:
 
 
 def _smoothed(values: FloatArray, step: float) -> FloatArray:
-    """Mean under a Hann window; the ends are held."""
+    """Returns the mean under a Hann window; beyond both ends the end values continue."""
     half = max(1, round(SMOOTHING / step))
     window = np.hanning(2 * half + 1 + 2)[1:-1]
     held = np.pad(values, half, mode="edge")

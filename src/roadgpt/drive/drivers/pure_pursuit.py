@@ -1,11 +1,11 @@
-"""Pure pursuit: the plain, weak baseline."""
+"""The pure-pursuit driver: a simple, weak baseline."""
 
 import math
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import line_along
 from roadgpt.drive.pedals import pedals
-from roadgpt.drive.pursuit import pursued
+from roadgpt.drive.pursuit import pursuit_curvature
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -14,13 +14,15 @@ if TYPE_CHECKING:
 
 
 class PurePursuit:
-    """Steers on the circle that leads to a point of the lane's middle ahead, and knows nothing of slip.
+    """Steers on the circle that leads to a point ahead in the middle of the lane, and does not model tyre
+    slip.
 
-    It cuts bends at low speed and runs wide at high speed: the weak baseline.
+    It cuts bends at low speed and runs wide at high speed: a weak baseline.
 
     Args:
         risk: lateral acceleration in bends, in g; at most 0.95 of the friction is used.
-        headway: seconds to the point ahead; nearest: metres, its least distance.
+        headway: seconds to the point ahead.
+        nearest: metres, the smallest distance to the point ahead.
         wheelbase: metres.
     """
 
@@ -32,7 +34,7 @@ class PurePursuit:
         self.risk, self.headway, self.nearest, self.wheelbase = risk, headway, nearest, wheelbase
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Plan the speed along the middle of the right lane."""
+        """Plans the speed along the middle of the right lane."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, -world.lane_width / 2)
         lateral = min(self.risk, 0.95 * world.friction)
@@ -40,7 +42,7 @@ class PurePursuit:
         self._line, self._speed = line, plan_speed(line, limits)
 
     def steer(self, view: View) -> Command:
-        """Aim at the point ahead; follow the planned speed."""
+        """Steers towards the point ahead; follows the planned speed."""
         line = self._line
-        bend = pursued(line, view, max(self.headway * view.speed, self.nearest))
+        bend = pursuit_curvature(line, view, max(self.headway * view.speed, self.nearest))
         return Command(math.atan(self.wheelbase * bend), *pedals(line, self._speed, view.s, view.speed))

@@ -1,4 +1,5 @@
-"""The reference driver: feed-forward and look-ahead feedback along the middle of the right lane."""
+"""The reference driver: steers along the middle of the right lane with feed-forward and look-ahead
+feedback."""
 
 import math
 from typing import TYPE_CHECKING
@@ -15,21 +16,25 @@ TURN = 2 * math.pi
 
 
 class Reference:
-    """Keeps to the middle of the right lane; a road that it fails can hardly be driven.
+    """Keeps to the middle of the right lane; a road on which it fails can hardly be driven.
 
-    Steering is that of N. R. Kapania, J. C. Gerdes, "Design of a feedback-feedforward steering controller for
-    accurate path tracking and stability at the limits of handling", Vehicle System Dynamics 53 (2015):
-    the steer that the bend ahead needs in a steady state, and feedback on the lateral error at a point ahead
-    of the car, slip angle counted. Speed is planned on the friction circle with grade and crests.
+    Steering follows N. R. Kapania, J. C. Gerdes, "Design of a feedback-feedforward steering controller for
+    accurate path tracking and stability at the limits of handling", Vehicle System Dynamics 53 (2015): the
+    steady-state steering angle for the bend ahead, plus feedback on the lateral error at a point ahead of the
+    car, with the slip angle taken into account. Speed is planned on the friction circle, with grades and
+    crests.
 
     Args:
         risk: lateral acceleration in bends, in g; at most 0.72 of the friction is used.
-        wheelbase: metres; to_rear: metres from the centre of gravity to the rear axle.
-        understeer: s^2/m, steer per lateral acceleration beyond Ackermann's; slip: s^2/m, slip angle of the
-            rear axle per lateral acceleration. Both belong to the car; measured on ours at a steady 0.3 g.
-        gain: rad of steer per metre of lateral error ahead; ahead, headway: the point lies
-            ``ahead + headway * speed`` metres before the car.
-        lag: seconds that the steering needs; the bend is looked up that far ahead.
+        wheelbase: metres.
+        to_rear: metres from the centre of gravity to the rear axle.
+        understeer: s^2/m, steering angle per lateral acceleration beyond the Ackermann angle. Like ``slip``
+            it belongs to the car; both were measured on RoadGPT's car in steady state at 0.3 g.
+        slip: s^2/m, slip angle of the rear axle per lateral acceleration.
+        gain: rad of steering angle per metre of lateral error at the point ahead.
+        ahead: metres; the point lies ``ahead + headway * speed`` metres before the car.
+        headway: seconds, see ``ahead``.
+        lag: seconds of steering delay; the bend is looked up that far ahead.
     """
 
     name = "reference"
@@ -52,7 +57,7 @@ class Reference:
         self.gain, self.ahead, self.headway, self.lag = gain, ahead, headway, lag
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Plan line and speed."""
+        """Plans line and speed."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, -world.lane_width / 2)
         lateral = min(self.risk, FRICTION_USED * world.friction)
@@ -60,7 +65,7 @@ class Reference:
         self._line, self._speed = line, plan_speed(line, limits)
 
     def steer(self, view: View) -> Command:
-        """Steer for the bend ahead and against the error; follow the planned speed."""
+        """Steers for the bend ahead and against the lateral error; follows the planned speed."""
         line, v = self._line, max(view.vx, 0.0)
         i, share = line.place(view.s)
         error = view.t - line.offset[i]
@@ -75,6 +80,6 @@ class Reference:
         return Command(steer, *pedals(line, self._speed, view.s, v))
 
 
-FRICTION_USED = 0.72  # share of the friction that bends may need; the rest is for errors
+FRICTION_USED = 0.72  # share of the friction that bends may need; the rest is for corrections
 BRAKING = 0.9  # of the lateral limit
 TRACTION = 0.8  # of the lateral limit

@@ -1,1 +1,1 @@
-"""The shelf of simulators."""
+"""Simulator plug-ins."""

@@ -8,10 +8,12 @@ from roadgpt.brief import sentence
 from roadgpt.check.describing import describe
 from roadgpt.errors import ExportError, UsageError
 from roadgpt.export.edges import stations
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
 from roadgpt.report.places import places_of
 from roadgpt.road import Road, World
+from roadgpt.road.world import LINE
 from roadgpt.run import Run
 from roadgpt.verdict.severity import MOSTLY, SEVERITIES
 
@@ -60,6 +62,7 @@ def scene(run: Run) -> dict[str, Any]:
         "words": _words(run.road),
         "road": _road(run.road, run.world),
         "world": run.world.model_dump(include=WORLD),
+        "marking": {"width": LINE, "dash": DASH, "gap": GAP},
         "severe": SCALE,
         "drive": _drive(run),
         "places": _places(run),

@@ -1,14 +1,15 @@
 """RoadGPT as a test generator in the SBFT tool competition's own environment, and in any other.
 
-The competition pins Python below 3.11 and libraries that RoadGPT does not work with, so RoadGPT lives in an
-environment of its own. This one file is all that the competition's environment needs: it is of the standard
-library alone, runs on Python 3.8 and newer, starts RoadGPT over there and asks it for roads.
+The competition requires Python below 3.11 and libraries that do not work with RoadGPT, so RoadGPT is
+installed in an environment of its own. The competition's environment needs only this file: it uses the
+standard library alone, runs on Python 3.8 and newer, starts RoadGPT in its environment and requests roads
+from it.
 
     export ROADGPT_PYTHON=/path/to/roadgpt/environment/bin/python
     python competition.py --time-budget 3600 --module-name roadgpt_client --class-name RoadGPTTestGenerator
 
-What roads is said by the environment (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER, ROADGPT_READER) or
-by a class of one's own:
+The roads are controlled by environment variables (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER,
+ROADGPT_READER) or by a subclass:
 
     from roadgpt_client import RoadGPTTestGenerator
 
@@ -34,24 +35,25 @@ from typing import IO, Any, Dict, Iterator, List, Optional, Tuple
 log = logging.getLogger(__name__)
 
 PYTHON = "ROADGPT_PYTHON"  # names the interpreter of the environment that RoadGPT is installed in
-FAREWELL = 10.0  # s for a process that has nothing more to do
+FAREWELL = 10.0  # s within which a process must end after its connection is closed
 
 Message = Dict[str, Any]
 Points = List[Tuple[float, float]]
 
 
 class RoadGPTError(RuntimeError):
-    """RoadGPT cannot be started, or cannot do what was asked for; its text is one sentence."""
+    """RoadGPT cannot be started, or cannot do what was requested; the message is one sentence."""
 
 
 def send(stream: IO[bytes], message: Message) -> None:
-    """Write a message: one JSON value in a line. Numbers that are not finite travel as Python writes them."""
+    """Writes a message as one line of JSON. Numbers that are not finite are written as Python's JSON writes
+    them."""
     stream.write(json.dumps(message, default=plain).encode() + b"\n")
     stream.flush()
 
 
 def received(line: bytes) -> Optional[Message]:
-    """The message in a line; None where there is none."""
+    """Returns the message in a line; None if the line is not a message."""
     try:
         message = json.loads(line)
     except (ValueError, RecursionError):
@@ -60,19 +62,19 @@ def received(line: bytes) -> Optional[Message]:
 
 
 def plain(value: Any) -> Any:
-    """Numbers and tables of other libraries, as numpy's."""
+    """Converts numbers and arrays of other libraries, such as numpy's."""
     listed = getattr(value, "tolist", None)
     return listed() if callable(listed) else str(value)
 
 
 class RoadGPT:
-    """RoadGPT at work in its own environment: a process that is asked, and answers."""
+    """A RoadGPT process in its own environment, which answers requests."""
 
     def __init__(self, python: Optional[str] = None) -> None:
-        """Starts it.
+        """Starts the process.
 
         Args:
-            python: that RoadGPT is installed in; None: what ROADGPT_PYTHON says, or this one.
+            python: the interpreter that RoadGPT is installed in; None: that of ROADGPT_PYTHON, or this one.
 
         Raises:
             RoadGPTError: it does not start.
@@ -95,10 +97,10 @@ class RoadGPT:
         self.ask("hello")
 
     def ask(self, op: str, **values: Any) -> Any:
-        """What is answered.
+        """Sends a request and returns the answer.
 
         Raises:
-            RoadGPTError: RoadGPT says why it has no answer, or is gone.
+            RoadGPTError: RoadGPT reports an error, or its process has ended.
         """
         stdin, stdout = self._process.stdin, self._process.stdout
         assert stdin is not None
@@ -111,8 +113,8 @@ class RoadGPT:
                 answer = None
         if answer is None:
             raise RoadGPTError(
-                f"RoadGPT ended without a word{self._status()}; is {self.python} the Python that it is "
-                f"installed in? Else set {PYTHON} to that"
+                f"RoadGPT ended without an answer{self._status()}; check that it is installed in "
+                f"{self.python}, or set {PYTHON} to the Python that it is installed in"
             )
         if "error" in answer:
             raise RoadGPTError(answer["error"])
@@ -126,11 +128,11 @@ class RoadGPT:
 
     @property
     def is_ours(self) -> bool:
-        """Was it started by this process, and not by the one that this one was forked from?"""
+        """Whether it was started by this process, and not by the process from which this one was forked."""
         return self._owner == os.getpid()
 
     def close(self) -> None:
-        """Let it end."""
+        """Closes the connection and waits for the process to end."""
         for stream in (self._process.stdin, self._process.stdout):
             if stream is not None:
                 stream.close()
@@ -150,23 +152,23 @@ def _own() -> str:
 
 
 class RoadGPTTestGenerator:
-    """Brings roads that keep a description, one after another, until the budget is over."""
+    """Submits roads that meet a description, one after another, until the budget is used up."""
 
     description: Optional[str] = None
-    """What roads; where nobody says it, RoadGPT's usual ones."""
+    """The description of the roads; None: RoadGPT's default."""
     seed = 0
     designer: Optional[str] = None
     reader: Optional[str] = None
     python: Optional[str] = None
-    """The interpreter that RoadGPT is installed in, where ROADGPT_PYTHON does not say it."""
+    """The interpreter that RoadGPT is installed in; ROADGPT_PYTHON takes precedence."""
 
     def __init__(self, executor: Any = None, map_size: Optional[int] = None) -> None:
-        """As the competition makes it."""
+        """Has the signature that the competition calls."""
         self.executor = executor
         self.map_size = map_size
 
     def start(self) -> None:
-        """Test after test.
+        """Submits test after test.
 
         Raises:
             RoadGPTError: RoadGPT does not start, the description cannot be read, or no road can be designed.
@@ -179,10 +181,11 @@ class RoadGPTTestGenerator:
             log.info("%s: %s", outcome, said)
 
     def roads(self) -> Iterator[Points]:
-        """Road points without end, in metres: at most 2 m apart, at most 500, and valid for the competition.
+        """Yields road points without end, in metres: at most 2 m apart, at most 500, and valid for the
+        competition.
 
         Raises:
-            RoadGPTError: as ``start``.
+            RoadGPTError: as for ``start``.
         """
         asked = {
             name: getattr(self, name) for name in ("description", "seed", "designer", "reader", "map_size")

@@ -1,4 +1,4 @@
-"""The SDC testing competition's service: selects or prioritises given roads by predicted risk.
+"""The service of the SDC testing competition: selects or prioritises given roads by predicted risk.
 
-Needs the extra ``roadgpt[sdc]``: import ``roadgpt.sbft.sdc.service``.
+It needs the extra ``roadgpt[sdc]``: import ``roadgpt.sbft.sdc.service``.
 """

@@ -1,7 +1,7 @@
-"""The messages of the SDC testing competition's service, as ``competition.proto`` beside this file has them.
+"""The messages of the SDC testing competition's service, as in ``competition.proto`` beside this file.
 
-They are built here, from a table, in a pool of their own: nothing needs to be compiled, and compiled messages
-of the same names in the same process are not disturbed.
+They are built from a table, in a descriptor pool of their own: nothing needs to be compiled, and they do not
+collide with compiled messages of the same names in the same process.
 """
 
 from typing import Any
@@ -26,7 +26,7 @@ MESSAGES: dict[str, tuple[tuple[str, int | str, bool], ...]] = {
     "SelectionReply": (("testId", Kind.TYPE_STRING, False),),
     "PrioritizationReply": (("testId", Kind.TYPE_STRING, False),),
 }
-"""Name: fields in the order of their numbers, as (name, type or message, is repeated)."""
+"""Message: fields in the order of their numbers, as (name, type or message, is repeated)."""
 
 METHODS = {
     "Name": ("Empty", False, "NameReply", False),
@@ -34,11 +34,11 @@ METHODS = {
     "Select": ("SDCTestCase", True, "SelectionReply", True),
     "Prioritize": ("SDCTestCase", True, "PrioritizationReply", True),
 }
-"""Name: (request, is a stream, reply, is a stream)."""
+"""Method: (request, is a stream, reply, is a stream)."""
 
 
 def description() -> Any:
-    """The file as protobuf describes files."""
+    """Returns the file as a protobuf file descriptor."""
     file = descriptor_pb2.FileDescriptorProto(name=FILE, syntax="proto3")
     for name, fields in MESSAGES.items():
         message = file.message_type.add(name=name)
@@ -64,5 +64,5 @@ _POOL.AddSerializedFile(description().SerializeToString())
 
 
 def message(name: str) -> Any:
-    """The class of a message."""
+    """Returns the class of a message."""
     return message_factory.GetMessageClass(_POOL.FindMessageTypeByName(name))

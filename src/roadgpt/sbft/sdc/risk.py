@@ -1,10 +1,10 @@
-"""How likely a road is to make the car leave its lane: from the line that its driver plans.
+"""Predicts how likely a road is to make the car leave its lane, from the line that the driver plans.
 
-The competition's car is BeamNG's AI at risk 1.5 and up to 120 km/h; a test fails where more than half of the
-car is outside its lane. Ours is ``beamng_like``. Nothing is driven: how far its line, and what it cuts inside
-of it, lies from the middle of the lane tells recorded failures no worse than a drive does
-(docs/reference/benchmarks.md), in a fortieth of the time. Where it is known how tests ended, all signs are
-weighed by that (logistic regression); else the line alone counts.
+The competition's car is BeamNG's AI at risk 1.5 and up to 120 km/h; a test fails if more than half of the car
+is outside its lane. RoadGPT's stand-in is ``beamng_like``. Nothing is driven: the distance of its line from
+the middle of the lane, with what it cuts inside that line, predicts recorded failures no worse than a drive
+does (docs/reference/benchmarks.md), in a fortieth of the time. If outcomes of tests are known, all features
+are weighted by logistic regression; else the line alone counts.
 """
 
 import logging
@@ -25,69 +25,70 @@ log = logging.getLogger(__name__)
 Array = NDArray[np.float64]
 
 PLAIN = World(map_size=10_000.0, speed_limit=120 / 3.6, oob_tolerance=0.5)
-FARTHEST = 20.0  # m from the middle of the lane: more says no more
-LONGEST = 20_000.0  # m of road that is looked at
-SHORTEST = 0.01  # m between points; closer ones are one
-GETTING_GOING = 25.0  # m in which no car is fast enough to fail
-ARRIVED = 8.0  # m before the end: there the competition's drive is over
-RIDGE = 1.0  # of the regression, so that few outcomes do not decide it all
-STEPS = 30  # of Newton's method
-FEWEST = 20  # known outcomes from which something is learnt
-EXPECTED = 3.0  # failures that a selection is to hold: of fewer, one in twenty-five suites had none at all
-FEW = 0.05  # share of tests that is selected at least
-UNTAUGHT = 0.1  # share of tests that are selected where no outcome is known
+FARTHEST = 20.0  # m, upper bound of the distance from the middle of the lane
+LONGEST = 20_000.0  # m, longest road that is examined
+SHORTEST = 0.01  # m; closer points count as one
+GETTING_GOING = 25.0  # m at the start in which no car is fast enough to fail
+ARRIVED = 8.0  # m before the end, where the competition's drive is over
+RIDGE = 1.0  # regularisation, which limits the effect of few outcomes
+STEPS = 30  # iterations of Newton's method
+FEWEST = 20  # known outcomes that are needed for a fit
+EXPECTED = 3.0  # failures that a selection should contain: with fewer, 1 in 25 suites contained none at all
+FEW = 0.05  # smallest share of tests that is selected
+UNTAUGHT = 0.1  # share of tests that is selected if no outcomes are known
 
 
-class Signs(NamedTuple):
-    """What is seen of a road; the larger the likelier to fail."""
+class RiskFeatures(NamedTuple):
+    """Features of a road; larger values make a failure more likely."""
 
     near: float
-    """Metres from the middle of the lane to where the car is farthest from it."""
+    """Largest distance of the car from the middle of the lane, metres."""
     wander: float
     """Mean of that distance, metres."""
     swing: float
-    """How quickly it changes, at most: metres per metre."""
+    """Largest rate of change of the planned offset: metres per metre."""
     tightest: float
     """Largest curvature, 1/m."""
     bends: float
-    """Mean curvature, whichever hand, 1/m."""
+    """Mean curvature, irrespective of its sign, 1/m."""
 
 
-UNKNOWN = Signs(*[np.nan] * len(Signs._fields))
-"""Of a road that cannot be used."""
+UNKNOWN = RiskFeatures(*[np.nan] * len(RiskFeatures._fields))
+"""Features of a road that cannot be used."""
 
 
-def signs_of(points: Sequence[Sequence[float]], world: World = PLAIN) -> Signs:
-    """Signs of a road of control points, in metres; unknown ones of a road that cannot be used."""
+def risk_features(points: Sequence[Sequence[float]], world: World = PLAIN) -> RiskFeatures:
+    """Returns the features of a road with these control points in metres; UNKNOWN if the road cannot be
+    used."""
     try:
         road = Road.through(_apart(points))
         if not road.length < LONGEST:
             raise RoadGPTError(f"it is longer than {LONGEST / 1000:g} km")
-        return _signs(road, world)
+        return _features(road, world)
     except (RoadGPTError, ArithmeticError, ValueError) as error:
         log.info("a road cannot be used: %s", error)
         return UNKNOWN
 
 
-def _signs(road: Road, world: World) -> Signs:
+def _features(road: Road, world: World) -> RiskFeatures:
     s, driver = stations(road), BeamngLike()
     bend = np.abs(road.curvature(s))
     aside = driver.offsets(road, world) + world.lane_width / 2
     away = np.abs(aside + PURSUIT_CUTS * driver.bend(road, world))
     counts = (s >= GETTING_GOING) & (s <= road.length - ARRIVED)
     away = away[counts] if counts.any() else away
-    signs = (
+    features = (
         min(away.max(), FARTHEST),
         min(away.mean(), FARTHEST),
         np.abs(np.diff(aside)).max() / s[1],
         min(bend.max(), 1.0),
         min(bend.mean(), 1.0),
     )
-    return Signs(*map(float, signs)) if np.isfinite(signs).all() else UNKNOWN
+    return RiskFeatures(*map(float, features)) if np.isfinite(features).all() else UNKNOWN
 
 
 def _apart(points: Sequence[Sequence[float]]) -> Array:
-    """Points without those that repeat the one before."""
+    """Returns the points without those that repeat the previous one."""
     table = np.asarray(points, float).reshape(-1, 2)
     keep = np.ones(len(table), bool)
     with np.errstate(invalid="ignore"):
@@ -97,29 +98,31 @@ def _apart(points: Sequence[Sequence[float]]) -> Array:
 
 
 @dataclass(frozen=True)
-class Weighing:
-    """From signs to one number."""
+class RiskModel:
+    """Maps features to one score."""
 
     mean: Array
     scale: Array
     weights: Array
-    """One per sign, and a constant."""
+    """One per feature, and a constant."""
     share: float | None = None
-    """Of the known tests, those that failed; None where nobody knows."""
+    """Share of the known tests that failed; None if no outcomes are known."""
 
-    def scores(self, signs: Sequence[Signs]) -> Array:
-        """The larger the likelier to fail, ``(n,)``; what is unknown lies in the middle."""
-        scores = (_table(signs) - self.mean) / self.scale @ self.weights[:-1] + self.weights[-1]
+    def scores(self, features: Sequence[RiskFeatures]) -> Array:
+        """Returns scores ``(n,)``, larger where failure is more likely; unknown features get the median
+        score."""
+        scores = (_table(features) - self.mean) / self.scale @ self.weights[:-1] + self.weights[-1]
         known = np.isfinite(scores)
         return np.asarray(np.where(known, scores, np.median(scores[known]) if known.any() else 0.0))
 
-    def worth(self, signs: Sequence[Signs]) -> list[int]:
-        """Indices of the tests to select, so that the largest share of them fails: the likeliest ones.
+    def select(self, features: Sequence[RiskFeatures]) -> list[int]:
+        """Returns the indices of the tests to select, so that the largest share of them fails: the likeliest
+        ones.
 
-        A twentieth of them; or more, until three failures are expected, as long as a test is likelier to fail
-        than most. Where nobody knows what to expect, the likeliest tenth.
+        These are a twentieth of all tests; or more, until three failures are expected, as long as a test is
+        likelier to fail than the average. If no outcomes are known, they are the likeliest tenth.
         """
-        scores = self.scores(signs)
+        scores = self.scores(features)
         first = order(scores)
         if self.share is None:
             count = int(np.ceil(UNTAUGHT * len(scores)))
@@ -131,27 +134,27 @@ class Weighing:
         return sorted(first[:count].tolist())
 
 
-ZERO = np.zeros(len(Signs._fields))
-BY_LINE = Weighing(ZERO, ZERO + 1.0, np.r_[1.0, np.zeros(len(Signs._fields))])
-"""The planned line alone."""
+ZERO = np.zeros(len(RiskFeatures._fields))
+LINE_ONLY = RiskModel(ZERO, ZERO + 1.0, np.r_[1.0, np.zeros(len(RiskFeatures._fields))])
+"""The model that uses the planned line alone."""
 
 
-def _table(signs: Sequence[Signs]) -> Array:
-    return np.asarray(signs, float).reshape(-1, len(Signs._fields))
+def _table(features: Sequence[RiskFeatures]) -> Array:
+    return np.asarray(features, float).reshape(-1, len(RiskFeatures._fields))
 
 
 def order(scores: Array) -> NDArray[np.intp]:
-    """Indices from the largest score to the least; equal ones as they came."""
+    """Returns indices from the largest score to the smallest; equal scores keep their order."""
     return np.argsort(-scores, kind="stable")
 
 
-def learnt(signs: Sequence[Signs], failed: Sequence[bool]) -> Weighing:
-    """Signs weighed so that they tell failures; the line alone where there is too little to learn from."""
-    table, outcome = _table(signs), np.asarray(failed, float)
+def fit_model(features: Sequence[RiskFeatures], failed: Sequence[bool]) -> RiskModel:
+    """Fits weights of the features that predict failures; returns LINE_ONLY if there is too little data."""
+    table, outcome = _table(features), np.asarray(failed, float)
     known = np.isfinite(table).all(axis=1)
     table, outcome = table[known], outcome[known]
     if len(outcome) < FEWEST or outcome.min() == outcome.max():
-        return BY_LINE
+        return LINE_ONLY
     mean, scale = table.mean(axis=0), np.maximum(table.std(axis=0), 1e-9)
     design = np.c_[(table - mean) / scale, np.ones(len(table))]
     penalty = RIDGE * np.diag(np.r_[np.ones(design.shape[1] - 1), 1e-6])
@@ -162,5 +165,5 @@ def learnt(signs: Sequence[Signs], failed: Sequence[bool]) -> Weighing:
         slope = design.T @ (outcome - chance) - penalty @ weights
         weights = weights + np.linalg.solve(design.T @ (spread[:, None] * design) + penalty, slope)
     if not np.isfinite(weights).all():
-        return BY_LINE
-    return Weighing(mean, scale, weights, float(outcome.mean()))
+        return LINE_ONLY
+    return RiskModel(mean, scale, weights, float(outcome.mean()))

@@ -9,65 +9,65 @@ import grpc
 
 from roadgpt.errors import UsageError
 from roadgpt.sbft.sdc.messages import METHODS, SERVICE, message
-from roadgpt.sbft.sdc.risk import BY_LINE, Signs, learnt, order, signs_of
+from roadgpt.sbft.sdc.risk import LINE_ONLY, RiskFeatures, fit_model, order, risk_features
 
 log = logging.getLogger(__name__)
 
 NAME = "RoadGPT"
-MOST_LEARNT = 5000  # known outcomes that are looked at: some 6 s of processor time
+MOST_OUTCOMES = 5000  # known outcomes that are used, which takes some 6 s of processor time
 WORKERS = 4
 
 
 class Service:
-    """One evaluator's counterpart. Each method is an RPC."""
+    """Serves one evaluator; each method is an RPC."""
 
     def __init__(self) -> None:
-        """A service that has learnt nothing yet."""
-        self.weighing = BY_LINE
+        """Makes a service without knowledge of any outcomes."""
+        self.model = LINE_ONLY
 
     def name(self, request: Any, context: Any) -> Any:
-        """What the tool is called."""
+        """Returns the name of the tool."""
         return message("NameReply")(name=NAME)
 
     def initialize(self, requests: Iterable[Any], context: Any) -> Any:
-        """Learn from tests whose outcomes are known."""
+        """Fits the model to tests with known outcomes."""
         oracles = list(requests)
-        chosen = oracles[:: max(1, -(-len(oracles) // MOST_LEARNT))]
-        signs = self._signs(oracle.testCase for oracle in chosen)
-        self.weighing = learnt(signs, [bool(oracle.hasFailed) for oracle in chosen])
-        log.info("%d of %d known outcomes were looked at", len(chosen), len(oracles))
+        chosen = oracles[:: max(1, -(-len(oracles) // MOST_OUTCOMES))]
+        features = self._features(oracle.testCase for oracle in chosen)
+        self.model = fit_model(features, [bool(oracle.hasFailed) for oracle in chosen])
+        log.info("%d of %d known outcomes were used", len(chosen), len(oracles))
         return message("InitializationReply")(ok=True)
 
     def select(self, requests: Iterable[Any], context: Any) -> Iterator[Any]:
-        """The tests that are the likeliest to fail, in the order in which they came."""
+        """Yields the tests that are likeliest to fail, in the order in which they came."""
         tests = list(requests)
         if tests:
-            for i in self.weighing.worth(self._signs(tests)):
+            for i in self.model.select(self._features(tests)):
                 yield message("SelectionReply")(testId=tests[i].testId)
 
     def prioritize(self, requests: Iterable[Any], context: Any) -> Iterator[Any]:
-        """All tests, the likeliest to fail first."""
+        """Yields all tests, the likeliest to fail first."""
         tests = list(requests)
         if tests:
-            for i in order(self.weighing.scores(self._signs(tests))):
+            for i in order(self.model.scores(self._features(tests))):
                 yield message("PrioritizationReply")(testId=tests[i].testId)
 
-    def _signs(self, tests: Iterable[Any]) -> list[Signs]:
-        """Of each test."""
-        return [signs_of(points_of(test)) for test in tests]
+    def _features(self, tests: Iterable[Any]) -> list[RiskFeatures]:
+        """Returns the features of each test."""
+        return [risk_features(points_of(test)) for test in tests]
 
 
 def points_of(test: Any) -> list[tuple[float, float]]:
-    """A test's points, in the order of their numbers."""
+    """Returns a test's points, ordered by their sequence numbers."""
     points = sorted(test.roadPoints, key=lambda point: point.sequenceNumber)
     return [(point.x, point.y) for point in points]
 
 
 def serve(host: str, port: int) -> tuple[Any, int]:
-    """A server that has started, and its port: one that is free for port 0.
+    """Starts a server; returns it with its port, which is a free one for port 0.
 
     Raises:
-        UsageError: the port cannot be had.
+        UsageError: the port is not available.
     """
     service = Service()
     server = grpc.server(ThreadPoolExecutor(WORKERS))
@@ -77,13 +77,13 @@ def serve(host: str, port: int) -> tuple[Any, int]:
     except RuntimeError:
         got = 0
     if not got:
-        raise UsageError(f"cannot listen on {host}:{port}; is something else there? Say another --port")
+        raise UsageError(f"cannot listen on {host}:{port}; if another program uses it, choose another --port")
     server.start()
     return server, got
 
 
 def handlers(service: Service) -> Any:
-    """The RPCs of a service, as gRPC takes them."""
+    """Returns the RPC handlers of a service for gRPC."""
     return grpc.method_handlers_generic_handler(SERVICE, {name: _handler(service, name) for name in METHODS})
 
 

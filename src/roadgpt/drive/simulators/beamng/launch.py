@@ -1,7 +1,7 @@
-"""BeamNG as a process of ours: found in its folder, started, watched, ended.
+"""Starts, watches and ends BeamNG as a child process.
 
-The client could start it as well; but then it waits for minutes on a process that is dead, and knows only
-the newest versions' options. The command line is the one that beamngpy 1.36 writes.
+The client could start it as well, but it would wait for minutes for a process that has already ended, and it
+knows only the newest versions' options. The command line is the one that beamngpy 1.36 uses.
 """
 
 import platform
@@ -11,20 +11,20 @@ from contextlib import suppress
 from pathlib import Path
 
 from roadgpt import children
-from roadgpt.drive.simulators.beamng.settings import Settings
-from roadgpt.drive.simulators.beamng.wire import is_taken
+from roadgpt.drive.simulators.beamng.handshake import is_taken
+from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.errors import PartError, SimulatorError
 
 BINARIES = {
     "Linux": ("BinLinux/BeamNG.tech.x64", "BinLinux/BeamNG.x64", "BinLinux/BeamNG.drive.x64"),
     "Windows": ("BeamNG.tech.exe", "BeamNG.drive.exe", "Bin64/BeamNG.tech.x64.exe", "Bin64/BeamNG.x64.exe"),
 }
-LOOK = 0.1  # s between two looks
-GRACE = 10.0  # s to end by itself
+LOOK = 0.1  # s between two checks
+GRACE = 10.0  # s in which it may end by itself
 
 
 def binary_of(home: Path) -> Path:
-    """BeamNG's program in its folder.
+    """Returns the path of BeamNG's program in its folder.
 
     Raises:
         PartError: there is none.
@@ -36,8 +36,8 @@ def binary_of(home: Path) -> Path:
     raise PartError(f"no BeamNG in {home}: --beamng-home is the folder that holds {names[0]}")
 
 
-def command_line(binary: Path, settings: Settings, port: int, user: Path | None) -> list[str]:
-    """The words that start it."""
+def command_line(binary: Path, settings: BeamngSettings, port: int, user: Path | None) -> list[str]:
+    """Returns the command that starts BeamNG, as a list of words."""
     words = [str(binary), "-nosteam", "-tcom", "-tport", str(port)]
     if platform.system() != "Linux":
         words.append("-console")
@@ -53,8 +53,8 @@ def command_line(binary: Path, settings: Settings, port: int, user: Path | None)
     return words
 
 
-class Game:
-    """A running BeamNG that belongs to us."""
+class BeamngProcess:
+    """A BeamNG that this process has started."""
 
     def __init__(self, words: list[str], host: str, port: int) -> None:
         """Starts it.
@@ -70,10 +70,11 @@ class Game:
             raise SimulatorError(f"BeamNG cannot be started ({error}); check --beamng-home") from error
 
     def wait(self, patience: float) -> None:
-        """Until it listens.
+        """Waits until it listens on its port.
 
         Raises:
-            SimulatorError: it ended, or does not listen within so many seconds; it is ended then.
+            SimulatorError: it ended, or does not listen within ``patience`` seconds, in which case it is
+                killed.
         """
         due = time.monotonic() + patience
         while not is_taken(self.host, self.port):
@@ -93,15 +94,15 @@ class Game:
 
     @property
     def is_alive(self) -> bool:
-        """Does the process run?"""
+        """Whether the process runs."""
         return self.process.poll() is None
 
     def kill(self) -> None:
-        """End it and what it started, whether it wants to or not."""
+        """Ends it and its child processes, by force if necessary."""
         children.end(self.process, GRACE)
 
     def end(self) -> None:
-        """Let it end after it was told to quit; end it where it does not."""
+        """Waits for it to quit after it was asked to; kills it if it does not."""
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(GRACE)
         self.kill()

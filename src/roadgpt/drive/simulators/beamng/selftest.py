@@ -1,8 +1,8 @@
-"""What nobody without a licence could try: asks a real BeamNG, one question after another.
+"""Runs checks against a real BeamNG and reports the answers; RoadGPT was developed without a licence for it.
 
-Each check ends in a sentence with figures, whatever comes of it; what is told here is what the notes on
-BeamNG leave open: does the AI see roads of prefabs, do decals lie well on slopes, how much do repeated runs
-differ, do our level folders load?
+Each check ends with a sentence that contains figures. The checks answer the questions that BeamNG's
+documentation leaves open: whether the AI finds roads of prefabs, whether decals lie correctly on slopes, how
+much repeated runs differ, and whether RoadGPT's level folders load.
 """
 
 import json
@@ -19,11 +19,11 @@ from roadgpt import __version__
 from roadgpt.drive.drive import Drive
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.simulators.beamng.loaded_road import LoadedRoad, as_quaternion
 from roadgpt.drive.simulators.beamng.session import LEVELS, Session, client, session_of
-from roadgpt.drive.simulators.beamng.settings import Settings
+from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.drive.simulators.beamng.simulator import BeamngSimulator
-from roadgpt.drive.simulators.beamng.stage import Stage, as_quaternion
-from roadgpt.drive.view import Camera
+from roadgpt.drive.view import CameraSpec
 from roadgpt.export.exporters.beamng import write_level
 from roadgpt.export.exporters.beamng.files import ABOVE_GROUND, rotation
 from roadgpt.export.exporters.beamng.roads import GOAL, level_road
@@ -33,13 +33,13 @@ REPORT = "beamng-selftest"
 WORLD = World()
 LEVEL = "roadgpt_selftest"
 STEEP = 15.0  # percent
-DRIVEN = 20.0  # m that a car must come in the level of ours
+DRIVEN = 20.0  # m that the AI must drive in RoadGPT's own level
 PATIENCE = 15.0  # s for that
 
 
 @dataclass(frozen=True)
 class Check:
-    """One question and its answer."""
+    """One check and its result."""
 
     about: str
     is_fine: bool
@@ -48,7 +48,7 @@ class Check:
 
 
 def bent(z: float, incline: float) -> Road:
-    """A straight, a bend to either side, a straight: 190 m."""
+    """Returns a road of 190 m: a straight, one bend to each side, and another straight."""
     left = Segment(distance=40, direction="left", turn_degrees=60, incline=incline)
     right = Segment(distance=50, direction="right", turn_degrees=-60, incline=incline)
     straight = Segment(distance=50, direction="straight", incline=incline)
@@ -56,16 +56,16 @@ def bent(z: float, incline: float) -> Road:
 
 
 class Selftest:
-    """The checks, in their order, and the pictures that they take."""
+    """The checks in their order, and the images that they save."""
 
-    def __init__(self, settings: Settings, folder: Path, repeats: int) -> None:
-        """Nothing is started yet; pictures go into the folder."""
+    def __init__(self, settings: BeamngSettings, folder: Path, repeats: int) -> None:
+        """Prepares the checks; images are saved in the folder."""
         self.settings, self.folder, self.repeats = settings, folder, repeats
         self.simulator = BeamngSimulator(settings)
         self.pictures: list[str] = []
 
     def checks(self) -> Iterator[Check]:
-        """One after another; where BeamNG does not start, only the first."""
+        """Yields the checks one after another; if BeamNG does not start, only the first."""
         first = self._tried("connection", self._connection)
         yield first
         if not first.is_fine:
@@ -76,15 +76,15 @@ class Selftest:
         yield self._tried(f"AI up {STEEP:g} %", lambda: self._ai(bent(-20.0, STEEP)))
         yield self._tried(f"AI down {STEEP:g} %", lambda: self._ai(bent(40.0, -STEEP)))
         yield self._tried("repeated runs", self._spread)
-        yield self._tried("a driver of ours", self._driver)
+        yield self._tried("a RoadGPT driver", self._driver)
         yield self._tried(f"picture of a road of {STEEP:g} %", self._picture)
-        yield self._tried("level folder of ours", self._own_level)
+        yield self._tried("RoadGPT level folder", self._own_level)
 
     def _tried(self, about: str, check: Callable[[], tuple[bool, str]]) -> Check:
         begun = time.monotonic()
         try:
             is_fine, said = check()
-        except Exception as error:  # whatever it is, it is the answer
+        except Exception as error:  # any error is the result of the check
             is_fine, said = False, f"{type(error).__name__}: {error}"
         return Check(about, is_fine, said, round(time.monotonic() - begun, 1))
 
@@ -104,14 +104,14 @@ class Selftest:
     def _level(self) -> tuple[bool, str]:
         session = self._session
         there = sorted(session.bng.scenario.get_levels())
-        with Stage(session, bent(WORLD.z_floor, 0.0), WORLD, 0) as stage:
-            height = stage.now.z - WORLD.z_floor
-        about = f"drives on {session.level}, ground taken to be at {session.ground:g} m; of ours there are "
+        with LoadedRoad(session, bent(WORLD.z_floor, 0.0), WORLD, 0) as loaded:
+            height = loaded.now.z - WORLD.z_floor
+        about = f"drives on {session.level}, ground assumed at {session.ground:g} m; known levels installed: "
         known = ", ".join(name for name in LEVELS if name in there)
         is_fine = 0.2 < height < 1.2
         return (
             is_fine,
-            f"{about}{known}; the standing car's centre of gravity is {height:.2f} m above its road",
+            f"{about}{known}; centre of gravity of the standing car {height:.2f} m above its road",
         )
 
     def _ai(self, road: Road) -> tuple[bool, str]:
@@ -155,20 +155,20 @@ class Selftest:
         from PIL import Image
 
         if self.settings.nogpu:
-            return True, "not taken: --nogpu draws nothing"
+            return True, "skipped: --nogpu draws nothing"
         session = self._session
-        with Stage(session, bent(-20.0, STEEP), WORLD, 0) as stage:
-            stage.open_camera(Camera(1280, 720, 1.0, 2.0, 3.0, 0.15))
+        with LoadedRoad(session, bent(-20.0, STEEP), WORLD, 0) as loaded:
+            loaded.open_camera(CameraSpec(1280, 720, 1.0, 2.0, 3.0, 0.15))
             with session.within(self.settings.poll_timeout, "a picture was taken"):
                 for _ in range(10):  # the first frames may be black
-                    stage.step()
-                image = stage.image()
+                    loaded.step()
+                image = loaded.image()
         path = self.folder / f"{REPORT}-slope.png"
         Image.fromarray(np.asarray(image, np.uint8)).save(path)
         self.pictures.append(path.name)
         return (
             True,
-            f"see {path.name}: is the road whole, and are its lines white and yellow, without flicker?",
+            f"see {path.name}: is the road complete, and are its lines white and yellow, without flicker?",
         )
 
     def _own_level(self) -> tuple[bool, str]:
@@ -176,14 +176,14 @@ class Selftest:
         levels = Path(session.bng.user_with_version, "levels")
         written = write_level(road, levels, LEVEL, WORLD)
         if LEVEL not in session.bng.scenario.get_levels():
-            return False, f"BeamNG does not list the level in {written}"
+            return False, f"BeamNG does not list the level of {written}"
         package, scene = client(), level_road(road, WORLD, 0)
         scenario = package.Scenario(LEVEL, f"{LEVEL}_{time.time_ns()}")
         car = package.Vehicle("ego", self.settings.model)
         session.vehicle = car
         place = tuple((scene.start + [0.0, 0.0, ABOVE_GROUND]).tolist())
         scenario.add_vehicle(car, place, as_quaternion(rotation(scene.heading, scene.grade)), False)
-        with session.within(self.settings.load_timeout, "our level was loading"):
+        with session.within(self.settings.load_timeout, "RoadGPT's level was loading"):
             scenario.make(session.bng)
             session.bng.scenario.load(scenario)
             session.bng.scenario.start()
@@ -203,14 +203,13 @@ class Selftest:
                     break
             session.bng.scenario.stop()
         drop = float(scene.start[2] - position[2])
-        said = (
-            f"loads; BeamNG's AI came {way:.0f} m from the start of a level road, and {drop:.1f} m below it"
-        )
+        said = f"loads; BeamNG's AI drove {way:.0f} m on a level road, and ended {drop:.1f} m below its start"
         return way > DRIVEN and drop < 1.0, said
 
 
-def run(settings: Settings, folder: Path, repeats: int, tell: Callable[[Check], None]) -> list[Check]:
-    """All checks, told as they end; then the report as .json and .md in the folder."""
+def run(settings: BeamngSettings, folder: Path, repeats: int, tell: Callable[[Check], None]) -> list[Check]:
+    """Runs all checks, passes each to ``tell`` as it ends, and writes the report into the folder as .json and
+    .md."""
     test = Selftest(settings, folder, repeats)
     done = []
     for check in test.checks():
@@ -229,8 +228,8 @@ def run(settings: Settings, folder: Path, repeats: int, tell: Callable[[Check], 
 
 
 def _page(about: dict[str, str], checks: list[Check]) -> str:
-    lines = ["# BeamNG as RoadGPT met it", "", *(f"- {name}: {value}" for name, value in about.items()), ""]
-    lines += ["| check | fine | what was seen | s |", "|---|---|---|---|"]
+    lines = ["# BeamNG selftest", "", *(f"- {name}: {value}" for name, value in about.items()), ""]
+    lines += ["| check | passed | result | s |", "|---|---|---|---|"]
     for check in checks:
         fine = "yes" if check.is_fine else "**no**"
         said = check.said.replace("|", "/").replace("\n", " ")

@@ -1,4 +1,5 @@
-"""One BeamNG for many roads: started or found when it is first needed, begun anew when it fails or is old."""
+"""Connects to one BeamNG and uses it for many roads: starts or finds it when needed, restarts it when it
+fails."""
 
 import atexit
 import logging
@@ -10,20 +11,20 @@ from importlib.metadata import version
 from typing import Any
 
 from roadgpt.drive.simulators.beamng import slots
-from roadgpt.drive.simulators.beamng.body import Body
-from roadgpt.drive.simulators.beamng.launch import Game, binary_of, command_line
-from roadgpt.drive.simulators.beamng.pairs import cure, warn_of
-from roadgpt.drive.simulators.beamng.settings import Settings
+from roadgpt.drive.simulators.beamng.compatibility import mismatch_advice, warn_if_untested
+from roadgpt.drive.simulators.beamng.handshake import protocol_at
+from roadgpt.drive.simulators.beamng.launch import BeamngProcess, binary_of, command_line
+from roadgpt.drive.simulators.beamng.settings import BeamngSettings
+from roadgpt.drive.simulators.beamng.tracking import CarGeometry
 from roadgpt.drive.simulators.beamng.watchdog import Watchdog
-from roadgpt.drive.simulators.beamng.wire import protocol_at
 from roadgpt.errors import PartError, SimulatorError
 
-# Levels that are flat, in the order of our liking, and the heights of their ground in metres.
+# Flat levels in order of preference, and the heights of their ground in metres.
 LEVELS = {"tig": -28.0, "tech_ground": 0.0, "smallgrid": 0.0}
 
 
 def client() -> Any:
-    """The package beamngpy, imported now.
+    """Returns the package beamngpy, imported at the first call.
 
     Raises:
         PartError: it is not installed.
@@ -32,49 +33,51 @@ def client() -> Any:
         package = import_module("beamngpy")
     except ImportError as error:
         raise PartError(
-            f"the simulator 'beamng' needs beamngpy ({error}); say python -m pip install 'roadgpt[beamng]'"
+            f"the simulator 'beamng' needs beamngpy ({error}); run python -m pip install 'roadgpt[beamng]'"
         ) from error
-    # It tells of every failed try, which without a handler would go to the screen; we say what came of it.
+    # It logs every failed attempt, which without a handler would go to the screen; we report the result.
     logging.getLogger("beamngpy").addHandler(logging.NullHandler())
     return package
 
 
 class Session:
-    """The connection to one BeamNG, and what was learnt of it."""
+    """The connection to one BeamNG, and what is known about its car."""
 
-    def __init__(self, settings: Settings) -> None:
-        """Nothing is started yet."""
+    def __init__(self, settings: BeamngSettings) -> None:
+        """Starts nothing yet."""
         self.settings = settings
-        self.game: Game | None = None
+        self.game: BeamngProcess | None = None
         self.bng: Any = None
         self.level = ""
         self.roads = 0
-        """Driven since BeamNG was started."""
+        """Roads driven since BeamNG was started."""
         self.has_loaded = False
-        """Has BeamNG loaded a road for this process, and so compiled its shaders?"""
+        """Whether BeamNG has already loaded a road for this process, and so compiled its shaders."""
         self.laid = 0
-        """Scenes laid by this process, for names that are used once."""
-        self.body: Body | None = None
+        """Number of roads that this process has placed; makes their names unique."""
+        self.body: CarGeometry | None = None
         self.gain: float | None = None
-        """Radians of the front wheels per unit of steering input; negative where that turns right."""
-        self.told: float | None = None
-        """The same for the input that BeamNG tells of, which need not have the sign of ours."""
+        """Radians of the front wheels per unit of steering input; negative if a positive input steers to the
+        right."""
+        self.reported_gain: float | None = None
+        """The same for the steering input that BeamNG reports, whose sign may differ from that of the input
+        sent."""
         self.vehicle: Any = None
         self.watchdog = Watchdog(self._sockets, self._kill)
         self._slot: slots.Slot | None = None
 
     @property
     def ground(self) -> float:
-        """Height of the level's ground, metres."""
+        """Height of the level's ground in metres."""
         return LEVELS.get(self.level, 0.0)
 
     def ready(self) -> None:
-        """See that a BeamNG is there that can take a road.
+        """Makes sure that a BeamNG is ready to load a road.
 
         Raises:
-            PartError: beamngpy is not installed or of another version than BeamNG, BeamNG is not where it is
-                said to be or not BeamNG.tech, or has no level for our roads: no road could be driven.
-            SimulatorError: it does not start or does not answer.
+            PartError: beamngpy is not installed or does not match BeamNG; BeamNG is not in the given folder
+                or is not BeamNG.tech; or it has no suitable level. No road can be driven then.
+            SimulatorError: BeamNG does not start or does not answer.
         """
         if self.bng is not None and self.settings.launches and self.roads >= self.settings.recycle:
             self.close()
@@ -90,7 +93,7 @@ class Session:
         try:
             if settings.home is not None:
                 words = command_line(binary_of(settings.home), settings, port, self._slot.user)
-                self.game = Game(words, host, port)
+                self.game = BeamngProcess(words, host, port)
                 self._slot.note(self.game.process.pid)
                 self.game.wait(settings.start_timeout)
             self._check_pair(host, port)
@@ -111,11 +114,11 @@ class Session:
                 f"BeamNG on {host}:{port} does not answer ({error}); end it and start it anew"
             ) from error
         if theirs != ours:
-            raise PartError(cure(theirs, ours, version("beamngpy")))
-        warn_of(version("beamngpy"))
+            raise PartError(mismatch_advice(theirs, ours, version("beamngpy")))
+        warn_if_untested(version("beamngpy"))
 
     def _prepare(self) -> None:
-        """Choose the level, and have physics in steps."""
+        """Chooses the level, and sets the physics to fixed steps."""
         if self.bng.tech_enabled() is False:
             raise PartError("this is BeamNG.drive or has no tech.key; RoadGPT needs BeamNG.tech")
         there = set(self.bng.scenario.get_levels())
@@ -131,31 +134,32 @@ class Session:
         self.roads = 0
 
     def step_evenly(self) -> None:
-        """Have physics in steps of one length; a level that is loaded may come with settings of its own."""
+        """Sets the physics to steps of equal length; loading a level may change this setting."""
         self.bng.settings.set_deterministic(self.settings.rate)
         # Without a number of steps per second, a step is a frame of unknown length.
         self.bng.settings.set_steps_per_second(self.settings.rate)
 
     def loading(self) -> AbstractContextManager[None]:
-        """Around the loading of a road; the first one may take minutes."""
+        """Returns the context in which a road is loaded, with its time limit; the first road may take
+        minutes."""
         if self.has_loaded:
             return self.within(self.settings.load_timeout, "it was loading a road")
         patience = max(self.settings.first_load_timeout, self.settings.load_timeout)
         logging.getLogger("roadgpt").warning(
             "roadgpt: BeamNG loads its first road, and may compile its shaders for some minutes "
-            "(it has %g s, ROADGPT_BEAMNG_FIRST_LOAD_TIMEOUT)",
+            "(limit %g s, set ROADGPT_BEAMNG_FIRST_LOAD_TIMEOUT)",
             patience,
         )
         return self.within(patience, "it was loading its first road")
 
     @contextmanager
     def within(self, seconds: float, doing: str) -> Iterator[None]:
-        """Calls inside that take longer are ended; see `Watchdog`."""
+        """Ends calls inside this context that take longer than ``seconds``; see `Watchdog`."""
         with self.watchdog.within(seconds, doing):
             yield
 
     def close(self) -> None:
-        """End our BeamNG politely, or let go of somebody else's."""
+        """Asks a BeamNG that RoadGPT started to quit, or disconnects from another one."""
         game, bng = self.game, self.bng
         if bng is not None:
             with suppress(Exception), self.within(self.settings.poll_timeout, "it was closing"):
@@ -167,7 +171,7 @@ class Session:
         self._forget()
 
     def drop(self) -> None:
-        """End our BeamNG, or let go of somebody else's, without a word to it."""
+        """Kills a BeamNG that RoadGPT started, or drops the connection to another one."""
         for each in self._sockets():
             with suppress(OSError):
                 each.close()
@@ -175,14 +179,14 @@ class Session:
         self._forget()
 
     def leave(self) -> None:
-        """Close, and let others have the port."""
+        """Closes the session and releases its port."""
         self.close()
         if self._slot is not None:
             self._slot.release()
             self._slot = None
 
     def _forget(self) -> None:
-        self.game = self.bng = self.vehicle = self.body = self.gain = self.told = None
+        self.game = self.bng = self.vehicle = self.body = self.gain = self.reported_gain = None
         self.watchdog = Watchdog(self._sockets, self._kill)
 
     def _kill(self) -> None:
@@ -190,7 +194,8 @@ class Session:
             self.game.kill()
 
     def _sockets(self) -> list[socket.socket]:
-        """Those of the engine and of the car, as they are now: the client changes them by itself."""
+        """Returns the present sockets of the engine and of the car; the client may replace them at any
+        time."""
         found = []
         for holder in (self.bng, self.vehicle):
             link = getattr(getattr(holder, "connection", None), "skt", None)
@@ -199,11 +204,11 @@ class Session:
         return found
 
 
-_sessions: dict[Settings, Session] = {}
+_sessions: dict[BeamngSettings, Session] = {}
 
 
-def session_of(settings: Settings) -> Session:
-    """The one session of this process for these settings."""
+def session_of(settings: BeamngSettings) -> Session:
+    """Returns the one session of this process for these settings."""
     if settings not in _sessions:
         leave_all()  # one BeamNG at a time is enough for a graphics card
         _sessions[settings] = Session(settings)
@@ -212,7 +217,7 @@ def session_of(settings: Settings) -> Session:
 
 @atexit.register
 def leave_all() -> None:
-    """End every BeamNG that this process started."""
+    """Ends every BeamNG that this process has started."""
     for session in _sessions.values():
         session.leave()
     _sessions.clear()

@@ -1,6 +1,7 @@
-"""How BeamNG is started and driven: from the environment, where the command line puts its options.
+"""Settings of BeamNG, read from environment variables, in which the command line stores its options.
 
-Each field is read from ``ROADGPT_BEAMNG_`` and its name in capitals, so that worker processes have them too.
+Each field is read from ``ROADGPT_BEAMNG_`` plus its name in capitals, so that worker processes get the same
+settings.
 """
 
 import os
@@ -13,51 +14,54 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from roadgpt.errors import UsageError
 
 PREFIX = "ROADGPT_BEAMNG_"
-PORT = 25252  # BeamNG's own since 0.34
+PORT = 25252  # BeamNG's default since 0.34
 
 
-class Settings(BaseModel):
-    """All that can be set; what is not given is as RoadGPT and the SBFT competition have it."""
+class BeamngSettings(BaseModel):
+    """All settings of BeamNG; the defaults are those of RoadGPT and the SBFT competition."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     home: Path | None = None
-    """BeamNG's folder; None: nothing is launched, a running BeamNG is asked."""
+    """BeamNG's folder; None: a running BeamNG is used, and none is started."""
     user: Path | None = None
     """BeamNG's user folder; further workers get folders beside it."""
     host: str = "127.0.0.1"
     port: Annotated[int, Field(ge=1, le=65535)] = PORT
-    """Of the first worker; the others take the next free ones."""
+    """Port of the first worker; the others use the next free ports."""
     headless: bool = False
     nogpu: bool = False
-    """Draws nothing; drivers that want images cannot drive."""
+    """Whether BeamNG draws nothing; drivers that need images cannot drive then."""
     gfx: Literal["dx11", "vk"] | None = None
     level: str = ""
-    """Where roads are laid; empty: ``tig`` where it is installed, else a flat one that comes with BeamNG."""
+    """Level in which roads are placed; empty: ``tig`` if it is installed, else a flat level that comes with
+    BeamNG."""
     model: str = "etk800"
     aggression: Annotated[float, Field(ge=0.3, le=1.0)] = 0.7
-    """Of BeamNG's AI; the competition's."""
+    """Aggression of BeamNG's AI; the default is the competition's."""
     rate: Annotated[int, Field(ge=20, le=200)] = 50
     """Steps and samples per second."""
     recycle: Annotated[int, Field(ge=1)] = 100
-    """Roads after which BeamNG is started anew; it was seen to fail after about 500 (BeamNGpy issue 159)."""
+    """Roads after which BeamNG is restarted; it has been seen to fail after about 500 (BeamNGpy issue
+    159)."""
     start_timeout: Annotated[float, Field(gt=0)] = 180.0
-    """s, until BeamNG answers."""
+    """s until BeamNG must answer."""
     load_timeout: Annotated[float, Field(gt=0)] = 120.0
-    """s, for a level to load."""
+    """s for loading a level."""
     first_load_timeout: Annotated[float, Field(gt=0)] = 600.0
-    """s, for the first level, with which BeamNG may compile shaders."""
+    """s for loading the first level, during which BeamNG may compile shaders."""
     poll_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """s, for any other answer."""
+    """s for any other answer."""
     imitation: bool = False
-    """Let ``beamng_like`` drive itself; else BeamNG's own AI, which it imitates, takes its seat."""
+    """Whether ``beamng_like`` drives itself; by default BeamNG's own AI, which it imitates, drives in its
+    place."""
 
     @classmethod
     def of(cls, environment: Mapping[str, str] = os.environ) -> Self:
-        """What the environment says.
+        """Returns the settings of the environment.
 
         Raises:
-            UsageError: a value cannot be.
+            UsageError: a value is invalid.
         """
         given = {
             name: environment[PREFIX + name.upper()]
@@ -75,10 +79,10 @@ class Settings(BaseModel):
 
     @property
     def launches(self) -> bool:
-        """Is BeamNG started here, or does it run already?"""
+        """Whether RoadGPT starts BeamNG, instead of using one that runs already."""
         return self.home is not None
 
     def summary(self) -> str:
-        """What decides on how a road is driven, in one line."""
-        level = self.level or "tig, or what is there"
+        """Returns the settings that affect how a road is driven, in one line."""
+        level = self.level or "tig, or another flat level"
         return f"{self.model} on {level}, aggression {self.aggression:g}, {self.rate} steps/s"

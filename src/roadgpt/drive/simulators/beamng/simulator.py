@@ -1,53 +1,55 @@
-"""The simulator ``beamng``: BeamNG.tech through beamngpy."""
+"""The simulator ``beamng``: BeamNG.tech, controlled through beamngpy."""
 
 from typing import TYPE_CHECKING
 
+from roadgpt.drive.camera_sensor import camera_of
 from roadgpt.drive.drive import Drive
-from roadgpt.drive.eyes import camera_of
-from roadgpt.drive.seat import Seat
-from roadgpt.drive.simulators.beamng.loop import record
+from roadgpt.drive.driver_guard import DriverGuard
+from roadgpt.drive.simulators.beamng.drive_loop import record
+from roadgpt.drive.simulators.beamng.loaded_road import LoadedRoad
 from roadgpt.drive.simulators.beamng.session import Session, session_of
-from roadgpt.drive.simulators.beamng.settings import Settings
-from roadgpt.drive.simulators.beamng.stage import Stage
+from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.errors import RoadGPTError, SimulatorError
 
 if TYPE_CHECKING:
     from roadgpt.drive import Driver
     from roadgpt.road import Road, World
 
-TRIES = 2  # of one road
+TRIES = 2  # per road
 IMITATES = "beamng_like"
 
 
 class BeamngSimulator:
-    """BeamNG.tech: an ETK 800 on a mesh road; BeamNG's AI drives, or the driver is asked at every step.
+    """Simulates an ETK 800 in BeamNG.tech on a mesh road; BeamNG's AI drives, or the driver is asked at every
+    step.
 
-    Where the driver is ``beamng_like``, BeamNG's own AI, which it imitates, takes its seat (Drive.driver is
-    ``beamng_ai`` then). A BeamNG that hangs, ends or loses its socket costs one more try of one road on a new
-    BeamNG; a second time it is a SimulatorError of that road.
+    If the driver is ``beamng_like``, BeamNG's own AI, which it imitates, drives in its place (Drive.driver is
+    ``beamng_ai`` then). If BeamNG hangs, ends or loses its connection, the road is tried once more on a new
+    BeamNG; a second failure is a SimulatorError of that road.
     """
 
     ignores = ("friction",)  # the surfaces are those of the level's materials
 
-    def __init__(self, settings: Settings | None = None) -> None:
-        """With these settings; None: what the environment says.
+    def __init__(self, settings: BeamngSettings | None = None) -> None:
+        """Uses these settings; None stands for those of the environment.
 
         Raises:
-            UsageError: the environment says what cannot be.
+            UsageError: a setting of the environment is invalid.
         """
-        self.settings = Settings.of() if settings is None else settings
+        self.settings = BeamngSettings.of() if settings is None else settings
 
     def simulate(
         self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
     ) -> Drive:
-        """See `roadgpt.drive.Simulator`. The seed is the driver's, and moves the road by millimetres."""
+        """Implements `roadgpt.drive.Simulator.simulate`; the driver uses the seed, which also moves the road
+        by millimetres."""
         session = session_of(self.settings)
         for tried in range(TRIES):
             try:
                 session.ready()
                 drive = self._once(session, road, world, driver, seed, keep_driving)
             except RoadGPTError:
-                if session.watchdog.has_bitten:
+                if session.watchdog.has_fired:
                     session.drop()
                 raise
             except Exception as error:  # whatever a client raises whose game is gone
@@ -74,16 +76,16 @@ class BeamngSimulator:
         keep_driving: bool,
     ) -> Drive:
         camera = camera_of(driver)
-        seat = None if self._ai_drives(driver) else Seat(driver)
-        with Stage(session, road, world, seed) as stage:
-            if seat is None:
-                return record(stage, road, world, None, seed, keep_driving)
-            stage.take_the_wheel()
+        guard = None if self._ai_drives(driver) else DriverGuard(driver)
+        with LoadedRoad(session, road, world, seed) as loaded:
+            if guard is None:
+                return record(loaded, road, world, None, seed, keep_driving)
+            loaded.take_the_wheel()
             if camera is not None:
-                stage.open_camera(camera)
-            with seat.watched():
-                seat.start(road, world, seed)
-                return record(stage, road, world, seat, seed, keep_driving)
+                loaded.open_camera(camera)
+            with guard.watched():
+                guard.start(road, world, seed)
+                return record(loaded, road, world, guard, seed, keep_driving)
 
     def _ai_drives(self, driver: "Driver") -> bool:
         return getattr(driver, "name", "") == IMITATES and not self.settings.imitation

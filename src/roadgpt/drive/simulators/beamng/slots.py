@@ -1,6 +1,6 @@
-"""Which of several workers this process is: each has its own port and its own user folder.
+"""Assigns a port and a user folder to each of several worker processes that use BeamNG at the same time.
 
-A worker holds a lock file; a process that is killed lets go of it.
+A worker holds a lock file, which the system releases when the process is killed.
 """
 
 import os
@@ -13,8 +13,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
-from roadgpt.drive.simulators.beamng.settings import Settings
-from roadgpt.drive.simulators.beamng.wire import is_taken
+from roadgpt.drive.simulators.beamng.handshake import is_taken
+from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 from roadgpt.errors import SimulatorError, UsageError
 
 try:
@@ -23,36 +23,38 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 MOST = 64  # workers on one machine
-KEY = "tech.key"  # of BeamNG.tech, in the user folder or that of a version
+KEY = "tech.key"  # licence of BeamNG.tech, in the user folder or in that of a version
 
 
 class Slot:
-    """A port and a user folder that no other process of ours uses."""
+    """A port and a user folder that no other RoadGPT process uses."""
 
     def __init__(self, port: int, user: Path | None, lock: IO[str]) -> None:
         self.port, self.user, self._lock = port, user, lock
 
     def note(self, pid: int) -> None:
-        """Write down which process listens on the port, for whoever comes after a worker that was killed."""
+        """Writes down which process listens on the port, for use after this worker was killed."""
         self._lock.seek(0)
         self._lock.truncate()
         self._lock.write(str(pid))
         self._lock.flush()
 
     def release(self) -> None:
-        """Let others have it."""
+        """Makes the slot available to others."""
         self._lock.seek(0)
         self._lock.truncate()
         self._lock.close()
 
 
-def take(settings: Settings) -> Slot:
-    """The first slot that is free.
+def take(settings: BeamngSettings) -> Slot:
+    """Returns the first free slot.
 
-    Where BeamNG is to be started, a port that somebody listens on is passed over: it may be anybody's.
+    If RoadGPT starts BeamNG itself, ports on which something listens already are skipped, because it may be
+    any program.
 
     Raises:
-        SimulatorError: all are taken, or no BeamNG listens that could be asked.
+        UsageError: BeamNG cannot use the user folder.
+        SimulatorError: all slots are taken, or there is no running BeamNG to use.
     """
     if settings.user is not None and " " in str(settings.user):
         raise UsageError(f"BeamNG does not start with a user folder that has a space: '{settings.user}'")
@@ -76,7 +78,7 @@ def take(settings: Settings) -> Slot:
 
 def _locked(host: str, port: int) -> IO[str] | None:
     path = Path(tempfile.gettempdir(), f"roadgpt-beamng-{host.replace(':', '_')}-{port}.lock")
-    file = path.open("a+")  # what a killed worker wrote stays
+    file = path.open("a+")  # keeps what a killed worker wrote
     try:
         if fcntl is not None:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -91,13 +93,14 @@ def _locked(host: str, port: int) -> IO[str] | None:
 
 
 def _end_orphan(lock: IO[str], host: str, port: int) -> None:
-    """End the BeamNG that a killed worker left behind on its port; its lock is free, so nobody uses it."""
+    """Ends the BeamNG that a killed worker left behind on its port; the lock is free, so nothing else uses
+    it."""
     lock.seek(0)
     said = lock.read()
     if os.name != "posix" or not said.isdecimal() or not is_taken(host, port):
         return
     if f"-tport {port} " not in f"{_command_line(int(said))} ":
-        return  # another process that has its number now
+        return  # another process has its number now
     with suppress(OSError):
         os.killpg(int(said), signal.SIGKILL)
         for _ in range(50):
@@ -107,7 +110,7 @@ def _end_orphan(lock: IO[str], host: str, port: int) -> None:
 
 
 def _command_line(pid: int) -> str:
-    """The words that a process was started with; empty where nobody tells."""
+    """Returns the command line of a process; empty where the system does not say."""
     with suppress(OSError):
         return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
     with suppress(OSError, subprocess.SubprocessError):  # macOS
@@ -117,8 +120,8 @@ def _command_line(pid: int) -> str:
     return ""
 
 
-def _user(settings: Settings, number: int) -> Path | None:
-    """The user folder of a worker; a new one gets the key that BeamNG.tech asks for."""
+def _user(settings: BeamngSettings, number: int) -> Path | None:
+    """Returns the user folder of a worker; a new folder gets a copy of the key that BeamNG.tech requires."""
     first = settings.user
     if not settings.launches or (first is None and number == 0):
         return first

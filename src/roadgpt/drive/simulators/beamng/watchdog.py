@@ -1,8 +1,8 @@
-"""Ends calls to BeamNG that do not come back.
+"""Ends calls to BeamNG that do not return.
 
-beamngpy blocks for ever where BeamNG hangs, and where it has a timeout it connects anew in silence and waits
-again, without its Hello and with the answer lost. So a thread of ours looks at the clock: what is overdue
-loses its process and its sockets, which makes the blocked call raise; a call that connects anew loses the
+beamngpy blocks for ever if BeamNG hangs; where it has a timeout, it silently reconnects and waits again,
+without its Hello and with the answer lost. A thread therefore watches the clock: an overdue call loses its
+process and its sockets, which makes the blocked call raise an exception. A call that reconnects loses the
 next socket as well, until it gives up.
 """
 
@@ -12,11 +12,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 
-TICK = 0.1  # s between two looks at the clock
+TICK = 0.1  # s between two checks of the clock
 
 
 class OverdueError(Exception):
-    """A call did not come back in time."""
+    """Raised when a call did not return in time."""
 
 
 class Watchdog:
@@ -26,19 +26,19 @@ class Watchdog:
         """Watches nothing yet.
 
         Args:
-            sockets: those that a call may be blocked on, now.
-            kill: ends the process that they lead to, where it is ours.
+            sockets: returns the sockets that a call may be blocked on at present.
+            kill: ends the BeamNG process, if RoadGPT started it.
         """
         self._sockets, self._kill = sockets, kill
         self._due: float | None = None
-        self.has_bitten = False
+        self.has_fired = False
 
     @contextmanager
     def within(self, seconds: float, doing: str) -> Iterator[None]:
-        """While this is open, a call that takes longer is ended.
+        """While this context is open, a call that takes longer than ``seconds`` is ended.
 
         Raises:
-            OverdueError: in place of whatever the ended call raised.
+            OverdueError: in place of the exception that the ended call raised.
         """
         done = threading.Event()
         self.due_in(seconds)
@@ -47,7 +47,7 @@ class Watchdog:
         try:
             yield
         except Exception as error:
-            if self.has_bitten:
+            if self.has_fired:
                 raise OverdueError(f"BeamNG gave no answer within {seconds:g} s while {doing}") from error
             raise
         finally:
@@ -55,19 +55,19 @@ class Watchdog:
             watcher.join()
 
     def due_in(self, seconds: float) -> None:
-        """Start the clock anew; for a loop of short calls under one watch."""
+        """Restarts the clock; for a loop of short calls in one context."""
         self._due = time.monotonic() + seconds
 
     def pause(self) -> None:
-        """Stop the clock while something else than BeamNG has its turn."""
+        """Stops the clock while something other than BeamNG is working."""
         self._due = None
 
     def _watch(self, done: threading.Event) -> None:
         while not done.wait(TICK):
             due = self._due
             if due is not None and time.monotonic() > due:
-                if not self.has_bitten:
-                    self.has_bitten = True
+                if not self.has_fired:
+                    self.has_fired = True
                     self._kill()
                 for each in self._sockets():
                     with suppress(OSError):

@@ -1,6 +1,5 @@
-"""How our code calls MuJoCo: compiled code by the addresses of its functions, so no linker has to find a
-name; plain Python through MuJoCo's own bindings.
-"""
+"""Calls MuJoCo's functions: by their addresses from compiled code, through MuJoCo's bindings from plain
+Python."""
 
 import functools
 from typing import Any
@@ -21,12 +20,12 @@ call: Any = call_at if COMPILES else _by_bindings
 
 @functools.cache
 def functions() -> tuple[Any, ...]:
-    """MuJoCo's two half steps, and its kinematics alone, as `call` takes them."""
-    # MuJoCo would log warnings in a file where the user stands; our simulator says what broke down.
+    """Returns MuJoCo's two half steps and its kinematics function, in the form that `call` takes."""
+    # MuJoCo would log warnings to a file in the current folder; our simulator reports what failed.
     mujoco.set_mju_user_warning(lambda _: None)
     return addresses() if COMPILES else tuple(getattr(mujoco, name) for name in FUNCTIONS)
 
 
 def handles(model: Any, data: Any) -> tuple[Any, Any]:
-    """A model and its data, as `call` takes them."""
+    """Returns a model and its data in the form that `call` takes."""
     return (model._address, data._address) if COMPILES else (model, data)

@@ -1,8 +1,8 @@
-"""The car as a value: masses, axles, tyres, engine, brakes, stability systems.
+"""Defines the car as a value: masses, axles, tyres, engine, brakes and stability systems.
 
-The default is a saloon of the size, drive and launch of BeamNG's ETK 800 (AWD, about 220 kW). Its numbers
-are typical ones, tuned until the manoeuvres in ``tests/drive/test_simulator_manoeuvres.py`` lie in the
-published ranges; they are not measured on one car.
+The default is a saloon with the size, drive and acceleration of BeamNG's ETK 800 (AWD, about 220 kW). Its
+numbers are typical values, tuned until the manoeuvres in ``tests/drive/test_simulator_manoeuvres.py`` lie in
+the published ranges; they were not measured on one car.
 """
 
 import math
@@ -20,85 +20,89 @@ GRAVITY = 9.81  # m/s^2
 
 @dataclass(frozen=True)
 class Tyre:
-    """Magic formula, similarity method: H. B. Pacejka, Tyre and Vehicle Dynamics, 3rd ed., 4.3 and 7.2."""
+    """Parameters of the Magic Formula, similarity method: H. B. Pacejka, Tyre and Vehicle Dynamics, 3rd ed.,
+    4.3 and 7.2."""
 
-    grip_x: float = 1.17
-    """Peak friction along, at nominal load, on a road of friction 1 (PAC2002 sets, dry: 1.1 to 1.25)."""
-    grip_y: float = 1.02
-    """Peak friction across."""
-    grip_fade: float = 0.12
-    """Share of the friction lost when the load doubles (typical 0.1 to 0.2)."""
-    stiffness_x: float = 24.0
-    """Slip stiffness over load, 1 (typical 20 to 30)."""
-    stiffness_y: float = 18.0
-    """Cornering stiffness over load, 1/rad; axle values, elasticity of suspension and steering counted."""
-    stiffness_fade: float = 0.15
+    peak_friction_x: float = 1.17
+    """Longitudinal peak friction at nominal load, on a road of friction 1 (PAC2002 sets, dry: 1.1 to
+    1.25)."""
+    peak_friction_y: float = 1.02
+    """Lateral peak friction at nominal load, on a road of friction 1."""
+    friction_load_sensitivity: float = 0.12
+    """Share of the friction that is lost when the load doubles (typical 0.1 to 0.2)."""
+    slip_stiffness: float = 24.0
+    """Longitudinal slip stiffness over load, dimensionless (typical 20 to 30)."""
+    cornering_stiffness: float = 18.0
+    """Cornering stiffness over load, 1/rad; an axle value that includes the compliance of suspension and
+    steering."""
+    stiffness_load_sensitivity: float = 0.15
     """Share of the stiffness over load that is lost when the load doubles."""
-    shape_x: float = 1.6
-    """C of the magic formula; 1.6411 in CommonRoad's PAC2002 set."""
-    shape_y: float = 1.35
-    """C; 1.3507 in CommonRoad's set."""
-    bend_x: float = 0.4
-    """E of the magic formula; 0.464 in CommonRoad's set."""
-    bend_y: float = -0.2
-    """E; -0.0075 in CommonRoad's set."""
-    relaxation_x: float = 0.25
-    """m, the way in which a slip builds up."""
-    relaxation_y: float = 0.45
-    """m."""
-    camber_shift: float = 0.03
-    """Slip angle that one rad of camber is worth (p_Hy3)."""
-    camber_thrust: float = 0.0
-    """Share of the load per rad of camber (p_Vy3)."""
-    camber_grip: float = 0.0
-    """Change of friction per rad^2 of camber (p_Dy3)."""
-    ply_shift: float = 0.0
-    """rad of slip angle that any camber brings, by its sign (p_Hy1)."""
-    ply_thrust: float = 0.0
-    """Share of the load, likewise (p_Vy1)."""
+    shape_factor_x: float = 1.6
+    """C of the Magic Formula; 1.6411 in CommonRoad's PAC2002 set."""
+    shape_factor_y: float = 1.35
+    """C of the Magic Formula; 1.3507 in CommonRoad's set."""
+    curvature_factor_x: float = 0.4
+    """E of the Magic Formula; 0.464 in CommonRoad's set."""
+    curvature_factor_y: float = -0.2
+    """E of the Magic Formula; -0.0075 in CommonRoad's set."""
+    relaxation_length_x: float = 0.25
+    """m, the distance over which a longitudinal slip builds up."""
+    relaxation_length_y: float = 0.45
+    """m, the distance over which a slip angle builds up."""
+    camber_horizontal_shift: float = 0.03
+    """Slip angle to which one rad of camber is equivalent (p_Hy3)."""
+    camber_vertical_shift: float = 0.0
+    """Lateral force per rad of camber, as a share of the load (p_Vy3)."""
+    camber_friction_loss: float = 0.0
+    """Relative loss of lateral friction per rad^2 of camber (p_Dy3)."""
+    horizontal_shift: float = 0.0
+    """rad of slip angle that any camber adds, with the sign of the camber (p_Hy1)."""
+    vertical_shift: float = 0.0
+    """Lateral force that any camber adds, with its sign, as a share of the load (p_Vy1)."""
     rolling_resistance: float = 0.011
-    """Share of the load (typical 0.010 to 0.013)."""
-    spring: float = 230e3
-    """N/m, vertical."""
-    damper: float = 400.0
-    """Ns/m, vertical."""
+    """Rolling resistance as a share of the load (typical 0.010 to 0.013)."""
+    vertical_stiffness: float = 230e3
+    """N/m."""
+    vertical_damping: float = 400.0
+    """Ns/m."""
 
 
 @dataclass(frozen=True)
 class Axle:
     """One axle with two wheels."""
 
-    place: float
-    """m, forward of the body's centre of gravity."""
+    position: float
+    """m, ahead of the centre of gravity of the sprung mass."""
     tyre: Tyre
-    track: float = 1.58
-    """m."""
-    wheel_mass: float = 42.0
-    """kg, unsprung, per wheel."""
-    spring: float = 30e3
-    """N/m at the wheel."""
-    damper: float = 3200.0
-    """Ns/m at the wheel."""
-    anti_roll: float = 18e3
+    track_width: float = 1.58
+    """m, between the centres of the two wheels."""
+    unsprung_mass: float = 42.0
+    """kg, per wheel."""
+    wheel_rate: float = 30e3
+    """N/m, stiffness of the spring measured at the wheel."""
+    damping: float = 3200.0
+    """Ns/m, damping measured at the wheel."""
+    anti_roll_stiffness: float = 18e3
     """Nm/rad of the anti-roll bar."""
-    roll_centre: float = 0.06
+    roll_centre_height: float = 0.06
     """m above the road."""
     camber_gain: float = -0.4
-    """rad of camber per metre of rebound, as CommonRoad's D_f: negative pulls the tops in on bump."""
-    drive_share: float = 0.5
-    """Of the engine's torque."""
-    brake_share: float = 0.5
-    """Of the brakes' torque."""
+    """rad of camber per metre of rebound, as CommonRoad's D_f: with a negative value the tops of the wheels
+    move inwards in compression."""
+    drive_torque_share: float = 0.5
+    """Share of the engine's torque."""
+    brake_torque_share: float = 0.5
+    """Share of the brakes' torque."""
 
     @property
-    def lean(self) -> float:
-        """rad that the suspension's slides lean outward at the top, to put the roll centre in its place."""
-        return math.atan2(self.roll_centre, self.track / 2)
+    def inclination(self) -> float:
+        """rad by which the axes of suspension travel lean outwards at the top; it places the roll centre."""
+        return math.atan2(self.roll_centre_height, self.track_width / 2)
 
 
 @dataclass(frozen=True)
 class Car:
-    """Everything about a car that its motion depends on."""
+    """All parameters of a car that its motion depends on."""
 
     front: Axle
     rear: Axle
@@ -106,114 +110,116 @@ class Car:
     """m."""
     width: float = 1.86
     """m, without mirrors."""
-    box_ahead: float = -0.10
-    """m, middle of the box ahead of the centre of gravity."""
-    body_mass: float = 1532.0
-    """kg, sprung, one person aboard."""
+    box_offset: float = -0.10
+    """m, from the centre of gravity forward to the middle of the box; negative where the middle is behind."""
+    sprung_mass: float = 1532.0
+    """kg, with one person on board."""
     roll_inertia: float = 560.0
-    """kg m^2, of the body about its own centre."""
+    """kg m^2, of the sprung mass about its own centre of gravity."""
     pitch_inertia: float = 2300.0
-    """kg m^2."""
+    """kg m^2, of the sprung mass about its own centre of gravity."""
     yaw_inertia: float = 2450.0
-    """kg m^2."""
-    height: float = 0.56
-    """m, centre of gravity of the body above the road at rest."""
-    clearance: float = 0.14
+    """kg m^2, of the sprung mass about its own centre of gravity."""
+    cg_height: float = 0.56
+    """m, centre of gravity of the sprung mass above the road at rest."""
+    ground_clearance: float = 0.14
     """m, underbody above the road at rest."""
-    roof: float = 1.44
+    overall_height: float = 1.44
     """m above the road."""
-    wheel_radius: float = 0.33
-    """m, free."""
+    unloaded_radius: float = 0.33
+    """m, radius of a tyre without load."""
     wheel_inertia: float = 1.2
-    """kg m^2, about the axle, driveline counted."""
-    tread: float = 0.225
-    """m, width of the tyre."""
-    bump: float = 0.09
-    """m of spring travel either way before the stops."""
-    bump_stop: float = 250e3
-    """N/m of the stops."""
+    """kg m^2, about the axle, driveline included."""
+    tyre_width: float = 0.225
+    """m."""
+    bump_travel: float = 0.09
+    """m of suspension travel in either direction before the bump stops."""
+    bump_stop_rate: float = 250e3
+    """N/m, stiffness of the bump stops."""
     drag_area: float = 0.62
-    """m^2, c_d A."""
-    power: float = 125e3
-    """W at the wheels, mean over a run through the gears: 220 kW, of which 85 % pass the driveline, and two
-    thirds of those are left by gear steps, shifts and turbo lag."""
-    launch: float = 6.8
-    """m/s^2, most that the engine can do in first gear (BeamNG recordings of an ETK 800: 6.7 to 7.2)."""
-    brakes: float = 13.0
-    """m/s^2 that the brakes could do if tyres held."""
-    throttle_lag: float = 0.10
+    """m^2, drag coefficient times frontal area."""
+    max_power: float = 125e3
+    """W at the wheels, mean of a run through the gears: of 220 kW, 85 % pass the driveline, and gear ratios,
+    shifts and turbo lag leave two thirds of that."""
+    max_drive_acceleration: float = 6.8
+    """m/s^2, the limit of the engine in first gear (BeamNG recordings of an ETK 800: 6.7 to 7.2)."""
+    max_brake_deceleration: float = 13.0
+    """m/s^2, the limit of the brakes with unlimited tyre friction."""
+    throttle_time_constant: float = 0.10
     """s."""
-    brake_lag: float = 0.06
+    brake_time_constant: float = 0.06
     """s."""
-    steer_limit: float = 0.62
+    max_steer_angle: float = 0.62
     """rad at the front wheels."""
-    steer_rate: float = 0.8
+    max_steer_rate: float = 0.8
     """rad/s at the front wheels."""
     ackermann: float = 1.0
-    """1: the inner wheel turns more, as geometry asks; 0: parallel."""
-    abs_slip: float = 0.11
-    """Slip beyond which ABS lets go; 0: no ABS."""
-    tcs_slip: float = 0.10
-    """Slip beyond which TCS lets go; 0: no TCS."""
-    esc: float = 9000.0
-    """Nm of braking per rad/s of yaw rate beyond the tolerance; 0: no ESC."""
-    characteristic: float = 0.0025
-    """s^2/m, understeer that the ESC expects: yaw rate = v steer / (wheelbase + characteristic v^2)."""
+    """Ackermann fraction: 1 turns the inner wheel as far as geometry requires, 0 keeps both wheels
+    parallel."""
+    abs_slip_threshold: float = 0.11
+    """Slip beyond which ABS reduces the brake torque; 0: no ABS."""
+    tcs_slip_threshold: float = 0.10
+    """Slip beyond which traction control reduces the drive torque; 0: no traction control."""
+    esc_gain: float = 9000.0
+    """Nm of braking torque per rad/s of yaw rate beyond the tolerance; 0: no ESC."""
+    esc_understeer_gradient: float = 0.0025
+    """s^2/m, understeer gradient that the ESC expects: yaw rate = v steer / (wheelbase + gradient v^2)."""
 
     @property
     def mass(self) -> float:
-        """kg, everything."""
-        return self.body_mass + 2 * (self.front.wheel_mass + self.rear.wheel_mass)
+        """kg, of the whole car."""
+        return self.sprung_mass + 2 * (self.front.unsprung_mass + self.rear.unsprung_mass)
 
     @property
     def wheelbase(self) -> float:
         """m."""
-        return self.front.place - self.rear.place
+        return self.front.position - self.rear.position
 
     @property
     def box(self) -> Box:
-        """Outline, front wheels, and lock."""
+        """The outline of the car, its front wheels, and their lock angle."""
         return Box(
             self.length,
             self.width,
-            self.box_ahead,
-            self.steer_limit,
-            axle=self.front.place,
-            tyres=self.front.track + self.tread,
-            height=self.height,
-            under=self.height - self.clearance,
+            self.box_offset,
+            self.max_steer_angle,
+            axle=self.front.position,
+            tyres=self.front.track_width + self.tyre_width,
+            height=self.cg_height,
+            under=self.cg_height - self.ground_clearance,
         )
 
-    def load(self, axle: Axle) -> float:
-        """N on one wheel of the axle, at rest on level ground."""
+    def static_wheel_load(self, axle: Axle) -> float:
+        """Returns the load in N on one wheel of the axle, at rest on level ground."""
         other = self.rear if axle is self.front else self.front
-        share = -other.place / (axle.place - other.place)
-        return GRAVITY * (self.body_mass * share / 2 + axle.wheel_mass)
+        share = -other.position / (axle.position - other.position)
+        return GRAVITY * (self.sprung_mass * share / 2 + axle.unsprung_mass)
 
 
 ETK_LIKE = Car(
     front=Axle(
-        place=1.36,
-        tyre=Tyre(stiffness_y=15.0),
-        spring=31e3,
-        anti_roll=22e3,
-        drive_share=0.4,
-        brake_share=0.62,
+        position=1.36,
+        tyre=Tyre(cornering_stiffness=15.0),
+        wheel_rate=31e3,
+        anti_roll_stiffness=22e3,
+        drive_torque_share=0.4,
+        brake_torque_share=0.62,
     ),
     rear=Axle(
-        place=-1.47,
-        tyre=Tyre(stiffness_y=20.5),
-        spring=33e3,
-        anti_roll=12e3,
-        roll_centre=0.10,
-        drive_share=0.6,
-        brake_share=0.38,
+        position=-1.47,
+        tyre=Tyre(cornering_stiffness=20.5),
+        wheel_rate=33e3,
+        anti_roll_stiffness=12e3,
+        roll_centre_height=0.10,
+        drive_torque_share=0.6,
+        brake_torque_share=0.38,
     ),
 )
 
 
 def tables(car: Car) -> tuple[Any, Any]:
-    """The car as the inner loop reads it: one record of the car, two of its axles (front, rear)."""
+    """Returns the car as the inner loop reads it: one record of the car, and two of its axles (front,
+    rear)."""
     body = _numbers(car) | {
         "mass": car.mass,
         "wheelbase": car.wheelbase,
@@ -221,8 +227,11 @@ def tables(car: Car) -> tuple[Any, Any]:
     axles = [
         _numbers(axle)
         | {f"tyre_{name}": value for name, value in _numbers(axle.tyre).items()}
-        | {"load": car.load(axle), "carried": car.load(axle) - GRAVITY * axle.wheel_mass}
-        | {"lean": axle.lean}
+        | {
+            "nominal_load": car.static_wheel_load(axle),
+            "sprung_load": car.static_wheel_load(axle) - GRAVITY * axle.unsprung_mass,
+        }
+        | {"inclination": axle.inclination}
         for axle in (car.front, car.rear)
     ]
     if COMPILES:

@@ -1,4 +1,5 @@
-"""One control step: 20 ms of physics, then what can be seen of the car, as one row of a Drive."""
+"""Runs one control step: 20 ms of physics, after which the state of the car is written as one row of a
+Drive."""
 
 import hashlib
 import math
@@ -8,24 +9,24 @@ from typing import Any
 from roadgpt.drive import compiled as compiling
 from roadgpt.drive.compiled import compiled, inlined
 from roadgpt.drive.drive import COLUMNS, FloatArray
-from roadgpt.drive.lane import share_outside
-from roadgpt.drive.ribbon import place_on
+from roadgpt.drive.lane_polygon import share_outside
+from roadgpt.drive.sampled_road import locate_on
 from roadgpt.drive.simulators.mujoco.bridge import call
-from roadgpt.drive.simulators.mujoco.loop import (
+from roadgpt.drive.simulators.mujoco.dynamics import (
     PAST_VX,
     PAST_VY,
     STATION,
     STEER,
-    Engine,
+    CarState,
     Ground,
-    Motion,
+    MujocoHandles,
     step_once,
 )
 from roadgpt.drive.simulators.mujoco.model import BODY, STEP
 
-STEPS = 10  # of physics in a control step
-FALLEN = 2.0  # m below the road: RoadGPT's car has then left its floating road for good
-FALLEN_OVER = 0.5  # cosine of 60 degrees between car and road: beyond it a saloon does not come back
+STEPS = 10  # physics steps in a control step
+FALLEN = 2.0  # m below the road: from there RoadGPT's car cannot return to its floating road
+FALLEN_OVER = 0.5  # cosine of 60 degrees between car and road: a saloon that leans more overturns
 
 _ROW = {name: place for place, name in enumerate(COLUMNS)}
 TIME, OUTSIDE = _ROW["time"], _ROW["outside"]
@@ -38,15 +39,15 @@ S, T = _ROW["s"], _ROW["t"]
 
 
 @inlined
-def _look(engine: Engine, car: Any, ground: Ground, motion: Motion, row: FloatArray) -> bool:
-    """Fills the row; says whether the car has fallen off the road or over."""
-    ribbon, state, box = ground.ribbon, motion.state, motion.box
-    # The half step just done moved the coordinates; bring the body's axes up to date with them.
-    call(engine.place, engine.model, engine.data)
-    m = engine.xmat[BODY]
-    x, y, z = engine.qpos[0], engine.qpos[1], engine.qpos[2]
-    vx, vy, vz = engine.qvel[0], engine.qvel[1], engine.qvel[2]
-    s, t, height, slope, heading = place_on(ribbon.table, ribbon.first, ribbon.step, x, y, state[STATION])
+def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row: FloatArray) -> bool:
+    """Fills the row; returns whether the car has fallen off the road or overturned."""
+    sampled, state, box = ground.sampled, car_state.state, car_state.box
+    # The last half step changed the coordinates; update the body's axes.
+    call(mj.place, mj.model, mj.data)
+    m = mj.xmat[BODY]
+    x, y, z = mj.qpos[0], mj.qpos[1], mj.qpos[2]
+    vx, vy, vz = mj.qvel[0], mj.qvel[1], mj.qvel[2]
+    s, t, height, slope, heading = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])
     state[STATION] = s
     row[X], row[Y], row[Z] = x, y, z
     row[HEADING] = math.atan2(m[3], m[0])
@@ -55,50 +56,54 @@ def _look(engine: Engine, car: Any, ground: Ground, motion: Motion, row: FloatAr
     row[VX] = vx * m[0] + vy * m[3] + vz * m[6]
     row[VY] = vx * m[1] + vy * m[4] + vz * m[7]
     row[VZ] = vx * m[2] + vy * m[5] + vz * m[8]
-    row[YAW_RATE] = engine.qvel[5]
+    row[YAW_RATE] = mj.qvel[5]
     row[SPEED] = math.sqrt(vx * vx + vy * vy + vz * vz)
     row[STEERED] = state[STEER]
     row[S], row[T] = s, t
     # Corners of the car's floor, counter-clockwise in plan.
-    front = car.box_ahead + 0.5 * car.length
+    front = car.box_offset + 0.5 * car.length
     for k in range(4):
         bx = front if k in (1, 2) else front - car.length
         by = 0.5 * car.width if k >= 2 else -0.5 * car.width
-        box[k, 0] = x + m[0] * bx + m[1] * by - m[2] * car.height
-        box[k, 1] = y + m[3] * bx + m[4] * by - m[5] * car.height
-    row[OUTSIDE] = share_outside(ground.lane.edges, ground.lane.step, box, s, motion.scratch)
+        box[k, 0] = x + m[0] * bx + m[1] * by - m[2] * car.cg_height
+        box[k, 1] = y + m[3] * bx + m[4] * by - m[5] * car.cg_height
+    row[OUTSIDE] = share_outside(ground.lane.edges, ground.lane.step, box, s, car_state.scratch)
     upright = m[8] - slope * (m[2] * math.cos(heading) + m[5] * math.sin(heading))
     upright /= math.sqrt(1.0 + slope * slope)
-    fell: bool = z - car.height < height - FALLEN or upright < FALLEN_OVER
+    fell: bool = z - car.cg_height < height - FALLEN or upright < FALLEN_OVER
     return fell
 
 
 def _made(mark: int) -> Any:
-    """`control_step`, compiled. Numba finds what it kept on disk by a function's own file and by the values
-    that it closes over; the mark lets it know of all the other files."""
+    """Returns `control_step`, compiled.
+
+    Numba identifies cached code by the function's own file and by the values in its closure. The mark makes
+    it notice changes in all other files, too.
+    """
 
     @compiled
     def control_step(
-        engine: Engine,
+        mj: MujocoHandles,
         cars: Any,
         axles: Any,
         ground: Ground,
-        motion: Motion,
+        car_state: CarState,
         steer: float,
         throttle: float,
         brake: float,
         steps: int,
         row: FloatArray,
     ) -> bool:
-        """`steps` steps of 2 ms with these commands (rad, 0..1, 0..1), then the row; True: the car fell."""
+        """Runs `steps` steps of 2 ms with these commands (rad, 0..1, 0..1), then fills the row; returns
+        whether the car fell."""
         car = cars[0]
         for _ in range(steps):
-            step_once(engine, car, axles, ground, motion, steer, throttle, brake)
-        fell = _look(engine, car, ground, motion, row)
-        m = engine.xmat[BODY]
-        vx, vy = engine.qvel[0], engine.qvel[1]
+            step_once(mj, car, axles, ground, car_state, steer, throttle, brake)
+        fell = _look(mj, car, ground, car_state, row)
+        m = mj.xmat[BODY]
+        vx, vy = mj.qvel[0], mj.qvel[1]
         dt = max(steps, 1) * STEP
-        state = motion.state
+        state = car_state.state
         gx, gy = (vx - state[PAST_VX]) / dt, (vy - state[PAST_VY]) / dt
         state[PAST_VX], state[PAST_VY] = vx, vy
         # Level axes of the car; over a step of 20 ms the mean acceleration.
@@ -108,18 +113,17 @@ def _made(mark: int) -> Any:
         row[AY] = gy * c - gx * n
         row[THROTTLE] = throttle
         row[BRAKE] = brake
-        return fell or mark == 0  # it never is; but a value that is not used is not closed over
+        return fell or mark == 0  # the mark is never 0, but only values in use belong to the closure
 
     return control_step
 
 
 def _mark_of_sources() -> int:
-    """Another number when any file of the physics has changed."""
+    """Returns a number that changes when any file of the physics changes."""
     here = Path(__file__)
     files = sorted(here.parent.glob("*.py"))
-    files += [
-        here.parents[2] / name for name in ("compiled.py", "drive.py", "lane.py", "native.py", "ribbon.py")
-    ]
+    for name in ("compiled.py", "drive.py", "lane_polygon.py", "native.py", "sampled_road.py"):
+        files.append(here.parents[2] / name)
     digest = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
     return int(digest[:12], 16) | 1
 

@@ -1,7 +1,7 @@
-"""What holds the car's body up where its wheels do not: points of the hull against the road.
+"""Contact forces between the car's body and the road, at points of the hull.
 
-It matters where wheels have left the road: the sill then lies on the edge, and the car slides or tips over.
-Impacts are soft springs; their forces are not validated.
+They matter when wheels have left the road: the sill then rests on the edge, and the car slides or overturns.
+Impacts are modelled as soft springs; their forces are not validated.
 """
 
 import math
@@ -11,7 +11,7 @@ import numpy as np
 
 from roadgpt.drive.compiled import inlined
 from roadgpt.drive.drive import FloatArray
-from roadgpt.drive.ribbon import place_on
+from roadgpt.drive.sampled_road import locate_on
 from roadgpt.drive.simulators.mujoco.car import Car
 from roadgpt.drive.simulators.mujoco.model import BODY
 
@@ -19,44 +19,49 @@ SPRING = 100e3  # N/m at each point
 DAMPER = 6e3  # Ns/m
 FRICTION = 0.5  # of sheet metal on a road of friction 1
 SMOOTH = 0.2  # m/s of sliding at which that friction is reached
-DEEP = 0.3  # m below the surface beyond which a point no longer meets it
+DEEP = 0.3  # m below the surface, beyond which a point has no contact any more
 
 
 def hull_points(car: Car) -> FloatArray:
-    """Shape (n, 3), metres in the body's axes: a grid of the underbody, and the roof's corners."""
-    front = car.box_ahead + car.length / 2
-    floor = car.clearance - car.height
+    """Returns points in the body's axes, shape (n, 3), metres: a grid on the underbody, and the corners of
+    the roof."""
+    front = car.box_offset + car.length / 2
+    floor = car.ground_clearance - car.cg_height
     under = [
         (x, y, floor)
         for x in np.linspace(front - car.length, front, 5)
         for y in np.linspace(-0.48, 0.48, 7) * car.width
     ]
-    roof = [(x, y * car.width, car.roof - car.height) for x in (-1.3, 0.5) for y in (-0.35, 0.35)]
+    roof = [
+        (x, y * car.width, car.overall_height - car.cg_height) for x in (-1.3, 0.5) for y in (-0.35, 0.35)
+    ]
     return np.array(under + roof)
 
 
 @inlined
-def hull_forces(engine: Any, car: Any, ground: Any, station: float, hull: FloatArray) -> None:
+def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray) -> None:
     """Adds the forces on the hull's points to those on the body (moments in the world's axes)."""
-    qfrc = engine.qfrc
-    ribbon = ground.ribbon
-    m = engine.xmat[BODY]
-    v = engine.cvel[BODY]
+    qfrc = mj.qfrc
+    sampled = ground.sampled
+    m = mj.xmat[BODY]
+    v = mj.cvel[BODY]
     for j in range(hull.shape[0]):
         hx, hy, hz = hull[j, 0], hull[j, 1], hull[j, 2]
         bx = m[0] * hx + m[1] * hy + m[2] * hz
         by = m[3] * hx + m[4] * hy + m[5] * hz
         bz = m[6] * hx + m[7] * hy + m[8] * hz
-        px, py, pz = engine.xpos[BODY, 0] + bx, engine.xpos[BODY, 1] + by, engine.xpos[BODY, 2] + bz
-        s, t, height, slope, heading = place_on(ribbon.table, ribbon.first, ribbon.step, px, py, station + hx)
+        px, py, pz = mj.xpos[BODY, 0] + bx, mj.xpos[BODY, 1] + by, mj.xpos[BODY, 2] + bz
+        s, t, height, slope, heading = locate_on(
+            sampled.table, sampled.first, sampled.step, px, py, station + hx
+        )
         nz = 1.0 / math.sqrt(1.0 + slope * slope)
         depth = (height - pz) * nz
         if depth <= 0.0 or depth > DEEP or abs(t) > ground.edge:
             continue
-        if s < -ground.edge or s > ribbon.length + ground.edge:
+        if s < -ground.edge or s > sampled.length + ground.edge:
             continue
         nx, ny = -slope * math.cos(heading) * nz, -slope * math.sin(heading) * nz
-        rx, ry, rz = px - engine.com[BODY, 0], py - engine.com[BODY, 1], pz - engine.com[BODY, 2]
+        rx, ry, rz = px - mj.com[BODY, 0], py - mj.com[BODY, 1], pz - mj.com[BODY, 2]
         ux, uy, uz = v[3] + v[1] * rz - v[2] * ry, v[4] + v[2] * rx - v[0] * rz, v[5] + v[0] * ry - v[1] * rx
         up = ux * nx + uy * ny + uz * nz
         force = max(SPRING * depth - DAMPER * up, 0.0)

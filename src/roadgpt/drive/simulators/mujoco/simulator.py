@@ -1,14 +1,14 @@
-"""The simulator ``mujoco``: rigid bodies by MuJoCo, tyres and road surface of our own."""
+"""The simulator ``mujoco``: rigid bodies by MuJoCo, with RoadGPT's own tyres and road surface."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
-from roadgpt.drive.eyes import Eyes, camera_of
-from roadgpt.drive.seat import Seat
+from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car
-from roadgpt.drive.simulators.mujoco.course import Course
+from roadgpt.drive.simulators.mujoco.drive_monitor import DriveMonitor
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import View
 from roadgpt.stopping import look
@@ -24,37 +24,43 @@ _SEEN = tuple(
 
 
 class MujocoSimulator:
-    """A saloon car on the road, every 2 ms; the driver is asked every 20 ms."""
+    """Simulates a saloon car in steps of 2 ms; the driver is asked every 20 ms."""
 
     def __init__(self, car: Car = ETK_LIKE, start_offset: float = 0.0) -> None:
-        """A simulator with this car, which starts so many metres to the left of its lane's middle."""
+        """Uses this car, which starts ``start_offset`` metres to the left of the middle of its lane."""
         self.car, self.start_offset = car, start_offset
 
     def simulate(
         self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
     ) -> Drive:
-        """See `roadgpt.drive.Simulator`. The seed is the driver's; the physics draws no random number."""
-        seat, camera = Seat(driver), camera_of(driver)
+        """Implements `roadgpt.drive.Simulator.simulate`; only the driver uses the seed, the physics has no
+        random numbers."""
+        guard, camera = DriverGuard(driver), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
-        eyes = None if camera is None else Eyes(camera, road, world)
-        course = Course(road, world, self.car.box, keep_driving)
-        with seat.watched():
-            seat.start(road, world, seed)
-            vehicle.put(course.start, -world.lane_width / 2 + self.start_offset)
-            rows, ended = _drive(vehicle, seat, course, eyes, road, world)
+        sensor = None if camera is None else CameraSensor(camera, road, world)
+        monitor = DriveMonitor(road, world, self.car.box, keep_driving)
+        with guard.watched():
+            guard.start(road, world, seed)
+            vehicle.put(monitor.start, -world.lane_width / 2 + self.start_offset)
+            rows, ended = _drive(vehicle, guard, monitor, sensor, road, world)
         columns = Columns({name: rows[:, place] for place, name in enumerate(_NAMES)})
-        return Drive(seat.name, "mujoco", seed, columns, ended, self.car.box)
+        return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box)
 
 
 def _drive(
-    vehicle: Vehicle, seat: Seat, course: Course, eyes: Eyes | None, road: "Road", world: "World"
+    vehicle: Vehicle,
+    guard: DriverGuard,
+    monitor: DriveMonitor,
+    sensor: CameraSensor | None,
+    road: "Road",
+    world: "World",
 ) -> tuple[FloatArray, Ended]:
     log = _Log()
     row = log.add(vehicle.row)
     step = 0
-    while (ended := course.ended(vehicle.row, step, vehicle.has_fallen)) is None:
+    while (ended := monitor.ended(vehicle.row, step, vehicle.has_fallen)) is None:
         x, y, z, heading, speed, yaw_rate, s, t, steer, vx, vy = (row[i] for i in _SEEN)
-        image = None if eyes is None else eyes.see(vehicle.see())
+        image = None if sensor is None else sensor.see(vehicle.see())
         view = View(
             step * CONTROL,
             x,
@@ -73,7 +79,7 @@ def _drive(
             vy,
             image,
         )
-        vehicle.move(*seat.ask(view))
+        vehicle.move(*guard.ask(view))
         look()
         row = log.add(vehicle.row)
         step += 1
@@ -81,7 +87,7 @@ def _drive(
 
 
 class _Log:
-    """Rows, in an array that grows."""
+    """Collects rows in an array that grows."""
 
     def __init__(self) -> None:
         self._rows = np.empty((512, len(COLUMNS)))
@@ -96,5 +102,5 @@ class _Log:
         return row.tolist()
 
     def rows(self) -> FloatArray:
-        """Everything kept, shape (n, columns)."""
+        """Returns all rows, shape (n, columns)."""
         return self._rows[: self._count]

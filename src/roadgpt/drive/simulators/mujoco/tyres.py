@@ -1,8 +1,8 @@
-"""What the road does to one tyre.
+"""Computes the forces of the road on one tyre.
 
-Magic formula by the similarity method: each axis has its own pure-slip curve; combined slips share the
-friction ellipse in the direction of the (normalised) slip. Slips build up over a relaxation length.
-Source: H. B. Pacejka, Tyre and Vehicle Dynamics, 3rd ed., sections 4.3.1, 7.2 and 8.6 (low speeds).
+The model is the Magic Formula with the similarity method: each axis has its own pure-slip curve, and combined
+slips share the friction ellipse in the direction of the (normalised) slip. Slips build up over a relaxation
+length. Source: H. B. Pacejka, Tyre and Vehicle Dynamics, 3rd ed., sections 4.3.1, 7.2 and 8.6 (low speeds).
 """
 
 import math
@@ -10,14 +10,14 @@ from typing import Any
 
 from roadgpt.drive.compiled import inlined
 
-LOW_SPEED = 2.5  # m/s, below which a damper joins in (Pacejka 8.6)
+LOW_SPEED = 2.5  # m/s, below which a damper is added (Pacejka 8.6)
 LOW_SPEED_DAMPING = 0.75  # Ns/m per N of load
-MOST_SLIP = 3.0  # normalised, how far beyond its peak a standing tyre's carcass may be wound up
+MOST_SLIP = 3.0  # normalised, limit of the slip that a standing tyre's carcass may store
 
 
 @inlined
 def _curve(shape: float, bend: float, slip: float) -> float:
-    """The magic formula of height 1 and slope 1, over normalised slip."""
+    """Returns the Magic Formula of height 1 and slope 1, over normalised slip."""
     b = slip / shape
     return math.sin(shape * math.atan(b - bend * (b - math.atan(b))))
 
@@ -35,16 +35,18 @@ def tyre_forces(
     slip_y: float,
     dt: float,
 ) -> tuple[float, float, float, float]:
-    """Forces along and across the tyre, and its slips a moment later.
+    """Returns the forces along and across the tyre, and its slips after a time step.
 
     Args:
-        axle: record with the tyre's numbers and its nominal load.
-        friction: of the road.
+        axle: record with the tyre's parameters and its nominal load.
+        friction: friction of the road.
         load: N, vertical.
         camber: rad, positive when the top leans to the right.
-        forward, across: m/s of the contact point along and to the left.
+        forward: m/s of the contact point along the wheel.
+        across: m/s of the contact point to the left.
         rolling: m/s, wheel speed times radius.
-        slip_x, slip_y: slips of a moment ago (positive: pushes forward, to the left).
+        slip_x: longitudinal slip one step before (positive: pushes forward).
+        slip_y: lateral slip one step before (positive: pushes to the left).
         dt: s.
 
     Returns:
@@ -53,32 +55,38 @@ def tyre_forces(
     if load <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     speed = abs(forward)
-    # Implicit in the slips, so that the relaxation is stable at every speed.
-    way_x = dt / axle.tyre_relaxation_x
-    way_y = dt / axle.tyre_relaxation_y
+    # Implicit integration of the slips makes the relaxation stable at every speed.
+    way_x = dt / axle.tyre_relaxation_length_x
+    way_y = dt / axle.tyre_relaxation_length_y
     slip_x = (slip_x + way_x * (rolling - forward)) / (1.0 + way_x * speed)
     slip_y = (slip_y - way_y * across) / (1.0 + way_y * speed)
 
-    over = load / axle.load - 1.0
-    fade = max(1.0 - axle.tyre_grip_fade * over, 0.3)
-    grip_x = friction * axle.tyre_grip_x * fade
-    grip_y = friction * axle.tyre_grip_y * fade * (1.0 - axle.tyre_camber_grip * camber * camber)
-    soft = max(1.0 - axle.tyre_stiffness_fade * over, 0.3)
+    over = load / axle.nominal_load - 1.0
+    fade = max(1.0 - axle.tyre_friction_load_sensitivity * over, 0.3)
+    grip_x = friction * axle.tyre_peak_friction_x * fade
+    grip_y = (
+        friction * axle.tyre_peak_friction_y * fade * (1.0 - axle.tyre_camber_friction_loss * camber * camber)
+    )
+    soft = max(1.0 - axle.tyre_stiffness_load_sensitivity * over, 0.3)
     side = 1.0 if camber > 0.0 else (-1.0 if camber < 0.0 else 0.0)
-    shift = side * axle.tyre_ply_shift + axle.tyre_camber_shift * camber
-    nx = slip_x * soft * axle.tyre_stiffness_x / grip_x
-    ny = (slip_y - shift) * soft * axle.tyre_stiffness_y / grip_y
+    shift = side * axle.tyre_horizontal_shift + axle.tyre_camber_horizontal_shift * camber
+    nx = slip_x * soft * axle.tyre_slip_stiffness / grip_x
+    ny = (slip_y - shift) * soft * axle.tyre_cornering_stiffness / grip_y
     total = math.sqrt(nx * nx + ny * ny)
     if total < 1e-9:
         fx = 0.0
         fy = 0.0
     else:
-        fx = grip_x * load * _curve(axle.tyre_shape_x, axle.tyre_bend_x, total) * nx / total
-        fy = grip_y * load * _curve(axle.tyre_shape_y, axle.tyre_bend_y, total) * ny / total
+        fx = (
+            grip_x * load * _curve(axle.tyre_shape_factor_x, axle.tyre_curvature_factor_x, total) * nx / total
+        )
+        fy = (
+            grip_y * load * _curve(axle.tyre_shape_factor_y, axle.tyre_curvature_factor_y, total) * ny / total
+        )
         if total > MOST_SLIP and speed < LOW_SPEED:
             slip_x *= MOST_SLIP / total
             slip_y *= MOST_SLIP / total
-    fy += load * (side * axle.tyre_ply_thrust + axle.tyre_camber_thrust * camber)
+    fy += load * (side * axle.tyre_vertical_shift + axle.tyre_camber_vertical_shift * camber)
     if speed < LOW_SPEED:
         damper = LOW_SPEED_DAMPING * load * 0.5 * (1.0 + math.cos(math.pi * speed / LOW_SPEED))
         hold = math.hypot(grip_x, grip_y) * load

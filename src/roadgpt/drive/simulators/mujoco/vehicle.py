@@ -1,4 +1,4 @@
-"""A car standing on a road or on a plane, ready to be moved step by step."""
+"""A car on a road or on a plane that can be moved step by step."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -7,13 +7,12 @@ import mujoco
 import numpy as np
 
 from roadgpt.drive.drive import COLUMNS, FloatArray
-from roadgpt.drive.lane import Lane
-from roadgpt.drive.ribbon import Ribbon, ribbon_of
+from roadgpt.drive.lane_polygon import LanePolygon
+from roadgpt.drive.sampled_road import SampledRoad, sample_road
 from roadgpt.drive.simulators.mujoco import bridge
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car, tables
 from roadgpt.drive.simulators.mujoco.control import STEPS, control_step
-from roadgpt.drive.simulators.mujoco.hull import hull_points
-from roadgpt.drive.simulators.mujoco.loop import (
+from roadgpt.drive.simulators.mujoco.dynamics import (
     ABS,
     AT,
     BRAKE,
@@ -21,10 +20,11 @@ from roadgpt.drive.simulators.mujoco.loop import (
     STATION,
     TCS,
     WHEEL_STATE,
-    Engine,
+    CarState,
     Ground,
-    Motion,
+    MujocoHandles,
 )
+from roadgpt.drive.simulators.mujoco.hull import hull_points
 from roadgpt.drive.simulators.mujoco.model import SPIN_DOF, STEP, model_of
 
 if TYPE_CHECKING:
@@ -32,43 +32,46 @@ if TYPE_CHECKING:
 
 CONTROL = STEPS * STEP
 """s between two answers of the driver."""
-SETTLED = 2e-4  # m/s and rad/s, of everything
+SETTLED = 2e-4  # m/s and rad/s, below which all parts count as at rest
 LONGEST_SETTLING = 150  # control steps
 
 _PLACE = {name: place for place, name in enumerate(COLUMNS)}
 
 
 class Vehicle:
-    """One car on one ground; changes as it moves."""
+    """One car on one ground; it changes as it moves."""
 
-    def __init__(self, car: Car, ribbon: Ribbon, lane: Lane, edge: float, friction: float) -> None:
-        """A car on this ground, not yet put anywhere: see `put`."""
+    def __init__(
+        self, car: Car, sampled: SampledRoad, lane: LanePolygon, edge: float, friction: float
+    ) -> None:
+        """Prepares a car on this ground; call `put` to place it."""
         self.car = car
         self._model = model_of(car)
         self._data = mujoco.MjData(self._model)
-        self._engine = _engine(self._model, self._data)
+        self._handles = _handles(self._model, self._data)
         self._cars, self._axles = tables(car)
-        self._ground = Ground(ribbon, edge, friction, lane)
+        self._ground = Ground(sampled, edge, friction, lane)
         self._state = np.zeros(STATE)
         self.wheels: FloatArray = np.zeros((4, WHEEL_STATE))
-        """What the wheels feel, in `loop`'s order: slips, valves, station, load and forces."""
-        self._motion = Motion(
+        """The state of the wheels, in the order of `dynamics`: slips, valves, station, load and forces."""
+        self._car_state = CarState(
             self._state, self.wheels, hull_points(car), np.zeros((4, 2)), np.zeros((2, 16, 2))
         )
         self.row: FloatArray = np.zeros(len(COLUMNS))
-        """What can be seen now, in the order of COLUMNS."""
+        """The present state of the car, in the order of COLUMNS."""
         self.has_fallen = False
 
     @classmethod
     def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
-        """A car on a road with the world's lanes, verge and friction."""
+        """Returns a car on a road with the world's lanes, shoulder and friction."""
         edge = world.lane_width + world.verge
-        return cls(car, ribbon_of(road), Lane.along(road, world), edge, world.friction)
+        return cls(car, sample_road(road), LanePolygon.along(road, world), edge, world.friction)
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
-        """Sets the car down on its springs at a place of the road, along it, and starts the clock.
+        """Places the car on its springs at station s and offset t, facing along the road, and starts the
+        clock.
 
-        Standing cars have their brakes on, and are let settle; moving ones roll freely.
+        A standing car has its brakes applied, and settles first; a moving one rolls freely.
         """
         car, data = self.car, self._data
         mujoco.mj_resetData(self._model, data)
@@ -79,12 +82,14 @@ class Vehicle:
         self._state[STATION] = s
         frame = self._frame(s)
         x, y, height = self._point(s, t)
-        data.qpos[:3] = np.array([x, y, height]) + frame[:, 2] * car.height
+        data.qpos[:3] = np.array([x, y, height]) + frame[:, 2] * car.cg_height
         mujoco.mju_mat2Quat(data.qpos[3:7], np.ascontiguousarray(frame).ravel())
         if speed:
             data.qvel[:3] = frame[:, 0] * speed
             for dof, axle in zip(SPIN_DOF, (car.front, car.front, car.rear, car.rear), strict=True):
-                data.qvel[dof] = speed / (car.wheel_radius - car.load(axle) / axle.tyre.spring)
+                data.qvel[dof] = speed / (
+                    car.unloaded_radius - car.static_wheel_load(axle) / axle.tyre.vertical_stiffness
+                )
         else:
             self._state[BRAKE] = 1.0
             self._settle()
@@ -93,22 +98,22 @@ class Vehicle:
         self.row[_PLACE["ax"]] = self.row[_PLACE["ay"]] = 0.0
 
     def move(self, steer: float, throttle: float, brake: float) -> None:
-        """One control step of 20 ms with these commands (rad, 0..1, 0..1)."""
+        """Runs one control step of 20 ms with these commands (rad, 0..1, 0..1)."""
         self._move(steer, throttle, brake, STEPS)
         self.row[0] = round(self._data.time, 9)
 
     def see(self) -> dict[str, float]:
-        """The row by name."""
+        """Returns the row by column name."""
         return dict(zip(COLUMNS, self.row.tolist(), strict=True))
 
     def _move(self, steer: float, throttle: float, brake: float, steps: int) -> None:
         self.has_fallen = control_step(
-            self._engine,
+            self._handles,
             self._cars,
             self._axles,
             self._ground,
-            self._motion,
-            # Always floats: each kind of number would be compiled anew.
+            self._car_state,
+            # Always floats: numba compiles a version for each type of number.
             float(steer),
             float(throttle),
             float(brake),
@@ -123,16 +128,16 @@ class Vehicle:
                 break
 
     def _row_at(self, s: float) -> FloatArray:
-        ribbon = self._ground.ribbon
-        stations = ribbon.first + ribbon.step * np.arange(len(ribbon.table))
-        return np.array([np.interp(s, stations, column) for column in ribbon.table.T])
+        sampled = self._ground.sampled
+        stations = sampled.first + sampled.step * np.arange(len(sampled.table))
+        return np.array([np.interp(s, stations, column) for column in sampled.table.T])
 
     def _point(self, s: float, t: float) -> tuple[float, float, float]:
         x, y, z, heading, *_ = self._row_at(s).tolist()
         return x - t * math.sin(heading), y + t * math.cos(heading), z
 
     def _frame(self, s: float) -> FloatArray:
-        """Axes forward, left and up of the road at s, as columns."""
+        """Returns the axes forward, left and up of the road at s, as columns."""
         _, _, _, heading, grade, *_ = self._row_at(s).tolist()
         along = np.array([math.cos(heading), math.sin(heading), grade])
         along /= np.linalg.norm(along)
@@ -141,23 +146,26 @@ class Vehicle:
 
 
 def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: Car = ETK_LIKE) -> Vehicle:
-    """A car in the middle of a plane that climbs along x, for manoeuvres that no road has room for.
+    """Returns a car in the middle of a plane that climbs along x, for manoeuvres that need more space than a
+    road.
 
-    The plane is one endless lane: nothing is ever outside.
+    The plane is one endless lane, so the car is never outside.
     """
     s = np.array([0.0, size / 2, size])
     table = np.zeros((3, 8))
     table[:, 0], table[:, 2], table[:, 4], table[:, 6] = s - size / 2, (s - size / 2) * grade, grade, 1.0
     edges = np.column_stack([s - size / 2, np.full(3, size), s - size / 2, np.full(3, -size)])
-    vehicle = Vehicle(car, Ribbon(table, 0.0, size / 2, size), Lane(edges, size / 2), size, friction)
+    vehicle = Vehicle(
+        car, SampledRoad(table, 0.0, size / 2, size), LanePolygon(edges, size / 2), size, friction
+    )
     vehicle.put(size / 2, 0.0)
     return vehicle
 
 
-def _engine(model: Any, data: Any) -> Engine:
+def _handles(model: Any, data: Any) -> MujocoHandles:
     first, second, place = bridge.functions()
     model_handle, data_handle = bridge.handles(model, data)
-    return Engine(
+    return MujocoHandles(
         first,
         second,
         place,

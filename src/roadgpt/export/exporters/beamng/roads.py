@@ -20,6 +20,7 @@ from roadgpt.export.ego import goal_of, start_of
 from roadgpt.export.exporters.opendrive.lanes import NO_SHOULDER
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Edges, Profile, Road, World
+from roadgpt.road.world import LINE
 
 # m between nodes: denser ones fold (BeamNGpy issue 240), and uneven ones make BeamNG's spline swing.
 SPACING = 2.0
@@ -27,7 +28,6 @@ DEPTH = 5.0  # m, of a mesh road (RoadGPT)
 STUB = 5.0  # m of mesh before the start and past the end (RoadGPT), so that no wheel stands on an edge
 SHAKE = 0.01  # m, the greatest random shift of a mesh node
 ABOVE = 0.01, 0.02  # m by which the decal lies above the mesh
-LINE = 0.2  # m, width of a painted line (RoadGPT)
 UNDER = 0.03  # m by which the shoulder lies below the road
 CLEAR = 0.05  # m by which the ground lies below everything else
 DRIVABLE, NOT_DRIVABLE = 1, -1

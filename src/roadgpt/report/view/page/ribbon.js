@@ -1,7 +1,6 @@
 // The road's surface: bands between two offsets, swept along the road.
 
 const PINCH = 0.95; // share of the radius; an offset line nearer to the centre of its bend would fold
-const LINE = 0.15, DASH = 4, GAP = 8; // m, as in our OpenDRIVE files, a little wider to be seen
 const THICK = 0.3; // m of asphalt
 const APRON = 4; // m of shoulder beyond each end of the road
 const ASPHALT = 0x44474d, SIDE = 0x33353a, GRAVEL = 0x8d8672, BANK = 0x7b8a5f, PAINT = 0xf4f4ef, AGAINST = 0x4a4d53;
@@ -135,15 +134,17 @@ function pavement(scene, origin, bank, grain) {
 
 function markings(scene, origin) {
   const { road, world } = scene;
+  const { width, dash, gap } = scene.marking;
   const shape = new Shape3(origin);
   const paint = colourOf(PAINT);
-  const edge = world.lane_width - LINE / 2;
+  const edge = world.lane_width;
   for (const side of [1, -1]) {
-    band(shape, road, road.s, [side * edge + LINE / 2, 0.015], [side * edge - LINE / 2, 0.015], paint);
+    const [left, right] = side > 0 ? [edge, edge - width] : [width - edge, -edge];
+    band(shape, road, road.s, [left, 0.015], [right, 0.015], paint);
   }
-  for (let a = 0; a < road.length; a += DASH + GAP) {
-    const stations = stationsBetween(road, a, Math.min(a + DASH, road.length));
-    band(shape, road, stations, [LINE / 2, 0.015], [-LINE / 2, 0.015], paint);
+  for (let a = 0; a < road.length; a += dash + gap) {
+    const stations = stationsBetween(road, a, Math.min(a + dash, road.length));
+    band(shape, road, stations, [width / 2, 0.015], [-width / 2, 0.015], paint);
   }
   return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 });
 }

@@ -1,7 +1,7 @@
-"""The executor that a generator is handed, under the name of the one that drives in BeamNG.
+"""The executor that a generator gets, under the name of the competition's executor for BeamNG.
 
-It validates nothing and drives nothing itself: it sends road points down the line, and gives the generator
-what comes back. Only ``validate_test`` answers on the spot.
+It does not validate or drive by itself: it sends road points to RoadGPT and returns the results to the
+generator. Only ``validate_test`` answers directly.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import time
 from copy import deepcopy
 from typing import Any, Dict, Optional, Tuple
 
-from code_pipeline.executors import HANDED, AbstractTestExecutor, Tried, settle
+from code_pipeline.executors import HANDED, AbstractTestExecutor, TestResult, settle
 from code_pipeline.tests_generation import RoadTestFactory
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from self_driving.simulation_data import SimulationDataRecord
 
 FloatDTuple = Tuple[float, float, float, float]
@@ -34,34 +34,36 @@ class BeamngExecutor(AbstractTestExecutor):
         road_visualizer: Any = None,
         debug: bool = False,
         test_budget: Optional[int] = None,
-        line: Any = None,
+        connection: Any = None,
     ) -> None:
-        """An executor at this end of a line.
+        """Makes an executor for this connection.
 
         Raises:
-            RuntimeError: there is no line.
+            RuntimeError: there is no connection.
         """
-        if line is None:
+        if connection is None:
             raise RuntimeError(HANDED)
         super().__init__(result_folder, map_size, time_budget, road_visualizer, debug, test_budget)
         self.risk_value = 0.7
-        """BeamNG's own measure of how daring its driver is, as the competition sets it."""
+        """Aggression of BeamNG's driver, as the competition sets it."""
         self.oob_tolerance = oob_tolerance
         self.max_speed_in_ms = max_speed_in_kmh / KMH
         self.beamng_home, self.beamng_user = beamng_home, beamng_user
         self.brewer = self.vehicle = self.last_observation = None
         self.min_delta_position = 1.0
-        self._line = line
+        self._connection = connection
 
-    def execute_test(self, the_test: Any) -> Tried:
-        """Validate and drive a test: (outcome, description, execution data).
+    def execute_test(self, the_test: Any) -> TestResult:
+        """Validates and drives a test; returns (outcome, description, execution data).
 
         Raises:
-            SystemExit: the budget is over; the test is dropped, as the competition drops it.
+            SystemExit: the budget is used up; the test is dropped, as the competition drops it.
         """
-        with self._line.turn:
+        with self._connection.turn:
             generating = time.monotonic() - self.start_generation_time
-            answer = {} if self.time_budget.is_over() else self._line.ask(_question(the_test, generating))
+            answer = (
+                {} if self.time_budget.is_over() else self._connection.ask(_question(the_test, generating))
+            )
             if not answer or answer["is_over"]:
                 self._leave()
             tried = _settled(the_test, answer)
@@ -71,18 +73,18 @@ class BeamngExecutor(AbstractTestExecutor):
                 self.road_visualizer.visualize_road_test(the_test)
             return tried
 
-    def _execute(self, the_test: Any) -> Tried:
+    def _execute(self, the_test: Any) -> TestResult:
         return self.execute_test(the_test)
 
     def end_iteration(self) -> None:
-        """Nothing goes on."""
+        """Does nothing."""
 
     def _close(self) -> None:
-        """Nothing is open."""
+        """Does nothing."""
 
     def __reduce__(self) -> Any:
         raise TypeError(
-            "the executor works in the process that it was handed to; let others bring road points to it"
+            "the executor works only in the process that got it; let other processes send road points there"
         )
 
     def __deepcopy__(self, memo: Dict[int, Any]) -> BeamngExecutor:
@@ -102,7 +104,7 @@ def _is_test(the_test: Any) -> bool:
 
 
 def _question(the_test: Any, generating: float) -> Dict[str, Any]:
-    """What is sent of a test; of something that is none, nothing."""
+    """Returns the message for a test; for something that is not a test, without points."""
     is_test = _is_test(the_test)
     return {
         "op": "test",
@@ -113,8 +115,8 @@ def _question(the_test: Any, generating: float) -> Dict[str, Any]:
     }
 
 
-def _settled(the_test: Any, answer: Dict[str, Any]) -> Tried:
-    """The answer as the competition gives it, and set on the test."""
+def _settled(the_test: Any, answer: Dict[str, Any]) -> TestResult:
+    """Returns the answer in the competition's form, and sets it on the test."""
     records = [SimulationDataRecord(*record) for record in answer["records"]]
     outcome, description = answer["outcome"], answer["description"]
     if _is_test(the_test):
@@ -125,4 +127,4 @@ def _settled(the_test: Any, answer: Dict[str, Any]) -> Tried:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

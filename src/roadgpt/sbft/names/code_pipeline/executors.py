@@ -1,4 +1,4 @@
-"""Executors: what takes tests, one at a time, until the budget is over."""
+"""Executors: they take tests, one at a time, until the budget is used up."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from typing import Any, Dict, List, Optional, Tuple
 from code_pipeline.test_analysis import compute_all_features
 from code_pipeline.tests_generation import TestGenerationStatistic
 from code_pipeline.validation import TestValidator
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from self_driving.simulation_data import SimulationDataRecord
 
 log = logging.getLogger(__name__)
 
 OVER = 123  # exit status with which the competition ends a generator that asks for more than its budget
-HANDED = "roadgpt compete sbft makes the executor and hands it to the generator; start the generator with it"
+HANDED = "roadgpt compete sbft makes the executor and passes it to the generator; start it with that"
 
-Tried = Tuple[str, str, List[Any]]
+TestResult = Tuple[str, str, List[Any]]
 
 
 REMAINING = "time-budget"  # the competition's key
@@ -28,7 +28,8 @@ PER_TEST = 35.0  # s: what one test takes in the competition's own pipeline
 
 
 class Remaining(Dict[str, float]):
-    """What is left. Since 2022 a dictionary; before, it was a number, and compares like one still."""
+    """The remaining budget. Since 2022 it is a dictionary; before it was a number, and it still compares like
+    one."""
 
     def __float__(self) -> float:
         return self[REMAINING]
@@ -55,20 +56,20 @@ class Remaining(Dict[str, float]):
         return format(float(self), spec) if spec else str(self)
 
 
-class Count:
-    """A number that copies share."""
+class SharedCounter:
+    """A count that copies of a budget share."""
 
     tests = 0
 
-    def __deepcopy__(self, memo: Any) -> Count:
+    def __deepcopy__(self, memo: Any) -> SharedCounter:
         return self
 
 
 class Budget:
     """Seconds of wall time, a number of tests, or both.
 
-    Where tests alone are counted, the time that is left is told as what they would take in the competition:
-    35 s each. So a generator that plans by the clock plans as it does there.
+    If only tests are counted, the remaining time is the time that they would take in the competition: 35 s
+    each. A generator that plans by the clock then plans as it does there.
     """
 
     def __init__(
@@ -78,19 +79,20 @@ class Budget:
         execution_budget: Optional[float] = None,
         test_budget: Optional[int] = None,
     ) -> None:
-        """The second and third exist for the sake of their names; nothing has used them since 2022."""
+        """``generation_budget`` and ``execution_budget`` exist only for compatibility; nothing has used them
+        since 2022."""
         self.generation_budget = generation_budget
         self.execution_budget = execution_budget
         self._has_clock = time_budget is not None
         self.time_budget = PER_TEST * (test_budget or 0) if time_budget is None else time_budget
-        """Seconds; generators multiply it, so it is always a number."""
+        """Seconds; generators calculate with it, so it is always a number."""
         self.test_budget = test_budget
-        self._count = Count()
+        self._count = SharedCounter()
         self.start_real_time: float = time.monotonic()
 
     @property
     def tests(self) -> int:
-        """How many there were so far; copies of a budget count together."""
+        """Number of tests so far; copies of a budget count together."""
         return self._count.tests
 
     @tests.setter
@@ -98,35 +100,35 @@ class Budget:
         self._count.tests = tests
 
     def start(self) -> None:
-        """The clock runs from now on."""
+        """Starts the clock."""
         self.start_real_time = time.monotonic()
 
     def get_start_time(self) -> float:
-        """On the monotonic clock."""
+        """Returns the start time on the monotonic clock."""
         return self.start_real_time
 
     def get_remaining_real_time(self) -> float:
-        """Seconds."""
+        """Returns the remaining seconds."""
         if self._has_clock:
             return self.time_budget - (time.monotonic() - self.start_real_time)
         return PER_TEST * max((self.test_budget or 0) - self.tests, 0)
 
     def get_remaining_time(self) -> Remaining:
-        """Under the competition's key, ``time-budget``."""
+        """Returns the remaining seconds under the competition's key, ``time-budget``."""
         return Remaining({REMAINING: self.get_remaining_real_time()})
 
     def can_run_a_test(self) -> bool:
-        """Is anything left?"""
+        """Returns whether any budget is left."""
         has_tests = self.test_budget is None or self.tests < self.test_budget
         return has_tests and self.get_remaining_real_time() > 0
 
     def is_over(self) -> bool:
-        """Is nothing left?"""
+        """Returns whether the budget is used up."""
         return not self.can_run_a_test()
 
 
 class AbstractTestExecutor(ABC):
-    """Validates, executes, counts and writes tests; one of one's own says how a test is executed."""
+    """Validates, executes, counts and writes tests; subclasses define how a test is executed."""
 
     start_time: Any = None
 
@@ -139,7 +141,7 @@ class AbstractTestExecutor(ABC):
         debug: bool = False,
         test_budget: Optional[int] = None,
     ) -> None:
-        """The budget runs from now on."""
+        """Starts the budget."""
         self.debug = debug
         self.result_folder = result_folder
         self.map_size = map_size
@@ -151,16 +153,16 @@ class AbstractTestExecutor(ABC):
         self.start()
 
     def start(self) -> None:
-        """The budget runs from now on."""
+        """Starts the budget."""
         self.time_budget.start()
         self.start_time = time.time()
         self.start_generation_time: float = self.time_budget.get_start_time()
 
-    def execute_test(self, the_test: Any) -> Tried:
-        """Validate and execute a test: (outcome, description, execution data).
+    def execute_test(self, the_test: Any) -> TestResult:
+        """Validates and executes a test; returns (outcome, description, execution data).
 
         Raises:
-            SystemExit: the budget is over; the test is dropped, as the competition drops it.
+            SystemExit: the budget is used up; the test is dropped, as the competition drops it.
         """
         generating = time.monotonic() - self.start_generation_time
         if self.time_budget.is_over():
@@ -170,7 +172,7 @@ class AbstractTestExecutor(ABC):
         the_test.set_validity(is_valid, message)
         if self.road_visualizer:
             self.road_visualizer.visualize_road_test(the_test)
-        tried: Tried = ("INVALID", message, [])
+        tried: TestResult = ("INVALID", message, [])
         begun = time.monotonic()
         if is_valid:
             outcome, description, records = self._execute(the_test)
@@ -182,7 +184,7 @@ class AbstractTestExecutor(ABC):
         self._count(tried, generating, time.monotonic() - begun)
         return tried
 
-    def _count(self, tried: Tried, generating: float, executing: float) -> None:
+    def _count(self, tried: TestResult, generating: float, executing: float) -> None:
         outcome, description, records = tried
         self.stats.add(outcome, description)
         self.stats.test_generation_real_times.append(generating)
@@ -193,59 +195,60 @@ class AbstractTestExecutor(ABC):
 
     def _leave(self) -> None:
         self.timeout_forced = True
-        log.warning("the budget is over")
+        log.warning("budget used up")
         sys.exit(OVER)
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """(is it valid, and the first complaint); costs no budget but time."""
+        """Returns (is valid, first complaint); it uses no budget except time."""
         return self.test_validator.validate_test(the_test)
 
     def store_test(self, the_test: Any) -> None:
-        """Write a test's file."""
+        """Writes a test's file."""
         path = Path(self.result_folder, f"test.{the_test.id:04d}.json")
         path.write_text(the_test.to_json(), encoding="utf-8")
 
     def is_over(self) -> bool:
-        """Is the budget over?"""
+        """Returns whether the budget is used up."""
         return self.time_budget.is_over()
 
     def is_force_timeout(self) -> bool:
-        """Was the generator told to leave?"""
+        """Returns whether the generator was stopped because its budget was used up."""
         return self.timeout_forced
 
     def get_remaining_time(self) -> Remaining:
-        """Seconds, under the key ``time-budget``."""
+        """Returns the remaining seconds under the key ``time-budget``."""
         return self.time_budget.get_remaining_time()
 
     def get_elapsed_time(self) -> float:
-        """Seconds of wall time."""
+        """Returns seconds of wall time since the start."""
         return time.monotonic() - self.time_budget.get_start_time()
 
     def get_stats(self) -> TestGenerationStatistic:
-        """Counts so far."""
+        """Returns the counts so far."""
         return self.stats
 
     def close(self) -> None:
-        """Tests are over."""
+        """Ends the work of the executor."""
         self._close()
 
     @abstractmethod
     def _close(self) -> None:
-        """Let go of what was used."""
+        """Releases resources."""
 
     @abstractmethod
-    def _execute(self, the_test: Any) -> Tried:
-        """Drive a valid test."""
+    def _execute(self, the_test: Any) -> TestResult:
+        """Drives a valid test."""
         if not self.time_budget.can_run_a_test():
             self._leave()
-        return "ERROR", "an executor says itself how a test is executed", []
+        return "ERROR", "the executor does not define how a test is executed", []
 
 
 class MockExecutor(AbstractTestExecutor):
-    """The competition's invents outcomes; here there are real ones, of the executor that is handed over."""
+    """The competition's class invents outcomes; here it cannot be used, because RoadGPT's executor has real
+    ones."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
-        """Not to be made.
+        """Cannot be called.
 
         Raises:
             RuntimeError: always.
@@ -253,14 +256,14 @@ class MockExecutor(AbstractTestExecutor):
         raise RuntimeError(HANDED)
 
     def _close(self) -> None:
-        """Nothing is open."""
+        """Does nothing."""
 
-    def _execute(self, the_test: Any) -> Tried:
+    def _execute(self, the_test: Any) -> TestResult:
         raise RuntimeError(HANDED)
 
 
 def settle(test: Any, outcome: str, description: str, records: List[Any], features: Dict[str, float]) -> None:
-    """Set on a test what became of it."""
+    """Sets the result on a test."""
     test.execution_data = records
     test.test_outcome = outcome
     test.description = description
@@ -271,4 +274,4 @@ __all__ = ["AbstractTestExecutor", "Budget", "MockExecutor", "SimulationDataReco
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

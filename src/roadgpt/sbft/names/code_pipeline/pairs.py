@@ -1,19 +1,19 @@
-"""Neighbours in a row."""
+"""Pairs of neighbours in a sequence."""
 
 from __future__ import annotations
 
 from itertools import tee
 from typing import Any, Iterable
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 
 def pairwise(iterable: Iterable[Any]) -> Any:
-    """(first, second), (second, third), and so on."""
+    """Returns (first, second), (second, third), and so on."""
     ones, others = tee(iterable)
     next(others, None)
     return zip(ones, others)
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

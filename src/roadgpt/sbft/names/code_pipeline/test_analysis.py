@@ -1,4 +1,4 @@
-"""Features of tests; each by itself comes with its name, as the competition's functions give it."""
+"""Features of tests; each function returns its feature with its name, as the competition's functions do."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from bisect import bisect_right
 from statistics import fmean, pstdev
 from typing import Any, Dict, Sequence, Tuple
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 THE_NORTH = [0, 1]
 FEWEST_RECORDS = 3  # with fewer, a drive has no features
@@ -16,7 +16,8 @@ Feature = Tuple[str, float]
 
 
 def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[str, float]:
-    """MAX_CURV and DIR_COV of the road; STD_SA, MEAN_LP and MAX_LP of the drive, where there is one."""
+    """Returns MAX_CURV and DIR_COV of the road, and STD_SA, MEAN_LP and MAX_LP of the drive, if there is
+    one."""
     found = [max_curvature(the_test), direction_coverage(the_test)]
     if len(execution_data or ()) >= FEWEST_RECORDS:
         found += [
@@ -26,36 +27,38 @@ def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[s
 
 
 def max_curvature(the_test: Any, w: int = 5) -> Feature:
-    """1/m, of nodes i, i + 2, i + 4 with the window of 5: the competition's own."""
+    """Returns the largest curvature in 1/m; with the window of 5, of nodes i, i + 2 and i + 4, as the
+    competition does."""
     from code_pipeline.validation import smallest_circle
 
     return "MAX_CURV", 1 / smallest_circle(_nodes(the_test), w)
 
 
 def direction_coverage(the_test: Any, n_bins: int = 25) -> Feature:
-    """Share of the edges of bins of directions, as angles to north from 0 to 180 degrees."""
+    """Returns the share of bins of directions that occur, as angles to north from 0 to 180 degrees; bins are
+    counted by their edges."""
     edges = [360.0 / n_bins * i for i in range(n_bins + 1)]
     nodes = _nodes(the_test)
     covered = set()
     for one, after in zip(nodes, nodes[1:]):
         x, y = after[0] - one[0], after[1] - one[1]
         way = math.sqrt(x * x + y * y)
-        # nodes in one place have no direction, which the competition's library counts beyond the last edge
+        # coinciding nodes have no direction; the competition's library counts that beyond the last edge
         cosine = max(-1.0, min(1.0, y / way)) if way else math.nan
         covered.add(bisect_right(edges, math.degrees(math.acos(cosine))) if way else len(edges))
     return "DIR_COV", len(covered) / len(edges)
 
 
 def get_thetas(xs: Any, ys: Any, skip: int = 1) -> Any:
-    """Directions of the ways between points of two arrays, radians to the x-axis."""
-    del skip  # theirs takes it, and has no use for it
+    """Returns the directions between successive points of two arrays, radians to the x-axis."""
+    del skip  # the competition's function ignores it, too
     import numpy
 
     return numpy.arctan2(ys[1:] - ys[:-1], xs[1:] - xs[:-1])
 
 
 def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
-    """The same of the whole circle, from -180 to 180 degrees to the x-axis."""
+    """Returns the same for the whole circle, from -180 to 180 degrees to the x-axis."""
     edges = [-math.pi + 2 * math.pi / (n_bins - 1) * i for i in range(n_bins - 1)] + [math.pi]
     nodes = _nodes(the_test)
     ways = [(after[0] - one[0], after[1] - one[1]) for one, after in zip(nodes, nodes[1:])]
@@ -64,17 +67,17 @@ def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
 
 
 def sd_steering(execution_data: Sequence[Any]) -> Feature:
-    """Degrees at the steering wheel."""
+    """Returns the standard deviation of the steering, degrees at the steering wheel."""
     return "STD_SA", pstdev(float(record.steering) for record in execution_data)
 
 
 def mean_lateral_position(execution_data: Sequence[Any]) -> Feature:
-    """Metres."""
+    """Returns the mean of ``oob_distance``, metres."""
     return "MEAN_LP", fmean(float(record.oob_distance) for record in execution_data)
 
 
 def max_lateral_position(execution_data: Sequence[Any]) -> Feature:
-    """Metres."""
+    """Returns the maximum of ``oob_distance``, metres."""
     return "MAX_LP", max(record.oob_distance for record in execution_data)
 
 
@@ -84,4 +87,4 @@ def _nodes(the_test: Any) -> Sequence[Sequence[float]]:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -7,7 +7,7 @@ import signal
 import sys
 from typing import Any, Callable, List
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 _REGISTERED: List[Callable[[], None]] = []
 
@@ -17,7 +17,8 @@ def register_exit_fun(
     signals: Any = (signal.SIGTERM,),
     logfun: Any = lambda said: print(said, file=sys.stderr),
 ) -> Any:
-    """Have a function called once: when the generator ends, or on one of the signals. Also a decorator."""
+    """Registers a function that is called once, when the generator ends or on one of the signals. Also a
+    decorator."""
     if fun is None:
         return lambda wrapped: register_exit_fun(wrapped, signals, logfun)
     if not callable(fun):
@@ -46,10 +47,10 @@ def register_exit_fun(
 
 
 def ended() -> None:
-    """The generator ended: call what was registered, the last one first."""
+    """Calls the registered functions, the last one first."""
     while _REGISTERED:
         _REGISTERED.pop()()
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

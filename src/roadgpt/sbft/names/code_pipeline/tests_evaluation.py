@@ -1,4 +1,5 @@
-"""The competition's analysis of failures; points and lines are shapely's, of the generator's interpreter."""
+"""The competition's analysis of failures; points and lines are shapely's, from the generator's
+interpreter."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ from code_pipeline.test_analysis import (
     mean_lateral_position,
     sd_steering,
 )
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 from self_driving.simulation_data import SimulationDataRecord
 
@@ -25,21 +26,22 @@ HEADER = "total_oob,left_oob,right_oob,avg_sparseness,stdev_sparseness"
 
 
 class RoadTestEvaluator:
-    """Finds the road around the place where a car left its lane."""
+    """Finds the part of the road around the place where a car left its lane."""
 
     def __init__(
         self, road_length_before_oob: float = BEFORE_THRESHOLD, road_length_after_oob: float = AFTER_THRESHOLD
     ) -> None:
-        """So many metres of it."""
+        """Takes the lengths of road before and after that place, in metres."""
         self.road_length_before_oob = road_length_before_oob
         self.road_length_after_oob = road_length_after_oob
 
     def identify_interesting_road_segments(
         self, road_nodes: Sequence[Sequence[float]], execution_data: Sequence[Any]
     ) -> Tuple[Any, ...]:
-        """Place, road before it, road behind it, side, number of the record, records before it.
+        """Returns the place, the road before it, the road after it, the side, the number of the record, and
+        the records before it.
 
-        All None where the car did not leave its lane.
+        All are None if the car did not leave its lane.
 
         Raises:
             AssertionError: the segment cannot be cut out.
@@ -58,12 +60,12 @@ class RoadTestEvaluator:
 
 
 class OOBAnalyzer:
-    """What a folder of results holds of failures."""
+    """Analyses the failures in a folder of results."""
 
     def __init__(
         self, result_folder: str, road_length_before_oob: float = 30, road_length_after_oob: float = 30
     ) -> None:
-        """Reads the folder, and those in it."""
+        """Reads the folder and its subfolders."""
         self.logger = logging.getLogger("OOBAnalyzer")
         self._evaluator = RoadTestEvaluator(road_length_before_oob, road_length_after_oob)
         self.oobs = [found for path in _tests(result_folder) for found in self._found(path)]
@@ -99,7 +101,7 @@ class OOBAnalyzer:
         }
 
     def create_summary(self) -> str:
-        """The competition's oob_stats.csv."""
+        """Returns the competition's oob_stats.csv."""
         left = sum(oob["oob side"] == "LEFT" for oob in self.oobs)
         segments = [oob["interesting segment"] for oob in self.oobs if oob["oob point"] is not None]
         mean, deviation = ask("spread", segments=segments)
@@ -107,7 +109,7 @@ class OOBAnalyzer:
         return f"{HEADER}\n{total},{left},{total - left},{mean:.3f},{deviation:3.0f}"
 
     def create_oob_report(self) -> str:
-        """The same."""
+        """Returns the same."""
         return self.create_summary()
 
 
@@ -119,4 +121,4 @@ def _tests(folder: str) -> List[Path]:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -1,4 +1,4 @@
-"""Tests as generators make them, and what is counted of them."""
+"""Tests as generators make them, and their statistics."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from itertools import count
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from roadgpt_client import RoadGPTError, plain
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 from self_driving.road_polygon import RoadPolygon
 
@@ -42,17 +42,17 @@ class RoadTestFactory:
     test_id_generator: Iterator[int] = count(1)
 
     class RoadTest:
-        """One road. What becomes of it is set by the executor: ``id``, ``execution_data``, ``test_outcome``,
+        """One road. The executor sets its results: ``id``, ``execution_data``, ``test_outcome``,
         ``description``, ``features``."""
 
         id: int
 
         def __init__(self, road_points: Any) -> None:
-            """A test of control points.
+            """Makes a test from control points.
 
             Raises:
-                AssertionError: not a list of pairs: the competition's own error.
-                ValueError: fewer than two, or no spline goes through them.
+                AssertionError: not a list of pairs, the competition's own error.
+                ValueError: there are fewer than two points, or there is no spline through them.
             """
             if type(road_points) is not list:
                 raise AssertionError("road points are a list of pairs of numbers")
@@ -69,23 +69,23 @@ class RoadTestFactory:
             return RoadPolygon.from_nodes(self.interpolated_points)
 
         def get_road_polygon(self) -> RoadPolygon:
-            """The area of the road."""
+            """Returns the area of the road."""
             return self.road_polygon
 
         def get_road_length(self, interpolate_road_points: bool = False) -> float:
-            """Metres along the interpolated points; or along those, interpolated once more, as the validator
-            measures."""
+            """Returns the length in metres along the interpolated points, or along these interpolated once
+            more, as the validator measures."""
             nodes = [node[:2] for node in self.interpolated_points]
             if interpolate_road_points:
                 nodes = nodes_of(nodes)
             return sum(math.hypot(x1 - x0, y1 - y0) for (x0, y0), (x1, y1) in zip(nodes, nodes[1:]))
 
         def set_validity(self, is_valid: bool, validation_message: str) -> None:
-            """What the validator says."""
+            """Sets the validator's result."""
             self.is_valid, self.validation_message = is_valid, validation_message
 
         def to_json(self) -> str:
-            """As the competition's files have it."""
+            """Returns the test as in the competition's files."""
             data = {name: getattr(self, name) for name in ALWAYS}
             data["interpolated_points"] = [node[:2] for node in self.interpolated_points]
             data.update({name: getattr(self, name) for name in ONCE_DRIVEN if hasattr(self, name)})
@@ -93,10 +93,10 @@ class RoadTestFactory:
 
     @staticmethod
     def create_road_test(road_points: Any) -> "RoadTestFactory.RoadTest":
-        """A test with the next number.
+        """Returns a test with the next number.
 
         Raises:
-            AssertionError, ValueError: as ``RoadTest``.
+            AssertionError, ValueError: as for ``RoadTest``.
         """
         test = RoadTestFactory.RoadTest(road_points)
         test.id = next(RoadTestFactory.test_id_generator)
@@ -104,24 +104,24 @@ class RoadTestFactory:
 
 
 def interpolated(road_points: Sequence[Sequence[float]]) -> List[Node]:
-    """The competition's interpolated points: x, y, height and width, in metres.
+    """Returns the competition's interpolated points: x, y, height and width, in metres.
 
     Raises:
-        ValueError: fewer than two points, or no spline goes through them.
+        ValueError: there are fewer than two points, or there is no spline through them.
     """
     if len(road_points) < 2:
         raise ValueError("a road needs two points or more")
     return [(x, y, HEIGHT, ROAD_WIDTH) for x, y in nodes_of(road_points)]
 
 
-_interpolate = interpolated  # as it is called there
+_interpolate = interpolated  # the competition's name
 
 
 def nodes_of(road_points: Sequence[Sequence[float]]) -> List[Tuple[float, float]]:
-    """x and y of interpolated points, metres.
+    """Returns x and y of the interpolated points, metres.
 
     Raises:
-        ValueError: no spline goes through them.
+        ValueError: there is no spline through the points.
     """
     points = [[float(point[0]), float(point[1])] for point in road_points]
     try:
@@ -132,7 +132,7 @@ def nodes_of(road_points: Sequence[Sequence[float]]) -> List[Tuple[float, float]
 
 @dataclass
 class TestGenerationStatistic:
-    """Counts of tests by what became of them, and seconds of each."""
+    """Counts of tests by outcome, and seconds of each test."""
 
     __test__ = False  # pytest is not to collect it, for all its name
 
@@ -143,13 +143,13 @@ class TestGenerationStatistic:
     test_failed: int = 0
     test_in_error: int = 0
     obes: int = 0
-    """Tests that failed out of the lane."""
+    """Tests that failed because the car left its lane."""
     test_generation_real_times: List[float] = field(default_factory=list)
     test_execution_real_times: List[float] = field(default_factory=list)
     test_execution_simulation_times: List[float] = field(default_factory=list)
 
     def add(self, outcome: str, description: str) -> None:
-        """Count a test."""
+        """Counts a test."""
         self.test_generated += 1
         if outcome == "INVALID":
             self.test_invalid += 1
@@ -173,10 +173,10 @@ class TestGenerationStatistic:
         return "\n".join(f"{name.replace('_', ' ')}: {value:g}" for name, value in self._row().items())
 
     def as_csv(self) -> str:
-        """The competition's generation_stats.csv."""
+        """Returns the competition's generation_stats.csv."""
         row = self._row()
         return ",".join(row) + "\n" + ",".join(f"{value:g}" for value in row.values())
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -1,4 +1,4 @@
-"""The validator."""
+"""The competition's validator."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Sequence, Tuple
 
 from code_pipeline.tests_generation import RoadTestFactory
 from roadgpt_client import RoadGPTError
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 from self_driving.bbox import RoadBoundingBox
 
@@ -24,7 +24,7 @@ TOO_SHARP = "The road is too sharp"
 
 
 def find_circle(p1: Sequence[float], p2: Sequence[float], p3: Sequence[float]) -> float:
-    """Radius of the circle through three points, metres; infinite where they lie on a line."""
+    """Returns the radius of the circle through three points in metres; infinite if they lie on a line."""
     square = p2[0] * p2[0] + p2[1] * p2[1]
     one = (p1[0] * p1[0] + p1[1] * p1[1] - square) / 2
     other = (square - p3[0] * p3[0] - p3[1] * p3[1]) / 2
@@ -37,9 +37,10 @@ def find_circle(p1: Sequence[float], p2: Sequence[float], p3: Sequence[float]) -
 
 
 def smallest_circle(nodes: Sequence[Sequence[float]], w: int) -> float:
-    """Radius of the smallest circle through first, middle and last of w nodes in a row, metres.
+    """Returns the radius in metres of the smallest circle through first, middle and last of w successive
+    nodes.
 
-    The last such window is left out, as theirs is. Infinite where there is none.
+    The last such window is left out, as in the competition's code. Infinite if there is none.
     """
     windows = range(len(nodes) - w)
     return min(
@@ -48,18 +49,18 @@ def smallest_circle(nodes: Sequence[Sequence[float]], w: int) -> float:
 
 
 def min_radius(x: Sequence[Sequence[float]], w: int = 5) -> float:
-    """The same in feet; 0 where there is none."""
+    """Returns the same in feet; 0 if there is none."""
     radius = smallest_circle(x, w)
     return 0.0 if radius == math.inf else radius * FEET_PER_METRE
 
 
 class TestValidator:
-    """The competition's validator, quirks included."""
+    """The competition's validator, including its errors."""
 
     __test__ = False  # pytest is not to collect it, for all its name
 
     def __init__(self, map_size: float, min_road_length: float = 20) -> None:
-        """For a square map."""
+        """Validates for a square map of this size in metres."""
         self.map_size = map_size
         self.min_road_length = min_road_length
         self.max_points = 500
@@ -71,19 +72,20 @@ class TestValidator:
         return RoadBoundingBox(self.box)
 
     def is_right_type(self, the_test: Any) -> bool:
-        """Was it made by the factory?"""
+        """Returns whether the test was made by the factory."""
         return type(the_test) is RoadTestFactory.RoadTest
 
     def is_enough_road_points(self, the_test: Any) -> bool:
-        """Two or more?"""
+        """Returns whether there are two points or more."""
         return len(the_test.road_points) > 1
 
     def is_too_many_points(self, the_test: Any) -> bool:
-        """More than 500?"""
+        """Returns whether there are more than 500 points."""
         return len(the_test.road_points) > self.max_points
 
     def is_inside_map(self, the_test: Any) -> bool:
-        """Quirk: ``and`` binds before ``or``, so that a road wholly outside can pass."""
+        """Returns the competition's check, in which ``and`` binds before ``or``: a road wholly outside can
+        pass."""
         xs = [node[0] for node in the_test.interpolated_points]
         ys = [node[1] for node in the_test.interpolated_points]
         size = self.map_size
@@ -96,27 +98,27 @@ class TestValidator:
         )
 
     def intersects_boundary(self, the_test: Any) -> bool:
-        """Does the road touch the border of the map?"""
+        """Returns whether the road touches the border of the map."""
         return bool(self.road_bbox.intersects_boundary(the_test.get_road_polygon().polygon))
 
     def is_valid_polygon(self, the_test: Any) -> bool:
-        """Does the road keep clear of itself?"""
+        """Returns whether the road does not intersect itself."""
         return bool(the_test.get_road_polygon().is_valid())
 
     def is_not_self_intersecting(self, the_test: Any) -> bool:
-        """The same."""
+        """Returns the same."""
         return self.is_valid_polygon(the_test)
 
     def is_minimum_length(self, the_test: Any) -> bool:
-        """Is it long enough?"""
+        """Returns whether the road is long enough."""
         return bool(the_test.get_road_length(interpolate_road_points=True) > self.min_road_length)
 
     def is_too_sharp(self, the_test: Any, TSHD_RADIUS: float = 47) -> bool:
-        """Is there a circle of less than so many feet?"""
+        """Returns whether some radius of the road is smaller than this number of feet."""
         return TSHD_RADIUS > min_radius(the_test.interpolated_points) > 0.0
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """(is it valid, and the first complaint): never raises for a test."""
+        """Returns (is valid, first complaint); never raises an exception for a test."""
         if not self.is_right_type(the_test):
             return False, WRONG_TYPE
         if type(self) is not TestValidator or self.min_road_length != 20 or self.max_points != 500:
@@ -132,7 +134,7 @@ class TestValidator:
         return is_valid, message
 
     def _complaint(self, the_test: Any) -> str:
-        """The same step by step, for validators that were made to ask otherwise."""
+        """Checks step by step, for subclasses with checks of their own; returns the first complaint."""
         if not self.is_enough_road_points(the_test):
             return TOO_FEW
         if self.is_too_many_points(the_test):
@@ -147,4 +149,4 @@ class TestValidator:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -1,14 +1,14 @@
-"""Shows nothing: pictures are drawn by ``roadgpt compete sbft --plot`` and ``roadgpt view --format``."""
+"""Draws nothing: pictures are drawn by ``roadgpt compete sbft --plot`` and ``roadgpt view --format``."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 
-class _Shape:
-    """A polygon of shapely, made when it is asked for."""
+class _ShapelyPolygon:
+    """A polygon of shapely that is made on access."""
 
     def __init__(self, *corners: Any) -> None:
         self._corners = corners
@@ -20,21 +20,21 @@ class _Shape:
 
 
 class RoadTestVisualizer:
-    """Takes tests and draws none."""
+    """Accepts tests and draws none."""
 
-    little_triangle = _Shape((10, 0), (0, -5), (0, 5))
-    square = _Shape((5, 5), (5, -5), (-5, -5), (-5, 5))
+    little_triangle = _ShapelyPolygon((10, 0), (0, -5), (0, 5))
+    square = _ShapelyPolygon((5, 5), (5, -5), (-5, -5), (-5, 5))
 
     def __init__(self, map_size: float) -> None:
-        """For a square map."""
+        """Has the competition's signature."""
         self.map_size = map_size
         self.last_submitted_test_figure: Any = None
         self.last_submitted_test: Any = None
 
     def visualize_road_test(self, the_test: Any) -> None:
-        """Keep the test in mind."""
+        """Remembers the test."""
         self.last_submitted_test = the_test
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

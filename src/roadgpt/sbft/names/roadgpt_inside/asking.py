@@ -1,7 +1,7 @@
-"""Asks RoadGPT what takes more than the standard library.
+"""Requests from RoadGPT whatever needs more than the standard library.
 
-Where RoadGPT is installed in this interpreter, it is asked here; else it is started in its own, whose path
-stands in ROADGPT_PYTHON. A process that is forked from this one starts one for itself.
+If RoadGPT is installed in this interpreter, it is called here; else it is started in its own interpreter,
+whose path is in ROADGPT_PYTHON. A process that is forked from this one starts a RoadGPT of its own.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ _ASKED: List[roadgpt_client.RoadGPT] = []
 
 
 def ask(op: str, **values: Any) -> Any:
-    """What RoadGPT answers.
+    """Returns RoadGPT's answer to a request.
 
     Raises:
-        RoadGPTError: RoadGPT says why it has no answer, or cannot be asked.
+        RoadGPTError: RoadGPT reports an error, or cannot be started.
     """
     if not os.environ.get(roadgpt_client.PYTHON):
         try:

@@ -1,7 +1,8 @@
-"""A generator's own process: finds its class, hands it an executor, and tells how it ended.
+"""Main program of a generator's own process: imports its class, passes it an executor, and reports how it
+ended.
 
-Started by ``roadgpt.sbft.host``. Standard input and output are the line to us; what the generator prints goes
-to standard error, which is its log.
+``roadgpt.sbft.generator_process`` starts it. Standard input and output are the connection to RoadGPT; what
+the generator prints goes to standard error, which is its log.
 """
 
 from __future__ import annotations
@@ -23,76 +24,77 @@ NAMES = Path(__file__).parent.parent  # packages of the competition's names, and
 OVER = 123  # exit status with which the competition ends a generator that asks for more than its budget
 
 
-class Line:
-    """This end of the line. There is one, which copies of an executor share."""
+class Connection:
+    """This process's end of the connection to RoadGPT; all copies of an executor share it."""
 
     def __init__(self, hears: IO[bytes], tells: IO[bytes]) -> None:
         self._hears, self._tells = hears, tells
         self._owner = os.getpid()
         self.turn = threading.RLock()
-        """Held by whoever executes a test."""
+        """Held while a test is executed."""
 
-    def __deepcopy__(self, memo: Any) -> Line:
+    def __deepcopy__(self, memo: Any) -> Connection:
         return self
 
     def tell(self, message: Message) -> None:
-        """Say something.
+        """Sends a message.
 
         Raises:
-            RuntimeError: another process was forked from the one at this end.
+            RuntimeError: this process was forked from the one that owns the connection.
         """
         if os.getpid() != self._owner:
             raise RuntimeError(
-                "tests are executed by the generator's first process; bring the road points there"
+                "tests are executed by the generator's first process; pass the road points to it"
             )
         send(self._tells, message)
 
     def hear(self) -> Message:
-        """The next message; where nobody is at the other end any more, this process ends."""
+        """Returns the next message; if the other end is closed, ends this process."""
         message = received(self._hears.readline())
         if message is None:
             os._exit(1)
         return message
 
     def ask(self, message: Message) -> Message:
-        """Say something, and hear what it is answered."""
+        """Sends a message and returns the answer."""
         self.tell(message)
         return self.hear()
 
 
 def main() -> None:
-    """Work off one task."""
-    line = _opened()
-    task = line.hear()
+    """Runs one generator."""
+    connection = _opened()
+    task = connection.hear()
     level = logging.DEBUG if task["debug"] else logging.INFO
     logging.basicConfig(format="%(asctime)s %(levelname)-8s %(message)s", level=level)
     logging.getLogger("matplotlib.font_manager").disabled = True
-    # ours first, then the folder in which one is, as where scripts are started
+    # RoadGPT's names first, then the current folder, as for scripts
     sys.path[:] = [str(NAMES), "", *[folder for folder in sys.path if folder != str(NAMES)]]
     sys.path += [task["module_path"]] if task["module_path"] else []
     try:
-        ask("hello")  # what it takes to answer is ready before the clock runs
+        ask("hello")  # loads all that answers need before the clock starts
     except RoadGPTError as error:
-        line.tell({"op": "end", "how": "unasked", "said": str(error)})
+        connection.tell({"op": "end", "how": "unasked", "said": str(error)})
         _leave()
     try:
         made = _class(task["module_name"], task["class_name"])
     except BaseException as error:  # a generator's file may raise anything, SystemExit included
         traceback.print_exc()
-        line.tell({"op": "end", "how": "unloadable", "said": _said(error)})
+        connection.tell({"op": "end", "how": "unloadable", "said": _said(error)})
         _leave()
-    line.ask({"op": "ready"})
-    line.tell(_worked(made, task, line))
+    connection.ask({"op": "ready"})
+    connection.tell(_worked(made, task, connection))
     _leave()
 
 
-def _opened() -> Line:
-    """The line, on file numbers of its own: whatever the generator reads or prints goes elsewhere."""
-    line = Line(os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb"))
+def _opened() -> Connection:
+    """Returns the connection, on file descriptors of its own, so that what the generator reads or prints goes
+    elsewhere."""
+    connection = Connection(os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb"))
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
-    return line
+    return connection
 
 
 def _class(module_name: str, class_name: str) -> Any:
@@ -106,13 +108,13 @@ def _class(module_name: str, class_name: str) -> Any:
         ) from None
 
 
-def _worked(made: Any, task: Message, line: Line) -> Message:
-    """Let the generator work; how it ended."""
+def _worked(made: Any, task: Message, connection: Connection) -> Message:
+    """Runs the generator; returns how it ended."""
     from code_pipeline.beamng_executor import BeamngExecutor
 
     names = ("time_budget", "test_budget", "oob_tolerance", "max_speed_in_kmh", "debug")
     executor = BeamngExecutor(
-        task["folder"], task["map_size"], **{name: task[name] for name in names}, line=line
+        task["folder"], task["map_size"], **{name: task[name] for name in names}, connection=connection
     )
     try:
         executor.start()
@@ -129,7 +131,7 @@ def _worked(made: Any, task: Message, line: Line) -> Message:
 
 
 def _settle() -> None:
-    """Call what the generator registered for its end."""
+    """Calls the functions that the generator registered for its end."""
     registered = sys.modules.get("code_pipeline.test_generation_utils")
     if registered is not None:
         try:
@@ -139,7 +141,8 @@ def _settle() -> None:
 
 
 def _wanted(made: Any, executor: Any, task: Message) -> Dict[str, Any]:
-    """The arguments of its constructor: those of today, and the budget where it is one of 2021."""
+    """Returns the arguments of the generator's constructor: today's, and the budget for generators of
+    2021."""
     given: Dict[str, Any] = {"executor": executor, "map_size": task["map_size"]}
     try:
         asked = inspect.signature(made).parameters
@@ -151,7 +154,7 @@ def _wanted(made: Any, executor: Any, task: Message) -> Dict[str, Any]:
 
 
 def _said(error: BaseException) -> str:
-    """An error in a line, with the innermost place of it that is not ours."""
+    """Describes an error in one line, with the innermost place in code that is not RoadGPT's or Python's."""
     not_its = (str(NAMES), str(Path(importlib.__file__).parent), "<")
     passed = traceback.extract_tb(error.__traceback__)
     frames = [frame for frame in passed if not frame.filename.startswith(not_its)]
@@ -160,7 +163,7 @@ def _said(error: BaseException) -> str:
 
 
 def _leave() -> None:
-    """End at once: threads of the generator that still work are not waited for."""
+    """Ends the process at once, without waiting for threads of the generator."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)

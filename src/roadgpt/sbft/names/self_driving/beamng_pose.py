@@ -1,10 +1,10 @@
-"""A place and a way to face."""
+"""Position and rotation of a car in BeamNG."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 
 class BeamNGPose:
@@ -16,4 +16,4 @@ class BeamNGPose:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from self_driving.road_points import RoadPoints
 
 
@@ -12,28 +12,28 @@ class BeamNGRoadImagery:
     """A road and its picture."""
 
     def __init__(self, road_points: RoadPoints) -> None:
-        """Nothing is drawn yet."""
+        """Takes a road; nothing is drawn yet."""
         self.road_points = road_points
         self._figure: Any = None
 
     @classmethod
     def from_sample_nodes(cls, sample_nodes: Any) -> BeamNGRoadImagery:
-        """Of nodes [x, y, height, width]."""
+        """Makes the picture of nodes [x, y, height, width]."""
         return cls(RoadPoints().add_middle_nodes(sample_nodes))
 
     def plot(self) -> None:
-        """Draw it."""
+        """Draws it."""
         from matplotlib.figure import Figure
 
         self._figure = Figure()
         self.road_points.plot_on_ax(self._figure.subplots())
 
     def save(self, image_path: Any) -> None:
-        """Write it, as the name's ending says."""
+        """Writes it in the format of the file name's suffix."""
         if self._figure is None:
             self.plot()
         self._figure.savefig(image_path)
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -1,4 +1,4 @@
-"""A goal in BeamNG's own words."""
+"""A goal in BeamNG's file format."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ import json
 import uuid
 from typing import Any, Optional, Sequence
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 
 class BeamNGWaypoint:
     """A goal, as a line of a level's file."""
 
     def __init__(self, name: str, position: Sequence[float], persistentId: Optional[str] = None) -> None:
-        """At a position in metres."""
+        """Takes a position in metres."""
         self.name, self.position = name, position
         self.persistentId = persistentId or str(uuid.uuid4())
 
     def to_json(self) -> str:
-        """The line."""
+        """Returns the line."""
         told = {
             "name": self.name,
             "class": "BeamNGWaypoint",
@@ -31,4 +31,4 @@ class BeamNGWaypoint:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

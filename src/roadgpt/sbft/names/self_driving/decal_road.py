@@ -1,4 +1,4 @@
-"""A road in BeamNG's own words."""
+"""A road in BeamNG's file format."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import json
 import uuid
 from typing import Any, Dict, List, Optional, Sequence
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 
 class DecalRoad:
-    """A road painted on the level, as a line of its file."""
+    """A decal road of a level, as a line of its file."""
 
     DEFAULT_MATERIAL = "tig_road_rubber_sticky"
 
@@ -21,13 +21,13 @@ class DecalRoad:
         persistentId: Optional[str] = None,
         drivability: int = 1,
     ) -> None:
-        """Without nodes yet."""
+        """Makes a road without nodes."""
         self.name, self.material, self.drivability = name, material, drivability
         self.persistentId = persistentId or str(uuid.uuid4())
         self.nodes: List[List[float]] = []
 
     def add_4d_points(self, nodes: Sequence[Sequence[float]]) -> DecalRoad:
-        """Add nodes [x, y, height, width] in metres.
+        """Adds nodes [x, y, height, width] in metres.
 
         Raises:
             AssertionError: there are none, or they are not of four floats each.
@@ -39,16 +39,16 @@ class DecalRoad:
         return self
 
     def to_dict(self) -> Dict[str, Any]:
-        """Name and nodes."""
+        """Returns name and nodes."""
         return {"name": self.name, "nodes": self.nodes}
 
     @classmethod
     def from_dict(cls, d: Dict[str, Any]) -> DecalRoad:
-        """From name and nodes."""
+        """Makes a road from name and nodes."""
         return cls(name=d["name"]).add_4d_points(nodes=d["nodes"])
 
     def to_json(self) -> str:
-        """The line.
+        """Returns the line.
 
         Raises:
             AssertionError: there are no nodes.
@@ -72,4 +72,4 @@ class DecalRoad:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

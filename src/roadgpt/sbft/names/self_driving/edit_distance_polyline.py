@@ -1,10 +1,10 @@
-"""How much two rows of points differ."""
+"""The distance of two sequences of points."""
 
 from __future__ import annotations
 
 from typing import Any, List, Sequence, Tuple
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 
 AngleLength = Tuple[float, float]
@@ -14,9 +14,9 @@ ListOfPoints = List[Point]
 
 
 def iterative_levenshtein(s: Sequence[Sequence[float]], t: Sequence[Sequence[float]]) -> float:
-    """The weighted Levenshtein distance of two rows of steps: change of direction, and length."""
+    """Returns the weighted Levenshtein distance of two sequences of steps (change of direction, length)."""
     return float(ask("distance", one=[p[:2] for p in s], other=[p[:2] for p in t]))
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -1,20 +1,21 @@
-"""How far a car is outside its lane, by boxes and polygons of shapely."""
+"""Measures how far a car is outside its lane, with boxes and polygons of shapely."""
 
 from __future__ import annotations
 
 import math
 from typing import Any, Tuple
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 CORNERS = ("rear_bottom_left", "rear_bottom_right", "front_bottom_right", "front_bottom_left")
 
 
 class OutOfBoundsMonitor:
-    """Asks a reader of the car's state (``get_state().pos`` and ``get_vehicle_bbox()``), and counts."""
+    """Reads the state of a car (``get_state().pos`` and ``get_vehicle_bbox()``) and counts how often it
+    leaves its lane."""
 
     def __init__(self, road_polygon: Any, vehicle_state_reader: Any, tolerance: float = 0.95) -> None:
-        """Nothing was outside yet."""
+        """Starts with nothing outside."""
         self.road_polygon, self.vehicle_state_reader = road_polygon, vehicle_state_reader
         self.oob_counter = 0
         self.last_is_oob = False
@@ -22,7 +23,7 @@ class OutOfBoundsMonitor:
         self.tolerance = tolerance
 
     def get_oob_info(self, wrt: str = "right", oob_bb: bool = True) -> Tuple[bool, int, float, float, float]:
-        """is outside, how often so far, the largest share, the distance inside in metres, the share now."""
+        """Returns (is outside, how often so far, largest share, distance inside in metres, present share)."""
         is_oob = self.is_oob_bb(wrt) if oob_bb else self.is_oob(wrt)
         if oob_bb:
             self.update_oob_percentage(is_oob)
@@ -31,12 +32,12 @@ class OutOfBoundsMonitor:
         return is_oob, self.oob_counter, largest, self.oob_distance(wrt), self.oob_percentage(wrt)
 
     def update_oob_counter(self, is_oob: bool) -> None:
-        """Count, where it has just left."""
+        """Counts, if the car has just gone outside."""
         self.oob_counter += is_oob and not self.last_is_oob
         self.last_is_oob = is_oob
 
     def update_oob_percentage(self, is_oob: bool) -> None:
-        """Keep the largest share since it left."""
+        """Keeps the largest share since the car went outside."""
         if is_oob:
             share = self.oob_percentage()
             self.last_max_oob_percentage = (
@@ -44,21 +45,21 @@ class OutOfBoundsMonitor:
             )
 
     def oob_percentage(self, wrt: str = "right") -> float:
-        """Share of the car's box that is outside of a lane, or of the road."""
+        """Returns the share of the car's box that is outside a lane, or outside the road."""
         box = self._get_car_bbox_polygon()
         return 1 - float(box.intersection(self._of(wrt, "polygon")).area) / float(box.area)
 
     def is_oob_bb(self, wrt: str = "right") -> bool:
-        """Is more than the tolerance outside?"""
+        """Returns whether the share outside exceeds the tolerance."""
         return self.oob_percentage(wrt) > self.tolerance
 
     def oob_distance(self, wrt: str = "right") -> float:
-        """Half the width of the lane, or of the road, less the distance from its middle, metres."""
+        """Returns half the width of the lane, or of the road, minus the distance from its middle, metres."""
         share = 4.0 if wrt in ("right", "left") else 2.0
         return float(self.road_polygon.road_width / share - self._of(wrt, "polyline").distance(self._place()))
 
     def is_oob(self, wrt: str = "right") -> bool:
-        """Is the car's centre outside?"""
+        """Returns whether the car's centre is outside."""
         return not self._of(wrt, "polygon").contains(self._place())
 
     def _of(self, wrt: str, kind: str) -> Any:
@@ -77,4 +78,4 @@ class OutOfBoundsMonitor:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -1,22 +1,22 @@
-"""Places of nodes."""
+"""Coordinates of nodes."""
 
 from __future__ import annotations
 
 import math
 from typing import Any, Sequence, Tuple
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 
 def get_node_coords(node: Sequence[float]) -> Tuple[float, float, float]:
-    """x, y and height, metres."""
+    """Returns x, y and height, metres."""
     return node[0], node[1], node[2]
 
 
 def points_distance(p1: Sequence[float], p2: Sequence[float]) -> float:
-    """In space, metres."""
+    """Returns the distance in space, metres."""
     return math.sqrt(sum((a - b) ** 2 for a, b in zip(get_node_coords(p1), get_node_coords(p2))))
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

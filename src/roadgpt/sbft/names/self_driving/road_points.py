@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, List, Sequence, Tuple
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from self_driving.beamng_pose import BeamNGPose
 
 List4DTuple = List[Tuple[float, float, float, float]]
@@ -14,10 +14,10 @@ Place = Tuple[float, float]
 
 
 class RoadPoints:
-    """Nodes of the middle, and the points of both edges that lie across the way to the next node."""
+    """Nodes of the middle, and edge points at right angles to the direction to the next node."""
 
     def __init__(self) -> None:
-        """Without nodes yet."""
+        """Makes a road without nodes."""
         self.middle: List[Any] = []
         self.right: List[Any] = []
         self.left: List[Any] = []
@@ -25,14 +25,14 @@ class RoadPoints:
 
     @classmethod
     def from_nodes(cls, middle_nodes: Sequence[Sequence[float]]) -> RoadPoints:
-        """Of nodes [x, y, height, width], two or more."""
+        """Makes a road from two or more nodes [x, y, height, width]."""
         return cls().add_middle_nodes(middle_nodes)
 
     def add_middle_nodes(self, middle_nodes: Sequence[Sequence[float]]) -> RoadPoints:
-        """Add nodes.
+        """Adds nodes.
 
         Raises:
-            AssertionError: fewer than two, or of fewer than four numbers.
+            AssertionError: there are fewer than two, or a node has fewer than four numbers.
         """
         assert len(self.middle) + len(middle_nodes) >= 2, "a road needs two nodes or more"
         assert all(len(node) >= 4 for node in middle_nodes), "a node is (x, y, height, width)"
@@ -48,16 +48,16 @@ class RoadPoints:
 
     @classmethod
     def calc_point_edges(cls, p1: Sequence[float], p2: Sequence[float]) -> Tuple[Place, Place]:
-        """Left and right edge points of a node, of which the next one is known."""
+        """Returns left and right edge points of the first node, given the next one."""
         x, y = p2[0] - p1[0], p2[1] - p1[1]
         way, half = math.sqrt(x * x + y * y), p1[3] / 2
-        # two nodes in one place have no direction: not a number, as with the competition's library
+        # coinciding nodes have no direction: not a number, as with the competition's library
         x, y = (x / way * half, y / way * half) if way else (math.nan, math.nan)
         return (p1[0] - y, p1[1] + x), (p1[0] + y, p1[1] - x)
 
     @staticmethod
     def angle_to_quat(angle: Sequence[float]) -> Tuple[float, float, float, float]:
-        """The quaternion (x, y, z, w) of roll, pitch and yaw in degrees."""
+        """Returns the quaternion (x, y, z, w) of roll, pitch and yaw in degrees."""
         roll, pitch, yaw = (math.radians(a) / 2 for a in angle)
         sr, cr, sp, cp = math.sin(roll), math.cos(roll), math.sin(pitch), math.cos(pitch)
         sy, cy = math.sin(yaw), math.cos(yaw)
@@ -71,7 +71,7 @@ class RoadPoints:
     def vehicle_start_pose(
         self, meters_from_road_start: float = 2.5, road_point_index: int = 0
     ) -> BeamNGPose:
-        """Where the competition puts the car: in the middle of the right lane.
+        """Returns where the competition places the car: in the middle of the right lane.
 
         Raises:
             AssertionError: there is no such node.
@@ -86,13 +86,13 @@ class RoadPoints:
         return BeamNGPose(pos=place, rot=self.angle_to_quat((0, 0, math.degrees(math.atan2(-x, -y)))))
 
     def new_imagery(self) -> Any:
-        """A picture of the road, to be drawn."""
+        """Returns a picture of the road, not yet drawn."""
         from self_driving.beamng_road_imagery import BeamNGRoadImagery
 
         return BeamNGRoadImagery(self)
 
     def plot_on_ax(self, ax: Any) -> None:
-        """Draw the road on axes of matplotlib."""
+        """Draws the road on axes of matplotlib."""
         ax.set_facecolor("#7D9051")
         for points, colour in ((self.middle, "#FEA952"), (self.left, "white"), (self.right, "white")):
             ax.plot([p[0] for p in points], [p[1] for p in points], color=colour, linewidth=1)
@@ -100,4 +100,4 @@ class RoadPoints:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

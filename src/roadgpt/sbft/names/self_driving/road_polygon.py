@@ -1,20 +1,20 @@
-"""The area of a road; its polygons are shapely's, of the generator's interpreter."""
+"""The area of a road; its polygons are shapely's, from the generator's interpreter."""
 
 from __future__ import annotations
 
 from functools import cached_property
 from typing import Any, List, Sequence
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 from self_driving.road_points import RoadPoints
 
 
 class RoadPolygon:
-    """The area of a road between its edges. Polygons are made when they are asked for."""
+    """The area of a road between its edges; polygons are made on access."""
 
     def __init__(self, road_points: RoadPoints) -> None:
-        """Of nodes and edges.
+        """Takes nodes and edges.
 
         Raises:
             AssertionError: there are fewer than two nodes, or the width changes.
@@ -26,17 +26,17 @@ class RoadPolygon:
 
     @classmethod
     def from_nodes(cls, nodes: Sequence[Sequence[float]]) -> RoadPolygon:
-        """Of nodes (x, y, height, width), two or more."""
+        """Makes the area from two or more nodes (x, y, height, width)."""
         return cls(RoadPoints.from_nodes(nodes))
 
     @property
     def num_polygons(self) -> int:
-        """One less than there are nodes."""
+        """Number of nodes minus one."""
         return len(self.road_points.middle) - 1
 
     @cached_property
     def polygons(self) -> List[Any]:
-        """The road between each two nodes."""
+        """The parts of the road between successive nodes."""
         from shapely.geometry import Polygon
 
         left, right = self.road_points.left, self.road_points.right
@@ -77,7 +77,7 @@ class RoadPolygon:
         return [(node[0], node[1]) for node in self.road_points.middle]
 
     def is_valid(self) -> bool:
-        """Does the road keep clear of itself?"""
+        """Returns whether the road does not intersect itself."""
         return bool(ask("clear", left=self.road_points.left, right=self.road_points.right))
 
 
@@ -98,4 +98,4 @@ def _area(left: List[Any], right: List[Any]) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

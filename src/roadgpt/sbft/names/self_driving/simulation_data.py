@@ -1,4 +1,4 @@
-"""Records of a drive, and where the competition keeps them."""
+"""Records of a drive, and the competition's files for them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from collections import namedtuple
 from pathlib import Path
 from typing import Any, List, Optional, Union
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 
 SimulationDataRecordProperties = [
     "timer",
@@ -32,7 +32,7 @@ SimulationDataRecordProperties = [
     "oob_distance",
     "oob_percentage",
 ]
-"""What they are is explained in roadgpt.run.execution."""
+"""roadgpt.run.execution explains the fields."""
 
 SimulationDataRecord = namedtuple("SimulationDataRecord", SimulationDataRecordProperties)  # type: ignore[misc]
 SimulationDataRecords = List[SimulationDataRecord]
@@ -40,7 +40,7 @@ SimulationParams = namedtuple("SimulationParams", ["beamng_steps", "delay_msec"]
 
 
 def delete_folder_recursively(path: Union[str, Path]) -> None:
-    """Take a folder away, if it is there.
+    """Removes a folder, if it exists.
 
     Raises:
         AssertionError: it is a file.
@@ -51,7 +51,7 @@ def delete_folder_recursively(path: Union[str, Path]) -> None:
 
 
 class SimulationInfo:
-    """When a drive was, and how it ended; each is there once it is known."""
+    """Time and result of a drive; each attribute exists once its value is known."""
 
     start_time: str
     end_time: str
@@ -63,7 +63,7 @@ class SimulationInfo:
 
 
 class SimulationData:
-    """A drive as the competition keeps it, in ``simulations/NAME`` of the generator's folder."""
+    """A drive in the competition's form, stored in ``simulations/NAME`` of the generator's folder."""
 
     f_info = "info"
     f_params = "params"
@@ -71,7 +71,7 @@ class SimulationData:
     f_records = "records"
 
     def __init__(self, simulation_name: str) -> None:
-        """Nothing is read or written yet.
+        """Prepares the paths; nothing is read or written yet.
 
         Raises:
             AssertionError: the name has fewer than three letters.
@@ -92,11 +92,11 @@ class SimulationData:
 
     @property
     def n(self) -> int:
-        """How many records there are."""
+        """Number of records."""
         return len(self.states)
 
     def set(self, params: Any, road: Any, states: Any, info: Optional[SimulationInfo] = None) -> None:
-        """Say what it is of."""
+        """Sets the content."""
         self.params, self.road, self.states = params, road, states
         if info is None:
             info = SimulationInfo()
@@ -104,7 +104,7 @@ class SimulationData:
         self.info = info
 
     def clean(self) -> None:
-        """Take its folder away."""
+        """Removes its folder."""
         delete_folder_recursively(self.path_root)
 
     def __str__(self) -> str:
@@ -118,7 +118,7 @@ class SimulationData:
         )
 
     def save(self) -> None:
-        """Write its files, and pictures of its road."""
+        """Writes its files, and pictures of its road."""
         from self_driving.beamng_road_imagery import BeamNGRoadImagery
 
         self.path_root.mkdir(parents=True, exist_ok=True)
@@ -131,7 +131,7 @@ class SimulationData:
             imagery.save(self.path_road_img.with_suffix(suffix))
 
     def load(self) -> SimulationData:
-        """Read its file."""
+        """Reads its file."""
         from self_driving.decal_road import DecalRoad
 
         read = json.loads(self.path_json.read_text(encoding="utf-8"))
@@ -143,21 +143,21 @@ class SimulationData:
         return self
 
     def complete(self) -> bool:
-        """Is its file there?"""
+        """Returns whether its file exists."""
         return self.path_json.exists()
 
     def min_oob_distance(self) -> float:
-        """Of all records, metres."""
+        """Returns the smallest ``oob_distance`` of all records, metres."""
         return float(min(state.oob_distance for state in self.states))
 
     def start(self) -> None:
-        """It begins now."""
+        """Records the start of the drive."""
         self.info.success = None
         self.info.start_time = str(datetime.datetime.now())
         self.info.computer_name = platform.node()
 
     def end(self, success: bool, exception: Any = None) -> None:
-        """It ends now."""
+        """Records the end of the drive."""
         self.info.end_time = str(datetime.datetime.now())
         self.info.success = success
         if exception:
@@ -165,4 +165,4 @@ class SimulationData:
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

@@ -1,11 +1,11 @@
-"""What is read of a car; reading it takes BeamNG, and so a checkout of the competition's code."""
+"""The state of a car; reading it needs BeamNG, and so a checkout of the competition's code."""
 
 from __future__ import annotations
 
 from collections import namedtuple
 from typing import Any
 
-from roadgpt_inside import elsewhere
+from roadgpt_inside import checkout
 from self_driving.simulation_data import SimulationDataRecordProperties
 
 VehicleStateProperties = SimulationDataRecordProperties[:12]
@@ -13,4 +13,4 @@ VehicleState = namedtuple("VehicleState", VehicleStateProperties)  # type: ignor
 
 
 def __getattr__(name: str) -> Any:
-    return elsewhere.other(__name__, name)
+    return checkout.attribute(__name__, name)

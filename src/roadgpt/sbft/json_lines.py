@@ -1,4 +1,4 @@
-"""The line between us and a generator's process: one JSON value per line, on its input and output."""
+"""Exchanges messages with a generator's process as JSON Lines: one JSON value per line."""
 
 import json
 from typing import IO, Any
@@ -7,13 +7,13 @@ Message = dict[str, Any]
 
 
 def send(stream: IO[bytes], message: Message) -> None:
-    """Write a message; numbers that are not finite travel as Python's JSON writes them."""
+    """Writes a message; numbers that are not finite are written as Python's JSON writes them."""
     stream.write(json.dumps(message, default=_plain).encode() + b"\n")
     stream.flush()
 
 
 def received(line: bytes) -> Message | None:
-    """The message in a line; None where there is none."""
+    """Returns the message in a line; None if the line is not a message."""
     try:
         message = json.loads(line)
     except (ValueError, RecursionError):
@@ -22,6 +22,6 @@ def received(line: bytes) -> Message | None:
 
 
 def _plain(value: Any) -> Any:
-    """Numbers of other libraries, as numpy's."""
+    """Converts numbers of other libraries, such as numpy's."""
     item = getattr(value, "item", None)
     return item() if callable(item) else str(value)

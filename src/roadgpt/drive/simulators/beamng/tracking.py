@@ -1,4 +1,4 @@
-"""The car's body: what BeamNG tells of its reference node becomes the pose of its centre of gravity."""
+"""Converts what BeamNG reports of a car's reference node to the pose of its centre of gravity on the road."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,33 +8,35 @@ import numpy as np
 
 from roadgpt.drive.compiled import compiled
 from roadgpt.drive.drive import Box, FloatArray
-from roadgpt.drive.lane import Lane
-from roadgpt.drive.ribbon import Ribbon, place_on, ribbon_of
+from roadgpt.drive.lane_polygon import LanePolygon
+from roadgpt.drive.sampled_road import SampledRoad, locate_on, sample_road
 from roadgpt.errors import SimulationError
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-LOCK = 0.6  # rad, of the front wheels, where nobody steered to find out
-# Of a saloon: how far its front axle stands ahead of its box's middle, as a share of the length, and what
-# its front tyres span, as a share of the width. BeamNG tells of no wheel: the embedded car's shares.
+LOCK = 0.6  # rad, lock angle of the front wheels if it was not measured
+# Distance of the front axle from the middle of the box as a share of the length, and distance between the
+# outer edges of the front tyres as a share of the width. BeamNG does not report wheels, so these are the
+# shares of RoadGPT's own car.
 AXLE, TYRES = 0.31, 0.97
 SIZES = (1.0, 12.0), (0.5, 4.0)  # m, length and width that a car can have
 
 
-class Body(NamedTuple):
-    """Measured once per car, while it stands; in metres ahead, left and up of the centre of gravity."""
+class CarGeometry(NamedTuple):
+    """The geometry of a car, measured once while it stands; in metres ahead, left and up of the centre of
+    gravity."""
 
     node: tuple[float, float, float]
-    """Of the reference node, whose position BeamNG tells."""
+    """Position of the reference node, which is the point whose position BeamNG reports."""
     rear: float
     front: float
     half: float
     """Half the width."""
     under: float
-    """Of the box's underside; negative."""
+    """Height of the box's underside; negative."""
     height: float
-    """Of the centre of gravity above the road."""
+    """Height of the centre of gravity above the road."""
 
     @classmethod
     def measured(
@@ -43,11 +45,17 @@ class Body(NamedTuple):
         gravity: Sequence[float],
         corners: Mapping[str, Sequence[float]],
         ground: FloatArray,
-    ) -> "Body":
-        """From a poll of a standing car, and the point of the road that it was put on.
+    ) -> "CarGeometry":
+        """Returns the geometry of a standing car.
+
+        Args:
+            state: a poll of the car's state.
+            gravity: position of its centre of gravity in metres.
+            corners: positions of the corners of its bounding box in metres.
+            ground: the point of the road that the car was placed on.
 
         Raises:
-            SimulationError: what came is no car.
+            SimulationError: the numbers are not those of a car.
         """
         frame = frame_of(state)
         centre = np.asarray(gravity, float)
@@ -58,43 +66,43 @@ class Body(NamedTuple):
         fits = SIZES[0][0] <= front - rear <= SIZES[0][1] and SIZES[1][0] <= 2 * half <= SIZES[1][1]
         if not (fits and np.isfinite(box).all() and np.abs(node).max() < SIZES[0][1]):
             raise SimulationError(
-                f"BeamNG tells of a car {front - rear:.1f} m by {2 * half:.1f} m; check ROADGPT_BEAMNG_MODEL"
+                f"BeamNG reports a {front - rear:.1f} m by {2 * half:.1f} m car; check ROADGPT_BEAMNG_MODEL"
             )
         height = float(frame[2] @ (centre - ground))
         place = (float(node[0]), float(node[1]), float(node[2]))
         return cls(place, float(rear), float(front), half, float(under), height)
 
     def box(self, lock: float) -> Box:
-        """As a Drive has it."""
+        """Returns the Box of a Drive; ``lock`` is the angle of the front wheels at full lock in radians."""
         length, width, ahead = self.front - self.rear, 2 * self.half, (self.front + self.rear) / 2
         wheels = (ahead + AXLE * length, TYRES * width)
         return Box(length, width, ahead, lock, *wheels, height=self.height, under=-self.under)
 
     @property
     def underside(self) -> FloatArray:
-        """The lower corners, shape (4, 3), counter-clockwise seen from above."""
+        """The lower corners, shape (4, 3), counter-clockwise as seen from above."""
         a, b, h, u = self.rear, self.front, self.half, self.under
         return np.array([[a, -h, u], [b, -h, u], [b, h, u], [a, h, u]])
 
 
 def frame_of(state: Mapping[str, Any]) -> FloatArray:
-    """Rows: unit vectors ahead, to the left and up, of a polled state.
+    """Returns the unit vectors ahead, to the left and up of a polled state, as rows.
 
     Raises:
-        SimulationError: they are none, as after an accident of the physics.
+        SimulationError: the state has no direction, as after a failure of the physics.
     """
     ahead, up = np.asarray(state["dir"], float), np.asarray(state["up"], float)
     size = float(np.linalg.norm(ahead))
     if not (np.isfinite(ahead).all() and np.isfinite(up).all() and size > 0.1):
-        raise SimulationError("BeamNG's physics broke down: the car has no direction any more")
+        raise SimulationError("BeamNG's physics became unstable: the car has no direction any more")
     ahead = ahead / size
     left = np.cross(up, ahead)
     left = left / max(float(np.linalg.norm(left)), 1e-9)
     return np.array([ahead, left, np.cross(ahead, left)])
 
 
-class Moment(NamedTuple):
-    """The car at one sample."""
+class CarSample(NamedTuple):
+    """The state of the car at one time."""
 
     time: float
     x: float
@@ -109,33 +117,33 @@ class Moment(NamedTuple):
     speed: float
     yaw_rate: float
     steer: float
-    """Input, -1 to 1, as BeamNG has it."""
+    """Steering input, -1 to 1, as BeamNG reports it."""
     throttle: float
     brake: float
 
 
-class Track:
-    """The road under the car: stations, offsets, share outside the lane."""
+class RoadTracker:
+    """Locates the car on the road: station, offset, and share outside the lane."""
 
-    def __init__(self, road: "Road", world: "World", body: Body) -> None:
-        self._ribbon: Ribbon = ribbon_of(road)
-        self._lane = Lane.along(road, world)
+    def __init__(self, road: "Road", world: "World", body: CarGeometry) -> None:
+        self._sampled: SampledRoad = sample_road(road)
+        self._lane = LanePolygon.along(road, world)
         self._underside = body.underside
         self._near = 0.0
 
     def begin(self, s: float) -> None:
-        """Look for the car near this station first."""
+        """Starts the next search for the car at this station."""
         self._near = s
 
     def place(self, x: float, y: float) -> tuple[float, float, float]:
-        """Station, offset, height of the road there."""
-        ribbon = self._ribbon
-        s, t, height = station_of(ribbon.table, ribbon.first, ribbon.step, x, y, self._near)
+        """Returns station, offset and height of the road at a point."""
+        sampled = self._sampled
+        s, t, height = station_of(sampled.table, sampled.first, sampled.step, x, y, self._near)
         self._near = s
         return s, t, height
 
-    def outside(self, now: Moment, s: float) -> float:
-        """Share of the box outside the right lane."""
+    def outside(self, now: CarSample, s: float) -> float:
+        """Returns the share of the box outside the right lane, 0..1."""
         ch, sh = math.cos(now.heading), math.sin(now.heading)
         cp, sp = math.cos(now.pitch), math.sin(now.pitch)
         cr, sr = math.cos(now.roll), math.sin(now.roll)
@@ -150,20 +158,20 @@ class Track:
 def station_of(
     table: FloatArray, first: float, step: float, x: float, y: float, s: float
 ) -> tuple[float, float, float]:
-    """Station, offset and height of the road at a point, looked for near s."""
-    at, t, height, _, _ = place_on(table, first, step, x, y, s)
+    """Returns station, offset and height of the road at a point, searching near station s."""
+    at, t, height, _, _ = locate_on(table, first, step, x, y, s)
     return at, t, height
 
 
-def moment_of(
+def car_sample(
     state: Mapping[str, Any],
     electrics: Mapping[str, Any],
-    body: Body,
+    body: CarGeometry,
     lift: float,
-    since: Moment | None,
+    since: CarSample | None,
     time: float,
-) -> Moment:
-    """What a poll tells, at the centre of gravity; ``since`` is the sample before."""
+) -> CarSample:
+    """Converts a poll to a sample at the centre of gravity; ``since`` is the previous sample."""
     frame = frame_of(state)
     ahead, left, up = frame
     position = np.asarray(state["pos"], float) - np.asarray(body.node) @ frame
@@ -175,8 +183,8 @@ def moment_of(
     velocity = np.asarray(state["vel"], float) + turned * np.array([-arm[1], arm[0], 0.0])
     level = np.array([-math.sin(heading), math.cos(heading), 0.0])
     if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
-        raise SimulationError("BeamNG's physics broke down: the car is nowhere any more")
-    return Moment(
+        raise SimulationError("BeamNG's physics became unstable: the car has no position any more")
+    return CarSample(
         time,
         float(position[0]),
         float(position[1]),
@@ -195,11 +203,11 @@ def moment_of(
     )
 
 
-def between(a: Moment, b: Moment, share: float) -> Moment:
-    """On the way from one sample to the next."""
+def interpolate_samples(a: CarSample, b: CarSample, share: float) -> CarSample:
+    """Returns the sample at the given share of the time from one sample to the next."""
     values = [p + share * (q - p) for p, q in zip(a, b, strict=True)]
     values[4] = a.heading + share * math.remainder(b.heading - a.heading, math.tau)
-    return Moment(*values)
+    return CarSample(*values)
 
 
 def _number(values: Mapping[str, Any], name: str) -> float:

@@ -1,4 +1,8 @@
-"""One drive in BeamNG: step, sample, ask the driver, and notice how it ends; crossings are interpolated."""
+"""Runs one drive in BeamNG: steps the physics, samples the car, asks the driver, and detects how the drive
+ends.
+
+The moment at which the car crosses a limit is interpolated between two samples.
+"""
 
 import math
 from collections.abc import Callable
@@ -7,10 +11,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
-from roadgpt.drive.marking import POSE, Marking
-from roadgpt.drive.seat import Seat
-from roadgpt.drive.simulators.beamng.body import LOCK, Moment, Track, between
-from roadgpt.drive.simulators.beamng.stage import Stage
+from roadgpt.drive.driver_guard import DriverGuard
+from roadgpt.drive.marking_monitor import POSE, MarkingMonitor
+from roadgpt.drive.simulators.beamng.loaded_road import LoadedRoad
+from roadgpt.drive.simulators.beamng.tracking import LOCK, CarSample, RoadTracker, interpolate_samples
 from roadgpt.drive.view import View
 from roadgpt.errors import SimulationError
 from roadgpt.road.ends import GOAL
@@ -19,21 +23,21 @@ from roadgpt.stopping import look
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-STUCK_TIME = 10.0  # s in which a car must move ... (SBFT)
+STUCK_TIME = 10.0  # s within which a car must move ... (SBFT)
 STUCK_WAY = 1.0  # m ... this far
-SLOWEST = 2.0  # m/s, mean, before time is out
-SPARE = 30.0  # s, on top
+SLOWEST = 2.0  # m/s, mean speed below which the time runs out
+SPARE = 30.0  # s, added to that time
 FALLEN = 1.0  # m below the road's surface
 HALVINGS = 20  # of the time between two samples, to find a crossing
 
 AI = "beamng_ai"
-"""Name of the driver where BeamNG's own AI drives."""
+"""Name of the driver when BeamNG's own AI drives."""
 
 
 class Sample(NamedTuple):
-    """The car at one time, and where on the road that is."""
+    """The car at one time, and its position on the road."""
 
-    car: Moment
+    car: CarSample
     s: float
     t: float
     outside: float
@@ -42,29 +46,31 @@ class Sample(NamedTuple):
     brake: float
 
 
-class Recorder:
-    """Drives one road and keeps what happened."""
+class DriveLoop:
+    """Drives one road and records the samples."""
 
-    def __init__(self, stage: Stage, road: "Road", world: "World", seat: Seat | None) -> None:
-        """``seat`` is None where BeamNG's AI drives."""
-        self.stage, self.road, self.world, self.seat = stage, road, world, seat
-        self.track = Track(road, world, stage.body)
-        self.tyres = Marking.for_tyres(road, world, stage.body.box(LOCK)) if world.lane_departure else None
+    def __init__(self, loaded: LoadedRoad, road: "Road", world: "World", guard: DriverGuard | None) -> None:
+        """Prepares a drive; ``guard`` is None if BeamNG's AI drives."""
+        self.loaded, self.road, self.world, self.guard = loaded, road, world, guard
+        self.track = RoadTracker(road, world, loaded.body)
+        self.tyres = (
+            MarkingMonitor.for_tyres(road, world, loaded.body.box(LOCK)) if world.lane_departure else None
+        )
         self.end = np.asarray(road.at(road.length))[:2].tolist()
         self.samples: list[Sample] = []
         self.has_left = False
 
     def drive(self, keep_driving: bool) -> Ended:
-        """Until the drive ends.
+        """Drives until the drive ends, and returns how it ended.
 
         Raises:
             DriverError: the driver failed.
-            SimulationError: BeamNG's AI does not set off, or the physics broke down.
+            SimulationError: BeamNG's AI does not start to move, or the physics became unstable.
         """
-        stage, world = self.stage, self.world
-        self._keep(stage.now, (0.0, 0.0, 0.0))
-        if self.seat is None:
-            stage.let_ai_drive(world.speed_limit)
+        loaded, world = self.loaded, self.world
+        self._keep(loaded.now, (0.0, 0.0, 0.0))
+        if self.guard is None:
+            loaded.let_ai_drive(world.speed_limit)
         limit = self.road.length / SLOWEST + SPARE
         since = self.samples[0].car
         while True:
@@ -93,15 +99,15 @@ class Recorder:
     def _go_on(self, here: Sample) -> None:
         look()
         command = (0.0, 0.0, 0.0)
-        if self.seat is not None:
-            stage = self.stage
-            stage.session.watchdog.due_in(stage.settings.poll_timeout)
-            image = stage.image()
-            stage.session.watchdog.pause()  # the seat has its own clock
-            command = self.seat.ask(self._view(here, image))
-            stage.session.watchdog.due_in(stage.settings.poll_timeout)
-            stage.steer(*command)
-        self._keep(self.stage.step(), command)
+        if self.guard is not None:
+            loaded = self.loaded
+            loaded.session.watchdog.due_in(loaded.settings.poll_timeout)
+            image = loaded.image()
+            loaded.session.watchdog.pause()  # the guard has its own clock
+            command = self.guard.ask(self._view(here, image))
+            loaded.session.watchdog.due_in(loaded.settings.poll_timeout)
+            loaded.steer(*command)
+        self._keep(self.loaded.step(), command)
 
     def _view(self, here: Sample, image: FloatArray | None) -> View:
         now = here.car
@@ -118,25 +124,25 @@ class Recorder:
             self.road,
             self.world,
             here.steer,
-            1.0 / self.stage.settings.rate,
+            1.0 / self.loaded.settings.rate,
             now.vx,
             now.vy,
             image,
         )
 
-    def _keep(self, now: Moment, command: tuple[float, float, float]) -> None:
+    def _keep(self, now: CarSample, command: tuple[float, float, float]) -> None:
         self.samples.append(self._sample(now, command))
 
-    def _sample(self, now: Moment, command: tuple[float, float, float]) -> Sample:
+    def _sample(self, now: CarSample, command: tuple[float, float, float]) -> Sample:
         s, t, _ = self.track.place(now.x, now.y)
         outside = self.track.outside(now, s)
-        told = self.stage.session.told
+        told = self.loaded.session.reported_gain
         steer = now.steer if told is None else now.steer * told
-        pedals = (now.throttle, now.brake) if self.seat is None else command[1:]
+        pedals = (now.throttle, now.brake) if self.guard is None else command[1:]
         return Sample(now, s, t, outside, steer, pedals[0], pedals[1])
 
-    def _is_at_goal(self, now: Moment, s: float) -> bool:
-        # Where a road ends near its start, only a car that has come round has arrived.
+    def _is_at_goal(self, now: CarSample, s: float) -> bool:
+        # If a road ends near its start, the goal counts only from half of the road on.
         return s > self.road.length / 2 and math.hypot(now.x - self.end[0], now.y - self.end[1]) < GOAL
 
     def _is_out(self, sample: Sample) -> bool:
@@ -148,7 +154,8 @@ class Recorder:
         return bool(self.tyres.beyond(np.array([pose]))[0] > 0)
 
     def _cut(self, has_happened: Callable[[Sample], bool], keep: bool = False) -> None:
-        """Put the moment at which it happened in the place of the last sample, or before it."""
+        """Inserts the moment at which something happened before the last sample, or replaces that sample with
+        it."""
         if len(self.samples) < 2 or has_happened(self.samples[-2]):
             return
         before, after = self.samples[-2:]
@@ -156,7 +163,9 @@ class Recorder:
         found = after
         for _ in range(HALVINGS):
             share = (low + high) / 2
-            tried = self._sample(between(before.car, after.car, share), (0.0, after.throttle, after.brake))
+            tried = self._sample(
+                interpolate_samples(before.car, after.car, share), (0.0, after.throttle, after.brake)
+            )
             if has_happened(tried):
                 high, found = share, tried
             else:
@@ -165,19 +174,21 @@ class Recorder:
             self.samples[-1:] = [found, after] if keep else [found]
 
     def _check_ai(self) -> None:
-        if self.seat is None and self.samples[-1].s - self.samples[0].s < STUCK_WAY:
+        if self.guard is None and self.samples[-1].s - self.samples[0].s < STUCK_WAY:
             raise SimulationError(
-                "BeamNG's AI did not set off, as if it saw no road there; run 'roadgpt doctor beamng' "
-                "and see what it says of the AI"
+                "BeamNG's AI did not start to move, as if it found no road there; run 'roadgpt doctor "
+                "beamng' and see what it reports about the AI"
             )
 
     def columns(self) -> tuple[Columns, float]:
-        """Everything as a Drive has it, and the lock of the front wheels in radians."""
-        cars = {name: np.array([getattr(each.car, name) for each in self.samples]) for name in Moment._fields}
-        told = self.stage.session.told
+        """Returns the columns of a Drive, and the lock angle of the front wheels in radians."""
+        cars = {
+            name: np.array([getattr(each.car, name) for each in self.samples]) for name in CarSample._fields
+        }
+        told = self.loaded.session.reported_gain
         lock = LOCK if told is None else abs(told)
         steer = np.array([each.steer for each in self.samples])
-        if told is None:  # nobody tried: the way it turned tells what is left
+        if told is None:  # not measured: the sign follows from the direction in which the car turned
             turned = float(np.sum(steer * cars["yaw_rate"]))
             steer = steer * math.copysign(LOCK, turned)
         ours = {
@@ -194,20 +205,20 @@ class Recorder:
 
 
 def record(
-    stage: Stage, road: "Road", world: "World", seat: Seat | None, seed: int, keep_driving: bool
+    loaded: LoadedRoad, road: "Road", world: "World", guard: DriverGuard | None, seed: int, keep_driving: bool
 ) -> Drive:
-    """One driver on the road that is laid.
+    """Runs one driver on the road that is loaded.
 
     Raises:
-        DriverError, SimulationError: as for a Recorder.
+        DriverError, SimulationError: as for ``DriveLoop.drive``.
     """
-    with stage.session.within(stage.settings.poll_timeout, "it was driving"):
-        recorder = Recorder(stage, road, world, seat)
-        stage.session.watchdog.due_in(stage.settings.poll_timeout)
+    with loaded.session.within(loaded.settings.poll_timeout, "it was driving"):
+        recorder = DriveLoop(loaded, road, world, guard)
+        loaded.session.watchdog.due_in(loaded.settings.poll_timeout)
         ended = recorder.drive(keep_driving)
     columns, lock = recorder.columns()
-    name = AI if seat is None else seat.name
-    return Drive(name, "beamng", seed, columns, ended, stage.body.box(lock))
+    name = AI if guard is None else guard.name
+    return Drive(name, "beamng", seed, columns, ended, loaded.body.box(lock))
 
 
 def _slope(values: FloatArray, time: FloatArray) -> FloatArray:

@@ -1,10 +1,10 @@
-"""What a driver's camera sees, where the simulator has no pictures of its own."""
+"""Renders the images of a driver's camera, for simulators that draw none themselves."""
 
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from roadgpt.drive.view import Camera
+from roadgpt.drive.view import CameraSpec
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -16,42 +16,44 @@ if TYPE_CHECKING:
 POSE = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
 
 
-def camera_of(driver: Any) -> Camera | None:
-    """What the driver asks for; None where it drives without looking.
+def camera_of(driver: Any) -> CameraSpec | None:
+    """Returns the camera that the driver asks for, or None if it asks for none.
 
     Raises:
-        UsageError: its attribute ``camera`` is something else.
+        UsageError: the driver's attribute ``camera`` is not a CameraSpec.
     """
     camera = getattr(driver, "camera", None)
-    if camera is not None and not isinstance(camera, Camera):
-        raise UsageError("the driver's attribute camera must be a roadgpt.drive.Camera")
+    if camera is not None and not isinstance(camera, CameraSpec):
+        raise UsageError("the driver's attribute camera must be a roadgpt.drive.CameraSpec")
     return camera
 
 
-class Eyes:
-    """Draws the road as the driver's camera sees it; bytes depend on nothing but road, world and pose."""
+class CameraSensor:
+    """Renders the road as the driver's camera sees it; the bytes depend on nothing but road, world and
+    pose."""
 
-    def __init__(self, camera: Camera, road: "Road", world: "World") -> None:
-        """A camera on a car on this road.
+    def __init__(self, camera: CameraSpec, road: "Road", world: "World") -> None:
+        """Mounts a camera on a car on this road.
 
         Raises:
-            UsageError: no camera has such a size or field of view.
+            UsageError: a camera cannot have such a size or field of view.
         """
         from roadgpt.scene import Camera as Pinhole
-        from roadgpt.scene import Place, Scene
+        from roadgpt.scene import CameraPlacement, Scene
 
         half = math.tan(camera.field_of_view / 2) * camera.width / camera.height
-        place = Place(camera.ahead, camera.up, -camera.down)
+        place = CameraPlacement(camera.ahead, camera.up, -camera.down)
         self._camera = Pinhole(camera.width, camera.height, 2 * math.atan(half), "bonnet", place)
         self._scene = Scene.of(road, world)
         self._every, self._step = max(1, camera.every), 0
         self._image: NDArray[uint8] | None = None
 
     def see(self, row: Mapping[str, float]) -> "NDArray[uint8]":
-        """The picture ``(height, width, 3)`` at a control step; a new one every so many steps.
+        """Returns the image ``(height, width, 3)`` at a control step; it is rendered anew every
+        ``camera.every`` steps.
 
         Args:
-            row: of a drive, by name of its columns.
+            row: values of one step of a drive, by column name.
         """
         from roadgpt.scene import Pose
 

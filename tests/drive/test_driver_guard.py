@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from roadgpt.drive import Command, View
-from roadgpt.drive.seat import Seat
+from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.errors import DriverError
 
 VIEW = View(1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, None, 0.0, 0.02, 0.0, 0.0)  # type: ignore[arg-type]
@@ -25,9 +25,9 @@ class Answers:
 
 
 def ask(answer, limit=0.5):
-    seat = Seat(Answers(answer), one_answer=limit)
-    with seat.watched():
-        return seat.ask(VIEW)
+    guard = DriverGuard(Answers(answer), one_answer=limit)
+    with guard.watched():
+        return guard.ask(VIEW)
 
 
 def fails(error):
@@ -64,7 +64,7 @@ def test_whatever_is_raised_becomes_one_error(error):
 
 
 def test_the_error_names_the_line():
-    with pytest.raises(DriverError, match=r"test_seat.py, line \d+"):
+    with pytest.raises(DriverError, match=r"test_driver_guard.py, line \d+"):
         ask(fails(ValueError("oh no")))
 
 
@@ -75,7 +75,7 @@ def test_ctrl_c_is_not_the_drivers_fault():
 
 def test_who_cannot_steer_is_told_how():
     with pytest.raises(DriverError, match="give its class a method steer"):
-        Seat(object())
+        DriverGuard(object())
 
 
 def endless():
@@ -133,9 +133,9 @@ def test_start_is_watched_too():
         def start(self, road, world, seed):
             raise ValueError("bad plan")
 
-    seat = Seat(Starts(Command(0.0)))
-    with seat.watched(), pytest.raises(DriverError, match="bad plan"):
-        seat.start(None, None, 0)
+    guard = DriverGuard(Starts(Command(0.0)))
+    with guard.watched(), pytest.raises(DriverError, match="bad plan"):
+        guard.start(None, None, 0)
 
 
 def test_a_driver_that_never_gets_ready_is_told_to_start_sooner():
@@ -143,9 +143,9 @@ def test_a_driver_that_never_gets_ready_is_told_to_start_sooner():
         def start(self, road, world, seed):
             endless()
 
-    seat = Seat(Ponders(Command(0.0)), before_start=0.5)
-    with seat.watched(), pytest.raises(DriverError, match=r"not ready within 0.5 s: make start\(\) return"):
-        seat.start(None, None, 0)
+    guard = DriverGuard(Ponders(Command(0.0)), before_start=0.5)
+    with guard.watched(), pytest.raises(DriverError, match=r"not ready within 0.5 s: make start\(\) return"):
+        guard.start(None, None, 0)
 
 
 def test_the_error_names_the_drivers_own_line_and_not_that_of_a_library():
@@ -153,9 +153,9 @@ def test_the_error_names_the_drivers_own_line_and_not_that_of_a_library():
         def steer(self, view):
             return json.loads("no json")
 
-    seat = Seat(Reads(None))
-    with seat.watched(), pytest.raises(DriverError, match=r"\(.*test_seat.py, line \d+\)"):
-        seat.ask(VIEW)
+    guard = DriverGuard(Reads(None))
+    with guard.watched(), pytest.raises(DriverError, match=r"\(.*test_driver_guard.py, line \d+\)"):
+        guard.ask(VIEW)
 
 
 def test_an_alarm_of_a_library_in_c_is_left_alone():
@@ -185,13 +185,13 @@ def test_an_alarm_that_rings_at_once_finds_the_seat_ready():
 
 
 def test_many_slow_answers_add_up():
-    seat = Seat(Answers(lambda: time.sleep(0.05) or Command(0.0)), whole_drive=0.2)
+    guard = DriverGuard(Answers(lambda: time.sleep(0.05) or Command(0.0)), whole_drive=0.2)
 
     def many():
         for _ in range(100):
-            seat.ask(VIEW)
+            guard.ask(VIEW)
 
-    with seat.watched(), pytest.raises(DriverError, match=r"more than 0.2 s for one drive"):
+    with guard.watched(), pytest.raises(DriverError, match=r"more than 0.2 s for one drive"):
         many()
 
 

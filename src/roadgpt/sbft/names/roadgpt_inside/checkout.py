@@ -1,6 +1,7 @@
-"""Names of the competition that have no stand-in: those of a checkout of its code, else a sentence.
+"""Finds names of the competition that RoadGPT does not provide in a checkout of its code, or reports them
+missing.
 
-Most of them drive BeamNG or a network of DAVE-2, which a generator has no use for here.
+Most of them control BeamNG or the DAVE-2 network, which a generator does not need here.
 """
 
 from __future__ import annotations
@@ -15,18 +16,18 @@ ADVICE = "put a checkout of the competition's code on PYTHONPATH, or do without 
 
 
 HERE = {"code_pipeline.utils": "code_pipeline/pairs.py", "self_driving.utils": "self_driving/places.py"}
-"""Modules that have a name of their own here, under theirs."""
+"""Modules of the competition whose file has another name here."""
 
 
 class Missing:
-    """The last to be asked for a module: says what is neither here nor in a checkout."""
+    """The last import finder: reports modules that are neither here nor in a checkout."""
 
     @staticmethod
     def find_spec(name: str, path: Optional[List[str]] = None, target: Any = None) -> Any:
-        """Where a module of ours is; None for modules that are none of the competition's.
+        """Returns the location of a module provided here; None for modules that are not the competition's.
 
         Raises:
-            ModuleNotFoundError: it is one of theirs.
+            ModuleNotFoundError: the module is the competition's.
         """
         del path, target
         if name in HERE:
@@ -38,18 +39,18 @@ class Missing:
 
 
 def watch() -> None:
-    """Have modules of theirs that are missing told of by name."""
+    """Installs the finder that reports missing modules of the competition by name."""
     finders: List[Any] = sys.meta_path
     if Missing not in finders:
         finders.append(Missing)
 
 
-def other(module: str, name: str) -> Any:
-    """A name that a stand-in does not have, from the same module of a checkout.
+def attribute(module: str, name: str) -> Any:
+    """Returns an attribute that RoadGPT's module lacks from the same module of a checkout.
 
     Raises:
-        AttributeError: it has none either, or the name is Python's own.
-        ImportError: there is no checkout, and BeamNG is what it is for.
+        AttributeError: the checkout lacks it as well, or the name is one of Python's own.
+        ImportError: there is no checkout, and the attribute serves BeamNG.
     """
     if name.startswith("__"):
         raise AttributeError(f"module '{module}' has no attribute '{name}'")
@@ -65,7 +66,7 @@ BEAMNG = {"self_driving.vehicle_state_reader": ("VehicleStateReader",)}
 
 
 def _theirs(module: str) -> Any:
-    """The module of a checkout, loaded once beside ours; None where there is no checkout."""
+    """Returns the module of a checkout, loaded once beside ours; None if there is no checkout."""
     package, _, stem = module.partition(".")
     name = f"{package}._checkout_{stem}"
     if name in sys.modules:

@@ -1,4 +1,4 @@
-"""A road and a car in a running BeamNG: laid, loaded, settled; then stepped and asked."""
+"""Loads a road and a car into a running BeamNG, steps the physics, and controls the car."""
 
 import os
 from contextlib import suppress
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roadgpt.drive.drive import FloatArray
-from roadgpt.drive.simulators.beamng.body import Body, Moment, moment_of
 from roadgpt.drive.simulators.beamng.session import Session, client
-from roadgpt.drive.view import Camera
+from roadgpt.drive.simulators.beamng.tracking import CarGeometry, CarSample, car_sample
+from roadgpt.drive.view import CameraSpec
 from roadgpt.errors import RoadGPTError, SimulationError
 from roadgpt.export.exporters.beamng.files import ABOVE_GROUND, rotation
 from roadgpt.export.exporters.beamng.roads import GOAL, Materials, Strip, level_road
@@ -22,30 +22,31 @@ TIG = Materials("tig_road_rubber_sticky", "tig_grass", "tig_road_rubber_sticky",
 STOCK = Materials(
     "track_editor_C_center", "track_editor_C_border", "road_rubber_sticky", "line_white", "line_yellow"
 )
-CALM = 0.05  # m/s under which the car stands
-SETTLING = 3.0  # s, at most, until it does
-DROP = 0.02  # m above the ground at which a car of known height is put down
+CALM = 0.05  # m/s, below which the car counts as standing
+SETTLING = 3.0  # s, the longest wait for that
+DROP = 0.02  # m above the ground at which a car of known height is placed
 DECIMALS = 4
 GEARBOX = "arcade"
-"""Goes forwards by throttle alone, with any gearbox. BeamNGpy: "realistic_automatic" wants D to be put in by
-hand, and "realistic_manual" every gear."""
+"""In this mode the car drives forwards by throttle alone, with any gearbox. BeamNGpy: in
+"realistic_automatic" the driver has to select D, in "realistic_manual" every gear."""
 TRIAL, TRIAL_TIME = 0.4, 4.0  # steering input, and s at most, of the trial of the steering
 TRIAL_SPEED = 1.0, 4.0  # m/s between which it counts
-STRAIGHT = 0.003  # 1/m; a trial that bends less was no turn
-WHEELBASE = 0.6  # of the length, as saloons have it
-LOCKS = 0.3, 1.0  # rad that front wheels turn
+STRAIGHT = 0.003  # 1/m; a trial with less curvature was not a turn
+WHEELBASE = 0.6  # of the length, typical of saloons
+LOCKS = 0.3, 1.0  # rad, plausible lock angles of front wheels
 REFRESH = "if map and map.reset then map.reset() end"
-"""Lua: have the AI's map read again, since the road came after the level."""
+"""Lua: makes the AI read its map again, because the road was added after the level was loaded."""
 
 
-class Stage:
-    """One road in BeamNG. Use it as ``with Stage(...) as stage``: what was laid is cleared away again."""
+class LoadedRoad:
+    """One road in BeamNG. Use it as ``with LoadedRoad(...) as loaded``; its objects are removed at the
+    end."""
 
     def __init__(self, session: Session, road: "Road", world: "World", seed: int) -> None:
-        """Lay the road and put the car on its start.
+        """Loads the road and places the car at its start.
 
         Raises:
-            Exception: whatever the client raises; the session is of no use then.
+            Exception: any error of the client; the session cannot be used afterwards.
         """
         self.session, self.bng = session, session.bng
         self.settings = session.settings
@@ -57,7 +58,7 @@ class Stage:
         self.scene = level_road(road, world, seed, materials, self.lift, self.prefix)
         self.goal = self.prefix + GOAL
         self.camera: Any = None
-        self.now: Moment
+        self.now: CarSample
         self._begun = 0.0
         self._load()
         self._settle()
@@ -75,7 +76,7 @@ class Stage:
         self.vehicle.sensors.attach("electrics", package.sensors.Electrics())
         self.session.vehicle = self.vehicle
         place, turn = self._start()
-        # Never put down by BeamNG itself: it takes the level's ground for the place to stand on.
+        # BeamNG must not place it itself: it would put it on the level's ground.
         scenario.add_vehicle(self.vehicle, place, turn, False)
         with self.session.loading():
             scenario.make(self.bng)
@@ -89,7 +90,7 @@ class Stage:
             self.session.has_loaded = True
 
     def _start(self) -> tuple[tuple[float, float, float], tuple[float, float, float, float]]:
-        """Where the reference node goes, and how the car is turned."""
+        """Returns the position of the reference node, and the rotation of the car."""
         scene, body = self.scene, self.session.body
         turn = rotation(scene.heading, scene.grade)
         if body is None:
@@ -101,7 +102,7 @@ class Stage:
         return _triple(place), as_quaternion(turn)
 
     def _settle(self) -> None:
-        """Let the car come to rest; the first one is measured, and put where it should be."""
+        """Waits until the car is at rest; the first car is measured, and then moved to where it should be."""
         with self.session.within(self.settings.poll_timeout, "the car was put down"):
             self._rest()
             if self.session.body is None:
@@ -124,40 +125,41 @@ class Stage:
     def _measure(self) -> None:
         state = self.vehicle.state
         gravity = self.vehicle.get_center_of_gravity()
-        self.session.body = Body.measured(state, gravity, self.vehicle.get_bbox(), self.scene.start)
+        self.session.body = CarGeometry.measured(state, gravity, self.vehicle.get_bbox(), self.scene.start)
 
     @property
-    def body(self) -> Body:
-        """The car's."""
+    def body(self) -> CarGeometry:
+        """The geometry of the car."""
         assert self.session.body is not None
         return self.session.body
 
     def _clock(self) -> float:
         return float(self.vehicle.state.get("time", 0.0))
 
-    def _sample(self, since: Moment | None) -> Moment:
-        """Ask where the car is, for the first time or after a step."""
+    def _sample(self, since: CarSample | None) -> CarSample:
+        """Polls the car, for the first time or after a step."""
         self.vehicle.sensors.poll("state", "electrics")
         state, electrics = self.vehicle.state, self.vehicle.sensors["electrics"]
         time = 0.0 if since is None else self._time_after(since)
-        return moment_of(state, electrics, self.body, self.lift, since, time)
+        return car_sample(state, electrics, self.body, self.lift, since, time)
 
-    def _time_after(self, since: Moment) -> float:
-        """The car's clock counts, but never stands still; where it tells no time, the steps count."""
+    def _time_after(self, since: CarSample) -> float:
+        """Returns the time of the car's clock, which always advances; if the car reports no time, steps are
+        counted."""
         step = 1.0 / self.settings.rate
         if "time" not in self.vehicle.state:
             return since.time + step
         return max(self._clock() - self._begun, since.time + step / 2)
 
-    def step(self) -> Moment:
-        """One step of physics; the sample after it."""
+    def step(self) -> CarSample:
+        """Runs one step of physics; returns the sample after it."""
         self.session.watchdog.due_in(self.settings.poll_timeout)
         self.bng.control.step(1)
         self.now = self._sample(self.now)
         return self.now
 
     def steer(self, angle: float, throttle: float, brake: float) -> None:
-        """Pass on a driver's command; ``angle`` in radians at the front wheels, left positive."""
+        """Sends a driver's command; ``angle`` is in radians at the front wheels, left positive."""
         gain = self.session.gain or -1.0
         stands = self.now.vx < 0.5 and brake > 0 and throttle == 0
         self.vehicle.control(
@@ -168,7 +170,7 @@ class Stage:
         )
 
     def let_ai_drive(self, limit: float) -> None:
-        """BeamNG's own AI takes the wheel, bound for the goal."""
+        """Lets BeamNG's own AI drive to the goal, up to ``limit`` m/s."""
         self.vehicle.control(parkingbrake=0.0)
         ai = self.vehicle.ai
         # In the competition's order, which is known to work: the goal, which sets it off, comes last.
@@ -178,10 +180,9 @@ class Stage:
         ai.set_waypoint(self.goal)
 
     def take_the_wheel(self) -> None:
-        """Make the car ready for a driver of ours: a gearbox that shifts by itself, and a known steering.
+        """Prepares the car for a RoadGPT driver: selects an automatic gearbox mode and measures the steering.
 
-        In BeamNG's other modes somebody has to put in a gear first: a car whose player has chosen one of them
-        would stand.
+        In BeamNG's other modes a gear has to be selected first, so a car in one of them would not move.
         """
         with self.session.within(self.settings.poll_timeout, "the gearbox was set"):
             self.vehicle.set_shift_mode(GEARBOX)
@@ -192,9 +193,9 @@ class Stage:
             self.vehicle.set_shift_mode(GEARBOX)  # it may have been reset with the car
 
     def _measure_steering(self) -> None:
-        """Find out to which side, and how far, a steering input turns the wheels; then go back to the start.
+        """Measures to which side, and how far, a steering input turns the wheels; then returns to the start.
 
-        No document says it, and it is another for every car.
+        BeamNG does not document this, and it differs from car to car.
         """
         found: list[float] = []
         echoed = 0.0
@@ -213,14 +214,14 @@ class Stage:
             self.now = self._sample(None)
         bend = float(np.median(found[len(found) // 2 :])) if found else 0.0
         if abs(bend) < STRAIGHT:
-            raise SimulationError("BeamNG's car does not answer to the steering; check ROADGPT_BEAMNG_MODEL")
+            raise SimulationError("BeamNG's car does not respond to steering; check ROADGPT_BEAMNG_MODEL")
         wheelbase = WHEELBASE * (self.body.front - self.body.rear)
         lock = np.arctan(wheelbase * abs(bend)) / TRIAL
         self.session.gain = float(np.copysign(np.clip(lock, *LOCKS), bend))
-        self.session.told = float(np.copysign(self.session.gain, bend * echoed))
+        self.session.reported_gain = float(np.copysign(self.session.gain, bend * echoed))
 
-    def open_camera(self, camera: Camera) -> None:
-        """Put the driver's camera onto the car."""
+    def open_camera(self, camera: CameraSpec) -> None:
+        """Mounts the driver's camera on the car."""
         body = self.body
         # The camera is placed from the reference node; BeamNG's cars look along -y, their left is +x.
         place = (-body.node[1], -(camera.ahead - body.node[0]), camera.up - body.height - body.node[2])
@@ -240,23 +241,23 @@ class Stage:
             )
 
     def image(self) -> FloatArray | None:
-        """What the camera sees, shape (height, width, 3), uint8; None where there is no camera.
+        """Returns the camera's image, shape (height, width, 3), uint8; None if there is no camera.
 
         Raises:
-            SimulationError: BeamNG draws nothing.
+            SimulationError: BeamNG draws no image.
         """
         if self.camera is None:
             return None
         seen = self.camera.poll().get("colour")
         if seen is None:
-            raise SimulationError("BeamNG's camera sees nothing; leave out --nogpu")
+            raise SimulationError("BeamNG's camera draws no image; leave out --nogpu")
         return np.asarray(seen)[..., :3]
 
-    def __enter__(self) -> "Stage":
+    def __enter__(self) -> "LoadedRoad":
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Clear away; where something failed, as far as that goes."""
+        """Removes the road and the car; after an error as far as possible."""
         session = self.session
         if kind is not None and not issubclass(kind, RoadGPTError):
             return  # the session is dropped as a whole
@@ -266,7 +267,7 @@ class Stage:
             self.bng.scenario.stop()
             self.scenario.delete(self.bng)
         session.vehicle = None
-        if session.watchdog.has_bitten:
+        if session.watchdog.has_fired:
             session.drop()
 
 
@@ -292,7 +293,7 @@ def _triple(point: FloatArray) -> tuple[float, float, float]:
 
 
 def as_quaternion(matrix: FloatArray) -> tuple[float, float, float, float]:
-    """x, y, z, w of a rotation matrix, as the client wants a car's attitude."""
+    """Returns x, y, z, w of a rotation matrix, as the client takes a car's attitude."""
     from scipy.spatial.transform import Rotation
 
     x, y, z, w = Rotation.from_matrix(matrix).as_quat().tolist()

@@ -1,7 +1,7 @@
-"""Whose code is run: a driver's file that only another file names waits until the user names it.
+"""Decides whose code is run: a driver's file that only another file names is not run until the user names it.
 
-Parts on the shelf are not asked about: the user installed them. A file that came with others may name them,
-and no more than that.
+Installed plug-ins need no permission, because the user installed them. A file that came from elsewhere may
+name them, but nothing else.
 """
 
 from pathlib import Path
@@ -10,28 +10,28 @@ from roadgpt.errors import UsageError
 from roadgpt.provenance import CODE, USER
 
 
-def parted(spec: str) -> tuple[str, str]:
-    """Path and class of a driver in a file; no path where it is the name of one on the shelf."""
+def split_spec(spec: str) -> tuple[str, str]:
+    """Splits PATH.py:CLASS into path and class; returns two empty strings for the name of a plug-in."""
     if spec.endswith(".py"):
         return spec, ""
     path, _, wanted = spec.rpartition(":")
     return (path, wanted) if path.endswith(".py") else ("", "")
 
 
-def named(spec: str) -> None:
-    """The user names this driver: it may be run, also where files name it.
+def permit(spec: str) -> None:
+    """Records that the user names this driver: it may be run, also where files name it.
 
-    A file that was written elsewhere names it by a path that is not here, so the name of its file and its
-    class are enough; the user's file is then the one that is run.
+    A file that was written elsewhere names the driver by a path that does not exist here. The file's own name
+    and the class are therefore enough to match; the user's file is then the one that is run.
     """
-    if parted(spec)[0]:
+    if split_spec(spec)[0]:
         CODE.add_from_user(_whole(spec))
         CODE.add_from_user(_short(spec), spec)
 
 
-def came_with(spec: str, file: object) -> str:
-    """A file names this driver; gives back the one that is meant: the user's, where they named it."""
-    if not parted(spec)[0] or CODE.given_as(_whole(spec)):
+def driver_from_file(spec: str, file: object) -> str:
+    """Returns the driver to use for one that a file names: the user's own, if the user named it."""
+    if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
     theirs = CODE.given_as(_short(spec))
     if theirs is None:
@@ -39,13 +39,13 @@ def came_with(spec: str, file: object) -> str:
     return theirs or spec
 
 
-def admit(spec: str) -> None:
-    """Let a driver's file be run, or ask the user, where there is somebody to be asked.
+def require_permission(spec: str) -> None:
+    """Allows a driver's file to be run, asking the user if somebody can be asked.
 
     Raises:
-        UsageError: only a file names it, and the user does not say yes.
+        UsageError: only a file names the driver, and the user does not agree.
     """
-    if not parted(spec)[0]:
+    if not split_spec(spec)[0]:
         return
     file = CODE.untrusted_file(_whole(spec))
     if file is not None and not USER.ask(f"{file} names the driver {spec}. Run the code in that file?"):
@@ -56,8 +56,8 @@ def admit(spec: str) -> None:
     CODE.add_from_user(_whole(spec))  # files that are read from now on may name it as well
 
 
-def expect(spec: str | None, drivers: set[str], place: object) -> None:
-    """What the user names with --driver is to be what drives there.
+def check_named_driver(spec: str | None, drivers: set[str], place: object) -> None:
+    """Checks that the driver of the option ``--driver`` is one of those that drive in this folder.
 
     Raises:
         UsageError: it is not.
@@ -70,10 +70,10 @@ def expect(spec: str | None, drivers: set[str], place: object) -> None:
 
 
 def _whole(spec: str) -> str:
-    path, wanted = parted(spec)
+    path, wanted = split_spec(spec)
     return f"{Path(path).absolute()}:{wanted}"
 
 
 def _short(spec: str) -> str:
-    path, wanted = parted(spec)
+    path, wanted = split_spec(spec)
     return f"{path.replace(chr(92), '/').rpartition('/')[2]}:{wanted}"

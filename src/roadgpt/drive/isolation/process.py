@@ -1,4 +1,5 @@
-"""Our end of a driver's process: asks it, minds time and memory, ends it, or keeps it for the next driver."""
+"""Manages the processes of drivers: asks them, limits their time and memory, ends them, and keeps them for
+reuse."""
 
 import os
 import sys
@@ -9,32 +10,33 @@ from pathlib import Path
 from subprocess import PIPE, SubprocessError, run
 
 from roadgpt import children
-from roadgpt.drive.apart import wire
+from roadgpt.drive.isolation import protocol
 
-TICK = 0.2  # s between two looks at the clock and at the memory
+TICK = 0.2  # s between two checks of the clock and the memory
 SHARE = 0.5  # of the machine's memory that a driver may take
-MOST_IDLE = 4  # processes that are kept for drivers to come
-BEGIN = 60.0  # s for a new process to be there
+MOST_IDLE = 4  # idle processes that are kept for later drivers
+BEGIN = 60.0  # s within which a new process must be ready
 
 
 class GoneError(Exception):
-    """The process is there no more; says why, to follow the driver's name."""
+    """Raised when the process no longer exists; the message gives the reason, worded to follow the driver's
+    name."""
 
     def __init__(self, why: str, is_late: bool = False) -> None:
         super().__init__(why)
         self.is_late = is_late
 
 
-class Process:
-    """A process in which one driver sits at a time."""
+class DriverProcess:
+    """A child process that holds one driver at a time."""
 
     def __init__(self) -> None:
-        """Starts it.
+        """Starts the process.
 
         Raises:
-            OSError: the system refuses.
+            OSError: the system cannot start it.
         """
-        self._process = children.python("roadgpt.drive.apart.inside", stderr=None)
+        self._process = children.python("roadgpt.drive.isolation.child", stderr=None)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._down, self._up = self._process.stdin.fileno(), self._process.stdout.fileno()
@@ -43,37 +45,38 @@ class Process:
         self._most = memory_limit()
         self.is_broken = False
         self.has_served = False
-        """Did a driver sit in it before?"""
+        """Whether it has already held a driver."""
         self._ends = threading.Event()
         threading.Thread(target=self._watch, name="roadgpt-driver", daemon=True).start()
 
-    def ask(self, kind: int, body: bytes, seconds: float) -> wire.Message:
-        """Say something, and hear what it is answered.
+    def ask(self, kind: int, body: bytes, seconds: float) -> protocol.Packet:
+        """Sends a packet and returns the answer.
 
         Raises:
-            GoneError: it ended, or did not answer within so many seconds; then it is ended.
+            GoneError: the process ended, or did not answer within ``seconds``; in the second case it is
+                ended.
         """
         self._due = time.monotonic() + seconds
         try:
-            wire.send(self._down, kind, body)
-            answer = wire.receive(self._up, wire.MOST)
+            protocol.send(self._down, kind, body)
+            answer = protocol.receive(self._up, protocol.MOST)
         except (OSError, EOFError):
             self.end()
             status = children.ending(self._process.returncode)
             raise GoneError(self._why or f"ended its own process (it {status})", self._is_late) from None
-        except BaseException:  # we are to stop, or its time is up: its answer may still come
+        except BaseException:  # this process is asked to stop; a late answer must not be read by others
             self.end()
             raise
         self._due = None
         return answer
 
     def tell(self, kind: int) -> None:
-        """Say something that is not answered."""
+        """Sends a packet that gets no answer."""
         with suppress(OSError):
-            wire.send(self._down, kind)
+            protocol.send(self._down, kind)
 
     def end(self) -> None:
-        """End it now, whatever it does."""
+        """Ends the process immediately."""
         self.is_broken = True
         self._due = None
         self._ends.set()
@@ -81,15 +84,16 @@ class Process:
 
     @property
     def is_alive(self) -> bool:
-        """Can it be asked?"""
+        """Whether the process can be asked."""
         return not self.is_broken and self._process.poll() is None
 
     def _watch(self) -> None:
-        """Kills a process that is late, too big, or has left others behind that hold its line."""
+        """Kills a process that is late, uses too much memory, or has ended and left children that hold its
+        pipes open."""
         last = time.monotonic()
         while not self._ends.wait(TICK):
             now, due = time.monotonic(), self._due
-            if due is not None and now - last > 10 * TICK:  # we were stopped ourselves, and so its time
+            if due is not None and now - last > 10 * TICK:  # this process was suspended: the clock was too
                 self._due = due + now - last
             elif due is not None and now > due:
                 self._is_late = True
@@ -106,7 +110,7 @@ class Process:
 
 
 def memory_limit() -> float:
-    """Bytes that a driver may take: half of what the machine, or the container, has."""
+    """Returns the bytes of memory that a driver may use: half of what the machine, or the container, has."""
     found = []
     with suppress(ValueError, OSError, AttributeError):
         found.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
@@ -116,7 +120,7 @@ def memory_limit() -> float:
 
 
 def _memory(pid: int) -> int:
-    """Bytes that a process takes; 0 where nobody tells (Windows)."""
+    """Returns the bytes of memory that a process uses; 0 where the system does not say (Windows)."""
     if sys.platform == "linux":
         with suppress(OSError, ValueError, IndexError):
             pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
@@ -129,15 +133,15 @@ def _memory(pid: int) -> int:
     return 0
 
 
-_idle: list[Process] = []
+_idle: list[DriverProcess] = []
 _lock = threading.Lock()
 
 
-def take() -> Process:
-    """A process that waits, or a new one.
+def take() -> DriverProcess:
+    """Returns an idle process, or a new one.
 
     Raises:
-        OSError: the system refuses.
+        OSError: the system cannot start a process.
     """
     with _lock:
         while _idle:
@@ -145,15 +149,15 @@ def take() -> Process:
             if process.is_alive:
                 return process
             process.end()
-    return Process()
+    return DriverProcess()
 
 
-def give_back(process: Process) -> None:
-    """Keep a process for the next driver; the one in it is forgotten."""
+def give_back(process: DriverProcess) -> None:
+    """Keeps a process for the next driver and discards the driver in it."""
     if not process.is_alive:
         process.end()
         return
-    process.tell(wire.FORGET)
+    process.tell(protocol.FORGET)
     with _lock:
         if len(_idle) < MOST_IDLE:
             _idle.append(process)
@@ -161,5 +165,5 @@ def give_back(process: Process) -> None:
     process.end()
 
 
-if hasattr(os, "register_at_fork"):  # a copy of this process must not speak on our lines
+if hasattr(os, "register_at_fork"):  # a fork of this process must not use its pipes
     os.register_at_fork(after_in_child=_idle.clear)

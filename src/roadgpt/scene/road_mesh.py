@@ -1,4 +1,4 @@
-"""The road itself: carriageway and verges as one surface, its embankments, and the posts beside it."""
+"""Builds the meshes of the road: carriageway and shoulders as one surface, embankments, and posts."""
 
 from functools import cache
 
@@ -9,27 +9,27 @@ from roadgpt.export.embankments import FOOT, Embankment, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.scene.light import daylight, level_light
-from roadgpt.scene.meadow import Meadow
 from roadgpt.scene.mesh import GRASS, POST, ROAD, Mesh, Patch, attributes, grid
-from roadgpt.scene.paint import CONCRETE
+from roadgpt.scene.palette import CONCRETE
+from roadgpt.scene.terrain import LitTerrain
 
 CHORD = 0.004  # m
 LONGEST = 4.0  # m between stations: light and texture follow crests
 BLOCK = 24  # stations of a patch
 THICK = 0.5  # m of a road that floats
 POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
-"""m; half of what German rules ask for on straights, so that speed is seen."""
-POST_FROM_RIM = 0.6  # m
+"""m; half the distance that German rules require on straights, so that speed becomes visible."""
+POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 
 
-def road_patches(road: Road, world: World, meadow: Meadow) -> list[Patch]:
-    """Everything that belongs to the road."""
+def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
+    """Returns all patches that belong to the road."""
     rim = world.lane_width + world.verge
     s = _stations(road, rim)
     if world.verge == 0:
         return [*_surface(road, world, s), *_slab(road, world, s)]
-    banks = embankments(road, world.profile, s, meadow.land)
-    slopes = [patch for bank in banks for patch in _slope(bank, meadow)]
+    banks = embankments(road, world.profile, s, terrain.land)
+    slopes = [patch for bank in banks for patch in _slope(bank, terrain)]
     return [*_surface(road, world, s), *slopes, *_posts(road, world)]
 
 
@@ -41,14 +41,14 @@ def _stations(road: Road, rim: float) -> Array:
 
 
 def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
-    """Rows of points across the road, in patches along it."""
+    """Divides rows of points across the road into patches along it."""
     return [
         grid(rows[i : i + BLOCK + 1], values[i : i + BLOCK + 1], kind) for i in range(0, len(rows) - 1, BLOCK)
     ]
 
 
 def _surface(road: Road, world: World, s: Array) -> list[Patch]:
-    """From the right rim to the left one; its coordinates are s and t."""
+    """Returns the surface from the right rim to the left one; its coordinates are s and t."""
     half, verge = world.lane_width, world.verge
     offsets = [-half, -half / 2, 0.0, half / 2, half]
     if verge:
@@ -65,22 +65,23 @@ def _upwards(road: Road, s: Array) -> Array:
     return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
 
 
-def _slope(bank: Embankment, meadow: Meadow) -> list[Patch]:
-    """A slope has the light of the land that it runs into, where it is low, so that nothing shows there."""
+def _slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
+    """Returns an embankment; where it is low, it gets the light of the land that it meets, so that no edge
+    shows."""
     edge, foot, is_left = bank
     rows = np.stack([edge, foot] if is_left else [foot, edge], axis=1)
     along = np.gradient(edge, axis=0)
     down = foot - edge
     normals = np.cross(along, down) if is_left else np.cross(down, along)
     normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-9)
-    own, met = daylight(normals), meadow.light_at(foot[:, 0], foot[:, 1])
+    own, met = daylight(normals), terrain.light_at(foot[:, 0], foot[:, 1])
     at_foot = met + (own - met) * np.clip((edge[:, 2] - foot[:, 2] - FOOT - 1.5) / 4.0, 0.0, 1.0)
     light = np.stack([np.full_like(own, level_light()), at_foot], axis=1)
     return _blocks(rows, attributes(0.0, 0.0, light if is_left else light[:, ::-1]), GRASS)
 
 
 def _slab(road: Road, world: World, s: Array) -> list[Patch]:
-    """Flanks, underside and ends of a road that floats."""
+    """Returns sides, underside and ends of a floating road."""
     half = world.lane_width
     left, right = line(road, s, half), line(road, s, -half)
     down = np.array([0.0, 0.0, -THICK])
@@ -99,7 +100,7 @@ def _slab(road: Road, world: World, s: Array) -> list[Patch]:
 
 
 def _posts(road: Road, world: World) -> list[Patch]:
-    """Upright boxes; their second coordinate is the height."""
+    """Returns the posts as upright boxes; their second coordinate is the height."""
     if world.verge < POST_FROM_RIM + 0.2:
         return []
     count = max(1, int(road.length / POST_EVERY))
@@ -119,7 +120,7 @@ def _posts(road: Road, world: World) -> list[Patch]:
 
 @cache
 def _post() -> tuple[Patch, Array]:
-    """One that stands at the origin, and where its sides face."""
+    """Returns one post at the origin, and the normals of its sides."""
     half = POST_WIDE / 2
     ring = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * [half, half * 0.8]
     outward = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])

@@ -1,9 +1,9 @@
-r"""How far a car reaches beyond the outer edges of the markings on both sides of its lane.
+r"""Computes how far a car reaches beyond the outer edges of the markings on both sides of its lane.
 
     left                    right          Positive beyond, negative inside, in metres across the
-|    ¦ ¦      lane           |¦            lane; counted at the tyres' outer edges where they stand
-|    ¦ ¦  <- the car ->      |¦            on the road, or along both sides of the body's underside,
-     ¦ ¦                     |¦            which pitch and roll turn with the car.
+|    ¦ ¦      lane           |¦            lane. Measured at the outer edges of the front tyres where
+|    ¦ ¦  <- the car ->      |¦            they stand on the road, or along both sides of the body's
+     ¦ ¦                     |¦            underside, which pitch and roll turn with the car.
        ^ outer edge            ^ outer edge
 """
 
@@ -14,60 +14,68 @@ import numpy as np
 
 from roadgpt.drive.compiled import compiled
 from roadgpt.drive.drive import Box, FloatArray
-from roadgpt.drive.ribbon import CURVATURE, Ribbon, place_on, ribbon_of
+from roadgpt.drive.sampled_road import CURVATURE, SampledRoad, locate_on, sample_road
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive import Drive
     from roadgpt.road import Road, World
 
 POSE = ("x", "y", "heading", "pitch", "roll", "s")
-"""Columns of a Drive that say how the car stands."""
-ALONG = 9  # points along one side of the body: bends under it are then followed to 5 mm
-SLACK = 0.1  # m, on top of what a bend and the car's roll add to its reach across the lane
-LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves on the inside of a bend
+"""Columns of a Drive that give the pose of the car."""
+ALONG = 9  # points along one side of the body, which follow bends to within 5 mm
+SLACK = 0.1  # m, added to the extent across the lane that a bend and the car's roll cause
+LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per metre of road
 
 
-class Marking(NamedTuple):
-    """The markings of one road's right lane, and the points of a car that are watched."""
+class MarkingMonitor(NamedTuple):
+    """The markings of one road's right lane, and the points of a car that are compared with them."""
 
-    ribbon: Ribbon
+    sampled: SampledRoad
     left: float
-    """m to the left of the centre line, outer edge of the marking."""
+    """Metres to the left of the centre line, outer edge of the left marking."""
     right: float
-    """Likewise of the other side; negative."""
+    """Metres to the left of the centre line, outer edge of the right marking; negative."""
     points: FloatArray
     """Shape (n, 3): metres ahead, to the left and up of the car's centre of gravity."""
 
     @classmethod
-    def for_tyres(cls, road: "Road", world: "World", box: Box) -> "Marking":
-        """To watch the outer edges of the front tyres."""
+    def for_tyres(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":
+        """Returns a monitor of the outer edges of the front tyres."""
         side = box.tyres / 2
         points = [(box.axle, side, -box.height), (box.axle, -side, -box.height)]
-        return cls(ribbon_of(road), *world.marking_edges, np.array(points))
+        return cls(sample_road(road), *world.marking_edges, np.array(points))
 
     @classmethod
-    def for_body(cls, road: "Road", world: "World", box: Box) -> "Marking":
-        """To watch the body: both its sides, corners included."""
+    def for_body(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":
+        """Returns a monitor of both sides of the body, corners included."""
         front, side = box.ahead + box.length / 2, box.width / 2
         way = np.linspace(front - box.length, front, ALONG)
         points = [(x, y, -box.under) for y in (-side, side) for x in way]
-        return cls(ribbon_of(road), *world.marking_edges, np.array(points))
+        return cls(sample_road(road), *world.marking_edges, np.array(points))
 
     def beyond(self, poses: FloatArray, floor: float = -math.inf) -> FloatArray:
-        """Metres beyond the outer edge of the nearer marking, per pose, shape (n,).
+        """Returns metres beyond the outer edge of the nearer marking, per pose, shape (n,).
 
         Args:
             poses: shape (n, 6), the columns POSE.
-            floor: values below it need not be exact; those who ask for the largest save time.
+            floor: values below it need not be exact; setting it saves time when only the largest value
+                matters.
         """
-        ribbon = self.ribbon
+        sampled = self.sampled
         poses = np.ascontiguousarray(poses, dtype=np.float64)
         return farthest(
-            ribbon.table, ribbon.first, ribbon.step, poses, self.points, self.left, self.right, float(floor)
+            sampled.table,
+            sampled.first,
+            sampled.step,
+            poses,
+            self.points,
+            self.left,
+            self.right,
+            float(floor),
         )
 
     def along(self, drive: "Drive", floor: float = -math.inf) -> FloatArray:
-        """The same at every step of a drive."""
+        """Returns the same for every step of a drive."""
         return self.beyond(np.stack([drive[name] for name in POSE], axis=-1), floor)
 
 
@@ -82,7 +90,7 @@ def farthest(
     right: float,
     floor: float,
 ) -> FloatArray:
-    """See `Marking.beyond`."""
+    """Implements `MarkingMonitor.beyond`."""
     found = np.empty(poses.shape[0])
     long = np.abs(points[:, 0]).max()
     wide = np.abs(points[:, 1]).max()
@@ -90,7 +98,7 @@ def farthest(
     bend = np.abs(table[:, CURVATURE]).max()
     for i in range(poses.shape[0]):
         x, y, heading = poses[i, 0], poses[i, 1], poses[i, 2]
-        s, t, _, _, way = place_on(table, first, step, x, y, poses[i, 5])
+        s, t, _, _, way = locate_on(table, first, step, x, y, poses[i, 5])
         reach = abs(math.sin(heading - way)) * long + abs(math.cos(heading - way)) * wide
         reach += abs(math.sin(poses[i, 4])) * tall + SLACK
         reach += 0.5 * (long * long + wide * wide) * bend / max(1.0 - bend * abs(t), LEAST_STRETCH)
@@ -108,7 +116,7 @@ def farthest(
             a, b, c = points[k, 0], points[k, 1], points[k, 2]
             px = x + ch * cp * a + lx * b + ux * c
             py = y + sh * cp * a + ly * b + uy * c
-            _, across, _, _, _ = place_on(table, first, step, px, py, s + a)
+            _, across, _, _, _ = locate_on(table, first, step, px, py, s + a)
             best = max(best, across - left, right - across)
         found[i] = best
     return found

@@ -1,7 +1,8 @@
-"""The road as a car feels it: a smooth ribbon over a table of stations, asked point by point.
+"""Samples a road for the physics: a smooth surface over a table of equally spaced stations, asked point by
+point.
 
-Between stations the centre line is a cubic in x, y and z (continuous with its direction), so there are no
-seams. The table goes on straight beyond both ends.
+Between stations the centre line is a cubic in x, y and z, continuous in its direction, so that there are no
+kinks. The table continues straight beyond both ends.
 """
 
 import math
@@ -15,28 +16,29 @@ from roadgpt.drive.drive import FloatArray
 if TYPE_CHECKING:
     from roadgpt.road import Road
 
-STEP = 0.25  # m, wished distance of stations; the cubic is then within 1 micrometre of a 14 m arc
+STEP = 0.25  # m, desired distance of stations; the cubic is then within 1 micrometre of a 14 m arc
 BEYOND = 30.0  # m of straight road in the table before the start and after the end
 
 # Columns of the table.
 X, Y, Z, HEADING, GRADE, CURVATURE, COS, SIN = range(8)
 
 
-class Ribbon(NamedTuple):
-    """Stations at equal distances, as arrays and numbers that compiled code can take."""
+class SampledRoad(NamedTuple):
+    """Equally spaced stations of a road, as arrays and numbers that compiled code can use."""
 
     table: FloatArray
-    """Shape (n, 8): x, y, z (m), heading (rad, unwrapped), grade, curvature (1/m), cos and sin of heading."""
+    """Shape (n, 8): x, y, z (m), heading (rad, unwrapped), grade, curvature (1/m), cosine and sine of the
+    heading."""
     first: float
-    """m, station of row 0; negative."""
+    """Station of row 0 in metres; negative."""
     step: float
-    """m between rows."""
+    """Metres between rows."""
     length: float
-    """m of the road itself."""
+    """Length of the road itself in metres."""
 
 
-def ribbon_of(road: "Road") -> Ribbon:
-    """The ribbon of a road."""
+def sample_road(road: "Road") -> SampledRoad:
+    """Samples a road."""
     length = float(road.length)
     count = max(2, math.ceil(length / STEP))
     step = length / count
@@ -49,7 +51,7 @@ def ribbon_of(road: "Road") -> Ribbon:
     out = step * np.arange(1, extra + 1, dtype=np.float64)
     before, after = _straight_on(inner[0], -out[::-1]), _straight_on(inner[-1], out)
     table = np.ascontiguousarray(np.vstack([before, inner, after]), dtype=np.float64)
-    return Ribbon(table, -extra * step, step, length)
+    return SampledRoad(table, -extra * step, step, length)
 
 
 def _straight_on(row: FloatArray, along: FloatArray) -> FloatArray:
@@ -63,20 +65,21 @@ def _straight_on(row: FloatArray, along: FloatArray) -> FloatArray:
 
 @inlined
 def _cubic(u: float, step: float, p0: float, p1: float, d0: float, d1: float) -> float:
-    """Hermite's cubic with these end values and slopes, at u in 0..1."""
+    """Returns Hermite's cubic with these end values and slopes, at u in 0..1."""
     a = p1 - p0
     v = 1.0 - u
     return p0 + a * u * u * (3.0 - 2.0 * u) + step * u * v * (d0 * v - d1 * u)
 
 
 @inlined
-def place_on(
+def locate_on(
     table: FloatArray, first: float, step: float, x: float, y: float, s: float
 ) -> tuple[float, float, float, float, float]:
-    """Station, offset, height, slope and heading of the ribbon at the point (x, y), looked for near s.
+    """Returns station, offset, height, slope and heading of the road at the point (x, y), searching near
+    station s.
 
-    Slope is that along the road at this offset. Newton's method on the distance along the road; s from a
-    moment ago makes two rounds enough.
+    The slope is that along the road at this offset. The search is Newton's method on the distance along the
+    road; with the station of a moment ago as s, two iterations are enough.
     """
     last = table.shape[0] - 2
     t = height = slope = heading = 0.0
@@ -94,7 +97,7 @@ def place_on(
         along = dx * c + dy * n
         t = dy * c - dx * n
         s = first + (i + u) * step
-        # Far inside a tight bend stations crowd; the floor keeps the step finite there.
+        # Far inside a tight bend, stations lie close together; the lower bound keeps the step finite.
         crowd = max(1.0 - (b[HEADING] - a[HEADING]) / step * t, 0.2)
         height = _cubic(u, step, a[Z], b[Z], a[GRADE], b[GRADE])
         slope = (a[GRADE] + (b[GRADE] - a[GRADE]) * u) / crowd

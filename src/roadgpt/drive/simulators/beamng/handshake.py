@@ -1,6 +1,7 @@
-"""The first words with whatever listens on a port: is it BeamNG, and of which version?
+"""Exchanges the first message with whatever listens on a port, to find out whether it is BeamNG, and its
+version.
 
-A message is its length, four bytes big-endian, and one MessagePack map; the first is Hello.
+A message is its length, four bytes big-endian, and one MessagePack map; the first message is Hello.
 """
 
 import socket
@@ -10,11 +11,11 @@ from typing import Any
 
 from roadgpt.errors import SimulatorError
 
-MOST = 1 << 20  # bytes of an answer to Hello; who sends more is no BeamNG
+MOST = 1 << 20  # bytes, the largest answer to Hello that is accepted
 
 
 def is_taken(host: str, port: int) -> bool:
-    """Does anybody listen there?"""
+    """Returns whether something listens there."""
     try:
         with socket.create_connection((host, port), timeout=1.0):
             return True
@@ -23,11 +24,11 @@ def is_taken(host: str, port: int) -> bool:
 
 
 def protocol_at(host: str, port: int, protocol: str, patience: float) -> str:
-    """The protocol version that BeamNG answers with.
+    """Returns the protocol version of BeamNG's answer.
 
     Raises:
-        OSError: nobody listens there, or no answer came in time.
-        SimulatorError: somebody listens who is no BeamNG.
+        OSError: nothing listens there, or no answer came in time.
+        SimulatorError: what listens there is not BeamNG.
     """
     msgpack: Any = import_module("msgpack")
 
@@ -56,5 +57,5 @@ def _exactly(link: socket.socket, length: int) -> bytes:
 
 def _stranger(host: str, port: int) -> SimulatorError:
     return SimulatorError(
-        f"what listens on {host}:{port} does not speak as BeamNG.tech does; name another --beamng-port"
+        f"the program that listens on {host}:{port} is not BeamNG.tech; name another --beamng-port"
     )

@@ -1,14 +1,15 @@
-"""The driver's seat: asks the driver, checks the answer and minds the clock, for every simulator.
+"""Calls a driver with time limits and checks its answers, for every simulator.
 
-Whatever a driver does wrong becomes one DriverError. A driver that hangs is stopped like this:
+Whatever a driver does wrong becomes one DriverError. A driver that hangs is stopped in one of two ways:
 
-- in the main thread, where the system has interval timers (Linux, macOS): by a signal, which ends endless
-  loops, sleeps and most waits;
-- elsewhere (other threads, Windows): by an exception that Python raises in the driver's thread between two
-  of its instructions. That ends endless loops, but a ``time.sleep(60)`` ends only when it is over.
+- In the main thread of a system with interval timers (Linux, macOS) it is stopped by a signal, which ends
+  endless loops, sleeps and most waits.
+- Elsewhere (other threads, Windows) it is stopped by an exception that Python raises in the driver's thread
+  between two instructions. That ends endless loops, but a ``time.sleep(60)`` only after its 60 seconds.
 
-A driver that hangs inside compiled code which never looks up cannot be stopped from within its own process:
-drivers that users name sit in another one (``roadgpt.drive.apart``), and it is ended.
+A driver that hangs inside compiled code which never returns to Python cannot be stopped from within its own
+process. Drivers that users name therefore run in a separate process (``roadgpt.drive.isolation``), which can
+be ended.
 """
 
 import contextlib
@@ -31,21 +32,21 @@ if TYPE_CHECKING:
 ONE_ANSWER = 2.0  # s of wall time for one `steer`
 BEFORE_START = 30.0  # s for `start`: a driver may plan, or load a network
 WHOLE_DRIVE = 600.0  # s for all answers of a drive together
-TICK = 0.2  # s between two looks at the clock
+TICK = 0.2  # s between two checks of the clock
 
 
-class ToldError(DriverError):
-    """What the seat of a driver in another process has said already."""
+class RemoteDriverError(DriverError):
+    """A DriverError whose message the guard in the driver's own process has already worded."""
 
 
 class _HungError(BaseException):
     """Not an Exception, so that a driver that swallows those does not swallow this."""
 
 
-class Seat:
-    """Where a driver sits during one drive.
+class DriverGuard:
+    """Calls one driver during one drive.
 
-    Use it as ``with seat.watched(): seat.start(...); seat.ask(view) ...``.
+    Use it as ``with guard.watched(): guard.start(...); guard.ask(view) ...``.
     """
 
     def __init__(
@@ -55,7 +56,7 @@ class Seat:
         whole_drive: float = WHOLE_DRIVE,
         before_start: float = BEFORE_START,
     ) -> None:
-        """A seat for this driver; the limits are seconds of wall time.
+        """Wraps a driver; the limits are seconds of wall time.
 
         Raises:
             DriverError: the driver has no method ``steer``.
@@ -75,27 +76,28 @@ class Seat:
         self._due = math.inf
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Lets the driver get ready, if it wants to.
+        """Calls the driver's ``start``, if it has one.
 
         Raises:
-            DriverError: it raised or hung.
+            DriverError: ``start`` raised an exception or hung.
         """
         start = getattr(self._driver, "start", None)
         if start is not None:
             self.guarded(0.0, self._before_start, lambda: start(road, world, seed))
 
     def ask(self, view: View) -> tuple[float, float, float]:
-        """The driver's answer as (steer, throttle, brake), finite and in range.
+        """Returns the driver's answer as (steer, throttle, brake): finite, with throttle and brake limited to
+        0..1.
 
         Raises:
-            DriverError: it raised, hung, or the answer is no command.
+            DriverError: the driver raised an exception or hung, or its answer is not a command.
         """
         begun = time.perf_counter()
         self._due = begun + self._one_answer
         try:
             answer = self._steer(view)  # type: ignore[misc]
             self._due = math.inf
-        except (KeyboardInterrupt, ToldError):
+        except (KeyboardInterrupt, RemoteDriverError):
             raise
         except BaseException as error:  # a driver may raise anything; it costs this drive only
             raise self._failure(error, view.time) from error
@@ -110,16 +112,17 @@ class Seat:
         return self._checked(answer, view.time)
 
     def guarded(self, at: float, limit: float, action: Callable[[], Any]) -> None:
-        """Lets the driver do what comes before its drive; ``at`` is the time told in the error.
+        """Runs something that the driver does before its drive; ``at`` is the time in seconds that errors
+        state.
 
         Raises:
-            DriverError: it raised, or took longer than ``limit`` seconds.
+            DriverError: the action raised an exception, or took longer than ``limit`` seconds.
         """
         self._due = time.perf_counter() + limit
         try:
             action()
             self._due = math.inf
-        except (KeyboardInterrupt, ToldError):
+        except (KeyboardInterrupt, RemoteDriverError):
             raise
         except BaseException as error:  # as in `ask`
             late = f"was not ready within {limit:g} s: make start() return sooner"
@@ -156,7 +159,8 @@ class Seat:
         )
 
     def _line(self, error: BaseException) -> str:
-        """The innermost line of the driver's own file; of any file, where none of its own was passed."""
+        """Returns the innermost line of the driver's own file, or of any file if its own is not in the
+        traceback."""
         passed = traceback.extract_tb(error.__traceback__)
         frames = [frame for frame in passed if frame.filename != __file__]
         module = sys.modules.get(type(self._driver).__module__)
@@ -168,37 +172,37 @@ class Seat:
 
     @contextlib.contextmanager
     def watched(self) -> Iterator[None]:
-        """While this is open, a driver that takes too long is stopped."""
+        """While this context is open, a driver that takes too long is stopped."""
         try:
             with _by_signal(self) if _has_signals() else _by_thread(self):
                 yield
-        except _HungError as error:  # sent just when the answer came
+        except _HungError as error:  # raised at the moment when the answer arrived
             raise self._failure(error, 0.0) from error
 
     def is_late(self) -> bool:
-        """Is the driver being asked, and beyond its time?"""
+        """Returns whether the driver is being asked and has exceeded its time limit."""
         return time.perf_counter() > self._due
 
 
 def _has_signals() -> bool:
-    """Can an alarm be set here, and what it does now be put back afterwards?"""
+    """Returns whether an alarm can be set here, and the present handler restored afterwards."""
     return (
         hasattr(signal, "setitimer")
         and threading.current_thread() is threading.main_thread()
-        and signal.getsignal(signal.SIGALRM) is not None  # it is, where a library in C has set its own
+        and signal.getsignal(signal.SIGALRM) is not None  # None: a C library has set its own handler
     )
 
 
 @contextlib.contextmanager
-def _by_signal(seat: Seat) -> Iterator[None]:
+def _by_signal(guard: DriverGuard) -> Iterator[None]:
     begun = time.perf_counter()
     left, every = signal.getitimer(signal.ITIMER_REAL)
     before = signal.getsignal(signal.SIGALRM)
 
     def look(number: int, frame: Any) -> None:
         if left and time.perf_counter() - begun > left and callable(before):
-            before(number, frame)  # somebody else's alarm (a test's time limit) rings through ours
-        if seat.is_late():
+            before(number, frame)  # another alarm, such as a test's time limit, fell due during ours
+        if guard.is_late():
             raise _HungError
 
     signal.signal(signal.SIGALRM, look)
@@ -213,16 +217,16 @@ def _by_signal(seat: Seat) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _by_thread(seat: Seat) -> Iterator[None]:
+def _by_thread(guard: DriverGuard) -> Iterator[None]:
     asked = ctypes.c_ulong(threading.get_ident())
     done = threading.Event()
 
     def look() -> None:
         while not done.wait(TICK):
-            if seat.is_late():
+            if guard.is_late():
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(asked, ctypes.py_object(_HungError))
 
-    watcher = threading.Thread(target=look, name="roadgpt-seat", daemon=True)
+    watcher = threading.Thread(target=look, name="roadgpt-guard", daemon=True)
     watcher.start()
     try:
         yield

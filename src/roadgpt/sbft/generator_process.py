@@ -1,6 +1,6 @@
-"""Our end of the line: starts a generator's process, hears it with a time limit, and ends it in any case.
+"""Starts a generator's process, exchanges messages with it under time limits, and makes sure that it ends.
 
-Two threads read and write, so that a process that neither speaks nor listens holds up nobody.
+Two threads read and write, so that a process that neither reads nor writes blocks nothing.
 """
 
 import os
@@ -14,25 +14,25 @@ from typing import IO
 
 from roadgpt import children
 from roadgpt.errors import UsageError
-from roadgpt.sbft.line import Message, received, send
+from roadgpt.sbft.json_lines import Message, received, send
 
-NAMES = Path(__file__).with_name("names")  # our half in the generator's process; Python runs the folder
-OURS = "ROADGPT_PYTHON"  # tells that half which interpreter RoadGPT is installed in, where it is another one
+NAMES = Path(__file__).with_name("names")  # RoadGPT's half in the generator's process; Python runs the folder
+OURS = "ROADGPT_PYTHON"  # names RoadGPT's interpreter to that half, if the generator's is another one
 
 
-class GoneError(Exception):
-    """The process is there no more; its exit status, negative for a signal."""
+class GeneratorExitedError(Exception):
+    """Raised when the process has ended; ``status`` is its exit status, negative for a signal."""
 
     def __init__(self, status: int | None) -> None:
         super().__init__(status)
         self.status = status
 
 
-class Host:
-    """One generator's process."""
+class GeneratorProcess:
+    """The process of one generator."""
 
     def __init__(self, log: Path, python: str | None = None) -> None:
-        """Starts it in an interpreter, None: this one; what it prints goes into the file.
+        """Starts the process in an interpreter (None: this one); its output is written to the log file.
 
         Raises:
             UsageError: the interpreter cannot be started.
@@ -74,21 +74,21 @@ class Host:
                 send(stream, message)
 
     def tell(self, message: Message) -> None:
-        """Say something, and do not wait for anybody to listen."""
+        """Sends a message without waiting for it to be read."""
         self._to_tell.put(message)
 
     def hear(self, seconds: float) -> Message | None:
-        """The next message; None where none came in time.
+        """Returns the next message; None if none came in time.
 
         Raises:
-            GoneError: there will be none any more.
+            GeneratorExitedError: there will be no more messages.
         """
         try:
             message = self._heard.get(timeout=max(seconds, 0.0))
         except queue.Empty:
             return None
         if message is None:
-            raise GoneError(self._status())
+            raise GeneratorExitedError(self._status())
         return message
 
     def _status(self) -> int | None:
@@ -98,7 +98,7 @@ class Host:
             return None
 
     def stop(self) -> None:
-        """End the process and those that it started."""
+        """Ends the process and its child processes."""
         self._to_tell.put(None)
         children.end(self._process)
         self._log.close()

@@ -1,4 +1,5 @@
-"""A driver by name from the shelf, or out of a user's own file: ``my_driver.py:MyDriver``."""
+"""Loads a driver: a plug-in by its name, or a class in a user's own file, such as
+``my_driver.py:MyDriver``."""
 
 import hashlib
 import importlib.util
@@ -10,39 +11,40 @@ from types import ModuleType
 from typing import Any
 
 from roadgpt import plugins
-from roadgpt.drive.trust import admit, parted
+from roadgpt.drive.permission import require_permission, split_spec
 from roadgpt.errors import UsageError
 
 
 def load_driver(spec: str) -> Any:
-    """The driver that a user named, in this process; ``apart.driver_of`` decides which one that is.
+    """Returns an instance of the driver that a user named, in this process.
 
-    Runs the user's file; one that only a run, a campaign or a plan names is not run: see ``drive.trust``.
+    Runs the user's file, unless only a run, a campaign or a plan names it: see ``drive.permission``. Use
+    ``isolation.driver_of`` to get a user's driver in a process of its own.
 
     Args:
-        spec: the name of a driver on the shelf, or PATH.py:CLASS.
+        spec: the name of a driver plug-in, or PATH.py:CLASS.
 
     Raises:
-        PartError: no driver of that name on the shelf.
-        UsageError: the file or the class is missing, the file cannot be run, the class makes no driver, or
-            the user does not name it.
+        PartError: there is no driver plug-in of that name.
+        UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
+            the user did not permit it.
     """
-    admit(spec)
-    path, wanted = parted(spec)
+    require_permission(spec)
+    path, wanted = split_spec(spec)
     if not path:
         return _made(plugins.find("drivers", spec), spec)
     module = _run(Path(path))
     return _made(_class(module, wanted, path), spec)
 
 
-def located(spec: str, folder: Path) -> str:
-    """The same driver, named so that it is found from anywhere.
+def absolute_spec(spec: str, folder: Path) -> str:
+    """Returns the same driver with an absolute path, so that it is found from any folder.
 
     Args:
-        spec: as ``load_driver`` has it; the name of a driver on the shelf stays as it is.
-        folder: where the path of a driver's file begins, if it is a relative one.
+        spec: as for ``load_driver``; the name of a plug-in is returned unchanged.
+        folder: the folder that a relative path is relative to.
     """
-    path, wanted = parted(spec)
+    path, wanted = split_spec(spec)
     if not path:
         return spec
     whole = (folder / path).absolute()
@@ -50,7 +52,7 @@ def located(spec: str, folder: Path) -> str:
 
 
 def _run(path: Path) -> ModuleType:
-    """The user's file as a module; its neighbours can be imported from it."""
+    """Imports the user's file as a module; the file can import its neighbours."""
     if not path.is_file():
         raise UsageError(f"there is no file {path}: check the path of your driver")
     whole = path.resolve()
@@ -59,10 +61,10 @@ def _run(path: Path) -> ModuleType:
     if described is None or described.loader is None:
         raise UsageError(f"{path} cannot be imported: check its name and its rights")
     module = importlib.util.module_from_spec(described)
-    sys.modules[name] = module  # dataclasses and pickles look their module up there
+    sys.modules[name] = module  # dataclasses and pickle look up their module there
     sys.path.insert(0, str(whole.parent))
     try:
-        kept, sys.dont_write_bytecode = sys.dont_write_bytecode, True  # or a quick change is missed
+        kept, sys.dont_write_bytecode = sys.dont_write_bytecode, True  # else a quick edit goes unnoticed
         try:
             described.loader.exec_module(module)
         finally:
@@ -96,7 +98,7 @@ def _class(module: ModuleType, wanted: str, path: str) -> Any:
 
 
 def _made(driver: Any, spec: str) -> Any:
-    """An instance with a method ``steer(view)``."""
+    """Returns an instance with a method ``steer(view)``."""
     if inspect.isclass(driver):
         if not callable(getattr(driver, "steer", None)):
             raise UsageError(f"the driver {spec} has no method steer(self, view): add it")
@@ -122,7 +124,7 @@ def _said(error: BaseException) -> str:
 
 
 def _line(error: BaseException, path: Path) -> str:
-    """Where in the user's file it happened, the innermost place."""
+    """Returns the innermost line of the user's file in the traceback, as text."""
     lines = [
         frame.lineno for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename) == path
     ]

@@ -12,10 +12,10 @@ import pytest
 
 from roadgpt import children
 from roadgpt.drive import simulate
-from roadgpt.drive.apart import Foreign, driver_of, process
-from roadgpt.drive.custom import load_driver
+from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.drive.seat import Seat
+from roadgpt.drive.isolation import IsolatedDriver, driver_of, process
+from roadgpt.drive.loading import load_driver
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Design, Road, Segment, World, build
 
@@ -56,7 +56,7 @@ def bent() -> Road:
 
 def test_ours_sit_here_and_all_others_apart(spec) -> None:
     assert isinstance(driver_of("reference"), Reference)
-    assert isinstance(driver_of(spec("    def steer(self, view): return keep(view)")), Foreign)
+    assert isinstance(driver_of(spec("    def steer(self, view): return keep(view)")), IsolatedDriver)
 
 
 def test_a_driver_apart_drives_the_same_bytes_as_here(tmp_path: Path) -> None:
@@ -142,7 +142,7 @@ HANGS = {
 @pytest.mark.skipif(os.name != "posix", reason="uses the system's C library")
 @pytest.mark.parametrize("hang", HANGS.values(), ids=HANGS)
 def test_a_driver_that_hangs_anywhere_is_ended(spec, hang: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadgpt.drive.apart.foreign.ONE_ANSWER", 0.5)
+    monkeypatch.setattr("roadgpt.drive.isolation.proxy.ONE_ANSWER", 0.5)
     driver = driver_of(spec(f"    def steer(self, view):\n        {hang}"))
     pid = driver._process._process.pid
     begun = time.perf_counter()
@@ -154,7 +154,7 @@ def test_a_driver_that_hangs_anywhere_is_ended(spec, hang: str, monkeypatch: pyt
 
 
 def test_start_and_init_that_hang_are_told_so(spec, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadgpt.drive.apart.foreign.BEFORE_START", 0.5)
+    monkeypatch.setattr("roadgpt.drive.isolation.proxy.BEFORE_START", 0.5)
     slow = spec("    def start(self, *_): time.sleep(3600)\n    def steer(self, view): return keep(view)")
     with pytest.raises(DriverError, match=r"was not ready within 0.5 s: make start\(\) return sooner"):
         went(slow)
@@ -223,5 +223,5 @@ def test_it_ends_with_whoever_asks(spec, tmp_path: Path) -> None:
 
 
 def test_a_seat_takes_it_like_any_other(spec) -> None:
-    seat = Seat(driver_of(spec("    name = 'me'\n    def steer(self, view): return keep(view)")))
-    assert seat.name == "me"
+    guard = DriverGuard(driver_of(spec("    name = 'me'\n    def steer(self, view): return keep(view)")))
+    assert guard.name == "me"

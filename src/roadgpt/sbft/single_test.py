@@ -1,4 +1,4 @@
-"""One test from road points to a Run: what the competition's validator says, then the drive."""
+"""Runs one test from road points to a Run: the competition's validator, then the drive."""
 
 from dataclasses import replace
 from typing import Any
@@ -18,18 +18,18 @@ WRONG_TYPE = "Wrong type"
 HEIGHT = -28.0  # m, of the competition's flat level
 
 
-def tried(points: Any, index: int, request: Request, generating: float, is_test: bool = True) -> Run:
-    """The Run of a test.
+def run_test(points: Any, index: int, request: Request, generating: float, is_test: bool = True) -> Run:
+    """Runs a test.
 
     Args:
-        points: control points ``(n, 2)`` in metres; of something that is no test, whatever.
+        points: control points ``(n, 2)`` in metres; anything for something that is not a test.
         index: number of the test.
         request: world, setup and seed; its rules are the competition's.
         generating: seconds that the generator took.
-        is_test: False for what is no test, which is invalid and has no road.
+        is_test: False for something that is not a test, which is invalid and has no road.
 
     Raises:
-        PartError: a part is not installed.
+        PartError: a plug-in is not installed.
     """
     if not is_test:
         return _invalid(WRONG_TYPE, None, index, request, generating)
@@ -47,7 +47,7 @@ def tried(points: Any, index: int, request: Request, generating: float, is_test:
         run = prove(road, request.seed, request.world, request.setup, index)
     except PartError:
         raise
-    except Exception as error:  # a road on which anything breaks down costs itself
+    except Exception as error:  # an error costs only the road on which it happens
         said = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
         run = Run(request, index, request.seed, outcome="ERROR", description=said, road=road)
     return replace(run, request=request, seconds=Seconds(generating, run.seconds.drive))
@@ -59,8 +59,8 @@ def _invalid(message: str, road: Road | None, index: int, request: Request, gene
     return Run(request, index, request.seed, "INVALID", message, road=road, findings=finding, seconds=seconds)
 
 
-def told(run: Run) -> str:
-    """The outcome in the competition's words, which name the drive where it failed."""
+def sbft_description(run: Run) -> str:
+    """Returns the outcome in the competition's words, which name the drive if it failed."""
     if run.verdict is None:
         return run.description
     said = run.verdict.sbft_description
@@ -68,7 +68,8 @@ def told(run: Run) -> str:
 
 
 def records_at_their_height(run: Run) -> list[ExecutionRecord]:
-    """Execution data; the competition's level lies 28 m below zero, and so does the car's road."""
+    """Returns the execution data; the competition's level lies 28 m below zero, so the heights are
+    shifted."""
     if run.road is None or run.drive is None:
         return []
     return [_lowered(record) for record in records_of(run.road, run.drive, run.world)]
@@ -79,8 +80,8 @@ def _lowered(record: ExecutionRecord) -> ExecutionRecord:
     return record._replace(pos=[x, y, round(z + HEIGHT, 4)])
 
 
-def plan_of(run: Run) -> Array:
-    """The competition's interpolated points ``(n, 2)``; none of a test without a road."""
+def interpolated_points(run: Run) -> Array:
+    """Returns the competition's interpolated points ``(n, 2)``; none for a test without a road."""
     from roadgpt.geometry import interpolate
 
     return np.empty((0, 2)) if run.road is None else interpolate(run.road.control_points())

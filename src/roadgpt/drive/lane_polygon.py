@@ -1,7 +1,8 @@
-"""How much of the car lies outside the right lane: exact clipping of two polygons, near the car.
+"""Computes how much of the car lies outside the right lane, by clipping two polygons exactly.
 
-The lane is a strip of quads between the centre line and one lane width to its right. Only the strip near
-the car's own station counts, so where a road passes under or beside itself, the other lane is no refuge.
+The lane is a strip of quadrilaterals between the centre line and a line one lane width to its right. Only the
+part of the strip near the car's own station counts, so that another lane that passes under or beside it does
+not.
 """
 
 import math
@@ -19,17 +20,17 @@ STEP = 0.5  # m, longest quad; a chord of that length is 2 mm off a 14 m arc
 REACH = 8.0  # m along the road on both sides of the car in which its box can lie
 
 
-class Lane(NamedTuple):
-    """The right lane in plan."""
+class LanePolygon(NamedTuple):
+    """The right lane in plan, as a strip of quadrilaterals."""
 
     edges: FloatArray
-    """Shape (n, 4): x, y of the left edge (the centre line), x, y of the right edge."""
+    """Shape (n, 4): x and y of the left edge (the centre line), x and y of the right edge, in metres."""
     step: float
-    """m along the centre line between rows."""
+    """Metres along the centre line between rows."""
 
     @classmethod
-    def along(cls, road: "Road", world: "World") -> "Lane":
-        """The right lane of a road, from its start to its end."""
+    def along(cls, road: "Road", world: "World") -> "LanePolygon":
+        """Returns the right lane of a road, from its start to its end."""
         count = max(2, math.ceil(road.length / STEP))
         s = np.linspace(0.0, road.length, count + 1)
         left = np.asarray(road.at(s))[:, :2]
@@ -38,14 +39,16 @@ class Lane(NamedTuple):
         return cls(edges, road.length / count)
 
     def outside(self, corners: FloatArray, s: float) -> float:
-        """Share of a convex counter-clockwise box, shape (4, 2), outside the lane near station s; 0..1."""
+        """Returns the share, 0..1, of a convex counter-clockwise box of shape (4, 2) that is outside the lane
+        near station s."""
         box = np.ascontiguousarray(corners, dtype=np.float64)
         return share_outside(self.edges, self.step, box, float(s), np.empty((2, 16, 2)))
 
 
 @compiled
 def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scratch: FloatArray) -> float:
-    """Share of the convex box outside the strip; scratch is room for 2 x 16 corners."""
+    """Returns the share of the convex box that is outside the strip; ``scratch`` is working memory of shape
+    (2, 16, 2)."""
     whole = 0.0
     mid_x = 0.25 * (box[0, 0] + box[1, 0] + box[2, 0] + box[3, 0])
     mid_y = 0.25 * (box[0, 1] + box[1, 1] + box[2, 1] + box[3, 1])

@@ -1,25 +1,26 @@
-"""What stands between the driver's pedals and the wheels: ABS, TCS and a simple ESC."""
+"""The systems between the driver's pedals and the wheels: ABS, traction control and a simple ESC."""
 
 import math
 from typing import Any
 
 from roadgpt.drive.compiled import inlined
 
-LETS_GO = 12.0  # 1/s, at most, how fast a valve closes
-COMES_BACK = 5.0  # 1/s
+LETS_GO = 12.0  # 1/s, maximum rate at which a valve closes
+COMES_BACK = 5.0  # 1/s, maximum rate at which it opens
 SLOWEST_ABS = 1.5  # m/s, below which wheels may lock
-SLOWEST_ESC = 5.0  # m/s
-TOLERANCE = 0.06  # rad/s of yaw rate that the ESC lets pass
-TOLERANCE_SHARE = 0.10  # and of the yaw rate it expects
-ESC_LAG = 0.12  # s, of the expected yaw rate behind the steering
+SLOWEST_ESC = 5.0  # m/s, below which the ESC does nothing
+TOLERANCE = 0.06  # rad/s of yaw rate error that the ESC ignores
+TOLERANCE_SHARE = 0.10  # of the expected yaw rate, ignored on top of that
+ESC_LAG = 0.12  # s, lag of the expected yaw rate behind the steering
 ESC_MOST = 2500.0  # Nm at one wheel
-CUT = 4.0  # s/rad, share of throttle taken away per yaw rate too much
+CUT = 4.0  # s/rad, share of throttle removed per yaw rate error
 FRICTION_USED = 0.95  # share of the friction that the expected yaw rate may need
 
 
 @inlined
-def valve(opening: float, slip: float, limit: float, dt: float) -> float:
-    """Share of the torque that passes, a moment later: less while the slip is beyond its limit."""
+def slip_valve(opening: float, slip: float, limit: float, dt: float) -> float:
+    """Returns the share of the torque that passes after a time step; it falls while the slip exceeds its
+    limit."""
     if limit <= 0.0:
         return 1.0
     rate = 20.0 * (limit - slip) / limit
@@ -31,8 +32,9 @@ def valve(opening: float, slip: float, limit: float, dt: float) -> float:
 def expected_yaw_rate(
     car: Any, friction: float, speed: float, steer: float, before: float, dt: float
 ) -> float:
-    """rad/s that a driver who steers like this wants, as far as the friction allows; lags a little."""
-    wanted = speed * math.tan(steer) / (car.wheelbase + car.characteristic * speed * speed)
+    """Returns the yaw rate in rad/s that corresponds to the steering angle, limited by the friction, with a
+    lag."""
+    wanted = speed * math.tan(steer) / (car.wheelbase + car.esc_understeer_gradient * speed * speed)
     most = FRICTION_USED * friction * 9.81 / max(speed, 1.0)
     wanted = min(max(wanted, -most), most)
     now: float = before + (wanted - before) * dt / (ESC_LAG + dt)
@@ -40,22 +42,23 @@ def expected_yaw_rate(
 
 
 @inlined
-def stability(
+def esc_torques(
     car: Any, speed: float, yaw_rate: float, expected: float
 ) -> tuple[float, float, float, float, float]:
-    """(Nm at the left front, right front, left rear, right rear wheel, share of throttle kept)."""
+    """Returns the ESC's braking torques in Nm (left front, right front, left rear, right rear) and the share
+    of throttle that it leaves."""
     excess = yaw_rate - expected
     beyond = abs(excess) - TOLERANCE - TOLERANCE_SHARE * abs(expected)
-    if car.esc <= 0.0 or speed < SLOWEST_ESC or beyond <= 0.0:
+    if car.esc_gain <= 0.0 or speed < SLOWEST_ESC or beyond <= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 1.0
-    torque = min(car.esc * beyond, ESC_MOST)
+    torque = min(car.esc_gain * beyond, ESC_MOST)
     kept = max(1.0 - CUT * beyond, 0.0)
     turns_left = expected > 0.0 if abs(expected) > 0.02 else yaw_rate > 0.0
     too_far = excess > 0.0 if turns_left else excess < 0.0
-    if too_far:  # oversteer: the outer front wheel turns the car back
+    if too_far:  # oversteer: braking the outer front wheel turns the car back
         if turns_left:
             return 0.0, torque, 0.0, 0.0, kept
         return torque, 0.0, 0.0, 0.0, kept
-    if turns_left:  # understeer: the inner rear wheel pulls it in
+    if turns_left:  # understeer: braking the inner rear wheel turns the car in
         return 0.0, 0.0, 0.5 * torque, 0.0, kept
     return 0.0, 0.0, 0.0, 0.5 * torque, kept

@@ -1,4 +1,4 @@
-"""The land around a road as cameras see it: its light, and its surface in patches."""
+"""The terrain around a road as cameras see it: its light, and its surface in patches."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,25 +15,25 @@ BLOCK = 8  # cells along a side of a patch
 
 
 @dataclass(frozen=True, eq=False)
-class Meadow:
-    """Land under the sun and the sky."""
+class LitTerrain:
+    """The land in the light of sun and sky."""
 
     land: Land
 
     @cached_property
     def light(self) -> Array:
-        """(rows, columns), by the slope of the land."""
+        """The light (rows, columns) on the land, from its slope."""
         land = self.land
         slope_y, slope_x = np.gradient(ndimage.gaussian_filter(land.heights, 1.0), land.y, land.x)
         normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
         return daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
 
     def light_at(self, x: Array, y: Array) -> Array:
-        """How light the land is there."""
+        """Returns the light on the land at points (x, y)."""
         return self.land.between(self.light, x, y)
 
     def patches(self) -> list[Patch]:
-        """Its surface."""
+        """Returns the surface as patches."""
         land = self.land
         x, y = np.meshgrid(land.x, land.y)
         points, values = np.stack([x, y, land.heights], axis=-1), attributes(0.0, 0.0, self.light)

@@ -1,0 +1,280 @@
+"""The inner loop: computes the forces on the car in steps of 2 ms, between MuJoCo's two half steps.
+
+The forces are passed to MuJoCo as generalised forces (``qfrc_applied``), computed by hand for this one tree
+of bodies. The result is the same as with forces at the wheel bodies, at a fraction of the cost.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from roadgpt.drive.compiled import inlined
+from roadgpt.drive.drive import FloatArray
+from roadgpt.drive.lane_polygon import LanePolygon
+from roadgpt.drive.sampled_road import SampledRoad, locate_on
+from roadgpt.drive.simulators.mujoco.bridge import call
+from roadgpt.drive.simulators.mujoco.chassis_control import (
+    SLOWEST_ABS,
+    esc_torques,
+    expected_yaw_rate,
+    slip_valve,
+)
+from roadgpt.drive.simulators.mujoco.hull import hull_forces
+from roadgpt.drive.simulators.mujoco.model import (
+    BODY,
+    CARRIER,
+    SLIDE_DOF,
+    SPIN_DOF,
+    STEER_DOF,
+    STEP,
+    WHEEL,
+)
+from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
+
+AIR = 1.2  # kg/m^3, at 20 degrees C
+UNDER = 0.25  # m below the road's surface, beyond which a wheel has no contact any more
+
+# The car's own state beside MuJoCo's, as indices into one array ...
+STEER, THROTTLE, BRAKE, EXPECTED, STATION, SUPPORT, PAST_VX, PAST_VY = range(8)
+STATE = 8
+# ... and one row for each wheel.
+SLIP_X, SLIP_Y, ABS, TCS, AT, LOAD, FX, FY = range(8)
+WHEEL_STATE = 8
+
+
+class MujocoHandles(NamedTuple):
+    """MuJoCo as compiled code uses it: functions, model and data, and views of the data's arrays."""
+
+    first: Any
+    second: Any
+    place: Any
+    model: Any
+    data: Any
+    qpos: FloatArray
+    qvel: FloatArray
+    qfrc: FloatArray
+    xpos: FloatArray
+    xmat: FloatArray
+    cvel: FloatArray
+    com: FloatArray
+
+
+class Ground(NamedTuple):
+    """The surface under the wheels."""
+
+    sampled: SampledRoad
+    edge: float
+    """m from the centre line to where the ground ends."""
+    friction: float
+    lane: LanePolygon
+
+
+class CarState(NamedTuple):
+    """The state of the car beside MuJoCo's own, and working memory."""
+
+    state: FloatArray
+    """Shape (STATE,)."""
+    wheels: FloatArray
+    """Shape (4, WHEEL_STATE)."""
+    hull: FloatArray
+    """Shape (n, 3): points of the hull, which never change."""
+    box: FloatArray
+    """Shape (4, 2)."""
+    scratch: FloatArray
+    """Shape (2, 16, 2)."""
+
+
+@inlined
+def step_once(
+    mj: MujocoHandles,
+    car: Any,
+    axles: Any,
+    ground: Ground,
+    car_state: CarState,
+    steer: float,
+    throttle: float,
+    brake: float,
+) -> None:
+    """Simulates 2 ms with these commands (rad, 0..1, 0..1)."""
+    state = car_state.state
+    _steer_and_pedals(mj, car, axles, state, steer, throttle, brake)
+    call(mj.first, mj.model, mj.data)
+    qvel = mj.qvel
+    qfrc = mj.qfrc
+    m = mj.xmat[BODY]
+    vx, vy, vz = qvel[0], qvel[1], qvel[2]
+    speed = vx * m[0] + vy * m[3] + vz * m[6]
+
+    # The engine is limited by power; the ESC may take throttle away and brake single wheels.
+    state[EXPECTED] = expected_yaw_rate(car, ground.friction, speed, state[STEER], state[EXPECTED], STEP)
+    e0, e1, e2, e3, kept = esc_torques(car, speed, qvel[5], state[EXPECTED])
+    push = (
+        kept * state[THROTTLE] * min(car.max_drive_acceleration * car.mass, car.max_power / max(speed, 1.0))
+    )
+    stop = state[BRAKE] * car.max_brake_deceleration * car.mass
+
+    drag = -0.5 * AIR * car.drag_area * math.sqrt(vx * vx + vy * vy + vz * vz)
+    qfrc[0], qfrc[1], qfrc[2] = drag * vx, drag * vy, drag * vz
+    qfrc[3] = qfrc[4] = qfrc[5] = 0.0
+    state[SUPPORT] = 1.0
+    for i in range(4):
+        axle = axles[i // 2]
+        extra = e0 if i == 0 else (e1 if i == 1 else (e2 if i == 2 else e3))
+        turn = 0.5 * push * axle.drive_torque_share * car.unloaded_radius
+        hold = 0.5 * stop * axle.brake_torque_share * car.unloaded_radius
+        _wheel(i, mj, car, axle, ground, state, car_state.wheels[i], turn, hold, extra)
+    if state[SUPPORT] < 1.0 or m[8] < 0.95 or _lies_low(mj, car, ground, state):
+        hull_forces(mj, car, ground, state[STATION], car_state.hull)
+
+    # MuJoCo takes the free body's moment in the body's own axes.
+    mx, my, mz = qfrc[3], qfrc[4], qfrc[5]
+    qfrc[3] = m[0] * mx + m[3] * my + m[6] * mz
+    qfrc[4] = m[1] * mx + m[4] * my + m[7] * mz
+    qfrc[5] = m[2] * mx + m[5] * my + m[8] * mz
+    call(mj.second, mj.model, mj.data)
+
+
+@inlined
+def _steer_and_pedals(
+    mj: MujocoHandles,
+    car: Any,
+    axles: Any,
+    state: FloatArray,
+    steer: float,
+    throttle: float,
+    brake: float,
+) -> None:
+    steer = min(max(steer, -car.max_steer_angle), car.max_steer_angle)
+    moved = min(max(steer - state[STEER], -car.max_steer_rate * STEP), car.max_steer_rate * STEP)
+    for side in range(2):
+        # The hinges are prescribed: MuJoCo moves them from `now` at this rate, held by their armature.
+        now = _hinge_angle(car, axles[0], state[STEER], 1 - 2 * side)
+        then = _hinge_angle(car, axles[0], state[STEER] + moved, 1 - 2 * side)
+        mj.qpos[STEER_DOF[side] + 1] = now
+        mj.qvel[STEER_DOF[side]] = (then - now) / STEP
+    state[STEER] += moved
+    state[THROTTLE] += (throttle - state[THROTTLE]) * STEP / (car.throttle_time_constant + STEP)
+    state[BRAKE] += (brake - state[BRAKE]) * STEP / (car.brake_time_constant + STEP)
+
+
+@inlined
+def _hinge_angle(car: Any, axle: Any, steer: float, side: int) -> float:
+    """Returns the angle of one front wheel in rad, for the Ackermann fraction ``car.ackermann``."""
+    tangent = math.tan(steer)
+    return math.atan(
+        tangent / (1.0 - side * car.ackermann * tangent * 0.5 * axle.track_width / car.wheelbase)
+    )
+
+
+@inlined
+def _wheel(
+    i: int,
+    mj: MujocoHandles,
+    car: Any,
+    axle: Any,
+    ground: Ground,
+    state: FloatArray,
+    wheel: FloatArray,
+    turn: float,
+    hold: float,
+    extra: float,
+) -> None:
+    """Adds one wheel to the generalised forces: tyre, spring, engine and brakes."""
+    qfrc = mj.qfrc
+    sampled = ground.sampled
+    side = 1.0 - 2.0 * (i % 2)
+    slide, spin = SLIDE_DOF[i], SPIN_DOF[i]
+    centre = mj.xpos[WHEEL[i]]
+    cx, cy, cz = centre[0], centre[1], centre[2]
+    k = mj.xmat[CARRIER[i]]
+    ax, ay, az = k[1], k[4], k[7]
+    s, t, height, slope, heading = locate_on(sampled.table, sampled.first, sampled.step, cx, cy, wheel[AT])
+    wheel[AT] = s
+    nz = 1.0 / math.sqrt(1.0 + slope * slope)
+    nx, ny = -slope * math.cos(heading) * nz, -slope * math.sin(heading) * nz
+    gap = (cz - height) * nz
+    over = min(ground.edge - abs(t), s + ground.edge, sampled.length + ground.edge - s)
+    share = min(max(over / car.tyre_width + 0.5, 0.0), 1.0)
+    state[SUPPORT] = min(state[SUPPORT], share)
+
+    # Velocity of the contact point, as if the wheel did not spin.
+    v = mj.cvel[CARRIER[i]]
+    px, py, pz = cx - nx * gap, cy - ny * gap, cz - nz * gap
+    rx, ry, rz = px - mj.com[BODY, 0], py - mj.com[BODY, 1], pz - mj.com[BODY, 2]
+    ux, uy, uz = v[3] + v[1] * rz - v[2] * ry, v[4] + v[2] * rx - v[0] * rz, v[5] + v[0] * ry - v[1] * rx
+
+    # Along the wheel: axle x normal; to its left: normal x along.
+    lean = ax * nx + ay * ny + az * nz
+    lx, ly, lz = ay * nz - az * ny, az * nx - ax * nz, ax * ny - ay * nx
+    norm = 1.0 / max(math.sqrt(lx * lx + ly * ly + lz * lz), 0.05)
+    lx, ly, lz = lx * norm, ly * norm, lz * norm
+    wx, wy, wz = ny * lz - nz * ly, nz * lx - nx * lz, nx * ly - ny * lx
+
+    depth = car.unloaded_radius - gap * norm
+    load = 0.0
+    if depth > 0.0 and gap > -UNDER:
+        load = share * (
+            axle.tyre_vertical_stiffness * depth - axle.tyre_vertical_damping * (ux * nx + uy * ny + uz * nz)
+        )
+    load = max(load, 0.0)
+    out = mj.qpos[slide + 1]
+    camber = math.asin(min(max(lean, -1.0), 1.0)) - side * axle.camber_gain * out
+    forward = ux * lx + uy * ly + uz * lz
+    fx, fy, wheel[SLIP_X], wheel[SLIP_Y] = tyre_forces(
+        axle,
+        ground.friction,
+        load,
+        camber,
+        forward,
+        ux * wx + uy * wy + uz * wz,
+        mj.qvel[spin] * gap,
+        wheel[SLIP_X],
+        wheel[SLIP_Y],
+        STEP,
+    )
+    wheel[LOAD], wheel[FX], wheel[FY] = load, fx, fy
+    gx, gy, gz = fx * lx + fy * wx + load * nx, fx * ly + fy * wy + load * ny, fx * lz + fy * wz + load * nz
+
+    # On the whole car: force, and moment about the body's centre.
+    bx, by, bz = px - mj.xpos[BODY, 0], py - mj.xpos[BODY, 1], pz - mj.xpos[BODY, 2]
+    qfrc[0] += gx
+    qfrc[1] += gy
+    qfrc[2] += gz
+    qfrc[3] += by * gz - bz * gy
+    qfrc[4] += bz * gx - bx * gz
+    qfrc[5] += bx * gy - by * gx
+    # Along the suspension: the tyre's force less spring, damper, bar and stops.
+    m = mj.xmat[BODY]
+    sy, sz = side * math.sin(axle.inclination), math.cos(axle.inclination)
+    pushed = gx * (m[1] * sy + m[2] * sz) + gy * (m[4] * sy + m[5] * sz) + gz * (m[7] * sy + m[8] * sz)
+    other = mj.qpos[SLIDE_DOF[i + 1 - 2 * (i % 2)] + 1]
+    spring = axle.sprung_load + axle.wheel_rate * out + axle.damping * mj.qvel[slide]
+    spring += axle.anti_roll_stiffness / (axle.track_width * axle.track_width) * (out - other)
+    spring += car.bump_stop_rate * (max(out - car.bump_travel, 0.0) + min(out + car.bump_travel, 0.0))
+    qfrc[slide] = pushed - spring
+
+    # About the wheel's axle: engine and tyre turn it; brakes and rolling resistance can only stop it.
+    # The slip at peak friction falls with the friction; the valves are assumed to know the friction.
+    grip = min(ground.friction, 1.0)
+    wheel[ABS] = (
+        slip_valve(wheel[ABS], -wheel[SLIP_X], car.abs_slip_threshold * grip, STEP)
+        if forward > SLOWEST_ABS
+        else 1.0
+    )
+    wheel[TCS] = slip_valve(wheel[TCS], wheel[SLIP_X], car.tcs_slip_threshold * grip, STEP)
+    free = turn * wheel[TCS] - gap * (
+        ax * (ny * gz - nz * gy) + ay * (nz * gx - nx * gz) + az * (nx * gy - ny * gx)
+    )
+    most = (hold + extra) * wheel[ABS] + axle.tyre_rolling_resistance * load * car.unloaded_radius
+    stops = -(car.wheel_inertia * mj.qvel[spin] / STEP + free)
+    qfrc[spin] = free + min(max(stops, -most), most)
+
+
+@inlined
+def _lies_low(mj: MujocoHandles, car: Any, ground: Ground, state: FloatArray) -> bool:
+    """Returns whether the underbody could touch the road."""
+    sampled = ground.sampled
+    x, y, z = mj.xpos[BODY, 0], mj.xpos[BODY, 1], mj.xpos[BODY, 2]
+    s, _, height, _, _ = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])
+    state[STATION] = s
+    low: bool = z - height < car.cg_height - 0.6 * car.ground_clearance
+    return low
