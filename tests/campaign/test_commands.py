@@ -227,7 +227,7 @@ def test_a_folder_of_roadgpt_run_is_told_from_a_campaign(tmp_path: Path, command
     done = roadgpt(command, tmp_path / "r")
     assert done.exit_code == 2
     assert "was made by roadgpt run, not by roadgpt campaign" in done.output
-    assert f"the same roadgpt run with --out {tmp_path / 'r'} goes on" in done.output
+    assert f"the same roadgpt run with --out {tmp_path / 'r'} continues" in done.output
     assert done.stdout == ""
 
 

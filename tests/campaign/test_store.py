@@ -77,7 +77,7 @@ def test_results_cells_and_proposals_come_out_as_they_went_in(data: st.DataObjec
     done = [data.draw(results(number, made)) for number, made in enumerate(asked, 1)]
     kept = data.draw(st.integers(0, len(done)))
     with TemporaryDirectory() as name, a_store(Path(name)) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.add_batch("c01", 0, 1, asked)
         assert [made for _, _, made in store.waiting("c01")] == asked
         store.keep([("c01", FinishedTest(result)) for result in done[:kept]], None, [], {"c01": 1.5})
@@ -91,7 +91,7 @@ def test_results_cells_and_proposals_come_out_as_they_went_in(data: st.DataObjec
 
 def test_a_batch_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
     with a_store(tmp_path) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.add_batch("c01", 0, 1, [Proposal(None, 1, "draft")] * 3)
         with pytest.raises(RoadGPTError, match="cannot write"):
             store.add_batch("c01", 1, 3, [Proposal(None, 1, "draft")] * 3)  # number 3 is taken
@@ -105,12 +105,12 @@ def test_a_batch_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
 
 def test_who_was_at_which_test_is_forgotten_by_the_next_sitting(tmp_path: Path) -> None:
     with a_store(tmp_path) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.add_batch("c01", 0, 1, [Proposal(None, 1, "draft")] * 3)
         store.keep([], None, [("c01", 2, RunningJob(7, "worker 1", 3.0), 1e12)], {})
         assert store.query("SELECT cell, number, worker FROM leases") == [("c01", 2, "worker 1")]
     with Store.opened(tmp_path) as store:  # the process was killed, and another one goes on
-        store.begin_sitting(1)
+        store.begin_session(1)
         assert not store.query("SELECT * FROM leases")
 
 
@@ -120,7 +120,7 @@ def test_numbers_that_are_none_are_left_out(tmp_path: Path) -> None:
         1, 0, made, "FAIL", "x", margin=math.nan, features={"A": math.nan, "B": math.inf, "C": 1.0}
     )
     with a_store(tmp_path) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.add_batch("c01", 0, 1, [made])
         store.keep(
             [("c01", FinishedTest(broken, spent=Spent(usage=Usage(prompt=3, completion=4), cost=0.5)))],
@@ -154,10 +154,10 @@ def test_a_store_of_an_older_version_is_read_and_gone_on_with(tmp_path: Path) ->
     made = Proposal(None, 1, "draft")
     done = [Result(n, 0, made, "PASS", "kept", margin=0.5, max_oob=0.62, beyond=1.13) for n in (1, 2)]
     with a_store(tmp_path) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.add_batch("c01", 0, 1, [made] * 2)
         store.keep([("c01", FinishedTest(done[0]))], None, [], {})
-        store.end_sitting()
+        store.end_session()
     with sqlite3.connect(tmp_path / STORE) as db:  # as it was before this column
         db.execute("ALTER TABLE tests DROP COLUMN beyond")
     db.close()
@@ -177,7 +177,7 @@ def test_a_store_of_an_older_version_is_read_and_gone_on_with(tmp_path: Path) ->
     assert "1 mostly outside" in line
     assert "an unknown distance (an older version wrote this store) beyond the marking" in line
     with Store.opened(tmp_path) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.keep([("c01", FinishedTest(done[1]))], None, [], {})
         assert [one.beyond for one in store.results("c01")] == [None, 1.13]
 

@@ -37,7 +37,7 @@ def test_the_table_is_that_of_a_slow_writer(data: st.DataObject) -> None:
     asked = data.draw(st.lists(proposals(), min_size=1, max_size=5))
     done = [data.draw(results(number, made)) for number, made in enumerate(asked, 1)]
     with TemporaryDirectory() as name, a_store(Path(name)) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.add_batch("c01", 0, 1, asked)
         store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
         write_tables(store, Path(name))
@@ -59,7 +59,7 @@ def test_numbers_are_handed_on_as_they_are_in_the_store(tmp_path: Path) -> None:
         for number, (one, its) in enumerate(zip(made, known, strict=True), 1)
     ]
     with a_store(tmp_path) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.add_batch("c01", 0, 1, made)
         store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
         write_tables(store, tmp_path)
@@ -90,7 +90,7 @@ def test_cells_count_what_the_results_say(tmp_path: Path) -> None:
         for number, (one, (outcome, curvature, margin)) in enumerate(zip(made, places, strict=True), 1)
     ]
     with a_store(tmp_path) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         store.add_batch("c01", 0, 1, made)
         store.keep([("c01", FinishedTest(result)) for result in done], None, [], {})
         write_tables(store, tmp_path)
@@ -110,7 +110,7 @@ def test_rows_stand_in_the_order_of_cells_and_tests(tmp_path: Path) -> None:
     wanted = plan(12, cells=2)
     made = [Proposal(a_design(number), number, "draft") for number in range(1, 13)]
     with Store.new(tmp_path, wanted.model_dump_json(), wanted.cells(BRIEFS), {}) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         for cell in ("c02", "c01"):
             store.add_batch(cell, 0, 1, made)
             done = [Result(number, 0, one, "VALID", "", one.design) for number, one in enumerate(made, 1)]

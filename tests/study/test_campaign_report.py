@@ -66,7 +66,7 @@ def written(folder: Path, goes_on: bool = False) -> Path:
         cells.append(Cell(name, request, None, "words", None, budget=Budget(tests=TESTS)))
     store = Store.new(folder, plan.model_dump_json(), cells, {"roadgpt": "1"})
     with store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         results = list(drawn(goes_on))
         for cell in CELLS:
             proposals = [result.proposal for name, result in results if name == cell]
@@ -198,7 +198,7 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
     request = Request(words="a road with a turn")
     cell = Cell("c01", request, None, "quality_diversity", "boundary", budget=Budget(tests=5))
     with Store.new(tmp_path, plan.model_dump_json(), [cell], {"roadgpt": "1"}) as store:
-        store.begin_sitting(1)
+        store.begin_session(1)
         proposals = {number: Proposal(design, number, "draft") for number, (_, design) in roads.items()}
         store.add_batch("c01", 0, 1, [*proposals.values()])
         for number, (outcome, design) in roads.items():

@@ -21,7 +21,7 @@ ANYWHERE = 0.05  # of a first failure in a cell: what one in a cell with many co
 
 
 class Predictions(NamedTuple):
-    """What each tree predicts of candidates; both arrays are ``(trees, n)``."""
+    """The predictions of each tree for candidates; both arrays are ``(trees, n)``."""
 
     margins: Array
     """Metres."""

@@ -29,7 +29,7 @@ class BatchScheduler:
             "SELECT seconds, closed FROM cells WHERE name = ?", (cell.name,)
         )
         self._generator: Generator | None = None
-        self._told = 0
+        self._batches_told = 0
         self._has_road = False
 
     @property
@@ -109,12 +109,12 @@ class BatchScheduler:
         if self._generator is None:
             self._generator = plugins.find("generators", self.cell.generator)(self.cell)
         generator: Generator = self._generator
-        while self._told <= last:
-            results = self._results(self.batches[self._told])
+        while self._batches_told <= last:
+            results = self._results(self.batches[self._batches_told])
             self._has_road = self._has_road or any(result.design for result in results)
             self._last = results[-1]
             generator.tell(results)
-            self._told += 1
+            self._batches_told += 1
         return generator
 
     def _results(self, batch: Batch) -> list[Result]:
@@ -126,8 +126,8 @@ class BatchScheduler:
         last = batch - LAG
         if last < 0:
             return range(0)
-        told = self.batches[last].first + self.batches[last].n - 1
-        oldest = max(0, -(-(told - REMEMBERED) // STRIDE) * STRIDE)
+        last_known = self.batches[last].first + self.batches[last].n - 1
+        oldest = max(0, -(-(last_known - REMEMBERED) // STRIDE) * STRIDE)
         begin = bisect(self.batches, oldest, key=lambda one: one.first + one.n - 1)
         return range(begin, last + 1)
 

@@ -32,7 +32,7 @@ from roadgpt.run.versions import versions_of
 
 LOCK = "campaign.lock"
 LOG = "workers.log"
-TOLD = {
+USER_NAMES = {
     "prompts": "descriptions",
     "budget": "number of tests or seconds",
     "drives": "choice whether to drive",
@@ -128,7 +128,7 @@ def _same(plan: Plan, folder: Path) -> None:
     with Store.opened(folder) as store:
         there = plan_of(store)
         kept = there.essence()
-        other = [TOLD.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
+        other = [USER_NAMES.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
         if other:
             raise UsageError(
                 f"{folder} holds another campaign (different {', '.join(other)}); "

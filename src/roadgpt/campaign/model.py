@@ -12,7 +12,7 @@ from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
 
 Goal = Literal["failures", "coverage", "hardest", "boundary"]
-"""What a search looks for; a cell without a goal makes a number of roads and does not search."""
+"""The goal of a search; a cell without a goal makes a number of roads and does not search."""
 GOALS: tuple[Goal, ...] = get_args(Goal)
 
 MOST_TESTS = 10_000_000  # of one cell; numbers of tests have seven digits
@@ -99,7 +99,7 @@ class Cell:
     request: Request
     """Description, seed, world and setup, as for ``roadgpt run``."""
     brief: Brief | None
-    """What was read from the description, once, by the main process; None where there is no description."""
+    """The requirements that were read from the description, once; None where there is no description."""
     generator: str
     goal: Goal | None
     settings: Mapping[str, Any] = field(default_factory=dict)

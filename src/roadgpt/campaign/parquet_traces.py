@@ -29,8 +29,10 @@ def read_parquet(path: Path, cell: str, number: int) -> tuple[dict[str, Any], di
             f"{path} was written by an earlier version of roadgpt, and reading its drives needs pyarrow; "
             "say: pip install pyarrow"
         ) from error
-    told = json.loads(pq.read_metadata(path).metadata[b"roadgpt"])
-    (header,) = [dict(each) for each in told["drives"] if (each["cell"], each["number"]) == (cell, number)]
+    contents = json.loads(pq.read_metadata(path).metadata[b"roadgpt"])
+    (header,) = [
+        dict(each) for each in contents["drives"] if (each["cell"], each["number"]) == (cell, number)
+    ]
     table = pq.read_table(path, filters=[("cell", "=", cell), ("number", "=", number)])
     del header["cell"], header["number"]
     return header, {name: table[name].to_numpy().astype(np.int32) for name in COLUMNS}

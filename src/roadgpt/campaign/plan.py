@@ -30,7 +30,7 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 
 class Plan(Frozen):
-    """What a campaign is asked for."""
+    """The settings of a campaign."""
 
     prompts: Names = ("",)
     """Descriptions; an empty one where the generator needs none."""

@@ -67,8 +67,8 @@ class WorldTable(_Strict):
 
     def world(self) -> World:
         """Returns the World with these values."""
-        told = self.model_dump()
-        return World(speed_limit=told.pop("speed_limit_kmh") / 3.6, **told)
+        values = self.model_dump()
+        return World(speed_limit=values.pop("speed_limit_kmh") / 3.6, **values)
 
 
 class PlanTable(_Strict):
@@ -108,13 +108,13 @@ def read_plan(path: Path) -> PlanFile:
         UsageError: the file is not TOML, or a key or a value of it cannot be used.
     """
     try:
-        told = tomllib.loads(read_text(path, LARGEST, "a plan of a campaign", "utf-8-sig"))
+        data = tomllib.loads(read_text(path, LARGEST, "a plan of a campaign", "utf-8-sig"))
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror}; check the path") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UsageError(f"{path} is not TOML: {error}; correct it") from error
     try:
-        table = PlanTable.model_validate(told)
+        table = PlanTable.model_validate(data)
         ChatSettings.model_validate(table.chat).came_with(path)
     except ValidationError as error:
         within = ("chat",) if error.title == ChatSettings.__name__ else ()
@@ -155,8 +155,8 @@ def _sentence(error: ValidationError, within: tuple[str, ...]) -> str:
     if mistake["type"] == "extra_forbidden":
         return _unknown(key, str(place[-1]), _keys(place[:-1]))
     advice = ADVICE.get(mistake["type"], "").format(**mistake.get("ctx", {}))
-    said = str(mistake["msg"]).removeprefix("Value error, ")
-    return f"{key}: {_short(mistake['input'])} is not possible; {advice or said[:1].lower() + said[1:]}"
+    message = str(mistake["msg"]).removeprefix("Value error, ")
+    return f"{key}: {_short(mistake['input'])} is not possible; {advice or message[:1].lower() + message[1:]}"
 
 
 def _unknown(key: str, name: str, known: Sequence[str]) -> str:

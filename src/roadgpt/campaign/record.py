@@ -199,8 +199,8 @@ class Record:
         )
         for row in self.stream(sql, (*names, *values)):
             with reading_store(self.path):
-                told = result_of_row(row)
-            yield told
+                found = result_of_row(row)
+            yield found
 
     def result(self, cell: str, number: int) -> Result:
         """Returns one result.

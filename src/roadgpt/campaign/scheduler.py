@@ -26,7 +26,7 @@ PER_WORKER = 2  # tests under way or waiting, below which the next cell is begun
 
 @dataclass
 class Progress:
-    """How much of a campaign is done."""
+    """The progress of a campaign."""
 
     total: int | None
     """Number of tests; None where only time limits them."""
@@ -78,7 +78,7 @@ class Scheduler:
 
     def run(self) -> Iterator[Progress]:
         """Works until nothing is left to do; yields the progress after every group of results."""
-        self._store.begin_sitting(self._staff.workers)
+        self._store.begin_session(self._staff.workers)
         while self._error is None:
             look()
             self._fill()
@@ -102,10 +102,10 @@ class Scheduler:
             try:
                 self._take(self.executor.done(0.0))
             except RoadGPTError:
-                self._error = None  # it was told already
+                self._error = None  # the caller has it already
         if self._may_write:
             self._keep()
-            self._store.end_sitting()
+            self._store.end_session()
 
     # Handing out
 
@@ -236,8 +236,8 @@ class Scheduler:
         for lost in self._losses.lost:
             self._store.reopen(lost.schedule.cell.name, lost.task.number, lost.task.batch)
         self.progress.outcomes["ERROR"] -= len(self._losses.lost)
-        said = ended.result.description
-        self._error = self._losses.given_up(said, f"fix it and continue with: roadgpt resume {folder}")
+        reason = ended.result.description
+        self._error = self._losses.given_up(reason, f"fix it and continue with: roadgpt resume {folder}")
 
     def _is_due(self) -> bool:
         waited = time.monotonic() - (self._oldest if self._pending else self._looked)

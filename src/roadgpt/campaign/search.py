@@ -67,10 +67,10 @@ def settings_of(cell: Cell) -> SearchSettings:
         name = ".".join(str(part) for part in first["loc"])
         if first["type"] == "extra_forbidden":
             known = ", ".join(SearchSettings.model_fields)
-            said = f"is unknown; there are {known}"
+            problem = f"is unknown; there are {known}"
         else:
-            said = str(first["msg"]).removeprefix("Value error, ")
-        raise UsageError(f"setting '{name}' of the generator '{cell.generator}': {said}") from error
+            problem = str(first["msg"]).removeprefix("Value error, ")
+        raise UsageError(f"setting '{name}' of the generator '{cell.generator}': {problem}") from error
 
 
 def context_of(cell: Cell) -> VariationContext:

@@ -20,7 +20,7 @@ CONCERNS_ALL = (PartError, UsageError, ChatError)  # what one test cannot be bla
 
 
 class Allowance(NamedTuple):
-    """What one test may spend on a language model; None: no limit."""
+    """The limits of one test for asking a language model; None: no limit."""
 
     tokens: int | None = None
     cost: float | None = None
@@ -103,8 +103,8 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
     except CONCERNS_ALL:
         raise
     except Exception as error:  # whatever a part raises costs this test, not the campaign
-        said = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
-        return FinishedTest(failed(task, said), error=traceback.format_exc())
+        sentence = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
+        return FinishedTest(failed(task, sentence), error=traceback.format_exc())
 
 
 def failed(task: Task, sentence: str) -> Result:

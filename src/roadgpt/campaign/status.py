@@ -14,7 +14,7 @@ from roadgpt.verdict.severity import MOSTLY
 
 FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
 ONE_SIDED = 0.05  # share of driven roads that ended otherwise, below which there is hardly a boundary
-NOTHING = (None, 0, 0, None, None)  # what is told of tests that passed where none did
+NOTHING = (None, 0, 0, None, None)  # of a cell in which no test passed
 LATELY = 60.0  # s over which the speed of the moment is taken
 
 

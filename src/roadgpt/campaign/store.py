@@ -67,7 +67,7 @@ class Store(Record):
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         super().__init__(path, db)
         self._features: set[str] = set()
-        self._sitting = 0
+        self._session = 0
 
     @classmethod
     def new(
@@ -153,7 +153,7 @@ class Store(Record):
                 self._db.execute("PRAGMA journal_mode = DELETE")
         super().close()
 
-    def begin_sitting(self, workers: int) -> None:
+    def begin_session(self, workers: int) -> None:
         """Begins a session; leases of earlier sessions end."""
         now = time.time()
         with self._whole() as db:
@@ -161,12 +161,12 @@ class Store(Record):
             done = db.execute(
                 "INSERT INTO sittings(begun, seen, workers) VALUES (?, ?, ?)", (now, now, workers)
             )
-            self._sitting = done.lastrowid or 0
+            self._session = done.lastrowid or 0
 
-    def end_sitting(self) -> None:
+    def end_session(self) -> None:
         """Ends the session."""
         with self._whole() as db:
-            db.execute("UPDATE sittings SET is_over = 1 WHERE rowid = ?", (self._sitting,))
+            db.execute("UPDATE sittings SET is_over = 1 WHERE rowid = ?", (self._session,))
 
     def add_batch(self, cell: str, batch: int, first: int, proposals: Sequence[Proposal]) -> None:
         """Adds a batch with all its tests."""
@@ -220,7 +220,7 @@ class Store(Record):
         with self._whole() as db:
             db.execute(
                 "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?",
-                (spent.usage.total, spent.cost or 0.0, self._sitting),
+                (spent.usage.total, spent.cost or 0.0, self._session),
             )
 
     def next_trace(self) -> int:
@@ -273,7 +273,7 @@ class Store(Record):
                 "UPDATE cells SET seconds = seconds + ? WHERE name = ?",
                 [(taken, cell) for cell, taken in seconds.items()],
             )
-            db.execute("UPDATE sittings SET seen = ? WHERE rowid = ?", (now, self._sitting))
+            db.execute("UPDATE sittings SET seen = ? WHERE rowid = ?", (now, self._session))
         self._features |= names
 
 
@@ -288,9 +288,9 @@ def _refusals(folder: Path) -> Iterator[None]:
 
 def refused(folder: Path, error: sqlite3.Error | OSError) -> RoadGPTError:
     """Returns the error for a system that does not accept what is written."""
-    said = (error.strerror if isinstance(error, OSError) else None) or error
+    reason = (error.strerror if isinstance(error, OSError) else None) or error
     return RoadGPTError(
-        f"cannot write into {folder}: {said}; make room there, then say: roadgpt resume {folder}"
+        f"cannot write into {folder}: {reason}; make room there, then say: roadgpt resume {folder}"
     )
 
 

@@ -59,7 +59,8 @@ TABLES: dict[str, dict[str, str]] = {
     "sittings": dict.fromkeys(("begun", "seen", "workers", "is_over", "tokens", "cost"), NUMBER),
     "features": {"name": TEXT},
 }
-"""What each column may hold, in SQL; an empty condition: the column is checked when it is read."""
+"""The condition, in SQL, on the values of each column; an empty one: the column is checked when it is read.
+"""
 META = ("finished", "plan", "versions")
 BUSY = {
     sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
@@ -72,9 +73,10 @@ _checked: set[tuple[str, int]] = set()
 
 def damaged(path: Path, why: object) -> UsageError:
     """Returns the error for a store that is not as RoadGPT wrote it."""
-    said = " ".join(str(why).split())[:160]
+    reason = " ".join(str(why).split())[:160]
     return UsageError(
-        f"{path} is damaged, or not as roadgpt wrote it ({said}); start the campaign again in another folder"
+        f"{path} is damaged, or not as roadgpt wrote it ({reason}); "
+        "start the campaign again in another folder"
     )
 
 

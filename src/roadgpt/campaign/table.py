@@ -84,9 +84,9 @@ def _lines(rows: Iterator[tuple[Any, ...]], features: Sequence[str]) -> Iterator
     written = _written(features)
     for cell, number, batch, origin, seed, given, *rest, found in rows:
         row = (cell, number, batch, origin, seed if given else seed_of(seed, number), *rest)
-        told = written.fullmatch(found)
-        if told is not None:
-            yield ",".join((_line(row)[:-1], *told.groups(""))) + "\n"
+        match = written.fullmatch(found)
+        if match is not None:
+            yield ",".join((_line(row)[:-1], *match.groups(""))) + "\n"
         else:
             values = {name: float(value) for name, value in json_of(found).items()}
             yield _line((*row, *(values.get(name) for name in features)))

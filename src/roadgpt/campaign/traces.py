@@ -155,13 +155,15 @@ def _trace_in(path: Path, cell: str, number: int) -> Trace:
     with opened(path, LARGEST, "drives of a campaign") as file, np.load(file, allow_pickle=False) as archive:
         entries = [archive.zip.getinfo(f"{name}.npy") for name in ("header", f"{cell}/{number}")]
         check_unpacked(entries, UNPACKED)
-        told = json_of(str(archive["header"]))
+        contents = json_of(str(archive["header"]))
         rows = archive[f"{cell}/{number}"]
-    if told["format"] != FORMAT or told["columns"] != [*COLUMNS]:
+    if contents["format"] != FORMAT or contents["columns"] != [*COLUMNS]:
         raise ValueError("another version of roadgpt wrote it")
     if rows.dtype != np.int32 or rows.ndim != 2 or len(rows) != len(COLUMNS) or not rows.size:
         raise ValueError("a drive is a table of whole numbers")
-    (header,) = [dict(each) for each in told["drives"] if (each["cell"], each["number"]) == (cell, number)]
+    (header,) = [
+        dict(each) for each in contents["drives"] if (each["cell"], each["number"]) == (cell, number)
+    ]
     del header["cell"], header["number"]
     steps = rows.cumsum(axis=1, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
     return Trace(header, dict(zip(COLUMNS, steps, strict=True)))

@@ -39,7 +39,7 @@ Kind = Literal["draft", "wild", "vary", "cross", "between"]
 
 
 class VariationContext(NamedTuple):
-    """What all candidates of a cell share."""
+    """The requirements, world and rules that all candidates of a cell share."""
 
     brief: Brief | None
     world: World

@@ -14,7 +14,7 @@ CARD = "campaign.json"
 
 
 class Card(Frozen):
-    """What the folder of a campaign says about it."""
+    """The content of ``campaign.json``."""
 
     format: Literal[1] = 1
     request: Request

@@ -30,7 +30,7 @@ class Original:
     seed: int
     path: str
     remarks: tuple[str, ...] = ()
-    """What was adjusted when its file was read."""
+    """Remarks about adjustments that were made when its file was read."""
 
 
 def original(path: Path | str, world: World, setup: Setup) -> Original:

@@ -178,25 +178,25 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
     def value(name: str) -> Any:
         return _loaded(folder / name) if (folder / name).is_file() else None
 
-    told = strictly(_Card, card)
+    data = strictly(_Card, card)
     brief, design, road, verdict = (value(f"{n}.json") for n in ("brief", "design", "road", "verdict"))
     trace = folder / "error.txt"
     found = Run(
         request=Request.model_validate(card["request"]).came_with(folder / "run.json"),
-        index=told.index,
-        seed=told.seed,
-        outcome=told.outcome,
-        description=told.description,
+        index=data.index,
+        seed=data.seed,
+        outcome=data.outcome,
+        description=data.description,
         brief=None if brief is None else Brief.model_validate(brief),
         design=None if design is None else read_design(design)[0],
         road=None if road is None else Road.from_json(road),
-        findings=told.findings,
+        findings=data.findings,
         drive=Drive.load(folder / "drive.npz") if (folder / "drive.npz").is_file() else None,
         verdict=None if verdict is None else Verdict.from_json(verdict),
-        rounds=told.rounds,
+        rounds=data.rounds,
         designing=DesignReport.model_validate(card["designing"]) if "designing" in card else None,
         spent=Spent.model_validate(card["spent"]) if "spent" in card else None,
-        versions=told.versions,
+        versions=data.versions,
         source=_change(value(EDIT_CARD)),
         trace=read_text(trace, LARGEST, "a file of a run") if trace.is_file() else "",
         seconds=strictly(Seconds, value("seconds.json") or {}),

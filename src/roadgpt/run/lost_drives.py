@@ -1,4 +1,4 @@
-"""Gives up a simulator that is dead: one that lost three drives in a row.
+"""Counts lost drives, to give up a simulator that is dead: one that lost three drives in a row.
 
 Wherever many roads are driven, each drive is counted here. A drive is lost if the simulator could not be
 started, went away, or gave no answer (``SimulatorError``); a failure of the driver, or of the physics on one
@@ -29,11 +29,11 @@ class LostDrives(Generic[Key]):
         return len(self.lost) >= MOST
 
     @staticmethod
-    def given_up(said: str, again: str) -> GivenUpError:
+    def given_up(reason: str, again: str) -> GivenUpError:
         """Returns the error to raise.
 
         Args:
-            said: the simulator's own sentence about the last drive.
+            reason: the simulator's own sentence about the last drive.
             again: how to drive the roads that were not driven.
         """
-        return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({said})", again)
+        return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason})", again)

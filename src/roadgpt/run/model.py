@@ -47,7 +47,7 @@ class Setup(Frozen):
 
 
 class Request(Frozen):
-    """What a campaign is asked for, except the number of roads; the same Request gives the same files."""
+    """A request for roads, without their number; the same Request gives the same files."""
 
     words: str = ""
     """The description; empty where roads were given."""

@@ -126,18 +126,18 @@ class Ray(JobQueue):
                     self._bury(worker, worker.fault or _reason(error))
                 self._changed.notify_all()
 
-    def _hear(self, worker: _Worker, told: Any) -> None:
+    def _hear(self, worker: _Worker, message: Any) -> None:
         if worker.is_ready:
             works, worker.works = worker.works, []
-            for work, (kind, what) in zip(works, told, strict=True):
+            for work, (kind, what) in zip(works, message, strict=True):
                 self._alone.discard(work)
                 self._end(work, kind, what)
-        elif told[0] == READY:
+        elif message[0] == READY:
             worker.is_ready, self._in_vain = True, 0
-            worker.node, where = unpickled(told[1])
+            worker.node, where = unpickled(message[1])
             worker.name += f" ({where})"
         else:
-            self._broken = unpickled(told[1])
+            self._broken = unpickled(message[1])
             return
         self._next(worker)
 
@@ -179,7 +179,7 @@ class Ray(JobQueue):
         self._in_vain += not worker.is_ready
         if self._in_vain >= MOST_DEATHS:
             self._broken = RoadGPTError(
-                f"workers end before they begin (the last one {how}); Ray's log has what they said"
+                f"workers end before they begin (the last one {how}); Ray's log has what they printed"
             )
         if self._broken is None:
             if not any(other.is_ready for other in self._workers):
@@ -224,9 +224,10 @@ def _connected(staff: WorkerConfig) -> tuple[Any, bool]:
         else:
             ray.init(address="local", num_cpus=staff.workers, include_dashboard=False, **quiet)
     except (ray.exceptions.RayError, OSError, RuntimeError, ValueError) as error:
-        said = str(error).strip().partition("\n")[0]
+        reason = str(error).strip().partition("\n")[0]
+        place = address or "this machine"
         raise RoadGPTError(
-            f"no Ray cluster answers at {address or 'this machine'} ({said}); start one with ray start --head"
+            f"no Ray cluster answers at {place} ({reason}); start one with ray start --head"
         ) from error
     return ray, True
 
@@ -240,5 +241,5 @@ def _knock(address: str) -> None:
 
 def _reason(error: BaseException) -> str:
     """Returns the first line of what Ray says about the end of a worker."""
-    said = str(error).strip().partition("\n")[0]
-    return f"ended: {said}" if said else "ended"
+    reason = str(error).strip().partition("\n")[0]
+    return f"ended: {reason}" if reason else "ended"

@@ -41,11 +41,11 @@ class Difference:
     def sentence(self) -> str:
         """The difference as text for people."""
         unit = UNITS.get(self.field, "")
-        before, after = (_told(value, unit) for value in (self.kept, self.failing))
+        before, after = (_value_text(value, unit) for value in (self.kept, self.failing))
         return f"segment {self.segment + 1}: {NAMES.get(self.field, self.field)} {before} -> {after}"
 
 
-def _told(value: Any, unit: str) -> str:
+def _value_text(value: Any, unit: str) -> str:
     if value is None:
         return "as it comes"
     return f"{value:.4g}{unit}" if isinstance(value, float) else str(value)

@@ -83,10 +83,10 @@ class Faults:
             for each in fault.members:
                 found.setdefault((each.manner.way, each.manner.side), []).append(each)
         ordered = sorted(found.items(), key=lambda item: -len(item[1]))
-        return [_told(way, side, members) for (way, side), members in ordered]
+        return [_way_text(way, side, members) for (way, side), members in ordered]
 
 
-def _told(way: Way, side: str | None, members: Sequence[FailureSite]) -> str:
+def _way_text(way: Way, side: str | None, members: Sequence[FailureSite]) -> str:
     radii = sorted(each.manner.radius for each in members if each.manner.radius is not None)
     if side is None or not radii:
         return WAYS[way]

@@ -62,7 +62,7 @@ class AnalysisTask(NamedTuple):
     minimise: bool = False
     draw: FailureDrawing | None = None
     formats: tuple[str, ...] = ("png",)
-    """Of the pictures."""
+    """File formats of the pictures."""
 
 
 @dataclass(frozen=True)

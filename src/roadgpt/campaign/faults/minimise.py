@@ -20,7 +20,7 @@ MOST_DRIVES = 400  # of one minimisation; at 20 to 25 drives a second that is un
 
 @dataclass(frozen=True)
 class Simplest:
-    """What is left of a failing road."""
+    """A failing road after simplification."""
 
     run: Run
     """A Run that fails for the same cause and to the same side."""

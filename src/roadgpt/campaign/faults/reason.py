@@ -1,4 +1,4 @@
-"""Why a car left its lane: the bend, the speed and the slope at the place, in one sentence.
+"""The reason why a car left its lane: the bend, the speed and the slope at the place, in one sentence.
 
 The friction that a bend requires is v^2 k over the share of gravity that presses the car onto the road there,
 g cos(grade) + v^2 c, with c the vertical curvature (negative on a crest). R. Rajamani, Vehicle Dynamics and
@@ -26,9 +26,9 @@ Way = Literal["wide", "inside", "off", "stopped", "late"]
 GRAVITY = 9.81  # m/s^2
 BEFORE, AFTER = 25.0, 5.0  # m, around the departure: where its bend is looked for
 STRAIGHT = 1 / 250  # 1/m; a lane that bends less is called straight
-ENTRY = 0.5  # share of a bend's curvature at which it is said to begin
-JUST_BEFORE = 25.0  # m, from a bend of the other side, so that the two are told together
-HILL = 0.02  # of gravity that a crest takes or a dip adds, before it is told
+ENTRY = 0.5  # share of a bend's curvature at which it begins
+JUST_BEFORE = 25.0  # m, from a bend of the other side, within which a sentence names both
+HILL = 0.02  # of gravity that a crest takes or a dip adds, below which it is not mentioned
 SLOPE = 0.03  # of grade, likewise
 
 
@@ -44,7 +44,7 @@ class Manner(NamedTuple):
 
 @dataclass(frozen=True)
 class FailureReason:
-    """What happened at a failure; lengths in metres, speeds in m/s, angles in radians."""
+    """The reason of a failure; lengths in metres, speeds in m/s, angles in radians."""
 
     way: Way
     sentence: str
@@ -118,7 +118,7 @@ def manner_of(
 def _standing(road: Road, drive: Drive, world: World, station: float, is_stuck: bool) -> FailureReason:
     grade = float(road.grade(station))
     speed = float(drive["speed"][-1])
-    where = _slope_told(grade, 0.0)
+    where = _slope_text(grade, 0.0)
     what = "came to a standstill" if is_stuck else "was too slow to arrive in time"
     sentence = f"{what} after {station:.0f} m{where}"
     way: Way = "stopped" if is_stuck else "late"
@@ -133,11 +133,11 @@ def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station:
     grade = float(road.grade(place))
     hill = speed**2 * float(np.mean(road.vertical_curvature(near))) / GRAVITY
     needed = _needed(road, drive, world, begin, station)
-    told = _slope_told(grade, hill)
+    slope = _slope_text(grade, hill)
     how = manner_of(road, world, station, verdict.cause, verdict.side)
     if how.side is None or how.radius is None:
         sentence = (
-            f"left a straight to the {verdict.side} at {speed * 3.6:.0f} km/h after {station:.0f} m{told}"
+            f"left a straight to the {verdict.side} at {speed * 3.6:.0f} km/h after {station:.0f} m{slope}"
         )
         return FailureReason(
             "off", sentence, station, None, None, entered, needed, world.friction, grade, hill
@@ -145,7 +145,7 @@ def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station:
     before = _after(road, begin, bend)
     did = "and ran wide" if how.way == "wide" else "and cut its inside"
     sentence = (
-        f"entered an R {how.radius:.0f} m {how.side} at {entered * 3.6:.0f} km/h{before}{told} {did} after "
+        f"entered an R {how.radius:.0f} m {how.side} at {entered * 3.6:.0f} km/h{before}{slope} {did} after "
         f"{station:.0f} m; the lane's middle needs {needed:.2f} g of {world.friction:.2f}"
     )
     return FailureReason(
@@ -184,7 +184,7 @@ def _after(road: Road, begin: float, bend: float) -> str:
     return f" right after an R {1 / most:.0f} m {'right' if bend > 0 else 'left'}"
 
 
-def _slope_told(grade: float, hill: float) -> str:
+def _slope_text(grade: float, hill: float) -> str:
     if abs(hill) >= HILL:
         return " on a crest" if hill < 0 else " in a dip"
     if abs(grade) >= SLOPE:

@@ -1,4 +1,4 @@
-"""How often a failure fails again under small disturbances: what separates a fault from chance."""
+"""The share of drives that fail again under small disturbances, which separates a fault from chance."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

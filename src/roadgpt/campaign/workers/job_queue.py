@@ -77,7 +77,7 @@ class JobQueue(ABC):
             self._lost.clear()
             if self._broken is not None and not ended and not lost:
                 raise self._broken
-        return [_told(work, kind, what) for work, kind, what in ended] + lost
+        return [_finished_job(work, kind, what) for work, kind, what in ended] + lost
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
         """Returns ``function`` of every item, in the order of the items; an error that it raises is raised
@@ -123,7 +123,7 @@ class JobQueue(ABC):
 
     def _end(self, work: QueuedJob, kind: int, what: bytes) -> None:
         if work.key is None:
-            work.end = _told(work, kind, what)
+            work.end = _finished_job(work, kind, what)
         else:
             self._ended.append((work, kind, what))
 
@@ -142,7 +142,7 @@ class JobQueue(ABC):
             self._lost.append(end)
 
 
-def _told(work: QueuedJob, kind: int, what: bytes) -> FinishedJob:
+def _finished_job(work: QueuedJob, kind: int, what: bytes) -> FinishedJob:
     try:
         value = unpickled(what)
     except Exception as error:  # of a class that cannot be made again

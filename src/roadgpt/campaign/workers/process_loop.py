@@ -42,7 +42,7 @@ class _Sender:
         self._stream = stream
         self._lock = threading.Lock()
 
-    def say(self, kind: int, what: bytes = b"") -> None:
+    def send(self, kind: int, what: bytes = b"") -> None:
         try:
             with self._lock:
                 send(self._stream, (kind, what))
@@ -52,27 +52,27 @@ class _Sender:
     def beat(self) -> None:
         while True:
             time.sleep(BEAT)
-            self.say(ALIVE)
+            self.send(ALIVE)
 
 
 def main() -> None:
     """Works until the parent ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears of Ctrl-C, and ends us
     ends_its_own()
-    heard, said = private_streams()
-    mouth = _Sender(said)
-    threading.Thread(target=mouth.beat, daemon=True).start()
+    received, sent = private_streams()
+    sender = _Sender(sent)
+    threading.Thread(target=sender.beat, daemon=True).start()
     try:
-        sys.path[:] = receive(heard)
+        sys.path[:] = receive(received)
         try:
-            unpickled(receive(heard))()
+            unpickled(receive(received))()
         except Exception as error:  # whatever it is, the parent has to hear of it
-            mouth.say(ERROR, portable(error))
+            sender.send(ERROR, portable(error))
             return
-        mouth.say(READY)
+        sender.send(READY)
         shared: dict[str, Any] = {}
         while True:
-            mouth.say(*answer(receive(heard), shared))
+            sender.send(*answer(receive(received), shared))
     except EOFError:
         return
 

@@ -126,7 +126,7 @@ class Processes(JobQueue):
             if self._in_vain >= MOST_DEATHS and self._broken is None:
                 self._broken = RoadGPTError(
                     f"workers end before they begin (the last one {how}); "
-                    f"{self._staff.log} has what they said"
+                    f"{self._staff.log} has what they printed"
                 )
             if self._broken is None:
                 try:
