@@ -22,7 +22,7 @@ from roadgpt.check.measures import LEAST_TURN, MeasuredFeature, Measures, measur
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Geometry, Segment, build
 
-SEEN = 1.5  # m of a segment within a turn, at least, for it to be a part of the turn
+LEAST_SHARED = 1.5  # m of a segment within a turn, at least, for it to be a part of the turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ def _members(
     shared = np.minimum(joints[1:], high) - np.maximum(joints[:-1], low)
     bends = np.array([s.turn_degrees * hand > 0 for s in segments])
     lengths = np.diff(joints)
-    inside = bends & (shared > np.minimum(SEEN, 0.5 * lengths))
+    inside = bends & (shared > np.minimum(LEAST_SHARED, 0.5 * lengths))
     if not inside.any():
         inside = np.arange(len(segments)) == int(np.argmax(np.where(bends, shared, -np.inf)))
     which = np.flatnonzero(inside)

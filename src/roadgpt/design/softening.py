@@ -10,7 +10,7 @@ from roadgpt.brief.element import Element
 from roadgpt.brief.words import Range, overlap
 from roadgpt.design.vertical import Pace, softened
 
-SEEN = 1.8  # percent: the least slope of a climb or fall that is to be seen as one
+LEAST_SLOPE = 1.8  # percent: the least slope of a climb or fall that is to be seen as one
 MOST_SHIFT = 40.0  # percentage points
 BISECTIONS = 50
 HELD = 0.5  # percentage points that a grade that was asked for over some metres may be softened by
@@ -36,9 +36,9 @@ def held(element: Element, value: float, room: Range) -> Range:
 
 def one_way(value: float, room: Range) -> Range:
     """Returns the limit of an element that must go on climbing, or falling."""
-    if np.isnan(value) or abs(value) < SEEN:
+    if np.isnan(value) or abs(value) < LEAST_SLOPE:
         return room
-    return overlap(room, Range(SEEN) if value > 0 else Range(-inf, -SEEN)) or room
+    return overlap(room, Range(LEAST_SLOPE) if value > 0 else Range(-inf, -LEAST_SLOPE)) or room
 
 
 def softened_values(

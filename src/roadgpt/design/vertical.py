@@ -27,7 +27,7 @@ from roadgpt.road.speed_profile import GRAVITY, expected_speed
 COMFORT = 0.5  # m/s^2
 EASES = (1.0, 0.5, 0.25, 0.0)  # shares of comfort, in the order in which they are tried
 STEP = 2.0  # m between the stations at which a speed is expected
-SEEN = 12.0  # m: of shorter straights, no slope is looked for
+SHORTEST_SLOPE = 12.0  # m: of shorter straights, no slope is looked for
 NEAR = 20.0  # m to either side of a joint, of which the fastest place counts
 SPARE, LEAST_SPARE = 1.1, 1.02  # of a comfortable radius, and of the least, for what rounding of grades takes
 ROUNDS = 80  # of moving grades

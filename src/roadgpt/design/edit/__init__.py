@@ -23,7 +23,7 @@ from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.removal import removal_candidates
 from roadgpt.design.edit.request import Change, EditRequest, What
 from roadgpt.design.edit.search import tried
-from roadgpt.design.edit.steps import Adjust, EditStep, FlipAll
+from roadgpt.design.edit.steps import Adjust, EditStep, Mirror
 from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World
@@ -124,7 +124,7 @@ def _ways(
     if change.what == "mirror":
         if not any(element.kind == "turn" for element in elements):
             raise EditError("the road has no turn, so its mirror image is the same")
-        return ((FlipAll(),),)
+        return ((Mirror(),),)
     if change.what == "add":
         return insertion_candidates(change, elements, world, number)
     assert change.target is not None

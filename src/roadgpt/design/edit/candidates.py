@@ -17,7 +17,7 @@ from roadgpt.design.edit.slope_candidates import (
     road_slope_candidates,
     slope_candidates,
 )
-from roadgpt.design.edit.steps import Adjust, Become, EditStep, Flip, straight
+from roadgpt.design.edit.steps import Adjust, Become, EditStep, Mirror, straight
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, is_turn
 from roadgpt.errors import EditError
@@ -297,7 +297,7 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[EditSte
 
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
     """The mirror image of each; where that finds no room, turned a little less or more as well."""
-    flips = tuple(Flip(element) for element in elements)
+    flips = (Mirror(frozenset(element.name for element in elements)),)
     least = least_radius(world)
     out: list[EditCandidate] = [flips]
     for more, wider in FLIPPED:

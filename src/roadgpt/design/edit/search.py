@@ -13,7 +13,7 @@ from roadgpt import check
 from roadgpt.check.measures import MeasuredFeature, Measures, measure
 from roadgpt.design.edit.candidates import EditCandidate
 from roadgpt.design.edit.spacing import with_room
-from roadgpt.design.edit.steps import EditStep, FlipAll, Goal, Quantity
+from roadgpt.design.edit.steps import EditStep, Goal, Mirror, Quantity
 from roadgpt.design.repair import repair
 from roadgpt.design.road_elements import RoadElement, RoadElements, joined, shows_turns
 from roadgpt.design.vertical import EASES, Pace, changed_joints, widened
@@ -128,7 +128,7 @@ def _one(
         if not 1 <= len(segments) <= MAX_SEGMENTS:
             return Tried(None, f"the road would have {len(segments)} segments")
         try:
-            new = _started(design, after, elements, world, any(isinstance(s, FlipAll) for s in steps))
+            new = _started(design, after, elements, world, Mirror() in steps)
             new = _rounded_off(new, design, world, ease, beside)
             found = measure(build(new, geometry).centreline())
         except UsageError as error:

@@ -214,15 +214,16 @@ def with_incline(segment: Segment, incline: float) -> Segment:
 
 
 @dataclass(frozen=True, slots=True)
-class Flip:
-    """Mirrors one turn."""
+class Mirror:
+    """Mirrors some elements, or the whole road."""
 
-    element: RoadElement
+    names: frozenset[str] | None = None
+    """None: of all elements."""
     goals: tuple[Goal, ...] = ()
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Returns the elements with this one mirrored."""
-        return changed(elements, self.element.name, flipped)
+        """Returns the elements, those of these names bent to the other side."""
+        return tuple(flipped(e) if self.names is None or e.name in self.names else e for e in elements)
 
 
 def flipped(element: RoadElement) -> RoadElement:
@@ -239,17 +240,6 @@ def _mirrored(segment: Segment) -> Segment:
         return segment
     side = OTHER_SIDE[segment.direction]
     return segment.model_copy(update={"direction": side, "turn_degrees": -segment.turn_degrees})
-
-
-@dataclass(frozen=True, slots=True)
-class FlipAll:
-    """Mirrors the whole road."""
-
-    goals: tuple[Goal, ...] = ()
-
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Returns the elements, all mirrored."""
-        return tuple(flipped(element) for element in elements)
 
 
 @dataclass(frozen=True, slots=True)

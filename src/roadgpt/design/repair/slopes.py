@@ -16,7 +16,7 @@ from roadgpt.check.measures import LEVEL, measure, way
 from roadgpt.design.heights import Windows
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.design.softening import climbing
-from roadgpt.design.vertical import SEEN, Pace, made_to_fit, runs_of, too_abrupt, widened
+from roadgpt.design.vertical import SHORTEST_SLOPE, Pace, made_to_fit, runs_of, too_abrupt, widened
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World, build
@@ -77,7 +77,7 @@ def sloped(
 
 def _is_seen(element: RoadElement) -> bool:
     """Is it long enough for its slope to be looked for?"""
-    return element.is_turn or element.length >= SEEN
+    return element.is_turn or element.length >= SHORTEST_SLOPE
 
 
 def with_inclines(segments: Sequence[Segment], grades: Array) -> list[Segment]:
