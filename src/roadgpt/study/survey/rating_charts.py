@@ -9,34 +9,26 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from roadgpt.report.canvas import (
-    BLUE,
-    FAINT,
-    INK,
-    SOFT,
-    VERMILLION,
-    dress,
-    encoded,
-    in_our_style,
-    new_figure,
-    save_all,
-)
+from roadgpt.report.canvas import BLUE, VERMILLION, dress, in_our_style, new_figure, save, save_all
+from roadgpt.report.page.chart import embedded, palette
 from roadgpt.report.text_width import fitted
-from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey.tally import RatingTally, Unit
 
 # from orange to blue, told apart by colour-blind people too; every piece has its number in it
 SHADES = ("#c2510a", "#efb184", "#c9ccd1", "#8fc1e3", "#0a69a8")
-ON_SHADES = ("white", "#101216", "#101216", "#101216", "white")  # on paper of any colour
+ON_SHADES = ("#fefefe", "#101216", "#101216", "#101216", "#fefefe")  # the same on light and dark pages
 WIDE, LEFT, RIGHT = 9.6, 3.1, 0.75  # inches
 ROW, GAP, HEAD = 0.33, 0.22, 0.34  # inches: of a bar, before an item, of its description
 TOP, BOTTOM = 0.95, 0.62  # inches
 SMALLEST = 4.0  # percent of a bar that has room for its number
-PAPER = {INK: "var(--ink)", SOFT: "var(--soft)", FAINT: "var(--line)"}
+INK, SOFT, FAINT = (palette()[name] for name in ("ink", "soft", "line"))
+GAPS = 5 * "\N{NO-BREAK SPACE}"  # pages draw several usual spaces as one
+IN_PAGE = "width: 58rem; min-width: 38rem"  # on a phone it is scrolled and not shrunk
 MADE_UP = "SYNTHETIC: made-up raters, no data of people"
 
 
@@ -65,12 +57,13 @@ def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Drawn:
     ticks = range(-100, 101, 50)
     axes.set_xticks(ticks, [f"{abs(tick)} %" for tick in ticks])
     axes.grid(axis="x", color=FAINT, lw=0.8)
+    axes.tick_params(colors=SOFT)
     axes.axvline(0, color=SOFT, lw=0.9)
     axes.set_axisbelow(True)
     for side in ("left", "right", "top"):
         axes.spines[side].set_visible(False)
     says = ("does not match", "matches") if found.part == "alignment" else ("different", "similar")
-    axes.set_xlabel(f"← {says[0]}     share of raters     {says[1]} →")
+    axes.set_xlabel(f"← {says[0]}{GAPS}share of raters{GAPS}{says[1]} →")
     y = 0.0
     for item in items:
         own = [unit for unit in found.units if unit.item.id == item]
@@ -85,7 +78,8 @@ def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Drawn:
             _bar(axes, unit, y + ROW / 2)
             y += ROW
     _legend(figure, found.units[0].question.answers, high)
-    return _finished(figure, found.part, folder, is_synthetic)
+    label = f"ratings of {'roads and descriptions' if found.part == 'alignment' else 'two roads'}"
+    return _finished(figure, found.part, label, folder, is_synthetic)
 
 
 def _bar(axes: Axes, unit: Unit, y: float) -> None:
@@ -145,10 +139,10 @@ def about_bars(
             axes.text(count + 0.02 * most, y, str(count), ha="left", **style)
         title = fitted(text, WIDE / 2 - 0.3, 10, True)
         figure.text((left - 1.6) / WIDE, (upper + 0.16) / high, title, size=10, weight="bold", color=INK)
-    return _finished(figure, "raters", folder, is_synthetic)
+    return _finished(figure, "raters", "answers of raters about themselves", folder, is_synthetic)
 
 
-def _finished(figure: Figure, name: str, folder: Path, is_synthetic: bool) -> Drawn:
+def _finished(figure: Figure, name: str, label: str, folder: Path, is_synthetic: bool) -> Drawn:
     """Writes a figure as PNG, PDF and SVG; returns an SVG whose text takes the page's colours."""
     if is_synthetic:
         figure.text(0.995, 0.995, MADE_UP, size=10, weight="bold", color=VERMILLION, ha="right", va="top")
@@ -156,12 +150,9 @@ def _finished(figure: Figure, name: str, folder: Path, is_synthetic: bool) -> Dr
             0.62, 0.5, "SYNTHETIC", size=54, weight="bold", color=VERMILLION, alpha=0.16, ha="center",
             va="center", rotation=18, zorder=50,
         )  # fmt: skip
-    svg = encoded(figure, "svg").decode()
-    write_whole(folder / f"{name}.svg", svg)
+    save(figure, folder / f"{name}.svg")
+    with rc_context({"svg.fonttype": "none"}):
+        svg = embedded(figure, label).replace("<svg ", f'<svg style="{IN_PAGE}" ', 1)
     figure.patch.set_alpha(1)
     save_all(figure, folder / f"{name}.png", ("pdf", "png"))
-    inside = svg[svg.index("<svg") :]
-    for colour, variable in PAPER.items():
-        inside = inside.replace(colour, variable)
-    # on a phone it is scrolled and not shrunk
-    return Drawn(name, inside.replace("<svg ", '<svg style="min-width: 38rem" ', 1))
+    return Drawn(name, svg)
