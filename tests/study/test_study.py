@@ -74,7 +74,7 @@ def test_the_golden_study(study: Path) -> None:
 
 def test_the_page_tells_what_the_tables_tell(study: Path) -> None:
     page, text = (study / "report.html").read_text(), (study / "report.md").read_text()
-    for said in ("182 of 300 (60.7 %)", "55.35", "p = 9.6e-13", "z = −7.37", "Nobody drove these roads"):
+    for said in ("182 of 300 (60.7 %)", "55.35", "p = 9.6e-13", "z = −7.37", "These roads were not driven"):
         assert said in page
         assert said in text
     assert "6 of 6 (100.0 %)" in page
@@ -295,7 +295,7 @@ def test_the_report_opens_with_what_a_manager_asks_and_statistics_come_after(tmp
     assert "<h2>At a glance</h2>" in first
     assert first.count("<article>") == 3
     for sign in ("χ²", "interval", "Wilson", "p ="):
-        assert sign not in first.partition("</style>")[2].replace("hold intervals", ""), sign
+        assert sign not in first.partition("</style>")[2].replace("contain intervals", ""), sign
     rows = list(csv.DictReader((tmp_path / "tables" / "glance.csv").open()))
     assert [row["description"] for row in rows] == [prompt.prompt for prompt in plan.prompts]
     for part, row in zip(plan.parts(), rows, strict=True):

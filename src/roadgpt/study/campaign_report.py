@@ -55,7 +55,7 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
     words = list(dict.fromkeys(c.words for c in status.cells if c.words))
     title = words[0] if len(words) == 1 else f"A campaign of {plural(len(status.cells), 'cell')}"
     lead = f"{status.done:,} tests in {plural(len(status.cells), 'cell')}"
-    lead += "" if status.is_finished else "; the campaign goes on"
+    lead += "" if status.is_finished else "; the campaign is unfinished"
     found = faults_in(folder, COMPARED)
     told = fault_summaries(folder, found)
     pairs = nearest(record, [each for each in fields if each.goal == "boundary"][:MOST_CELLS])

@@ -107,7 +107,7 @@ def _same(there: StudyPlan, asked: StudyPlan, folder: Path) -> None:
     lost = [name for name in there.designers if name not in asked.designers]
     if lost:
         raise UsageError(
-            f"{folder} holds roads by {' and '.join(lost)} as well; say --designer {lost[0]} too"
+            f"{folder} holds roads by {' and '.join(lost)} as well; give --designer {lost[0]} as well"
         )
 
 
@@ -120,7 +120,7 @@ def read_plan(folder: Path) -> StudyPlan:
     try:
         card = read_json(folder / CARD, what="the card of a study")
     except FileNotFoundError as error:
-        raise UsageError(f"there is no study in {folder}; give the folder of one") from error
+        raise UsageError(f"there is no study in {folder}; give the folder of a study") from error
     except (OSError, ValueError) as error:
         raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
     try:

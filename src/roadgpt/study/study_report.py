@@ -152,7 +152,7 @@ def _different_line(found: Found) -> str:
     nearest = [float(own.nearest.min()) for roads, own in found if len(roads) > 1]
     twins = sum(len(own.duplicates) for _, own in found)
     if not nearest:
-        return "One road of each description, so there is nothing to compare."
+        return "There is one road of each description, so there is nothing to compare."
     said = "No near duplicates" if not twins else plural(twins, "pair") + " of near duplicates"
     return (
         f"{said} among roads of one description; the nearest two plans are {min(nearest):.1f} m "

@@ -215,7 +215,7 @@ def test_pairs_are_compared_only_where_roads_differ_at_all(asked: Survey, tmp_pa
 
 def test_a_survey_that_nobody_answered_is_told(tmp_path: Path) -> None:
     folder = folder_of(survey(), tmp_path / "s")
-    with pytest.raises(UsageError, match="nobody was invited yet"):
+    with pytest.raises(UsageError, match="nobody has been invited yet"):
         collected(folder)
     assert collected(folder, 5).source == "synthetic"
     assert not (folder / ANSWERS).exists(), "made-up raters never come near the answers"

@@ -182,7 +182,7 @@ def test_the_file_in_the_guide_is_one(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("title = ", "is no TOML"),
+        ("title = ", "is not valid TOML"),
         ('asks = "x"\ncontact = "y"', "names no road"),
         ('contact = "y"\n[[alignment]]\nrun = "x"', "asks: field required"),
         ('asks = "x"\ncontact = "y"\ncolour = "red"\n[[alignment]]\nrun = "x"', "colour: extra inputs"),
@@ -209,7 +209,7 @@ def test_a_survey_to_which_people_were_invited_is_never_replaced(
     assert (tmp_path / "a" / "answers.sqlite").read_bytes() == b"answers"
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "thesis.docx").write_bytes(b"years of work")
-    with pytest.raises(UsageError, match="holds something else"):
+    with pytest.raises(UsageError, match="contains other files"):
         build.make_survey(plan, Path(), tmp_path / "b")
 
 
@@ -292,7 +292,7 @@ def test_the_commands_make_and_analyse_a_survey(runs: Path, tmp_path: Path) -> N
     ]  # fmt: skip
     tried = runner.invoke(command, ["analyse", out, "--synthetic", "5", "--seed", "2"])
     assert tried.output.strip().endswith("analysis-synthetic/report.html")
-    assert "nobody was invited" in str(runner.invoke(command, ["analyse", out]).exception)
+    assert "nobody has been invited" in str(runner.invoke(command, ["analyse", out]).exception)
 
 
 def test_a_survey_without_films_is_made_without_films(

@@ -1,4 +1,4 @@
-"""``roadgpt study survey``: asks people how well roads match their descriptions, and tells what they said."""
+"""``roadgpt study survey``: makes, serves and analyses a survey of people."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from roadgpt.errors import UsageError
 
 PORT = 8765
 FILE = "SURVEY.toml"
-ASK = "say who asks, which raters are told first: --asks 'Jane Roe, University of X' --contact jane@x.example"
+ASK = "say who asks, which raters read first: --asks 'Jane Roe, University of X' --contact jane@x.example"
 survey_folder = click.argument("directory", metavar="DIR", type=folder)
 
 
@@ -22,11 +22,17 @@ def command() -> None:
 
 @command.command()
 @click.argument("file", metavar="[SURVEY.toml]", required=False, type=click.Path(path_type=Path))
-@click.option("--from", "study", type=folder, metavar="STUDY_DIR", help="Draw roads out of folders of runs.")
+@click.option("--from", "study", type=folder, metavar="STUDY_DIR", help="Draw roads from folders of runs.")
 @click.option("--out", type=folder, required=True, metavar="DIR", help="The survey's folder.")
-@click.option("--asks", default="", help="With --from: who asks; raters are told first.")
-@click.option("--contact", default="", help="With --from: where raters may ask back.")
-@click.option("--pairs", type=whole(0, 20, "a number"), default=2, show_default=True, help="With --from.")
+@click.option("--asks", default="", help="With --from: who asks; raters read it first.")
+@click.option("--contact", default="", help="With --from: where raters can send questions.")
+@click.option(
+    "--pairs",
+    type=whole(0, 20, "a number"),
+    default=2,
+    show_default=True,
+    help="With --from: pairs to compare.",
+)
 @click.option("--seed", type=SEED, default=0, show_default=True, help="With --from: which roads are drawn.")
 @click.option("--no-films", is_flag=True, help="Make no films, which take most of the time.")
 def new(
@@ -39,17 +45,19 @@ def new(
     seed: int,
     no_films: bool,
 ) -> None:
-    """Make a survey out of runs: plots, films and 3-D views of every road, and the questions.
+    """Make a survey from runs: plots, films and 3-D views of every road, and the questions.
 
-    SURVEY.toml names the runs; --from draws one valid road of each folder of runs below a folder, and pairs
-    of roads of one description, and writes a SURVEY.toml to be edited beside the survey.
+    SURVEY.toml names the runs; --from draws one valid road from each folder of runs below a folder, and pairs
+    of roads of one description. It writes a SURVEY.toml, which you can edit, into the survey's folder.
 
     \b
     roadgpt study survey new SURVEY.toml --out my-survey
     roadgpt study survey new --from roadgpt-runs --out my-survey --asks "Jane Roe" --contact j@x.example
     """
     if (file is None) == (study is None):
-        raise UsageError(f"a survey is made of a {FILE} or --from folders of runs; give one of them")
+        raise UsageError(
+            f"a survey is made from a {FILE} or, with --from, from folders of runs; give one of the two"
+        )
     if study is not None and not (asks.strip() and contact.strip()):
         raise UsageError(ASK)
     from roadgpt.study.survey.build import make_survey
@@ -62,7 +70,7 @@ def new(
     survey = make_survey(plan, file.parent if file else Path(), out, click.echo)
     if study is not None:
         (out / FILE).write_text(plan_text(plan), encoding="utf-8")
-        click.echo(f"{out / FILE} says what was drawn; edit it and make the survey of it anew")
+        click.echo(f"{out / FILE} lists the roads that were drawn; edit it and make the survey again from it")
     if survey.lacks:
         click.echo(f"roadgpt: {survey.lacks}", err=True)
     click.echo(
@@ -73,18 +81,21 @@ def new(
 @command.command()
 @survey_folder
 @click.option(
-    "--raters", type=whole(0, 10_000, "people"), default=0, help="How many get a link of their own."
+    "--raters", type=whole(0, 10_000, "people"), default=0, help="How many raters get a link of their own."
 )
-@click.option("--open", "is_open", is_flag=True, help="Let everyone join who has the one shared link.")
+@click.option("--open", "is_open", is_flag=True, help="Let anyone join who has the shared link.")
 @click.option(
     "--port", type=whole(0, 65_535, "a port"), default=PORT, show_default=True, help="0: a free one."
 )
 @click.option("--host", default="127.0.0.1", show_default=True, help="127.0.0.1: this machine; 0.0.0.0: all.")
-@click.option("--url", default="", help="Where raters reach the server, if it stands behind another one.")
+@click.option(
+    "--url", default="", help="Address at which raters reach the server, if it stands behind another one."
+)
 def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url: str) -> None:
-    """Serve a survey to people until Ctrl-C; every answer is on the disk before it is confirmed.
+    """Serve a survey until Ctrl-C; each answer is on the disk before it is confirmed.
 
-    The same command goes on after a stop: links and answers stay.
+    The same command resumes the survey later: links and answers stay. The server is an extra:
+    python -m pip install 'roadgpt[survey]'.
 
     \b
     roadgpt study survey serve my-survey --raters 10
@@ -97,16 +108,16 @@ def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url
 
 @command.command()
 @survey_folder
+@click.option("--out", type=folder, metavar="DIR", help="Folder for the report. [default: in the survey's]")
 @click.option(
-    "--out", type=folder, metavar="DIR", help="Where the report goes; else into the survey's folder."
+    "--synthetic", type=whole(1, 10_000, "a number"), help="Analyse this many made-up raters instead."
 )
-@click.option("--synthetic", type=whole(1, 10_000, "a number"), help="Analyse made-up raters instead.")
-@click.option("--agreement", type=measure(0, 1), default=0.8, show_default=True, help="Of made-up raters.")
-@click.option("--seed", type=SEED, default=0, show_default=True, help="Of made-up raters.")
+@click.option("--agreement", type=measure(0, 1), default=0.8, show_default=True, help="How often they agree.")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="Seed of made-up raters.")
 def analyse(directory: Path, out: Path | None, synthetic: int | None, agreement: float, seed: int) -> None:
-    """Tell what people said: figures, medians, tests, agreement, and how the machine's measures compare.
+    """Analyse the answers: figures, medians, tests, agreement, and measurements.
 
-    Writes report.html, report.md, answers.csv, tables and figures. May be called while the survey is served.
+    Writes report.html, report.md, answers.csv, tables and figures. It also works while the survey is served.
     """
     from roadgpt.study.survey.analysis import analyse as analyse_into
     from roadgpt.study.survey.analysis import collected

@@ -35,13 +35,13 @@ def alignment(parts: Sequence[StudyPartRecord], designers: Sequence[str]) -> Sec
     truth = (
         "The truth of every prompt was written down by people."
         if known == prompts
-        else "Nobody wrote down a truth, so what the reader read is what roads are held against."
+        else "Nobody wrote down a truth, so roads are checked against what the reader read."
         if not known
         else f"For {known} of {prompts} prompts people wrote down a truth; for the others it is what the "
         "reader read."
     )
     blocks: list[Block] = [
-        "Each promise is measured on the finished road alone: turns, straights and grades of its centre "
+        "Each requirement is measured on the finished road alone: turns, straights and grades of its centre "
         f"line. {truth}"
     ]
     if some:
@@ -91,9 +91,9 @@ def _pooled(parts: Sequence[StudyPartRecord], designers: Sequence[str]) -> Table
         "made by", "criterion", "prompts", "kept", "roads", "share", "Wilson 95 %", "by prompt 95 %",
     ]  # fmt: skip
     note = (
-        "Roads of one prompt are alike, so Wilson's interval says how sure the share is for these prompts; "
-        "the last column, a bootstrap that draws whole prompts, how sure it is for others like them; it "
-        "cannot tell where all or none are kept."
+        "Roads of one prompt are alike, so Wilson's interval is for these prompts only; "
+        "the last column, a bootstrap that resamples whole prompts, is for other prompts like them. It is "
+        "undefined if all or none are kept."
     )
     return Table("alignment", "What was asked for and kept, by criterion", heads, rows, note)
 
@@ -133,6 +133,6 @@ def _broken(parts: Sequence[StudyPartRecord]) -> list[Block]:
                 )
     if not lines:
         return []
-    title = f"Roads that break a promise ({plural(len(lines), 'road')})"
+    title = f"Roads that break a requirement ({plural(len(lines), 'road')})"
     more: list[Block] = [f"… and {len(lines) - MOST_NAMED} more."] if len(lines) > MOST_NAMED else []
     return [Details(title, lines[:MOST_NAMED] + more)]

@@ -26,10 +26,11 @@ def spread_of(part: StudyPartRecord) -> tuple[list[RoadRecord], Spread]:
 def diversity(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRecord], Spread]]) -> Section:
     """Returns the section: distances within every part, near duplicates, and distances between prompts."""
     blocks: list[Block] = [
-        "Two plans are laid onto each other by the best shift, turn and mirroring and compared at equal "
-        "shares of their lengths; their distance is the root mean square in metres. Near duplicates are "
-        "pairs less than 5.5 m and 2 percentage points of grade apart with as many turns. Similarity, from 0 "
-        "to 1, is the mean of number, sequence and direction of turns, length, incline and shape.",
+        "Two plans are superimposed by the best shift, turn and mirroring and compared at equal "
+        "shares of their lengths. Their distance is the root mean square in metres. Near duplicates are "
+        "pairs less than 5.5 m and 2 percentage points of grade apart with the same number of turns. "
+        "Similarity, from 0 to 1, is the mean of number, sequence and direction of turns, length, incline "
+        "and shape.",
     ]
     blocks += [table for table in (_within(parts, found), _between(parts)) if table.rows]
     twins = _twins(parts, found)
@@ -72,7 +73,7 @@ def _within(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRec
     ]  # fmt: skip
     note = (
         "Sparseness is the SBFT competition's weighted Levenshtein distance to the road that differs most, "
-        "taken of whole roads in steps of 5 m; theirs is of 60 m around failures, in steps of 1 m."
+        "computed for whole roads in steps of 5 m; theirs is for 60 m around failures, in steps of 1 m."
     )
     return Table("diversity", "Roads of the same description", heads, rows, note)
 
@@ -128,6 +129,6 @@ def _matrix(part: StudyPartRecord, roads: list[RoadRecord], own: Spread) -> Figu
     axis = AxisRange("road", 0.5, len(roads) + 0.5, is_count=True)
     caption = (
         f"{part.part.designer}, “{part.part.prompt.prompt}”: distance between every two roads, metres; "
-        "the fainter, the more alike."
+        "the fainter, the more similar."
     )
     return Figure(f"distances-{part.part.number}", caption, heat(lower, axis, axis, "metres", caption, True))

@@ -42,7 +42,7 @@ def _card(part: StudyPartRecord, size: float) -> FigureCard:
     picture = gallery([small(part, road) for road in chosen], size, label, SIDE)
     left = part.count("has_left")
     driven = part.count("is_driven")
-    said = f"The car left its lane on {left} of {driven}." if driven else "Nobody drove them."
+    said = f"The car left its lane on {left} of {driven}." if driven else "They were not driven."
     lines: list[Line] = [f"{plural(len(part.roads), 'road')} by {part.part.designer}. {said}"]
     return FigureCard(words, picture, lines)
 
@@ -54,8 +54,8 @@ def _table(made: Sequence[tuple[StudyPartRecord, Found]]) -> Table:
     ]  # fmt: skip
     rows = [_row(part, own) for part, own in made]
     note = (
-        "Nearest two plans: root mean square distance of the two roads most alike, after the best shift, "
-        "turn and mirroring. The sections below hold intervals, tests and every road."
+        "Nearest two plans: root mean square distance of the two most similar roads, after the best shift, "
+        "turn and mirroring. The sections below contain intervals, tests and every road."
     )
     return Table("glance", "Roads by description", heads, rows, note)
 

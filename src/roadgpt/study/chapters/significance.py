@@ -85,7 +85,7 @@ def _table(source: Source, found: ChiSquared, hit: str, miss: str, name: str) ->
 def _verdict(source: Source, found: ChiSquared, hit: str, miss: str) -> str:
     if not found.freedom:
         if not source.total:
-            return f"{source.name}: there is nothing to count."
+            return f"{source.name}: no roads to count."
         if 0 < source.hits < source.total:
             return (
                 f"{source.name}: only one prompt has roads to count, so there is nothing to compare it with."
@@ -93,8 +93,8 @@ def _verdict(source: Source, found: ChiSquared, hit: str, miss: str) -> str:
         every = f"all roads are {hit}" if source.hits else f"all roads are {miss}"
         return (
             f"{source.name}: {every}, so no prompt differs from another: chi-squared is 0 with no degrees of "
-            "freedom, Cramér's V is 0, and the exact test gives p = 1. What the true shares may be, the "
-            "intervals say."
+            "freedom, Cramér's V is 0, and the exact test gives p = 1. The "
+            "intervals show what the true shares may be."
         )
     counted = exact(source.table())
     how = f"drawn {counted.tables:,} times from a seed" if counted.is_drawn else "counted out"

@@ -77,8 +77,8 @@ def validity(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_bas
     every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
     every = [source for source in every if source.counts] + ([thesis_valid()] if has_baseline else [])
     blocks: list[Block] = [
-        "Strict rules: inside the map, no overlap, radius and slope within limits, and every promise of the "
-        "words kept. But for the words: the same without the promises, which RoadGPT's thesis did not "
+        "Strict rules: inside the map, no overlap, radius and slope within limits, and every requirement of "
+        "the words kept. But for the words: the same without these requirements, which the thesis did not "
         "check. SBFT rules: what the validator of the SBFT tool competition says, quirks included."
     ]
     blocks += [_forest("validity", "valid", every), _shares("validity", "valid", every)]
@@ -106,13 +106,12 @@ def departures(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_b
     every = [source for source in every if source.total]
     blocks: list[Block] = []
     if not every:
-        blocks.append("Nobody drove these roads.")
+        blocks.append("These roads were not driven.")
     every += [thesis_left()] if has_baseline else []
     if every:
         blocks += [
-            "Counted are drives on roads that the strict rules let pass "
-            f"{'(in the thesis: that its own checks let pass) ' if has_baseline else ''}"
-            "on which the car left its lane.",
+            "Drives on which the car left its lane, on roads that are valid by the strict rules"
+            f"{' (in the thesis: by its own checks)' if has_baseline else ''}.",
             _forest("departures", "left", every),
             _shares("departures", "left", every),
         ]
@@ -192,7 +191,7 @@ def _silent(parts: Sequence[StudyPartRecord]) -> list[Block]:
     """Lists designers that could not be run and roads that could not be made."""
     out: list[Block] = []
     for sentence in dict.fromkeys(f"{p.part.designer}: {p.problem}" for p in parts if p.problem):
-        out.append(f"Not made, or not all: {sentence}.")
+        out.append(f"Roads are missing: {sentence}.")
     return out
 
 

@@ -16,7 +16,7 @@ from roadgpt.study.survey.tally import RatingTally, about_counts, tally
 
 FIGURES = "figures"
 TABLES = {"people": "answers.csv", "synthetic": "answers-synthetic.csv"}
-MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this is a trial of the analysis and no data."
+MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this tries out the analysis and contains no data."
 
 
 def collected(
@@ -38,7 +38,7 @@ def collected(
     if number is not None:
         return synthetic(survey, number, seed, agreement)
     if not (folder / ANSWERS).is_file():
-        raise UsageError(f"nobody was invited yet; say: roadgpt study survey serve {folder} --raters 10")
+        raise UsageError(f"nobody has been invited yet; run: roadgpt study survey serve {folder} --raters 10")
     store = AnswerStore(folder / ANSWERS)
     try:
         answers = answers_in(store, survey)
@@ -90,7 +90,7 @@ def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
     who: list[Block] = [told.numbers(answers)]
     if about:
         drawn = about_bars(about, figures, is_synthetic)
-        who += [told.figure(drawn, "Who answered: how many gave each answer."), told.about(about)]
+        who += [told.figure(drawn, "Who answered: how many raters gave each answer."), told.about(about)]
     parts = [Section("Who answered", who)]
     for title, found in (
         ("Do roads match their descriptions?", match),
@@ -99,11 +99,11 @@ def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
         if found.units:
             parts.append(Section(title, _part(told, found, figures, is_synthetic)))
     parts.append(Section("Do raters agree?", [told.agreement([match, alike])]))
-    parts.append(Section("People and the machine", told.machine([match, alike])))
+    parts.append(Section("People and measurements", told.machine([match, alike])))
     parts.append(Section("Remarks", [told.remarks(answers)]))
     return Page(
         title=f"{'SYNTHETIC: ' if is_synthetic else ''}{answers.survey.title}",
-        lead=MADE_UP if is_synthetic else "What people said.",
+        lead=MADE_UP if is_synthetic else "The answers of people.",
         summary=[*([MADE_UP] if is_synthetic else []), *report_blocks.summary(answers, match, alike)],
         sections=parts,
         card=_card(answers, command),
@@ -114,7 +114,7 @@ def _part(
     told: report_blocks.SurveyBlocks, found: RatingTally, figures: Path, is_synthetic: bool
 ) -> list[Block]:
     drawn = rating_bars(found, figures, is_synthetic)
-    caption = "Every answer; the middle answer is centred on zero, and the numbers are raters."
+    caption = "All answers; the middle answer is centred on zero, and the numbers count raters."
     return [told.figure(drawn, caption), told.ratings(found), *told.differences(found)]
 
 

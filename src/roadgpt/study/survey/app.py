@@ -38,14 +38,14 @@ MEDIA_TYPES = {"picture": "image/png", "film": "video/mp4", "view": "text/html"}
 JSON, FORM = "application/json", "application/x-www-form-urlencoded"
 MOST_FIELDS = 100  # of a form
 KEPT = {"Cache-Control": "private, max-age=3600"}
-CLOSED = "This link is closed: the answers given with it were deleted."
+CLOSED = "This link is closed: its answers were deleted."
 NOT_SAVED = "Your answer could not be saved. Please try again in a moment."
 NOTICES = {
-    404: ("Not found", "Nothing is here. Please open the link that you were given, in full."),
-    405: ("Not here", "This address does not take such a request."),
-    415: ("Not taken", "Answers come as a form; files are not taken."),
-    422: ("Not saved", "One answer is none of those offered, or too long; go back and mend it."),
-    503: ("Full", "This survey takes no more people."),
+    404: ("Not found", "There is no such page. Please open your complete link."),
+    405: ("Not possible", "This address does not accept such a request."),
+    415: ("Not accepted", "Answers are sent as a form; files are not accepted."),
+    422: ("Not saved", "An answer is too long or not one of those offered. Please go back and correct it."),
+    503: ("Full", "This survey has as many raters as it can take."),
 }
 """Heading and sentence of an error page, by HTTP status."""
 Answer = Callable[[Request, bytes], Response]
@@ -167,7 +167,7 @@ class SurveyApp:
         """Saves one answer that was sent as JSON, and confirms it after it is on the disk."""
         rater, _ = self._rater(request, has_agreed=False)
         if _kind(request) != JSON:
-            raise HTTPException(415, "an answer comes as application/json")
+            raise HTTPException(415, "send the answer as application/json")
         try:
             data = json.loads(body)
         except (ValueError, RecursionError) as error:
@@ -180,7 +180,7 @@ class SurveyApp:
         if question is None:
             raise HTTPException(422, "there is no such question")
         if not question.takes(value):
-            raise HTTPException(422, "it is none of the answers offered, or too long")
+            raise HTTPException(422, "it is too long or not one of the answers offered")
         if not self.store.save(rater, {id_: value}):
             raise HTTPException(403, "please agree to take part first")
         return JSONResponse({"saved": id_})

@@ -83,7 +83,7 @@ def _must_be_free(out: Path) -> None:
     if out.exists() and not out.is_dir():
         raise UsageError(f"{out} is a file; name a folder")
     if out.is_dir() and any(path.name not in {CARD, MEDIA, "SURVEY.toml"} for path in out.iterdir()):
-        raise UsageError(f"{out} holds something else; name another folder")
+        raise UsageError(f"{out} contains other files; name another folder")
 
 
 def _run(base: Path, name: str) -> Run:
@@ -183,7 +183,7 @@ class _Work:
         titles = [prompt] if len(runs) == 1 else [f"Road {n} ({place})" for n, place in enumerate(PLACES, 1)]
         write_view(runs, titles, self.folder / file)
         what = "both roads" if len(runs) > 1 else "the road"
-        return [Medium(name=file, kind="view", title=f"Look at {what} in 3-D")]
+        return [Medium(name=file, kind="view", title=f"View {what} in 3-D")]
 
 
 def _prompt(words: str, name: str) -> str:

@@ -11,7 +11,7 @@ from roadgpt.run import Run
 BEFORE_THE_END = 0.1  # s; at the end of a drive films tell its outcome, which raters should not know
 WHY_NONE = (
     "there are no films, because the library for them is not installed; raters see plots and the 3-D view. "
-    "For films say python -m pip install 'roadgpt[film]' and make the survey again"
+    "To add films, run python -m pip install 'roadgpt[film]' and make the survey again"
 )
 
 

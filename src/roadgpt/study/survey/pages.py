@@ -13,9 +13,9 @@ TEMPLATES = Path(__file__).parent / "templates"
 HEADINGS = {
     "about": "About you",
     "alignment": "Does the road match its description?",
-    "check": "Are you with us?",
+    "check": "A quick check",
     "similarity": "How similar are the two roads?",
-    "end": "Last words",
+    "end": "Final remarks",
 }
 
 

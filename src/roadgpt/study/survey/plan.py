@@ -19,8 +19,8 @@ PURPOSE = (
     "It takes about {minutes} minutes."
 )
 KEEPS = (
-    "Answers are kept on the computer of those who ask. They are analysed and published only in sums over "
-    "all raters and in single remarks without names."
+    "Answers are stored on a computer of the people who run this survey. They are published only as totals "
+    "over all raters and as single remarks without names."
 )
 PER_PAGE = 1.5  # minutes that a page takes, roughly: plots, films, a handful of questions
 
@@ -99,13 +99,13 @@ def read_plan(path: Path | str) -> SurveyPlan:
             f"{path} cannot be read ({error.strerror or error}); name the file of a survey"
         ) from error
     except (ValueError, RecursionError) as error:
-        raise UsageError(f"{path} is no TOML ({error}); mend it") from error
+        raise UsageError(f"{path} is not valid TOML ({error}); correct it") from error
     try:
         plan = SurveyPlan.model_validate(data)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part + 1 if isinstance(part, int) else part) for part in first["loc"])
-        raise UsageError(f"{path}: {where}: {first['msg'].lower()}; mend the file") from error
+        raise UsageError(f"{path}: {where}: {first['msg'].lower()}; correct the file") from error
     if not plan.alignment and not plan.similarity:
         raise UsageError(f'{path} names no road; add [[alignment]] with run = "DIR/runs/0001"')
     return plan

@@ -145,7 +145,7 @@ def _each(item: str, criteria: tuple[str, ...], text: str, answers: tuple[str, .
 
 def _remarks(item: str, what: str) -> Question:
     return Question(
-        id=f"{item}.{REMARKS}", text=f"Anything to remark about {what}? (if you like)", is_needed=False
+        id=f"{item}.{REMARKS}", text=f"Do you have any remarks about {what}? (optional)", is_needed=False
     )
 
 
@@ -153,13 +153,13 @@ def check_question() -> Question:
     """Returns the attention check, whose text contains the right answer."""
     return Question(
         id="check",
-        text=f"This question only shows that questions are read. Please choose “{MATCHES[CHECK]}” here.",
+        text=f"This question checks that questions are read. Please choose “{MATCHES[CHECK]}” here.",
         answers=MATCHES,
     )
 
 
 END = Question(
-    id="end.remarks", text="Is there anything else that you want to tell us? (if you like)", is_needed=False
+    id="end.remarks", text="Is there anything else that you want to tell us? (optional)", is_needed=False
 )
 
 

@@ -19,8 +19,8 @@ def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[st
     """Returns the sentences of the summary."""
     used = len({row.rater for row in answers.used})
     lines = [
-        f"Raters whose answers count: {used} ({answers.finished} rated everything). Left out, as they failed "
-        f"the attention check: {len(answers.failed)}."
+        f"The answers of {used} raters are analysed; {answers.finished} of them rated everything. "
+        f"{len(answers.failed)} failed the attention check and are left out."
     ]
     for found, says in (
         (match, "that roads match their descriptions"),
@@ -30,7 +30,7 @@ def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[st
         if scores:
             share = sum(score >= 4 for score in scores) / len(scores)
             lines.append(
-                f"In general {share:.0%} of {len(scores)} ratings say {says} (one of the upper two answers)"
+                f"Overall, {share:.0%} of {len(scores)} ratings say {says} (one of the two highest answers)"
                 f"{_told_alpha(agreement(found.overall))}."
             )
     return lines
@@ -179,8 +179,8 @@ class SurveyBlocks:
             "Agreement between raters: Krippendorff's alpha (ordinal)",
             ("part", "criterion", "items", "ratings", "alpha"),
             rows,
-            "1: all say the same; 0: as by chance; below: less than by chance. A dash: one item only, or all "
-            "ratings are the same, so nothing can be told. Krippendorff asks for 0.8, and 0.667 for "
+            "1: all raters agree; 0: as by chance; below 0: less than by chance. A dash: one item only, or "
+            "all ratings are the same, so alpha is undefined. Krippendorff asks for 0.8, and 0.667 for "
             "tentative conclusions.",
         )
 
@@ -219,15 +219,19 @@ class SurveyBlocks:
                 line += (
                     f"Spearman's rho is {told.rho:.2f} over {told.pairs} questions, each with people's mean "
                 )
-                line += f"(p {_p(told.p)}, as if they were independent; those on one road are not)."
+                line += f"(p {_p(told.p)}, as if questions were independent; those about one road are not)."
             else:
-                line += "scores of the machine or of people are all alike, or too few to be correlated."
+                line += (
+                    "the scores of people or the measured scores are all equal, or too few for a correlation."
+                )
             heads = ("item", "description", "criterion", "people, mean of 1 to 5", "machine, 0 to 1")
             blocks += [
                 line,
-                self.table(f"{found.part}-machine", f"People and machine: {NAMES[found.part]}", heads, rows),
+                self.table(
+                    f"{found.part}-machine", f"People and measurements: {NAMES[found.part]}", heads, rows
+                ),
             ]
-        return blocks or ["The machine measured none of the criteria that people rated."]
+        return blocks or ["None of the criteria that people rated was measured."]
 
     def remarks(self, answers: Answers) -> Block:
         """Returns the table of remarks."""
@@ -237,7 +241,7 @@ class SurveyBlocks:
             if row.question.endswith(f".{REMARKS}")
         ]
         if not rows:
-            return "Nobody remarked anything."
+            return "There are no remarks."
         return self.table("remarks", f"{len(rows)} remarks", ("item", "description", "remark"), rows)
 
 

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 LINKS = "links.txt"
 OPEN_DOOR = (
-    "everyone who can reach this machine can reach the survey, and what they send can be read on its way; "
-    "put a server that speaks HTTPS in front of it, and name its address with --url"
+    "anyone who can reach this machine can open the survey, and answers travel unencrypted; put an HTTPS "
+    "server in front of it and give its address with --url"
 )
-NEEDS = "a survey is served by Starlette, uvicorn and Jinja2"
+NEEDS = "serving a survey needs Starlette, uvicorn and Jinja2"
 Tell = Callable[[str], None]
 
 
@@ -35,7 +35,7 @@ def opened(folder: Path | str, host: str, port: int, is_open: bool = False) -> "
         from roadgpt.study.survey.app import SurveyApp
         from roadgpt.study.survey.server import Server
     except ImportError as error:
-        raise UsageError(f"{NEEDS}; say python -m pip install 'roadgpt[survey]'") from error
+        raise UsageError(f"{NEEDS}; run python -m pip install 'roadgpt[survey]'") from error
     folder = Path(folder).resolve()
     survey = read_survey(folder)
     store = AnswerStore(folder / ANSWERS)
@@ -79,10 +79,10 @@ def serve(
         for line in _invited(Path(folder), store, raters, base):
             tell(line)
         if is_open:
-            tell(f"for everyone: {base}/join/{server.app.shared}")
+            tell(f"shared link: {base}/join/{server.app.shared}")
         if not store.links() and not is_open:
-            tell("nobody is invited yet; say --raters N for links, or --open for one link for all")
-        tell(f"serving {server.app.survey.title!r} at {base}; end it with Ctrl-C")
+            tell("nobody has been invited yet; give --raters N for N links, or --open for one shared link")
+        tell(f"serving {server.app.survey.title!r} at {base}; stop it with Ctrl-C")
         server.serve_forever()
     finally:
         server.close()
@@ -98,11 +98,13 @@ def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[s
     tokens = [token for token in tokens if store.rater_of(token) is not None]
     there = store.links()
     if wanted > MOST_RATERS:
-        raise UsageError(f"{wanted} raters are too many; a survey takes {MOST_RATERS:,}")
+        raise UsageError(f"{wanted} raters are too many; a survey takes at most {MOST_RATERS:,}")
     new = [new_token() for _ in range(wanted - there)]
     tokens += new
     if not tokens:
-        return [f"{there} links were made earlier; {path}, which held them, is gone"] if there else []
+        return (
+            [f"{there} links were made earlier, but {path}, which listed them, is missing"] if there else []
+        )
     links = [f"{base}/r/{token}" for token in tokens]
     try:
         write_whole(path, "\n".join(links) + "\n", is_private=True)
@@ -110,7 +112,7 @@ def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[s
         raise RoadGPTError(f"cannot write {path}: {error.strerror or error}; make room there") from error
     for token in new:  # last: a link that stands nowhere is lost, one that opens nothing is made again
         store.add_rater(token=token)
-    return [*links, f"one link for each rater; they stand in {path}, too"]
+    return [*links, f"one link for each rater; {path} lists them, too"]
 
 
 def _is_own(host: str) -> bool:
