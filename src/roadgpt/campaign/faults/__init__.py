@@ -2,7 +2,7 @@
 
 from roadgpt.campaign.faults.change import Difference, SmallestChange, smallest_change
 from roadgpt.campaign.faults.distinct import Surroundings, faults_of, surroundings
-from roadgpt.campaign.faults.failures import FailureSite, failed_run, failures_of
+from roadgpt.campaign.faults.failures import LocatedFailure, failed_run, failures_of
 from roadgpt.campaign.faults.fault import Fault, Faults, faults_in
 from roadgpt.campaign.faults.fault_log import (
     AnalysisTask,
@@ -20,9 +20,9 @@ __all__ = [
     "Difference",
     "FailureAnalysis",
     "FailureReason",
-    "FailureSite",
     "Fault",
     "Faults",
+    "LocatedFailure",
     "Manner",
     "Repeated",
     "Simplest",

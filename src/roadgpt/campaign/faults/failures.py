@@ -24,8 +24,8 @@ AT_ONCE = 500  # tests that a store is asked for
 
 
 @dataclass(frozen=True, eq=False)
-class FailureSite:
-    """The place of one failure."""
+class LocatedFailure:
+    """One failure, and where it happened."""
 
     name: NumberedTest
     around: Surroundings
@@ -42,7 +42,7 @@ class FailureSite:
 class Failures:
     """The failures of a folder, all or an even sample."""
 
-    known: tuple[FailureSite, ...]
+    known: tuple[LocatedFailure, ...]
     every: int
     """Number of all failures, also those outside the sample and those whose road is not known."""
 
@@ -101,14 +101,14 @@ def _runs(folder: Path) -> Iterator[Run]:
         yield read_run(each)
 
 
-def _of_run(run: Run) -> FailureSite:
+def _of_run(run: Run) -> LocatedFailure:
     assert run.road is not None
     assert run.verdict is not None
     its = run.verdict
     return _site_of(NumberedTest("", run.index), run.road, run.request.world, "", its)
 
 
-def _of_campaign(record: Record, some: Sequence[NumberedTest]) -> Iterator[FailureSite]:
+def _of_campaign(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFailure]:
     cells: dict[str, Cell] = {cell.name: cell for cell in record.cells()}
     wanted = {name: [each.number for each in some if each.cell == name] for name in cells}
     for name, cell in cells.items():
@@ -123,7 +123,7 @@ def _of_campaign(record: Record, some: Sequence[NumberedTest]) -> Iterator[Failu
                     yield found
 
 
-def _of_result(cell: Cell, its: Result, system: str) -> FailureSite | None:
+def _of_result(cell: Cell, its: Result, system: str) -> LocatedFailure | None:
     """Returns the place of a failure; None where its road cannot be built any more."""
     if its.design is None:
         return None
@@ -142,11 +142,11 @@ def system_of(world: World, setup: Setup) -> str:
 
 def _site_of(
     name: NumberedTest, road: Road, world: World, system: str, result: Verdict | Result
-) -> FailureSite:
+) -> LocatedFailure:
     station = result.at_s or 0.0
     around = surroundings(road, world, station, f"{result.cause} {result.side} {system}")
     manner = manner_of(road, world, station, result.cause, result.side)
-    return FailureSite(name, around, manner, station, result.max_oob, result.beyond)
+    return LocatedFailure(name, around, manner, station, result.max_oob, result.beyond)
 
 
 def failed_run(folder: Path, name: NumberedTest, has_drive: bool = True) -> Run:

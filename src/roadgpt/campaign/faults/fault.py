@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadgpt.campaign.faults.distinct import faults_of, typical
-from roadgpt.campaign.faults.failures import FailureSite, failures_of
+from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
 from roadgpt.campaign.faults.reason import Way
 from roadgpt.campaign.numbered_test import NumberedTest
 
@@ -30,9 +30,9 @@ class Fault:
 
     number: int
     """Number from 1; the fault with most failures comes first."""
-    members: tuple[FailureSite, ...]
+    members: tuple[LocatedFailure, ...]
     """All its failures, in the order of their tests."""
-    typical: tuple[FailureSite, ...]
+    typical: tuple[LocatedFailure, ...]
     """A few of its failures, first the one that is nearest to all others."""
 
     @property
@@ -78,7 +78,7 @@ class Faults:
     @property
     def ways(self) -> list[str]:
         """How the car failed, the most frequent way first: 'ran wide of right bends of R 15 m to 17 m'."""
-        found: dict[tuple[Way, str | None], list[FailureSite]] = {}
+        found: dict[tuple[Way, str | None], list[LocatedFailure]] = {}
         for fault in self.them:
             for each in fault.members:
                 found.setdefault((each.manner.way, each.manner.side), []).append(each)
@@ -86,7 +86,7 @@ class Faults:
         return [_way_text(way, side, members) for (way, side), members in ordered]
 
 
-def _way_text(way: Way, side: str | None, members: Sequence[FailureSite]) -> str:
+def _way_text(way: Way, side: str | None, members: Sequence[LocatedFailure]) -> str:
     radii = sorted(each.manner.radius for each in members if each.manner.radius is not None)
     if side is None or not radii:
         return WAYS[way]
@@ -111,8 +111,8 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
     return Faults(tuple(_grouped(failures.known)), failures.every, len(failures.known))
 
 
-def _grouped(known: Sequence[FailureSite]) -> Iterator[Fault]:
-    members: dict[int, list[FailureSite]] = {}
+def _grouped(known: Sequence[LocatedFailure]) -> Iterator[Fault]:
+    members: dict[int, list[LocatedFailure]] = {}
     for cluster, each in zip(faults_of([each.around for each in known]), known, strict=True):
         members.setdefault(cluster, []).append(each)
     ordered = sorted(members.values(), key=lambda its: (-len(its), its[0].name))
