@@ -40,7 +40,9 @@ LONGEST_CHANGE = 100.0  # m: more would not fit on the map
 STEP_ASIDE = (
     14.0  # m of the neighbour's grade on an asked-for straight's gap, so that the change is not in the turn
 )
-RAMP_OF_GRADE = 0.9  # m: of straight for each percent, by which a ramp takes the least off its mean grade
+PARABOLA_OF_GRADE = (
+    0.9  # m: of straight for each percent, by which a parabola takes the least off its mean grade
+)
 OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a straight whose length nobody said
 ALONE = (60.0, 240.0)  # m, of a road without turns whose length nobody said
 HILL = 42.0  # m that one climb or fall of a hilly road takes
@@ -186,7 +188,7 @@ def _change(grade: Range | None, other: Range | None, windows: Windows, haste: f
     most = CHANGE
     if grade is not None:
         steep, width = max(abs(grade.lo), abs(grade.hi)), max(grade.hi - grade.lo, 0.5)
-        most = max(CHANGE, min(RAMP_OF_GRADE * steep * steep / width, LONGEST_CHANGE))
+        most = max(CHANGE, min(PARABOLA_OF_GRADE * steep * steep / width, LONGEST_CHANGE))
     comfortable = windows.comfort * windows.between(grade, other) / 100
     return max(most * (1 - 0.3 * haste), min(comfortable, LONGEST_CHANGE) * (1 - haste))
 

@@ -22,9 +22,11 @@ WIDEST = 115.0  # m, of a radius that nobody asked for
 LONGEST_TURN = 170.0  # m along the curve
 SEEN_ARC = 6.5  # m: a shorter arc is not measured with its own radius, which is averaged over some 9 m
 SHORTEST_TURN = 11.0  # m along the arc, where no radius was asked for: less looks like a kink
-RAMPS = (0.12, 0.34)  # of the arc, for each clothoid
-RAMP_LIMITS = (3.0, 16.0)  # m, of roads as tight as most are; of wide turns, a clothoid has ...
-RADII_OF_RAMP = 9.0  # ... a parameter A of a third of the radius or more (RAS-L 1995), so A^2 / R of a ninth
+TRANSITIONS = (0.12, 0.34)  # of the arc, for each clothoid
+TRANSITION_LIMITS = (3.0, 16.0)  # m, of roads as tight as most are; of wide turns, a clothoid has ...
+RADII_OF_TRANSITION = (
+    9.0  # ... a parameter A of a third of the radius or more (RAS-L 1995), so A^2 / R of a ninth
+)
 WIDE_ANGLE = 80.0  # degrees of a turn whose radius is wider than others
 LEAD = 16.5  # m: a straight before the first or after the last turn is measured as 10 m or more
 SEPARATE = 17.5  # m: turns of one hand with so much between them are measured as two
@@ -191,10 +193,10 @@ def drawn_turn(
         low, high = turn.length.lo, min(turn.length.hi, max(LONGEST_TURN, 1.2 * turn.length.lo))
         low = low if low > 0 else 0.5 * high
         length = low + (0.35 + 0.3 * rng.random()) * (high - low)
-        ramp = 0.1 * length
-        radius = min(max((length - ramp) / radians(angle), least), most)
-        angle = min(max(degrees((length - ramp) / radius), asked.lo), asked.hi)
-        return turn_element(angle, hand_of(turn), radius, ramp, turn.grade)
+        transition = 0.1 * length
+        radius = min(max((length - transition) / radians(angle), least), most)
+        angle = min(max(degrees((length - transition) / radius), asked.lo), asked.hi)
+        return turn_element(angle, hand_of(turn), radius, transition, turn.grade)
     if not is_tight and not hard:
         least = max(least, SHORTEST_TURN * (1 - haste) / radians(angle))
     wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
@@ -212,11 +214,13 @@ def drawn_turn(
 def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Generator) -> float:
     """Length of the clothoids; short where a promised radius must still be seen."""
     arc = radius * radians(angle)
-    share = RAMPS[0] + (RAMPS[1] - RAMPS[0]) * rng.random()
-    ramp = min(max(share * arc, RAMP_LIMITS[0]), max(RAMP_LIMITS[1], radius / RADII_OF_RAMP))
+    share = TRANSITIONS[0] + (TRANSITIONS[1] - TRANSITIONS[0]) * rng.random()
+    transition = min(
+        max(share * arc, TRANSITION_LIMITS[0]), max(TRANSITION_LIMITS[1], radius / RADII_OF_TRANSITION)
+    )
     if is_tight:
-        ramp = min(ramp, max(arc - SEEN_ARC, 1.0))
-    return min(ramp, MOST_TRANSITION * arc / segments_of_turn(angle))
+        transition = min(transition, max(arc - SEEN_ARC, 1.0))
+    return min(transition, MOST_TRANSITION * arc / segments_of_turn(angle))
 
 
 def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least: float, mean: float) -> float:

@@ -1,4 +1,4 @@
-"""Ramps: where straights of different grades meet, joints and grades move until they are measured as asked.
+"""Moves the joints and grades of straights that meet, until each straight is measured as it was asked for.
 
 The parabola that joins two grades belongs to both straights. A level one is measured only where the road is
 level, so it loses length to a steep neighbour, and the mean grade of the steep one falls. A short and steep

@@ -26,8 +26,8 @@ LEVEL_SHARE, SLOPE_SHARE = (
     0.3,
 )  # of roads whose words say nothing of heights: level, one slope; the rest rolls
 GENTLE, STEEP = 1.5, 9.0  # percent, of such roads
-NARROW = 3.0  # percentage points, of a promise that a ramp could break
-BRIEF = 45.0  # m: a straight so short that ramps are a good part of it
+NARROW = 3.0  # percentage points, of a requirement that a parabola could break
+BRIEF = 45.0  # m: a straight so short that parabolas are a good part of it
 STEADY = 0.5  # chance that a feature keeps the grade of the one before, if it may
 UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
 ROLL = 60.0  # m for which a road that rolls keeps its grade at least
@@ -221,7 +221,7 @@ def _crests(plan: Sequence[Element], windows: Windows, rng: np.random.Generator)
 
 
 def _far_end(window: Range, rng: np.random.Generator) -> float:
-    """The steep end of a promise: ramps take much off the mean where it is narrow or the straight short."""
+    """The steep end of a window: parabolas lower the mean where it is narrow or the straight is short."""
     share = 0.2 * float(rng.random())
     if window.lo > 0:
         return window.hi - share * (window.hi - window.lo)

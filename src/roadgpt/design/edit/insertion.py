@@ -20,7 +20,7 @@ LEAD = 17.0  # m before the first turn and behind the last
 NEW_STRAIGHT = 40.0  # m of one whose length was not said
 SPARE = ((0.0, 0.0), (20.0, 0.0), (0.0, 20.0), (25.0, 25.0), (45.0, 0.0), (0.0, 45.0))
 """Metres of straight road before and behind a new turn, besides what it needs: where it would meet others."""
-RAMP_SHARE = 0.22  # of the arc
+TRANSITION_SHARE = 0.22  # of the arc
 
 # Degrees and radii, metres, that are tried.
 ANY = ((60, 25), (50, 22), (45, 32), (75, 22), (90, 20), (40, 20), (35, 28), (110, 18), (30, 40))
@@ -197,12 +197,12 @@ def _turns(
     if lead:
         new.append(gap(f"new {number} lead", lead, incline))
     degrees, radius = measures
-    ramp = min(max(RAMP_SHARE * radius * radians(degrees), 3.0), 12.0)
+    transition = min(max(TRANSITION_SHARE * radius * radians(degrees), 3.0), 12.0)
     for i, side in enumerate(sides):
         if i:
             new.append(gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
         name = f"new {number} turn {i + 1}"
-        segments = turn_segments(degrees, 1 if side == "left" else -1, radius, ramp, incline)
+        segments = turn_segments(degrees, 1 if side == "left" else -1, radius, transition, incline)
         new.append(RoadElement(name, "turn", segments, side))
         goals += _goals(change, name, degrees, radius)
     tail = _lead(turn_after, sides[-1], gap_after) + spare[1]

@@ -23,7 +23,7 @@ Quantity = Literal["degrees", "radius", "length", "grade"]
 Aims = Mapping[tuple[str, Quantity], float]
 MILLIMETRE, CENTIMETRE, TENTH = 1000.0, 100.0, 10.0
 LEAST = 1.0  # m that a straight segment keeps
-RAMP_SHARE = 0.3  # of the arc, of a turn that is written anew without a transition of its own
+TRANSITION_SHARE = 0.3  # of the arc, of a turn that is written anew without a transition of its own
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,15 +150,15 @@ def scaled(segment: Segment, more: float, wider: float) -> Segment:
     if radius and segment.radius:
         wider = radius / segment.radius
     exact = segment.distance * more * wider * MILLIMETRE
-    ramp = segment.transition
-    if ramp:
-        ramp = max(floor(ramp * more * wider * TENTH), 1) / TENTH
+    transition = segment.transition
+    if transition:
+        transition = max(floor(transition * more * wider * TENTH), 1) / TENTH
     return segment.model_copy(
         update={
             "distance": max((ceil(exact) if radius else floor(exact)) / MILLIMETRE, 0.001),
             "turn_degrees": degrees,
             "radius": radius,
-            "transition": ramp,
+            "transition": transition,
         }
     )
 
@@ -170,17 +170,19 @@ def straight(length: float, incline: float) -> Segment:
 
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
     """Returns a turn that has the element's side and slope and is written anew."""
-    ramps = [s.transition for s in element.segments if s.transition]
-    ramp = ramps[0] if ramps else RAMP_SHARE * radius * radians(degrees)
-    segments = turn_segments(degrees, 1 if element.side == "left" else -1, radius, ramp, element.incline)
+    transitions = [s.transition for s in element.segments if s.transition]
+    transition = transitions[0] if transitions else TRANSITION_SHARE * radius * radians(degrees)
+    segments = turn_segments(
+        degrees, 1 if element.side == "left" else -1, radius, transition, element.incline
+    )
     return element.with_segments(segments)
 
 
 def turn_segments(
-    degrees: float, hand: int, radius: float, ramp: float, incline: float
+    degrees: float, hand: int, radius: float, transition: float, incline: float
 ) -> tuple[Segment, ...]:
     """Returns the segments of a turn as the planner writes it."""
-    turn = turn_element(degrees, hand, radius, ramp)
+    turn = turn_element(degrees, hand, radius, transition)
     return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
 

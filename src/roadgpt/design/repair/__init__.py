@@ -36,7 +36,7 @@ How = Literal["none", "place", "full"]
 MOST_SEGMENTS = 60  # of a list that is repaired in full; on more, a road of a map's size is no longer a list
 ROUNDS = 2  # of solving: the second with the transitions that came of the first
 TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
-SHORTEST_RAMP = 0.1  # m
+SHORTEST_TRANSITION = 0.1  # m
 
 
 class Repaired(NamedTuple):
@@ -173,10 +173,10 @@ def _written(
             )
             if not fits:
                 update["transition"] = None
-        ramp = update.get("transition", segment.transition)
+        transition = update.get("transition", segment.transition)
         if degrees and not update.get("radius"):
-            most = max(distance - radius * abs(np.radians(degrees)), SHORTEST_RAMP)
-            if (ramp or min(distance / 4, 12.0)) > most:
+            most = max(distance - radius * abs(np.radians(degrees)), SHORTEST_TRANSITION)
+            if (transition or min(distance / 4, 12.0)) > most:
                 update["transition"] = floor(most * TENTH) / TENTH
         out.append(segment.model_copy(update=update))
     return tuple(out)

@@ -19,7 +19,7 @@ from roadgpt.design.road_elements import RoadElement
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World
 
-LEAST_RAMP = 0.1  # of a segment that turns, for each clothoid: as short as it may be made
+LEAST_TRANSITION = 0.1  # of a segment that turns, for each clothoid: as short as it may be made
 METRES_PER_RADIAN = 30.0  # how heavy a missing radian weighs beside a missing metre
 SHARE_KEPT = 0.2  # of every length and turn: less would not be the segment that was proposed
 CLEARLY = 260.0  # m: of a turn that is to be seen as one, the largest radius (the measure says 300)
@@ -96,7 +96,7 @@ def limits_of(
     """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right side ``(m,)``."""
     rows = Rows(len(segments))
     radius = world.min_radius * margins.radius
-    shortest = 1 / (1 - LEAST_RAMP)
+    shortest = 1 / (1 - LEAST_TRANSITION)
     for index, segment in enumerate(segments):
         rows.add({index: -1.0}, {}, -SHARE_KEPT * segment.distance)
         if segment.turn_degrees:
