@@ -66,5 +66,5 @@ def test_doctor_survives_what_it_finds(monkeypatch: pytest.MonkeyPatch) -> None:
     def look() -> str:
         raise OSError("the disk is full")
 
-    assert doctor._tried("disk", look) == doctor.Answer("disk", False, "OSError: the disk is full")
+    assert doctor._tried("disk", look) == doctor.CheckResult("disk", False, "OSError: the disk is full")
     assert not doctor._library("no-such-library").is_fine

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from roadgpt.cli.rows import COLOURS, Row, metres, summary
+from roadgpt.cli.result_row import COLOURS, Row, metres, summary
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
 from roadgpt.verdict import graded

@@ -13,7 +13,7 @@ import click
 from roadgpt import __version__, stopping
 from roadgpt.cli.command_table import COMMANDS, EARLIER, HEADINGS, MISSING, renamed
 from roadgpt.cli.crash import report_crash
-from roadgpt.cli.dashes import told_of_dashes
+from roadgpt.cli.leading_dash import dash_advice
 from roadgpt.cli.streams import OutputError, drop_output, is_coloured
 from roadgpt.errors import RoadGPTError
 from roadgpt.provenance import USER
@@ -79,7 +79,7 @@ class Commands(click.Group):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """What click makes of the words; a description with a dash in front is told where it belongs."""
         try:
-            with told_of_dashes(ctx, args):
+            with dash_advice(ctx, args):
                 return super().parse_args(ctx, args)
         except click.NoSuchOption as error:
             raise click.UsageError(
@@ -175,6 +175,6 @@ def app(ctx: click.Context) -> None:
     if not is_coloured():
         ctx.color = False
     if ctx.invoked_subcommand is None:
-        from roadgpt.cli.talk import talk
+        from roadgpt.cli.interactive import converse
 
-        talk()
+        converse()

@@ -10,7 +10,7 @@ import click
 from roadgpt.cli.next_steps import lines, of_status
 from roadgpt.cli.option_groups import Decorator, under
 from roadgpt.cli.options import OUTPUT, whole
-from roadgpt.cli.rows import COLOURS, metres
+from roadgpt.cli.result_row import COLOURS, metres
 from roadgpt.cli.screen import new_bar
 
 if TYPE_CHECKING:

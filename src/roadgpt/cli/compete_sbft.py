@@ -19,7 +19,7 @@ from roadgpt.cli.options import (
     setup_options,
     whole,
 )
-from roadgpt.cli.rows import row_of
+from roadgpt.cli.result_row import row_of
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.option_groups import under
-from roadgpt.cli.rows import Row, row_of
+from roadgpt.cli.result_row import Row, row_of
 
 if TYPE_CHECKING:
     from roadgpt.report.junit import Case, Properties, Suite

@@ -22,7 +22,7 @@ HEAD = "No road failed. What may find one that does:"
 
 
 @dataclass(frozen=True)
-class Quiet:
+class WithoutFailure:
     """Tests of which none failed."""
 
     request: "Request"
@@ -46,12 +46,12 @@ class Quiet:
         return self.passed >= FEWEST and bool(self.request.words) and is_usual
 
 
-def next_steps(quiet: Quiet) -> list[tuple[str, str]]:
+def next_steps(quiet: WithoutFailure) -> list[tuple[str, str]]:
     """What each step is, and its command; none where there is nothing to wonder about."""
     return [*_steps(quiet)] if quiet.is_worth_it else []
 
 
-def lines(quiet: Quiet) -> Iterator[str]:
+def lines(quiet: WithoutFailure) -> Iterator[str]:
     """The same to be read on a screen."""
     found = next_steps(quiet)
     if found:
@@ -61,7 +61,7 @@ def lines(quiet: Quiet) -> Iterator[str]:
         yield f"    {command}"
 
 
-def _steps(quiet: Quiet) -> Iterator[tuple[str, str]]:
+def _steps(quiet: WithoutFailure) -> Iterator[tuple[str, str]]:
     world = quiet.request.world
     if not world.lane_departure:
         why = "fail where a front tyre passes the lane marking (UN R157)"
@@ -88,8 +88,8 @@ def _steps(quiet: Quiet) -> Iterator[tuple[str, str]]:
             break
 
 
-def _command(quiet: Quiet, **world: Any) -> str:
-    from roadgpt.cli.replay import request_words
+def _command(quiet: WithoutFailure, **world: Any) -> str:
+    from roadgpt.cli.repeat_commands import request_words
 
     request = quiet.request.model_copy(update={"world": quiet.request.world.model_copy(update=world)})
     if not quiet.is_search:
@@ -98,7 +98,7 @@ def _command(quiet: Quiet, **world: Any) -> str:
     return shlex.join(["roadgpt", "campaign", *goal, *request_words(request, quiet.tests)])
 
 
-def of_status(status: "Status") -> Quiet | None:
+def of_status(status: "Status") -> WithoutFailure | None:
     """Of a campaign that is not at work, and in which no road failed; by its first cell."""
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None
@@ -110,12 +110,12 @@ def of_status(status: "Status") -> Quiet | None:
     mostly = sum(cell.mostly_outside for cell in status.cells)
     tests = first.budget.tests or SEARCHED
     passed = status.outcomes["PASS"]
-    return Quiet(first.request, tests, passed, mostly, partly + mostly, first.goal, is_search=True)
+    return WithoutFailure(first.request, tests, passed, mostly, partly + mostly, first.goal, is_search=True)
 
 
-def of_runs(folder: Path) -> Quiet | None:
+def of_runs(folder: Path) -> WithoutFailure | None:
     """Of a folder of runs in which no road failed."""
-    from roadgpt.cli.rows import row_of
+    from roadgpt.cli.result_row import row_of
     from roadgpt.run import read_run
     from roadgpt.run.campaign_runs import finished
     from roadgpt.run.card import read_card
@@ -126,7 +126,7 @@ def of_runs(folder: Path) -> Quiet | None:
     return of_rows(card.request, card.roads, rows)
 
 
-def of_rows(request: "Request", roads: int, rows: Any) -> Quiet | None:
+def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
     """Of rows, none of which failed."""
     from roadgpt.verdict.severity import MOSTLY
 
@@ -134,4 +134,4 @@ def of_rows(request: "Request", roads: int, rows: Any) -> Quiet | None:
         return None
     shares = [row.max_oob or 0.0 for row in rows if row.test_outcome == "PASS"]
     outside, mostly = sum(share > 0 for share in shares), sum(share > MOSTLY for share in shares)
-    return Quiet(request, roads, len(shares), mostly, outside)
+    return WithoutFailure(request, roads, len(shares), mostly, outside)

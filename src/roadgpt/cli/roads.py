@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roadgpt.cli.named import Named, roads_named
-from roadgpt.cli.rows import Row, unreadable
+from roadgpt.cli.result_row import Row, unreadable
+from roadgpt.cli.road_names import NamedRoad, roads_named
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import PartError, UsageError
 
@@ -74,7 +74,7 @@ def shown_run(file: str, world: "World", geometry: "Geometry") -> "Run":
     return shown_runs([file], None, world, geometry, 1, "it")[0]
 
 
-def run_of(named: Named, world: "World", geometry: "Geometry") -> "Run":
+def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
     """Its Run, or one made of a road that nobody drove; tells remarks.
 
     Raises:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 import click
 
-from roadgpt.cli.rows import WIDEST, Row, colour_of, summary
+from roadgpt.cli.result_row import WIDEST, Row, colour_of, summary
 from roadgpt.cli.streams import is_coloured
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from roadgpt.campaign.status import Status, status_of
 from roadgpt.campaign.table import RESULTS
 from roadgpt.chat import Spent
 from roadgpt.cli.campaigns import HEAD, LINE, as_line, cell_columns, faults_of, told
-from roadgpt.cli.named import Named, roads_named
-from roadgpt.cli.replay import replay_lines
-from roadgpt.cli.rows import WIDEST, metres, row_of, spending
+from roadgpt.cli.repeat_commands import replay_lines
+from roadgpt.cli.result_row import WIDEST, metres, row_of, spending
+from roadgpt.cli.road_names import NamedRoad, roads_named
 from roadgpt.errors import UsageError
 from roadgpt.run.campaign_runs import finished
 from roadgpt.run.card import read_card
@@ -96,21 +96,21 @@ def _cell_lines(place: Selection, status: Status) -> Iterator[str]:
     yield LINE.format(*cell_columns(cell))
     tests = chosen(place, None)
     for each in tests[:MOST_TESTS]:
-        yield _one_line(Named(each.said, each.stem, each, each.run))
+        yield _one_line(NamedRoad(each.said, each.stem, each, each.run))
     if not tests:
         yield "no test has ended yet"
     elif len(tests) > MOST_TESTS:
         yield f"and {len(tests) - MOST_TESTS:,} more tests; all: {place.folder / RESULTS}"
 
 
-def _one_line(named: Named) -> str:
+def _one_line(named: NamedRoad) -> str:
     assert named.run is not None
     row = row_of(named.run(), named.said)
     margin = metres(row.margin_m) if row.margin_m is not None else ""
     return f"{named.said}  {row.outcome:<{WIDEST}} {row.length_m or 0:>5.0f} m {margin:>9}  {row.description}"
 
 
-def _run_of(named: Named) -> Iterator[str]:
+def _run_of(named: NamedRoad) -> Iterator[str]:
     assert named.run is not None
     run = named.run()
     if isinstance(named.key, Path):

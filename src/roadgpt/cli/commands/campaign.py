@@ -11,10 +11,10 @@ from click.core import ParameterSource
 from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
 from roadgpt.cli.configuration import SettableOption, driver_guard
-from roadgpt.cli.dashes import DescribedCommand
-from roadgpt.cli.failing import analyse_failures, asked, fault_options
+from roadgpt.cli.fault_analysis import analyse_failures, analysis_options, fault_options
 from roadgpt.cli.flags import CHAT, DRIVE, driver, driver_again, measure
 from roadgpt.cli.junit import junit_option, write_folder
+from roadgpt.cli.leading_dash import DescribedCommand
 from roadgpt.cli.option_groups import under
 from roadgpt.cli.options import (
     SEED,
@@ -127,7 +127,7 @@ def command(
     watch(out, work(out, workers, executor, address, plan), as_json, quiet)
     if junit is not None:
         write_folder(junit, out)
-    if look := asked(faults, minimise, repeat, workers, quiet, as_json):
+    if look := analysis_options(faults, minimise, repeat, workers, quiet, as_json):
         analyse_failures(out, look)
 
 
@@ -185,7 +185,7 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
 def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
     """What is about to happen, where it is no surprise."""
     from roadgpt.campaign.record import Record
-    from roadgpt.cli.work import understood
+    from roadgpt.cli.run_job import understood
 
     with Record.opened(out) as record:
         cells = record.cells()

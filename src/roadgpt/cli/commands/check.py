@@ -13,8 +13,8 @@ from roadgpt.cli.options import (
     world_of,
     world_options,
 )
+from roadgpt.cli.result_row import Row
 from roadgpt.cli.roads import blueprint_of, each_road
-from roadgpt.cli.rows import Row
 from roadgpt.cli.screen import Screen
 
 INVALID = 1  # exit status, so that a script can ask

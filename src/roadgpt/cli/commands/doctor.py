@@ -23,7 +23,7 @@ TEST_ROAD = [[40.0, 100.0], [60.0, 100.0], [80.0, 100.0]]  # m; a straight, driv
 
 
 @dataclass(frozen=True)
-class Answer:
+class CheckResult:
     """One thing that was looked at."""
 
     about: str
@@ -31,11 +31,11 @@ class Answer:
     sentence: str
 
 
-def examined() -> Iterator[Answer]:
+def examined() -> Iterator[CheckResult]:
     """Everything that is looked at, one answer after another; none of them raises."""
-    yield Answer("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
+    yield CheckResult("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
     fits = sys.version_info >= (3, 11)
-    yield Answer("Python", fits, f"{platform.python_version()} on {platform.platform()}")
+    yield CheckResult("Python", fits, f"{platform.python_version()} on {platform.platform()}")
     for name in LIBRARIES:
         yield _library(name)
     yield from _shelves()
@@ -46,46 +46,46 @@ def examined() -> Iterator[Answer]:
         yield _tried(f"folder {folder}", partial(_writable, folder))
 
 
-def _library(name: str) -> Answer:
+def _library(name: str) -> CheckResult:
     try:
-        return Answer(name, True, version(name))
+        return CheckResult(name, True, version(name))
     except PackageNotFoundError:
-        return Answer(name, False, f"is missing: python -m pip install {name}")
+        return CheckResult(name, False, f"is missing: python -m pip install {name}")
 
 
-def _shelves() -> Iterator[Answer]:
+def _shelves() -> Iterator[CheckResult]:
     from roadgpt.cli.installed_plugins import installed
 
     try:
         parts = installed()
     except RoadGPTError as error:
-        yield Answer("plug-ins", False, str(error))
+        yield CheckResult("plug-ins", False, str(error))
         return
     for part in parts:
         if not part.works:
-            yield Answer(f"{part.shelf}: {part.name}", False, part.about)
+            yield CheckResult(f"{part.shelf}: {part.name}", False, part.about)
     working = sum(part.works for part in parts)
-    yield Answer(
+    yield CheckResult(
         "parts", working == len(parts), f"{working} of {len(parts)} can be used (roadgpt config plugins)"
     )
 
 
-def _model() -> Answer:
+def _model() -> CheckResult:
     """Can the language model of the settings be asked? To name none is fine: nothing else needs one."""
     from roadgpt.chat.diagnosis import diagnose
 
     try:
-        return Answer("model", True, diagnose())
+        return CheckResult("model", True, diagnose())
     except RoadGPTError as error:
-        return Answer("model", False, str(error))
+        return CheckResult("model", False, str(error))
 
 
-def _tried(about: str, look: Callable[[], str]) -> Answer:
+def _tried(about: str, look: Callable[[], str]) -> CheckResult:
     """The answer of a look; whatever it raises is the answer too, since finding that out is the point."""
     try:
-        return Answer(about, True, look())
+        return CheckResult(about, True, look())
     except Exception as error:
-        return Answer(about, False, f"{type(error).__name__}: {error}")
+        return CheckResult(about, False, f"{type(error).__name__}: {error}")
 
 
 def _numba() -> str:

@@ -9,10 +9,9 @@ import click
 from click.core import ParameterSource
 
 from roadgpt.cli.beamng import beamng_options
-from roadgpt.cli.driving_again import drive_again
+from roadgpt.cli.drive_again import drive_again
 from roadgpt.cli.flags import driver_again
 from roadgpt.cli.junit import Junit, junit_option
-from roadgpt.cli.named import choice_of, choice_options
 from roadgpt.cli.option_groups import GroupedCommand, under
 from roadgpt.cli.options import (
     SEED,
@@ -24,8 +23,9 @@ from roadgpt.cli.options import (
     world_of,
     world_options,
 )
+from roadgpt.cli.result_row import Row, row_of
+from roadgpt.cli.road_names import choice_of, choice_options
 from roadgpt.cli.roads import blueprint_of, each_road
-from roadgpt.cli.rows import Row, row_of
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import UsageError
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import click
 
-from roadgpt.cli.changing import Wish, change
-from roadgpt.cli.dashes import DescribedCommand
+from roadgpt.cli.edit_job import EditJob, edit_road
+from roadgpt.cli.leading_dash import DescribedCommand
 from roadgpt.cli.option_groups import under
 from roadgpt.cli.options import (
     OUTPUT,
@@ -69,7 +69,7 @@ def command(
     a road that cannot be valid. Nothing is written then.
     """
     chat = chat_of(rest, designer=designer)
-    wish = Wish(
+    job = EditJob(
         run,
         " ".join(words),
         out,
@@ -80,4 +80,4 @@ def command(
         drives=not no_drive,
         pictures=() if no_plot else picture_formats,
     )
-    change(wish, Screen(1, as_json, quiet))
+    edit_road(job, Screen(1, as_json, quiet))

@@ -8,9 +8,9 @@ import click
 from click.core import ParameterSource
 
 from roadgpt.cli.flags import WORLD
-from roadgpt.cli.named import Named, choice_of, choice_options, roads_named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import folder, formats_option, quiet_option, setup_options, world_of, world_options
+from roadgpt.cli.road_names import NamedRoad, choice_of, choice_options, roads_named
 from roadgpt.cli.roads import blueprint_of
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError
 
@@ -83,7 +83,7 @@ class _Source:
     is_quiet: bool
     has_warned: bool = False
 
-    def run_of(self, named: Named) -> "Run":
+    def run_of(self, named: NamedRoad) -> "Run":
         """Its Run, or one of a road that nobody drove.
 
         Raises:
@@ -132,7 +132,7 @@ class _Names:
     def __init__(self) -> None:
         self._taken: set[str] = set()
 
-    def of(self, named: Named) -> str:
+    def of(self, named: NamedRoad) -> str:
         """That of the source, numbered where an earlier source has the same."""
         name, number = named.stem, 1
         while name in self._taken:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from roadgpt.cli.failing import DRIVES, REPEAT, Look, analyse_failures
+from roadgpt.cli.fault_analysis import DRIVES, REPEAT, AnalysisOptions, analyse_failures
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import (
     driver_again_option,
@@ -61,4 +61,6 @@ def command(
 
     if driver is not None:
         check_named_driver(driver, drivers_of(place), place)
-    analyse_failures(place, Look(repeat, minimise, workers, () if no_plot else picture_formats, quiet))
+    analyse_failures(
+        place, AnalysisOptions(repeat, minimise, workers, () if no_plot else picture_formats, quiet)
+    )

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.named import choice_of, choice_options, roads_named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import quiet_option, setup_options, world_of, world_options
+from roadgpt.cli.road_names import choice_of, choice_options, roads_named
 from roadgpt.cli.roads import run_of, shown_runs
 from roadgpt.errors import UsageError
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.dashes import DescribedCommand
+from roadgpt.cli.leading_dash import DescribedCommand
 from roadgpt.cli.options import chat_of, chat_options_but, setup_options, whole, world_of, world_options
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def command(
     roadgpt read "drei Kurven, dann 80 m geradeaus bergab" --table
     roadgpt read "a road" --alternatives 3
     """
-    from roadgpt.cli.work import understood
+    from roadgpt.cli.run_job import understood
 
     world = world_of({"map_size": map_size})
     briefs = _readings(" ".join(words), reader, world, number, chat_of(asked, reader))
@@ -84,7 +84,7 @@ def _as_data(brief: "Brief", map_size: float) -> dict[str, object]:
 
 def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
     """The readings that have a chance, numbered, each with it; and one warning where none is sure."""
-    from roadgpt.cli.work import SURE, reading
+    from roadgpt.cli.run_job import SURE, reading
 
     likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
     whole = max(1.0, sum(brief.confidence for brief in likely))  # each is judged on its own; one is meant

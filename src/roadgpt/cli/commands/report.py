@@ -64,7 +64,7 @@ def command_of_many(folder: Path) -> str:
     """What makes a campaign of many tests again, or goes on with one that a file describes."""
     from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL
     from roadgpt.campaign.record import Record
-    from roadgpt.cli.replay import request_words
+    from roadgpt.cli.repeat_commands import request_words
 
     with Record.opened(folder) as record:
         cells = record.cells()
@@ -81,7 +81,7 @@ def command_of_many(folder: Path) -> str:
 
 def _command(card: "Card", folder: Path) -> str:
     """What makes the campaign again."""
-    from roadgpt.cli.replay import request_words
+    from roadgpt.cli.repeat_commands import request_words
 
     if not card.request.words:
         return ""

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from roadgpt.cli.campaigns import screen_options, watch, worker_options
-from roadgpt.cli.failing import analyse_failures, asked, fault_options
+from roadgpt.cli.fault_analysis import analyse_failures, analysis_options, fault_options
 from roadgpt.cli.flags import CHAT
 from roadgpt.cli.junit import junit_option, write_folder
 from roadgpt.cli.option_groups import GroupedCommand
@@ -70,5 +70,5 @@ def command(
     watch(campaign, work(campaign, workers, executor, address, plan), as_json, quiet)
     if junit is not None:
         write_folder(junit, campaign)
-    if look := asked(faults, minimise, repeat, workers, quiet, as_json):
+    if look := analysis_options(faults, minimise, repeat, workers, quiet, as_json):
         analyse_failures(campaign, look)

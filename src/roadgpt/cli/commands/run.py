@@ -6,8 +6,8 @@ from typing import Any
 import click
 
 from roadgpt.cli.beamng import beamng_options
-from roadgpt.cli.dashes import DescribedCommand
 from roadgpt.cli.junit import junit_option
+from roadgpt.cli.leading_dash import DescribedCommand
 from roadgpt.cli.options import (
     ROADS,
     SEED,
@@ -23,8 +23,8 @@ from roadgpt.cli.options import (
     world_of,
     world_options,
 )
+from roadgpt.cli.run_job import RunJob, carry_out
 from roadgpt.cli.screen import Screen
-from roadgpt.cli.work import Wish, work_off
 
 
 @click.command(cls=DescribedCommand)
@@ -61,10 +61,10 @@ def command(
       4  a language model could not be asked, or a limit was reached
     Roads that were finished before are complete.
     """
-    work_off(wish_of(" ".join(words), roads, **rest), Screen(roads, as_json, quiet, verbose))
+    carry_out(job_of(" ".join(words), roads, **rest), Screen(roads, as_json, quiet, verbose))
 
 
-def wish_of(
+def job_of(
     words: str,
     roads: int,
     seed: int | None,
@@ -76,7 +76,7 @@ def wish_of(
     formats: tuple[str, ...],
     junit: Path | None,
     **rest: Any,
-) -> Wish:
+) -> RunJob:
     """Returns what the values of the options ask for.
 
     Raises:
@@ -88,10 +88,10 @@ def wish_of(
     chat = chat_of(rest, rest["reader"], rest["designer"])
     setup = Setup(drives=not no_drive, chat=chat, **rest)
     pictures = () if no_plot else picture_formats
-    return Wish(words, roads, world, setup, seed, out, axes, pictures, formats, junit)
+    return RunJob(words, roads, world, setup, seed, out, axes, pictures, formats, junit)
 
 
-def usual_wish(words: str, roads: int) -> Wish:
+def usual_job(words: str, roads: int) -> RunJob:
     """Returns what ``roadgpt run`` would be asked for without an option: defaults and settings of files.
 
     Raises:
@@ -100,4 +100,4 @@ def usual_wish(words: str, roads: int) -> Wish:
     values = command.make_context("run", ["-n", str(roads), "--", words]).params
     for name in ("words", "roads", "as_json", "quiet", "verbose"):
         values.pop(name)
-    return wish_of(words, roads, **values)
+    return job_of(words, roads, **values)

@@ -5,9 +5,9 @@ from typing import Any
 
 import click
 
-from roadgpt.cli.named import choice_of, choice_options
 from roadgpt.cli.option_groups import GroupedCommand, under
 from roadgpt.cli.options import OUTPUT
+from roadgpt.cli.road_names import choice_of, choice_options
 from roadgpt.errors import UsageError
 
 
@@ -35,7 +35,7 @@ def command(
     roadgpt show CAMPAIGN --watch
     """
     from roadgpt.cli.summary import json_lines, progress_lines, show
-    from roadgpt.cli.watching import watch_campaign
+    from roadgpt.cli.watch_campaign import watch_campaign
 
     choice = choice_of(rest)
     if (watch or progress) and choice is not None:

@@ -2,7 +2,7 @@
 
 import click
 
-from roadgpt.cli import studying
+from roadgpt.cli import study_commands
 from roadgpt.cli.commands import survey_
 from roadgpt.cli.option_groups import CommandGroup
 
@@ -12,6 +12,6 @@ def command() -> None:
     """Studies of many roads, and of people who rate them."""
 
 
-command.add_command(studying.thesis)
-command.add_command(studying.alignment)
+command.add_command(study_commands.thesis)
+command.add_command(study_commands.alignment)
 command.add_command(survey_.command)

@@ -7,7 +7,7 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.named import choice_of, choice_options
+from roadgpt.cli.draw_pictures import PLOTS, draw_pictures
 from roadgpt.cli.option_groups import GroupedCommand, under
 from roadgpt.cli.options import (
     FILES,
@@ -19,7 +19,7 @@ from roadgpt.cli.options import (
     world_options,
 )
 from roadgpt.cli.options import folder as folder_of
-from roadgpt.cli.plotting import PLOTS, draw_pictures
+from roadgpt.cli.road_names import choice_of, choice_options
 from roadgpt.cli.roads import shown_runs
 from roadgpt.errors import UsageError
 

@@ -13,7 +13,7 @@ from roadgpt.chat import ChatSettings
 from roadgpt.cli import app
 from roadgpt.cli.flags import CHAT, SETUP, WORLD
 from roadgpt.cli.options import world_of
-from roadgpt.cli.replay import replay_lines
+from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.summary import show
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup, prove, write_run

@@ -14,7 +14,7 @@ import click
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.junit import Junit
 from roadgpt.cli.next_steps import lines, of_rows
-from roadgpt.cli.rows import row_of, spending
+from roadgpt.cli.result_row import row_of, spending
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
 
@@ -30,7 +30,7 @@ SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be
 
 
 @dataclass(frozen=True)
-class Wish:
+class RunJob:
     """One description and how it is to be worked off."""
 
     words: str
@@ -48,7 +48,7 @@ class Wish:
     """Where the tests are to stand as JUnit XML."""
 
 
-def work_off(wish: Wish, screen: Screen) -> None:
+def carry_out(job: RunJob, screen: Screen) -> None:
     """Read, say what was understood, design, drive, and show every road as it ends.
 
     Raises:
@@ -58,14 +58,14 @@ def work_off(wish: Wish, screen: Screen) -> None:
     from roadgpt.chat import Meter
     from roadgpt.run import brief_of, campaign
 
-    beside = _beside(wish)
-    meter = Meter.of(wish.setup.chat)
-    brief = brief_of(wish.words, wish.world, wish.setup, meter)
-    seed = _seed(wish)
+    beside = _beside(job)
+    meter = Meter.of(job.setup.chat)
+    brief = brief_of(job.words, job.world, job.setup, meter)
+    seed = _seed(job)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
-        work = campaign(brief, wish.roads, seed, wish.world, wish.setup, wish.out, beside, meter)
-    screen.junit = Junit.of(wish.junit, work.request)
-    screen.say(understood(brief, wish.world.map_size))
+        work = campaign(brief, job.roads, seed, job.world, job.setup, job.out, beside, meter)
+    screen.junit = Junit.of(job.junit, work.request)
+    screen.say(understood(brief, job.world.map_size))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")
@@ -73,16 +73,16 @@ def work_off(wish: Wish, screen: Screen) -> None:
         screen.say(f"all {work.roads} roads are there")
     elif work.kept:
         screen.say(f"{len(work.kept)} roads were finished before; going on")
-    _watch(work, wish, screen)
+    _watch(work, job, screen)
 
 
-def _seed(wish: Wish) -> int:
+def _seed(job: RunJob) -> int:
     """The one that was given, else that of the campaign which lies in the folder, else a new one."""
     from roadgpt.run import seed_in
 
-    if wish.seed is not None:
-        return wish.seed
-    there = seed_in(wish.out) if wish.out is not None else None
+    if job.seed is not None:
+        return job.seed
+    there = seed_in(job.out) if job.out is not None else None
     return secrets.randbelow(SEEDS) if there is None else there
 
 
@@ -107,7 +107,7 @@ def reading(brief: "Brief") -> str:
     return told
 
 
-def _watch(work: "Campaign", wish: Wish, screen: Screen) -> None:
+def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
     """Show the roads of a campaign, first those that were there before; end with the table in any case."""
     from roadgpt.run.sbft_json import test_name
 
@@ -129,8 +129,8 @@ def _watch(work: "Campaign", wish: Wish, screen: Screen) -> None:
             screen.say(f"tests and tables: {work.folder}")
             for line in _next(work, screen):
                 screen.say(line)
-            if wish.pictures:
-                kind = wish.pictures[0]
+            if job.pictures:
+                kind = job.pictures[0]
                 screen.say(
                     f"pictures: {work.folder / f'overview.{kind}'} and {work.folder / 'runs'}/*/*.{kind}"
                 )
@@ -142,26 +142,26 @@ def _next(work: "Campaign", screen: Screen) -> list[str]:
     return [*lines(quiet)] if quiet is not None else []
 
 
-def _beside(wish: Wish) -> "Draw | None":
+def _beside(job: RunJob) -> "Draw | None":
     """What puts pictures and road files into the folder of each run."""
-    draw = _pictures(wish)
-    if not wish.formats:
+    draw = _pictures(job)
+    if not job.formats:
         return draw
     from roadgpt.export import exporter_of
     from roadgpt.run.exporting import Exporting
 
-    for name in wish.formats:
+    for name in job.formats:
         exporter_of(name)
-    return Exporting(wish.formats, _complain, draw)
+    return Exporting(job.formats, _complain, draw)
 
 
 def _complain(sentence: str) -> None:
     click.echo(f"roadgpt: {sentence}", err=True)
 
 
-def _pictures(wish: Wish) -> "Draw | None":
-    if not wish.pictures:
+def _pictures(job: RunJob) -> "Draw | None":
+    if not job.pictures:
         return None
     from roadgpt.report import drawing
 
-    return drawing(wish.axes, wish.pictures)
+    return drawing(job.axes, job.pictures)

@@ -8,7 +8,7 @@ from click.testing import CliRunner, Result
 
 from roadgpt import run as run_room
 from roadgpt.cli import app
-from roadgpt.cli.work import Wish
+from roadgpt.cli.run_job import RunJob
 from roadgpt.road import World
 from roadgpt.run import Setup
 
@@ -17,8 +17,8 @@ from roadgpt.run import Setup
 def quick_and_in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
-        "roadgpt.cli.commands.run.usual_wish",
-        lambda words, roads: Wish(words, roads, World(), Setup(drives=False), pictures=()),
+        "roadgpt.cli.commands.run.usual_job",
+        lambda words, roads: RunJob(words, roads, World(), Setup(drives=False), pictures=()),
     )
 
 

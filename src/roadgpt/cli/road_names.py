@@ -46,7 +46,7 @@ def choice_of(values: dict[str, bool]) -> "Choice | None":
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedRoad:
     """One road."""
 
     said: str
@@ -64,7 +64,7 @@ def roads_named(
     choice: "Choice | None",
     takes_all: bool = False,
     complain: "Callable[[UsageError], None] | None" = None,
-) -> Iterator[Named]:
+) -> Iterator[NamedRoad]:
     """The roads that are meant, each once.
 
     Args:
@@ -91,7 +91,7 @@ def roads_named(
                 yield each
 
 
-def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[Named]:
+def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[NamedRoad]:
     from roadgpt.campaign.selection import chosen, selection_of
 
     place = selection_of(file)
@@ -119,16 +119,18 @@ def _too_many(place: "Selection", found: "Sequence[Selection]") -> str:
     )
 
 
-def _test(place: "Selection") -> Named:
+def _test(place: "Selection") -> NamedRoad:
     if place.is_campaign:
-        return Named(place.said, place.stem, (place.folder.resolve(), place.cell, place.number), place.run)
+        return NamedRoad(
+            place.said, place.stem, (place.folder.resolve(), place.cell, place.number), place.run
+        )
     from roadgpt.run.folder import run_folder
 
     assert place.number is not None
     return _run(run_folder(place.folder, place.number), place.said)
 
 
-def _run(folder: Path, said: str) -> Named:
+def _run(folder: Path, said: str) -> NamedRoad:
     from roadgpt.run import read_run
     from roadgpt.run.card import CARD
     from roadgpt.run.folder import RUNS
@@ -137,10 +139,10 @@ def _run(folder: Path, said: str) -> Named:
     campaign = whole.parent.parent
     is_one_of_many = whole.parent.name == RUNS and (campaign / CARD).is_file()
     stem = f"{campaign.name}-{whole.name}" if is_one_of_many else whole.name
-    return Named(said, stem, whole, lambda: read_run(folder))
+    return NamedRoad(said, stem, whole, lambda: read_run(folder))
 
 
-def _single(file: str) -> Named:
+def _single(file: str) -> NamedRoad:
     """A run, or the file of a road.
 
     Raises:
@@ -161,4 +163,4 @@ def _single(file: str) -> Named:
         raise UsageError(
             f"cannot read {file}: there is nothing of that name; did you mean {' or '.join(others)}?"
         )
-    return Named(file, stem, Path(os.path.realpath(path)), None)
+    return NamedRoad(file, stem, Path(os.path.realpath(path)), None)

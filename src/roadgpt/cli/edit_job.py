@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadgpt.cli.rows import row_of, spending
+from roadgpt.cli.result_row import row_of, spending
 from roadgpt.cli.screen import Screen
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Wish:
+class EditJob:
     """One change request and how it is to be worked off."""
 
     road: str
@@ -38,7 +38,7 @@ class Wish:
     """Formats of the pictures; empty: none are drawn."""
 
 
-def change(wish: Wish, screen: Screen) -> Path:
+def edit_road(job: EditJob, screen: Screen) -> Path:
     """Read, change, check, drive, write and tell; gives back the folder of the new run.
 
     Raises:
@@ -49,25 +49,25 @@ def change(wish: Wish, screen: Screen) -> Path:
     from roadgpt.run.editing import folder_for, original, reject_used, write_edit
     from roadgpt.run.sbft_json import test_name
 
-    if wish.out is not None:
-        reject_used(wish.out)
-    before = _of_test(wish.road) or original(wish.road, wish.world, Setup())
+    if job.out is not None:
+        reject_used(job.out)
+    before = _of_test(job.road) or original(job.road, job.world, Setup())
     for remark in before.remarks:
-        screen.say(f"{wish.road}: {remark}")
-    check_named_driver(wish.driver, {before.setup.driver}, wish.road)
-    if wish.drives and before.setup.drives:
+        screen.say(f"{job.road}: {remark}")
+    check_named_driver(job.driver, {before.setup.driver}, job.road)
+    if job.drives and before.setup.drives:
         require_permission(before.setup.driver)
-    made = _edited(before, wish, screen)
-    drives = wish.drives and before.setup.drives
-    setup = before.setup.model_copy(update={"designer": wish.designer, "chat": wish.chat, "drives": drives})
+    made = _edited(before, job, screen)
+    drives = job.drives and before.setup.drives
+    setup = before.setup.model_copy(update={"designer": job.designer, "chat": job.chat, "drives": drives})
     old = prove(before.design, before.seed, before.world, setup.model_copy(update={"drives": False}))
     with redirect_stdout(sys.stderr):  # a user's driver may print
         run = prove(made.design, before.seed, before.world, setup)
-    folder = folder_for(wish.words, before.seed, wish.out)
-    place = write_edit(run, old, wish.words, made.changes, before.path, folder, _drawing(wish))
+    folder = folder_for(job.words, before.seed, job.out)
+    place = write_edit(run, old, job.words, made.changes, before.path, folder, _drawing(job))
     row = row_of(run, str(folder / test_name(1)), test_name(1))
     if screen.as_json:
-        told = {"request": wish.words, "of": before.path, "changes": made.changes, "unused": made.unused}
+        told = {"request": job.words, "of": before.path, "changes": made.changes, "unused": made.unused}
         print(json.dumps({**told, **json.loads(row.to_json())}, ensure_ascii=False))
         return place
     for sentence in made.changes:
@@ -77,8 +77,8 @@ def change(wish: Wish, screen: Screen) -> Path:
     with screen:
         screen.row(row)
     screen.say(f"changed road: {place}")
-    if wish.pictures:
-        kind = wish.pictures[0]
+    if job.pictures:
+        kind = job.pictures[0]
         screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
     return place
 
@@ -92,25 +92,23 @@ def _of_test(road: str) -> "Original | None":
     return None if place is None or place.number is None else original_of(place.run(), place.said)
 
 
-def _edited(before: "Original", wish: Wish, screen: Screen) -> "Edited":
+def _edited(before: "Original", job: EditJob, screen: Screen) -> "Edited":
     """The changed design; what a language model has cost is told, also where nothing came of it."""
     from roadgpt.chat import Meter, counting
     from roadgpt.design.edit import edit
 
-    meter = Meter.of(wish.chat)
+    meter = Meter.of(job.chat)
     try:
         with counting(meter, "edit"):
-            return edit(
-                before.design, wish.words, before.world, before.setup.geometry, wish.designer, wish.chat
-            )
+            return edit(before.design, job.words, before.world, before.setup.geometry, job.designer, job.chat)
     finally:
         if meter.spent.calls:
             screen.say(f"language model: {spending(meter.spent)}")
 
 
-def _drawing(wish: Wish) -> "Draw | None":
-    if not wish.pictures:
+def _drawing(job: EditJob) -> "Draw | None":
+    if not job.pictures:
         return None
     from roadgpt.report import drawing
 
-    return drawing(formats=wish.pictures)
+    return drawing(formats=job.pictures)

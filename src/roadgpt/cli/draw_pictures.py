@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roadgpt.cli.named import roads_named
+from roadgpt.cli.road_names import roads_named
 from roadgpt.cli.roads import run_of
 from roadgpt.errors import UsageError
 

@@ -33,7 +33,7 @@ fault_options = under(
 )
 
 
-class Look(NamedTuple):
+class AnalysisOptions(NamedTuple):
     """How failures are looked into."""
 
     repeat: int = REPEAT
@@ -61,18 +61,18 @@ class Look(NamedTuple):
             click.echo(text, err=is_news or self.is_apart)
 
 
-def asked(
+def analysis_options(
     faults: bool, minimise: bool, repeat: int | None, workers: int, is_quiet: bool, is_apart: bool
-) -> Look | None:
+) -> AnalysisOptions | None:
     """What the ``fault_options`` of a campaign ask for; None: nothing."""
     if not faults and not minimise and repeat is None:
         return None
     # the campaign's workers may be on other machines
     here = min(workers, os.cpu_count() or 1)
-    return Look(repeat or REPEAT, minimise, here, is_quiet=is_quiet, is_apart=is_apart)
+    return AnalysisOptions(repeat or REPEAT, minimise, here, is_quiet=is_quiet, is_apart=is_apart)
 
 
-def analyse_failures(place: Path, look: Look) -> None:
+def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     """Find the distinct faults of a run or a campaign, look into one failure of each, and tell.
 
     Raises:

@@ -6,10 +6,10 @@ import sys
 import click
 
 from roadgpt import stopping
-from roadgpt.cli import changing
+from roadgpt.cli import edit_job
 from roadgpt.cli.options import ROADS
+from roadgpt.cli.run_job import carry_out
 from roadgpt.cli.screen import Screen
-from roadgpt.cli.work import work_off
 from roadgpt.errors import RoadGPTError
 
 USUAL_ROADS = 3
@@ -43,10 +43,10 @@ Here all options have their usual values. Options belong to 'roadgpt run', for e
 'roadgpt run --help' lists them."""
 
 
-def talk() -> None:
+def converse() -> None:
     """Ask, work off, show; until the user has had enough."""
     from roadgpt.brief import read
-    from roadgpt.cli.commands.run import usual_wish
+    from roadgpt.cli.commands.run import usual_job
 
     _enable_editing()
     click.echo(f"{HELLO}\n")
@@ -59,7 +59,7 @@ def talk() -> None:
             if roads is None:
                 break
             screen = Screen(roads)
-            work_off(usual_wish(words, roads), screen)
+            carry_out(usual_job(words, roads), screen)
             if not _changed(screen):
                 break
         except RoadGPTError as error:
@@ -85,8 +85,8 @@ def _changed(screen: Screen) -> bool:
             continue
         number, words = _numbered(answer, len(roads))
         try:
-            wish = changing.Wish(roads[number], words, None, "planner", World())
-            roads[number] = str(changing.change(wish, Screen(1)))
+            job = edit_job.EditJob(roads[number], words, None, "planner", World())
+            roads[number] = str(edit_job.edit_road(job, Screen(1)))
         except RoadGPTError as error:
             click.echo(f"roadgpt: {error}", err=True)
     return True

@@ -10,7 +10,7 @@ from roadgpt.cli.option_groups import GroupedCommand
 
 
 @contextmanager
-def told_of_dashes(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
+def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
     """While click reads these words: where it cannot, and one is a description, say how to give it."""
     given = list(args)  # click takes them out of its list
     try:
@@ -43,5 +43,5 @@ class DescribedCommand(GroupedCommand):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """What click makes of the words."""
-        with told_of_dashes(ctx, args):
+        with dash_advice(ctx, args):
             return super().parse_args(ctx, args)
