@@ -201,7 +201,7 @@ def test_the_command_on_the_card_makes_the_same_campaign(
     monkeypatch.setattr("roadgpt.campaign.lifecycle.work", lambda *_: iter(()))
     again = CliRunner().invoke(app, shlex.split(words)[1:])
     assert again.exit_code == 0, again.output
-    assert "going on in" in again.output
+    assert "resuming in" in again.output
 
 
 def test_the_pace_counts_tests_of_cells_that_were_done_a_moment_ago(

@@ -1,4 +1,4 @@
-"""The command line: a door. It asks, shows and counts, and leaves the work to the rooms.
+"""The command line: reads options, calls the other rooms, and prints what they return.
 
 Verb: ``main``. Commands are imported when they are called, and import the rooms they need inside their
 functions, so that ``roadgpt --help`` answers at once.
@@ -10,7 +10,7 @@ from roadgpt.cli.streams import make_ready
 
 
 def main() -> None:
-    """What the console script ``roadgpt`` runs; ends the process with the exit status."""
+    """Runs the console script ``roadgpt`` and ends the process with its exit status."""
     stopping.install()
     make_ready()
     try:

@@ -25,7 +25,7 @@ OF_FILES = {
     errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EPERM, errno.ENOTDIR, errno.EISDIR, errno.ENOSPC,
     errno.EROFS, errno.EDQUOT if hasattr(errno, "EDQUOT") else errno.ENOSPC,
 }  # fmt: skip
-"""What is wrong with a file, and no mistake of the program."""
+"""Errors of the file system that are no bug of RoadGPT, by their number."""
 INTERNAL = 70  # EX_SOFTWARE of sysexits.h
 
 
@@ -33,7 +33,7 @@ class Commands(click.Group):
     """A group whose commands are imported when they are called, and whose errors are sentences."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """In the order in which a newcomer needs them."""
+        """Returns the names of all commands, in the order of the help."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
@@ -77,7 +77,11 @@ class Commands(click.Group):
         return super().resolve_command(ctx, args)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """What click makes of the words; a description with a dash in front is told where it belongs."""
+        """Reads the words after ``roadgpt``.
+
+        Raises:
+            click.UsageError: An option is unknown or misplaced; the sentence says what to type.
+        """
         try:
             with dash_advice(ctx, args):
                 return super().parse_args(ctx, args)
@@ -96,7 +100,7 @@ class Commands(click.Group):
         standalone_mode: bool = True,
         **extra: Any,
     ) -> Any:
-        """Run a command; where it is the program, end the process with its exit status."""
+        """Runs a command; in standalone mode, turns errors into sentences and ends the process."""
         USER.ask = _confirm
         if not standalone_mode:
             return super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
@@ -128,7 +132,7 @@ class Commands(click.Group):
 
 
 def _refused(error: OSError) -> int:
-    """Tell of a file that the system does not give or take; whatever else it says is an error of our own."""
+    """Says that a file cannot be used, and returns the exit status; reports any other error as a crash."""
     if error.errno not in OF_FILES or not error.filename:
         click.echo(f"roadgpt: {report_crash(error)}", err=True)
         return INTERNAL
@@ -139,19 +143,19 @@ def _refused(error: OSError) -> int:
 
 
 def _confirm(question: str) -> bool:
-    """Ask at the terminal; where there is none, nobody says yes, and nothing waits."""
+    """Asks at the terminal; returns False without waiting if there is no terminal."""
     if not (sys.stdin and sys.stdin.isatty() and sys.stderr.isatty()):
         return False
     return click.confirm(f"roadgpt: {question}", default=False, err=True)
 
 
 def _module(name: str) -> str:
-    """Of a command; a word that Python keeps for itself has an underscore."""
+    """Returns the module of a command; a keyword of Python gets an underscore."""
     return f"{name}_" if iskeyword(name) else name
 
 
 def _with_advice(error: click.ClickException) -> click.ClickException:
-    """Where an argument is missing, also what it would be."""
+    """Adds what to type to the message about a missing argument."""
     if not isinstance(error, click.MissingParameter) or not error.param:
         return error
     advice = MISSING.get(error.param.human_readable_name, "")
@@ -169,8 +173,8 @@ def _with_advice(error: click.ClickException) -> click.ClickException:
 def app(ctx: click.Context) -> None:
     """Turn words into tested roads.
 
-    RoadGPT designs 3-D roads that keep what a description promises, drives a car along them, and says whether
-    it kept its lane. Without a command it asks for descriptions, one after another.
+    RoadGPT designs 3-D roads that match a description, drives a simulated car along them, and says whether
+    the car kept its lane. Without a command it asks for descriptions, one after another.
     """
     if not is_coloured():
         ctx.color = False

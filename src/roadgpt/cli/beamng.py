@@ -1,4 +1,4 @@
-"""Options of BeamNG: what they say goes into the environment, where the simulator and its workers find it."""
+"""Options of BeamNG. They set variables of the environment, which the simulator and its workers read."""
 
 import os
 from collections.abc import Callable
@@ -18,7 +18,7 @@ Into = Callable[[click.Context, click.Parameter, Any], None]
 
 
 def _into(name: str) -> Into:
-    """What keeps an option's value in the environment."""
+    """Returns a callback that puts an option's value into the environment."""
 
     def keep(ctx: click.Context, param: click.Parameter, value: Any) -> None:
         if value not in (None, False):
@@ -39,7 +39,7 @@ def _option(flag: str, name: str, help_: str, kind: Any = None, guard: Guard | N
 
 
 def folder(value: str) -> Path:
-    """The type of an option that takes a folder; kept whole, since workers may stand elsewhere."""
+    """Converts the value of an option to the absolute path of a folder, since workers may run elsewhere."""
     return options.folder(value).expanduser().absolute()
 
 

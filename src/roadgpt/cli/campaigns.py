@@ -1,4 +1,4 @@
-"""How commands show campaigns: while one is at work, and how far it is."""
+"""Shows campaigns: their progress while they run, and their results."""
 
 import sys
 from collections.abc import Iterator, Mapping
@@ -49,7 +49,7 @@ screen_options: Decorator = under(
 
 
 def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool) -> None:
-    """Let a campaign work, show how far it is, and sum up; Ctrl-C ends with how to go on."""
+    """Runs a campaign, shows its progress, and prints its results; after Ctrl-C says how to resume it."""
     try:
         if quiet or not sys.stderr.isatty():
             for _ in steps:
@@ -63,7 +63,7 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
 
 
 def sum_up(folder: Path, as_json: bool, quiet: bool) -> None:
-    """What came of a campaign."""
+    """Prints the results of a campaign."""
     from roadgpt.campaign.status import status_of
 
     status = status_of(folder)
@@ -77,7 +77,7 @@ def sum_up(folder: Path, as_json: bool, quiet: bool) -> None:
 
 
 def faults_of(status: "Status") -> "Faults | None":
-    """The distinct faults among failures that are compared in a moment; None: nobody drove."""
+    """Returns the distinct faults among at most ``COMPARED`` failures; None if no test was driven."""
     from roadgpt.campaign.faults import faults_in
 
     if not status.outcomes.get("PASS") and not status.outcomes.get("FAIL"):
@@ -86,7 +86,7 @@ def faults_of(status: "Status") -> "Faults | None":
 
 
 def as_line(status: "Status", found: "Faults | None") -> str:
-    """A status as one line of JSON."""
+    """Returns a status as one line of JSON."""
     import json
 
     counts = found and {"faults": len(found.them), "failures": found.failures, "compared": found.compared}
@@ -103,12 +103,12 @@ def _with_bar(steps: "Iterator[Progress]") -> None:
 
 
 def outcomes_line(outcomes: Mapping[str, int]) -> str:
-    """Counts of outcomes: '120 PASS, 31 FAIL'."""
+    """Returns counts of outcomes as text: '120 PASS, 31 FAIL'."""
     return ", ".join(f"{outcomes[name]:,} {name}" for name in COLOURS if outcomes.get(name)) or "nothing yet"
 
 
 def told(status: "Status", found: "Faults | None") -> Iterator[str]:
-    """A status in lines to read, its distinct faults first."""
+    """Yields a status in lines to read, its distinct faults first."""
     state = "finished" if status.is_finished else "at work" if status.is_running else "interrupted"
     of = "" if status.total is None else f" of {status.total:,}"
     yield f"{status.folder}: {state}, {status.done:,}{of} tests in {duration(status.seconds)}" + _pace(status)
@@ -133,7 +133,7 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
 
 
 def outside_lines(status: "Status") -> Iterator[str]:
-    """How many tests passed with the car outside its lane, and how far, where any did."""
+    """Yields a line on tests that passed with the car partly outside its lane, if there are any."""
     passed = status.outcomes.get("PASS", 0)
     partly = sum(cell.partly_outside for cell in status.cells)
     mostly = sum(cell.mostly_outside for cell in status.cells)
@@ -159,7 +159,7 @@ def _pace(status: "Status") -> str:
 
 
 def cell_columns(cell: "CellStatus") -> tuple[str, ...]:
-    """What ``HEAD`` names, of one cell."""
+    """Returns the texts of one cell's row, in the order of ``HEAD``."""
     passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
     margin = "-" if cell.least_margin is None else metres(cell.least_margin)
     words = one_line(cell.words, LONGEST) or "any road"
@@ -170,14 +170,14 @@ def cell_columns(cell: "CellStatus") -> tuple[str, ...]:
 
 
 def one_line(text: str, most: int = 300) -> str:
-    """A text of other people as it may stand in a line: no breaks, nothing that a terminal obeys, cut."""
+    """Returns a text without line breaks and control characters, cut after ``most`` characters."""
     from roadgpt.chat.strict_json import plain
 
     return plain(text, most)
 
 
 def duration(seconds: float) -> str:
-    """Seconds as people say them: '42 s', '3 min 20 s', '2 h 05 min'."""
+    """Returns a duration as text: '42 s', '3 min 20 s', '2 h 05 min'."""
     whole_seconds = round(seconds)
     if whole_seconds < 60:
         return f"{seconds:.1f} s" if seconds < 10 else f"{whole_seconds} s"

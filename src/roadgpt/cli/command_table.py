@@ -43,10 +43,10 @@ COMMANDS = {name: line for commands in HEADINGS.values() for name, line in comma
 
 
 class Earlier(NamedTuple):
-    """What an earlier command is called now."""
+    """The present name of an earlier command."""
 
     words: tuple[str, ...]
-    """They take the place of the earlier words on the command line."""
+    """The words that replace the earlier ones on the command line."""
     shown: str
     """How the new command is shown to the user."""
 
@@ -63,7 +63,7 @@ EARLIER = {
     ("sdc", "serve"): Earlier(("compete", "sdc"), "compete sdc"),
     ("sdc",): Earlier(("compete", "sdc", "--help"), "compete sdc"),
 }
-"""By the words of the earlier command."""
+"""The present names of earlier commands, by their words."""
 
 EARLIER_OPTIONS = {"--verge": "--shoulder"}
 EARLIER_VALUES = {"--view bonnet": "--view hood"}
@@ -83,7 +83,7 @@ MISSING = {
     "CAMPAIGN": "Name the folder of a campaign, as 'roadgpt campaign' printed it.",
     "OUT": "Name the folder to write into.",
 }
-"""What to say where an argument is missing, by the name that its help gives it."""
+"""What to say if an argument is missing, by its name in the help."""
 
 
 def renamed(args: Sequence[str]) -> tuple[list[str], str]:

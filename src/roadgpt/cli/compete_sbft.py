@@ -1,4 +1,4 @@
-"""``roadgpt compete sbft``: a generator of the SBFT tool competition, unchanged, in our simulator."""
+"""``roadgpt compete sbft``: runs an unchanged test generator of the SBFT tool competition."""
 
 import sys
 from pathlib import Path
@@ -33,7 +33,7 @@ CLIENT = "roadgpt_client.py"
 
 
 def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None) -> None:
-    """Copy the client."""
+    """Copies the client."""
     del param
     if path is None:
         return
@@ -52,44 +52,48 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
 
 
 @click.command("sbft", cls=GroupedCommand)
-@click.option("--module-name", required=True, help="Module of the generator, as Python imports it.")
-@click.option("--class-name", required=True, help="Its class.")
+@click.option("--module-name", required=True, help="Python module of the generator.")
+@click.option("--class-name", required=True, help="Class of the generator.")
 @click.option(
     "--module-path",
     type=click.Path(exists=True, file_okay=False),
     default=None,
-    help="Folder that Python is to look for the module in, besides this one.",
+    help="Further folder in which Python looks for the module.",
 )
 @click.option(
     "--python",
     default=None,
-    help="Interpreter that the generator runs in, with libraries of its own, as old as Python 3.8. [default: "
-    "RoadGPT's]",
+    help="Interpreter for the generator, with its own libraries; Python 3.8 or later. [default: RoadGPT's]",
 )
 @click.option(
     "--time-budget",
     type=measure(0, 10_000_000, "s", above=True),
     default=None,
-    help="Seconds for generating and driving.",
+    help="Budget in seconds, for generating and driving.",
 )
-@click.option("--test-budget", type=whole(1, 10**7, "tests"), default=None, help="Tests, invalid ones too.")
+@click.option(
+    "--test-budget",
+    type=whole(1, 10**7, "tests"),
+    default=None,
+    help="Budget in tests, including invalid ones.",
+)
 @click.option(
     "--map-size",
     type=whole(100, 1000, "metres"),
     default=200,
     show_default=True,
-    help="Side of the square map, metres.",
+    help="Side of the square map, m.",
 )
 @competition_options(oob_tolerance=0.95, speed_limit_kmh=70)
 @setup_options("driver", "simulator")
 @beamng_options
-@click.option("--seed", type=SEED, default=0, show_default=True, help="Handed to the driver.")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="Seed for the driver.")
 @click.option(
     "--patience",
     type=measure(0, 86_400, "s", above=True),
     default=600,
     show_default=True,
-    help="Seconds in which a generator must bring its next test.",
+    help="Seconds that the generator may take for one test.",
 )
 @click.option(
     "--out",
@@ -97,17 +101,17 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     default=None,
     help="An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]",
 )
-@click.option("--plot", "has_pictures", is_flag=True, help="Draw every test, not only the page of all.")
+@click.option("--plot", "has_pictures", is_flag=True, help="Draw every test, and not only the overview.")
 @click.option("--no-plot", is_flag=True, help="Draw nothing.")
 @pictures_options
-@click.option("--debug", is_flag=True, help="Let the generator's log hold more.")
+@click.option("--debug", is_flag=True, help="Log more of the generator.")
 @click.option(
     "--client",
     type=click.Path(dir_okay=False, path_type=Path),
     is_eager=True,
     expose_value=False,
     callback=_write_client,
-    help="Write the one file that RoadGPT needs in the competition's environment, and do no more.",
+    help="Only write the file that the competition's environment needs to call RoadGPT.",
 )
 @screen_options
 def sbft_command(
@@ -127,11 +131,11 @@ def sbft_command(
     verbose: bool,
     **experiment: Any,
 ) -> int:
-    """Let a generator of the SBFT tool competition loose on the simulator.
+    """Run a test generator of the SBFT tool competition.
 
-    The generator runs unchanged, in a process of its own, on the budget that is given: of time, of tests, or
-    both. Files and tables are the competition's. The exit status is 1 where the generator crashed, hung or
-    called sys.exit; all tests before that are on the disk.
+    The generator runs unchanged, in a process of its own, until the budget is used up: seconds, tests, or
+    both. Files and tables are in the competition's format. The exit status is 1 if the generator crashed,
+    hung or called sys.exit; all tests before that are on the disk.
 
     \b
     roadgpt compete sbft --module-name my_generator --class-name MyGenerator --test-budget 100
@@ -157,7 +161,7 @@ def sbft_command(
 
 
 def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
-    """Show every test as it ends; then how the generator ended, and the page of all tests."""
+    """Shows every test as it ends, then how the generator ended, and draws the page of all tests."""
     from roadgpt.run.sbft_json import test_name
 
     try:

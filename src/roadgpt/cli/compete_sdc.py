@@ -1,11 +1,11 @@
-"""``roadgpt compete sdc``: the service of the SDC testing competition."""
+"""``roadgpt compete sdc``: serves the SDC testing competition."""
 
 import logging
 
 import click
 
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import whole
+from roadgpt.cli.options import quiet_option, whole
 from roadgpt.errors import UsageError
 
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
@@ -13,20 +13,25 @@ EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
 
 @click.command("sdc", cls=GroupedCommand)
 @click.option(
-    "--port", type=whole(0, 65_535, "a port"), default=4545, show_default=True, help="0: one that is free."
+    "--port",
+    type=whole(0, 65_535, "a port"),
+    default=4545,
+    show_default=True,
+    help="Port of the service; 0: a free one.",
 )
 @click.option(
     "--host",
     default="127.0.0.1",
     show_default=True,
-    help="Who may ask: 127.0.0.1, this machine; 0.0.0.0, all (in a container).",
+    help="Who can connect: 127.0.0.1, this machine; 0.0.0.0, all (in a container).",
 )
-@click.option("--quiet", "-q", is_flag=True, help="Say nothing but errors.")
+@quiet_option
 def sdc_command(port: int, host: str, quiet: bool) -> None:
-    """Select or prioritise roads by how likely the car is to leave its lane, over gRPC.
+    """Serve test selection and prioritisation over gRPC, by how likely the car is to leave its lane.
 
-    How far the driver's planned line strays from its lane counts, and how the road bends; nothing is driven.
-    Outcomes that the evaluator tells are learnt from. Ctrl-C ends it.
+    The likelihood is estimated from how far the driver's planned line leaves the lane, and from how the road
+    bends; nothing is driven. The estimate learns from outcomes that the evaluator sends. Ctrl-C ends the
+    service.
 
     \b
     roadgpt compete sdc --port 4545

@@ -1,4 +1,4 @@
-"""What happens to an error that nobody foresaw: its traceback goes to a file, its sentence to the user."""
+"""Reports unexpected errors: writes the traceback to a file, and a sentence for the user."""
 
 import platform
 import sys
@@ -13,12 +13,12 @@ _folder: list[Path] = []
 
 
 def crashes_go_to(folder: Path) -> None:
-    """Keep tracebacks in this folder from now on."""
+    """Sets the folder for tracebacks."""
     _folder[:] = [folder]
 
 
 def report_crash(error: Exception) -> str:
-    """Write the traceback to a file; the sentence says what happened and where the file is."""
+    """Writes the traceback to a file; returns a sentence that says what happened and where the file is."""
     head = f"roadgpt {__version__}, Python {platform.python_version()}, {platform.platform()}\n"
     head += f"arguments: {sys.argv[1:]}\n\n"
     text = head + "".join(traceback.format_exception(error))
@@ -32,7 +32,7 @@ def report_crash(error: Exception) -> str:
 
 
 def _write(text: str) -> Path:
-    """Into the first folder that takes it."""
+    """Writes the text into the first folder that can be written to; returns the file."""
     for folder in (*_folder, Path(tempfile.gettempdir())):
         try:
             with tempfile.NamedTemporaryFile(

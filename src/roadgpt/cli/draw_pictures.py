@@ -1,4 +1,4 @@
-"""``roadgpt view --format``: pictures of roads and drives."""
+"""``roadgpt view --format``: draws pictures of roads and drives."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -33,11 +33,11 @@ def draw_pictures(
 
     Args:
         files, choice: As for ``roads_named``.
-        out: Holds the new folders.
-        axes: Of the pictures.
-        formats: Of the pictures: png, svg or pdf.
-        world, geometry: Of road files, which bring none.
-        quiet: Prints errors only.
+        out: Folder for the new folders.
+        axes: Axes of the pictures.
+        formats: Formats of the pictures: png, svg or pdf.
+        world, geometry: Used for road files, which hold none.
+        quiet: Whether to print errors only.
 
     Returns:
         The exit status: 2 if a name could not be used, which does not stop the others.
@@ -65,7 +65,7 @@ def draw_pictures(
 
 
 def _place(out: Path, name: str) -> Path:
-    """A new folder for one road's pictures."""
+    """Makes and returns a new folder for one road's pictures."""
     number = 1
     while True:
         place = out / (name if number == 1 else f"{name}-{number}")

@@ -1,4 +1,4 @@
-"""``roadgpt drive --again``: tests of a campaign again, as folders of runs that other commands open."""
+"""``roadgpt drive --again``: drives tests of a campaign again, into folders of runs."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -24,15 +24,15 @@ def drive_again(
     axes: "Scale",
     formats: "tuple[Format, ...]",
 ) -> None:
-    """Drives tests of a campaign again, writes their runs, and says where one ends otherwise than it did.
+    """Drives tests of a campaign again, writes their runs, and says which ended differently before.
 
     Args:
         names: A campaign and numbers of its tests, or tests with the folders of their campaigns.
         choice: Which tests of a campaign.
         out: Folder for the runs; None: ``again`` in the campaign's folder.
         driver: The campaign's driver, if the user named it again.
-        axes: Of the pictures.
-        formats: Of the pictures; empty: none are drawn.
+        axes: Axes of the pictures.
+        formats: Formats of the pictures; none are drawn if empty.
 
     Raises:
         UsageError: A name is wrong, or the driver is not that of the campaign.
@@ -74,7 +74,7 @@ def _made(path: Path) -> Path:
 
 
 def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
-    """The tests that are meant: of the campaign that comes first, or each with its own."""
+    """Returns the tests that the names mean; numbers belong to the campaign that comes first."""
     from roadgpt.campaign.record import no_campaign
     from roadgpt.campaign.selection import chosen, selection_of
 

@@ -1,4 +1,4 @@
-"""Working off one change request: ``roadgpt edit`` does it once, the conversation as often as it is asked."""
+"""Carries out one change request, for ``roadgpt edit`` and for the conversation."""
 
 import json
 import sys
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class EditJob:
-    """One change request and how it is to be worked off."""
+    """One change request with its options."""
 
     road: str
     """Path of a run's folder, or of a road file."""
@@ -29,20 +29,20 @@ class EditJob:
     out: Path | None
     designer: str
     world: "World"
-    """Of a design that no run belongs to."""
+    """Used for a design that belongs to no run."""
     chat: "ChatSettings | None" = None
     driver: str | None = None
-    """Of the run, where the user names it again."""
+    """The driver of the run, if the user named it again."""
     drives: bool = True
     pictures: "tuple[Format, ...]" = ("png",)
-    """Formats of the pictures; empty: none are drawn."""
+    """Formats of the pictures; none are drawn if empty."""
 
 
 def edit_road(job: EditJob, screen: Screen) -> Path:
-    """Read, change, check, drive, write and tell; gives back the folder of the new run.
+    """Reads, changes, checks and drives a road, writes and shows its run, and returns its folder.
 
     Raises:
-        RoadGPTError: the words or the road cannot be used; then nothing is written.
+        RoadGPTError: The words or the road cannot be used; nothing is written then.
     """
     from roadgpt.drive.permission import check_named_driver, require_permission
     from roadgpt.run import Setup, prove
@@ -84,7 +84,7 @@ def edit_road(job: EditJob, screen: Screen) -> Path:
 
 
 def _of_test(road: str) -> "Original | None":
-    """The design of a campaign's test, or of a run by its number; None: something else is named."""
+    """Returns the design of a test or of a run by its number; None if the name is something else."""
     from roadgpt.campaign.selection import selection_of
     from roadgpt.run.editing import original_of
 
@@ -93,7 +93,7 @@ def _of_test(road: str) -> "Original | None":
 
 
 def _edited(before: "Original", job: EditJob, screen: Screen) -> "Edited":
-    """The changed design; what a language model has cost is told, also where nothing came of it."""
+    """Returns the changed design, and prints what a language model has cost even if the change failed."""
     from roadgpt.chat import Meter, counting
     from roadgpt.design.edit import edit
 

@@ -1,4 +1,4 @@
-"""How commands look into failures: ``roadgpt faults``, and a campaign that has come to its end."""
+"""Analyses failures, for ``roadgpt faults`` and at the end of a campaign."""
 
 import os
 import shlex
@@ -34,20 +34,20 @@ fault_options = under(
 
 
 class AnalysisOptions(NamedTuple):
-    """How failures are looked into."""
+    """Options of an analysis of failures."""
 
     repeat: int = REPEAT
     minimise: bool = False
     workers: int = 1
     formats: tuple[str, ...] = ("png",)
-    """Of the pictures; empty: none are drawn."""
+    """Formats of the pictures; none are drawn if empty."""
     is_quiet: bool = False
     is_apart: bool = False
-    """Standard output is for something else."""
+    """Whether standard output is reserved for something else."""
 
     @property
     def words(self) -> list[str]:
-        """What ``roadgpt faults`` is told, to look into them like this."""
+        """The options of ``roadgpt faults`` that ask for the same analysis."""
         asked = [] if self.repeat == REPEAT else ["--repeat", str(self.repeat)]
         asked += ["--minimise"] if self.minimise else []
         asked += ["-j", str(self.workers)] if self.workers > 1 else []
@@ -56,7 +56,7 @@ class AnalysisOptions(NamedTuple):
         return asked
 
     def say(self, text: str, is_news: bool = False) -> None:
-        """Tell, unless nothing is to be said; what is news on the way goes to standard error."""
+        """Prints a text unless quiet; news about the progress goes to standard error."""
         if not self.is_quiet:
             click.echo(text, err=is_news or self.is_apart)
 
@@ -64,7 +64,7 @@ class AnalysisOptions(NamedTuple):
 def analysis_options(
     faults: bool, minimise: bool, repeat: int | None, workers: int, is_quiet: bool, is_apart: bool
 ) -> AnalysisOptions | None:
-    """What the ``fault_options`` of a campaign ask for; None: nothing."""
+    """Returns what the ``fault_options`` of a campaign ask for; None if they ask for no analysis."""
     if not faults and not minimise and repeat is None:
         return None
     # the campaign's workers may be on other machines
@@ -73,11 +73,11 @@ def analysis_options(
 
 
 def analyse_failures(place: Path, look: AnalysisOptions) -> None:
-    """Find the distinct faults of a run or a campaign, look into one failure of each, and tell.
+    """Finds and prints the distinct faults of a folder of runs or a campaign, with an analysis of each.
 
     Raises:
-        UsageError: there are no roads, or a file cannot be read.
-        RoadGPTError: a file cannot be written.
+        UsageError: There are no roads, or a file cannot be read.
+        RoadGPTError: A file cannot be written.
     """
     from roadgpt.campaign.faults import analyse, fault_log, faults_in, write_tables
     from roadgpt.campaign.faults.failures import drivers_of
@@ -85,11 +85,11 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
 
     found = faults_in(place)
     if not found.failures:
-        look.say("no road failed: there is no fault to look into")
+        look.say("no road failed, so there is no fault to analyse")
         return
     for driver in sorted(drivers_of(place)):
         require_permission(driver)  # here, where the user can be asked, and not in each of the workers
-    look.say(f"{found.sentence}; looking into a typical one of each fault", is_news=True)
+    look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
     draw = _draws(bool(look.formats))
     tasks = [
         fault_log.AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
@@ -100,7 +100,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         looked = dict(watched(steps, len(tasks), "faults", look.is_quiet))
     except KeyboardInterrupt:
         go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
-        click.echo(f"roadgpt: stopped; what is done is kept, go on with: {go_on}", err=True)
+        click.echo(f"roadgpt: stopped; finished work is kept; continue with: {go_on}", err=True)
         raise
     table = write_tables(found.them, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
@@ -118,7 +118,7 @@ def _draws(has_pictures: bool) -> "FailureDrawing | None":
 
 
 def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
-    """One row per fault: how many tests, and of a typical one how stable it is, and why it failed."""
+    """Yields a row for each fault: its failures, how often it fails again, and why a typical test failed."""
     from roadgpt.study.chapters.wording import plural
 
     wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
@@ -132,7 +132,7 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
             yield f"{'':>{wide + 26}}simplest: {its.simplest}"
     stable = sum(its.stability.is_stable for its in looked.values())
     yield found.headline
-    yield f"{stable:,} of {plural(len(found.them), 'fault')} fail every second time or oftener"
+    yield f"{stable:,} of {plural(len(found.them), 'fault')} fail again in at least half of the drives"
     if looked:
         yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"
 

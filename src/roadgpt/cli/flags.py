@@ -1,4 +1,4 @@
-"""The options of a World, a Setup and a language model: commands take them, and replays write them."""
+"""The options that set fields of a World, a Setup or ChatSettings, and the words that repeat them."""
 
 import math
 from collections.abc import Callable
@@ -12,7 +12,13 @@ from roadgpt.cli.option_groups import Decorator, under
 
 
 def measure(low: float, high: float, unit: str = "", above: bool = False) -> Callable[[str], float]:
-    """The type of an option that takes a finite number within bounds; above: the lower bound is excluded."""
+    """Returns the type of an option that takes a finite number within bounds.
+
+    Args:
+        low, high: The bounds, included.
+        unit: Of the number, for messages.
+        above: Whether the lower bound is excluded.
+    """
     bounds = f"above {low:g}, up to {high:g}" if above else f"from {low:g} to {high:g}"
     advice = f"give a number {bounds}{unit and ' ' + unit}"
 
@@ -29,7 +35,7 @@ def measure(low: float, high: float, unit: str = "", above: bool = False) -> Cal
 
 
 def whole(low: int, high: int, what: str) -> Callable[[str], int]:
-    """The type of an option that takes a whole number within bounds."""
+    """Returns the type of an option that takes a whole number within bounds."""
     advice = f"give {what}, a whole number from {low} to {high}"
 
     def number(value: str) -> int:
@@ -45,7 +51,7 @@ def whole(low: int, high: int, what: str) -> Callable[[str], int]:
 
 
 def driver(value: str) -> str:
-    """The type of an option that names a driver: whoever types it may have its code run."""
+    """Converts the value of --driver; the code of a driver that the user types may be run."""
     if ".py" in value:
         from roadgpt.drive.permission import permit
 
@@ -54,7 +60,7 @@ def driver(value: str) -> str:
 
 
 def driver_again(value: str) -> str:
-    """The same, for what a file names: as a path that holds from anywhere."""
+    """Converts the value of --driver to an absolute path, to compare it with the driver of a folder."""
     from pathlib import Path
 
     from roadgpt.drive.loading import absolute_spec
@@ -112,7 +118,7 @@ class Flag:
         """Returns the words of the command line that set the field; none where it has its default.
 
         Args:
-            value: Of the field.
+            value: The field's value.
             usual: The field's default, if that is not the option's.
             is_set: Whether a file of settings sets the option, so that its default has to be written out.
         """
@@ -125,7 +131,7 @@ class Flag:
 
 
 def _digits(value: float, unit: float) -> str:
-    """The shortest number, in the option's unit, that is read as this very value."""
+    """Returns the shortest number, in the option's unit, that is read as exactly this value."""
     texts = [f"{value * unit:.{digits}g}" for digits in range(6, 18)]
     return next((text for text in texts if float(text) / unit == value), texts[-1])
 

@@ -1,4 +1,4 @@
-"""``roadgpt config plugins``: the plug-ins that are installed."""
+"""``roadgpt config plugins``: lists the installed plug-ins."""
 
 import inspect
 import json
@@ -15,7 +15,7 @@ from roadgpt.errors import PartError
 
 @dataclass(frozen=True)
 class InstalledPlugin:
-    """A plug-in, its kind, where it is from, and what it says about itself."""
+    """A plug-in with its kind, its package and its description."""
 
     shelf: str
     name: str
@@ -25,7 +25,7 @@ class InstalledPlugin:
 
 
 def installed() -> list[InstalledPlugin]:
-    """Every part on every shelf; one that cannot be loaded says why."""
+    """Returns every installed plug-in; the description of one that cannot be loaded says why."""
     return [_part(shelf, name) for shelf in plugins.KINDS for name in plugins.names(shelf)]
 
 
@@ -38,8 +38,8 @@ def _part(shelf: str, name: str) -> InstalledPlugin:
 
 
 def _first_sentence(part: Any) -> str:
-    """Of the part's documentation; a part without any is spoken for by its module."""
-    text = inspect.getdoc(part) or inspect.getdoc(inspect.getmodule(part)) or "Says nothing about itself."
+    """Returns the first sentence of a plug-in's docstring, or of its module's."""
+    text = inspect.getdoc(part) or inspect.getdoc(inspect.getmodule(part)) or "It has no description."
     paragraph = " ".join(text.strip().split("\n\n")[0].replace("``", "").split())
     return re.split(r"(?<=[.;:]) ", paragraph)[0].rstrip(".;:")
 

@@ -1,4 +1,4 @@
-"""``roadgpt`` without a command: asks for a description and a number of roads, again and again."""
+"""``roadgpt`` without a command: asks for descriptions and numbers of roads, and makes the roads."""
 
 import re
 import sys
@@ -20,31 +20,31 @@ HELP = {"help", "?", "hilfe"}
 CHANGE = "change it? > "
 CHANGE_ONE = "change one? (2: make the last turn sharper) > "
 CHANGES = """\
-Say what is to be different, for example:
+Say what to change, for example:
   make the second turn sharper and the end downhill
   add a left turn after the first straight, 60 degrees
   remove the last turn
-Of several roads the first one is meant, unless a number stands in front. The road
-as it was is kept. An empty line goes on to the next description."""
+If there are several roads, start with the number of the road; otherwise the first road
+is changed. The original road is kept. An empty line leads to the next description."""
 
 HELLO = """Describe a road, for example: an uphill road with 3 turns
-Leave with 'exit' or an empty line, ask with 'help'; Ctrl-C stops the roads that are being made."""
+'help' explains more, 'exit' or an empty line leaves. Ctrl-C stops the roads that are being made."""
 
 EXPLAINED = """\
-Say in plain words how the road goes: how many turns, which way, how sharp,
-how long, how steep. For example:
+Describe the road in plain words: how many turns, their direction and sharpness,
+how long and how steep the road is. For example:
   two hairpins, then a long straight
   a winding road downhill, 300 m long, with 5 turns, the last one to the left
   a flat road with four sharp left turns
-Then say how many roads you want. What was not understood is listed before the
-first road is made.
-Here all options have their usual values. Options belong to 'roadgpt run', for example:
+Then say how many roads you want. Words that were not understood are listed before
+the first road is made.
+In this conversation all options have their defaults. 'roadgpt run' takes options, for example:
   roadgpt run "a winding road downhill" -n 20 --seed 7 --friction 0.6
 'roadgpt run --help' lists them."""
 
 
 def converse() -> None:
-    """Ask, work off, show; until the user has had enough."""
+    """Asks for descriptions, makes their roads and changes them, until the user leaves."""
     from roadgpt.brief import read
     from roadgpt.cli.commands.run import usual_job
 
@@ -70,7 +70,7 @@ def converse() -> None:
 
 
 def _changed(screen: Screen) -> bool:
-    """Change the roads that were made for as long as the user wants; False where they have had enough."""
+    """Changes the roads that were made as the user asks; returns False if the user wants to leave."""
     from roadgpt.road import World
 
     roads = [row.file for row in screen.rows]
@@ -93,7 +93,7 @@ def _changed(screen: Screen) -> bool:
 
 
 def _numbered(answer: str, roads: int) -> tuple[int, str]:
-    """Which of the roads, from 0, and what is to be changed: '2: make the last turn sharper'."""
+    """Splits '2: make the last turn sharper' into the index of the road, from 0, and the change."""
     match = re.match(r"(?:road\s+)?(\d+)\s*[:,]?\s+(.*)", answer, re.IGNORECASE | re.DOTALL)
     if match and 1 <= int(match[1]) <= roads:
         return int(match[1]) - 1, match[2]
@@ -101,7 +101,7 @@ def _numbered(answer: str, roads: int) -> tuple[int, str]:
 
 
 def _asked(question: str) -> str:
-    """The answer without blanks around it; an empty one where there is no more input."""
+    """Returns the answer without blanks around it; empty at the end of the input."""
     try:
         return input(question).strip()
     except EOFError:
@@ -110,7 +110,7 @@ def _asked(question: str) -> str:
 
 
 def _wants_help(answer: str) -> bool:
-    """Was help asked for? It is given then."""
+    """Prints help if the answer asks for it; returns whether it did."""
     if answer.lower() not in HELP:
         return False
     click.echo(f"{EXPLAINED}\n")
@@ -118,7 +118,7 @@ def _wants_help(answer: str) -> bool:
 
 
 def _how_many() -> int | None:
-    """The number of roads; None where the user has had enough."""
+    """Asks for the number of roads; returns None if the user wants to leave."""
     while True:
         answer = _asked(f"how many roads [{USUAL_ROADS}]> ")
         if answer.lower() in ENOUGH:
@@ -134,7 +134,7 @@ def _how_many() -> int | None:
 
 
 def _enable_editing() -> None:
-    """Arrow keys and history, where the platform has them."""
+    """Enables arrow keys and history, if the platform has them."""
     if sys.stdin.isatty():
         try:
             import readline  # noqa: F401  importing it is what switches it on

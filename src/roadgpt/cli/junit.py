@@ -1,4 +1,4 @@
-"""``--junit``: what commands that run tests, or sum them up, write for continuous integration."""
+"""``--junit``: writes tests as JUnit XML, for continuous integration."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ UNKNOWN = "roads that were given"
 
 
 def file(value: str) -> Path:
-    """The type of an option that takes a file which can be written."""
+    """Converts the value of an option to the path of a file that can be written."""
     path = Path(value)
     if not str(value).strip() or path.is_dir():
         raise click.BadParameter(f"'{value}' is a folder; give the name of a file, such as roads.xml")
@@ -42,7 +42,7 @@ junit_option = under(
 
 @dataclass(frozen=True)
 class Junit:
-    """A file, and what is common to the tests in it."""
+    """A JUnit file, and the properties that its tests share."""
 
     path: Path
     name: str
@@ -50,14 +50,14 @@ class Junit:
 
     @classmethod
     def of(cls, path: Path | None, request: "Request") -> "Junit | None":
-        """For the tests of one request; None where no file is wished for."""
+        """Returns the file for the tests of one request; None if no path is given."""
         return None if path is None else cls(path, _named(request.words), common(request))
 
     def write(self, rows: Sequence[Row]) -> None:
-        """Write what there is.
+        """Writes the rows.
 
         Raises:
-            RoadGPTError: the file cannot be written.
+            RoadGPTError: The file cannot be written.
         """
         from roadgpt.report.junit import Suite, write_junit
 
@@ -65,11 +65,11 @@ class Junit:
 
 
 def write_folder(path: Path, folder: Path) -> None:
-    """Write the tests of a folder of runs, of a campaign or of a study.
+    """Writes the tests of a folder of runs, a campaign or a study.
 
     Raises:
-        UsageError: there is none of these, or a file of it cannot be read.
-        RoadGPTError: the file cannot be written.
+        UsageError: The folder is none of these, or one of its files cannot be read.
+        RoadGPTError: The file cannot be written.
     """
     from roadgpt.report.junit import write_junit
 
@@ -109,7 +109,7 @@ def _of_runs(folder: Path) -> "Suite":
 
 
 def _of_campaign(folder: Path) -> Iterator["Suite"]:
-    """A suite for each cell; the rows of the store pass by one at a time."""
+    """Yields a suite for each cell; reads the rows of the store one at a time."""
     from roadgpt.campaign.record import Record
     from roadgpt.report.junit import Suite
 
@@ -162,7 +162,7 @@ def _named(words: str) -> str:
 
 
 def common(request: "Request") -> "Properties":
-    """What all tests of a request share."""
+    """Returns the properties that all tests of a request share."""
     setup, world = request.setup, request.world
     return {
         "words": request.words or None,

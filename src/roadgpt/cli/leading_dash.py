@@ -1,4 +1,4 @@
-"""A description that begins with a dash ("-5 % slope") passes for an option; here it is told what to do."""
+"""Advice for descriptions that begin with a dash, such as "-5 % slope", which look like an option."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -11,7 +11,7 @@ from roadgpt.cli.option_groups import GroupedCommand
 
 @contextmanager
 def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
-    """While click reads these words: where it cannot, and one is a description, say how to give it."""
+    """Turns click's error into advice if one of the words is a description with a leading dash."""
     given = list(args)  # click takes them out of its list
     try:
         yield
@@ -25,7 +25,7 @@ def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
 
 
 def _description(args: Sequence[str]) -> str | None:
-    """The first of the words that looks like a description and not like an option or the value of one."""
+    """Returns the first word that looks like a description rather than an option or its value; else None."""
     before = ""
     for word in args:
         if word == "--":
@@ -42,6 +42,6 @@ class DescribedCommand(GroupedCommand):
     """A command that takes a description."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """What click makes of the words."""
+        """Reads the words after the command."""
         with dash_advice(ctx, args):
             return super().parse_args(ctx, args)

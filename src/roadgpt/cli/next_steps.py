@@ -1,4 +1,4 @@
-"""What to try where a driver failed on no road: commands that make it harder, to be typed as they stand."""
+"""Suggests commands that make the tests harder, if a driver failed on no road."""
 
 import shlex
 from collections.abc import Iterator
@@ -23,23 +23,23 @@ HEAD = "No road failed. What may find one that does:"
 
 @dataclass(frozen=True)
 class WithoutFailure:
-    """Tests of which none failed."""
+    """The results of tests of which none failed."""
 
     request: "Request"
     tests: int
     passed: int
     mostly: int = 0
-    """Of these: with more than half of the car outside its lane."""
+    """How many passed with more than half of the car outside its lane."""
     outside: int = 0
-    """Of these: with any of it outside."""
+    """How many passed with any part of the car outside its lane."""
     goal: str | None = None
-    """What was searched for; None: nothing."""
+    """The goal of the search; None if nothing was searched for."""
     is_search: bool = False
-    """Made by roadgpt campaign."""
+    """Whether roadgpt campaign made them."""
 
     @property
     def is_worth_it(self) -> bool:
-        """Has enough been driven, and can options say all that was asked for?"""
+        """Whether enough tests were driven, and options can express the whole request."""
         named = {flag.field for flag in WORLD}
         usual = type(self.request.world)().model_dump(exclude=named)
         is_usual = self.request.world.model_dump(exclude=named) == usual
@@ -47,12 +47,12 @@ class WithoutFailure:
 
 
 def next_steps(quiet: WithoutFailure) -> list[tuple[str, str]]:
-    """What each step is, and its command; none where there is nothing to wonder about."""
+    """Returns suggestions, each with the command that carries it out; empty if too little was driven."""
     return [*_steps(quiet)] if quiet.is_worth_it else []
 
 
 def lines(quiet: WithoutFailure) -> Iterator[str]:
-    """The same to be read on a screen."""
+    """Yields the suggestions as lines for the screen."""
     found = next_steps(quiet)
     if found:
         yield HEAD
@@ -99,7 +99,7 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
-    """Of a campaign that is not at work, and in which no road failed; by its first cell."""
+    """Returns the results of a campaign; None if it is running or a road failed."""
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None
     from roadgpt.campaign.record import Record
@@ -114,7 +114,7 @@ def of_status(status: "Status") -> WithoutFailure | None:
 
 
 def of_runs(folder: Path) -> WithoutFailure | None:
-    """Of a folder of runs in which no road failed."""
+    """Returns the results of a folder of runs; None if a road failed."""
     from roadgpt.cli.result_row import row_of
     from roadgpt.run import read_run
     from roadgpt.run.campaign_runs import finished
@@ -127,7 +127,7 @@ def of_runs(folder: Path) -> WithoutFailure | None:
 
 
 def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
-    """Of rows, none of which failed."""
+    """Returns the results in rows; None if a road failed."""
     from roadgpt.verdict.severity import MOSTLY
 
     if any(row.test_outcome == "FAIL" for row in rows):

@@ -1,4 +1,4 @@
-"""Options that commands share, and types of values whose complaints are advice."""
+"""Options that commands share, and the types of their values."""
 
 from functools import reduce
 from pathlib import Path
@@ -21,7 +21,7 @@ FILES, OUTPUT = "Files", LAST  # headings of help
 
 
 def folder(value: str) -> Path:
-    """The type of an option that takes a folder which exists or can be made."""
+    """Converts the value of an option to the path of a folder that exists or can be made."""
     if not str(value).strip():
         raise click.BadParameter("a folder without a name; give its name, or '.' for this one")
     path = Path(value)
@@ -38,24 +38,24 @@ SEED = whole(0, 2**63 - 1, "a seed")
 
 
 def together(*decorators: Decorator) -> Decorator:
-    """Several options as one decorator, listed in help in this order."""
+    """Returns one decorator for several options, which the help lists in this order."""
     return lambda function: reduce(lambda made, decorate: decorate(made), reversed(decorators), function)
 
 
 def world_options(*fields: str) -> Decorator:
-    """Options that set fields of the World, all of them where none is named."""
+    """Returns the options that set these fields of the World, or all of them if none is named."""
     return together(*(flag.option() for flag in WORLD if not fields or flag.field in fields))
 
 
 def world_of(values: dict[str, Any]) -> "World":
-    """The World that the options describe; takes them out of ``values``."""
+    """Returns the World that the options describe, and removes them from ``values``."""
     from roadgpt.road import World
 
     return World(**{f.field: f.read(values.pop(f.field)) for f in WORLD if f.field in values})
 
 
 def competition_options(oob_tolerance: float, speed_limit_kmh: float) -> Decorator:
-    """The two options that all competitions of the field set, each to its own default."""
+    """Returns the two options that all competitions have, with a competition's own defaults."""
     return under(
         DRIVE,
         click.option(
@@ -76,7 +76,7 @@ def competition_options(oob_tolerance: float, speed_limit_kmh: float) -> Decorat
 
 
 def setup_options(*fields: str) -> Decorator:
-    """Options that set these fields of the Setup, in this order."""
+    """Returns the options that set these fields of the Setup, in this order."""
     known = {flag.field: flag for flag in SETUP}
     return together(*(known[field].option() for field in fields))
 
@@ -95,7 +95,7 @@ driver_again_option = under(
 
 
 def chat_options_but(*fields: str) -> Decorator:
-    """Options that set ChatSettings, but for these fields, which the command does not heed."""
+    """Returns the options that set ChatSettings, without those of fields that the command does not use."""
     return together(*(flag.option() for flag in CHAT if flag.field not in fields))
 
 
@@ -103,12 +103,12 @@ chat_options = chat_options_but()
 
 
 def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":
-    """The language model that the options and the user's settings name; takes the options out of ``values``.
+    """Returns the settings of the language model, and removes their options from ``values``.
 
-    None where neither the reader nor the designer asks one.
+    Returns None if neither the reader nor the designer asks a language model.
 
     Raises:
-        UsageError: an option is given that nobody heeds, or a setting cannot be.
+        UsageError: An option of language models is given but none is asked, or a setting cannot be used.
     """
     given = {flag: flag.read(values.pop(flag.field, None)) for flag in CHAT}
     told = {flag.field: value for flag, value in given.items() if value is not None}
@@ -128,7 +128,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
 
 
 def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
-    """The type of an option that takes formats, several after commas."""
+    """Converts names of formats, separated by commas."""
     if isinstance(value, tuple):
         return value
     names = tuple(name.strip() for name in value.split(",") if name.strip())
@@ -138,7 +138,7 @@ def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
 
 
 def formats_option(flag: str, required: bool = False, is_settable: bool = False) -> Decorator:
-    """Formats of road files as ``formats``: after commas, or by giving the option again."""
+    """Returns an option for formats of road files, separated by commas or given as several options."""
     settable: dict[str, Any] = {"cls": SettableOption, "table": "run", "key": flag[2:]} if is_settable else {}
     return under(
         FILES if is_settable else FIRST,
@@ -160,7 +160,7 @@ PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load
 
 
 def picture_formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
-    """The type of an option that takes formats of pictures, several after commas."""
+    """Converts names of formats of pictures, separated by commas."""
     names = value if isinstance(value, tuple) else tuple(name.strip().lower() for name in value.split(","))
     for name in names:
         if name not in PICTURES:

@@ -1,4 +1,4 @@
-"""Work shared among processes of this machine, in the order in which it ends."""
+"""Runs a function on many items in several processes of this machine."""
 
 import signal
 from collections.abc import Callable, Iterable, Iterator
@@ -12,14 +12,14 @@ U = TypeVar("U")
 
 
 def shared(function: Callable[[T], U], items: Iterable[T], workers: int) -> Iterator[U]:
-    """``function`` of every item, as each is done; by one worker, in this process.
+    """Yields ``function`` of every item as it is done; one worker works in this process.
 
-    Whoever stops listening, by Ctrl-C or otherwise, stops the workers.
+    The workers end when the iteration is stopped, by Ctrl-C or otherwise.
 
     Args:
-        function: stands at the top of a module.
-        items: what it is to be done with; so are they and what it gives back, if there are several workers.
-        workers: processes.
+        function: A function at the top level of a module.
+        items: Its arguments; they and its results must be picklable if there are several workers.
+        workers: The number of processes.
 
     Raises:
         What ``function`` raises.
@@ -56,7 +56,6 @@ def shared(function: Callable[[T], U], items: Iterable[T], workers: int) -> Iter
 
 
 def _begun(names: tuple[NameOrigins, NameOrigins]) -> None:
-    """Ctrl-C goes to all processes of a terminal, and the first one sees to the others. Whose code may run,
-    they know from it."""
+    """Prepares a worker: it leaves Ctrl-C to the first process, and learns from it whose code may run."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     join(names)

@@ -1,4 +1,4 @@
-"""Progress of things that take long: a bar on a terminal, else a line now and then, with the time to go."""
+"""Shows progress: a bar on a terminal, otherwise a line now and then, with the remaining time."""
 
 import sys
 import time
@@ -15,13 +15,13 @@ EVERY = 10.0  # s between two lines where there is no terminal
 
 
 def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
-    """The steps, while standard error tells how many of them are done and how long the others will take.
+    """Yields the steps, and shows on standard error how many are done and the remaining time.
 
     Args:
-        steps: each is handed out when it is done.
-        total: how many there are.
-        what: they are, in the plural: 'faults'.
-        quiet: say nothing.
+        steps: Each is yielded when it is done.
+        total: How many there are.
+        what: What they are, in the plural, such as 'faults'.
+        quiet: Whether to show nothing.
     """
     if quiet:
         yield from steps

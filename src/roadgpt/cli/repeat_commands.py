@@ -1,4 +1,4 @@
-"""The lines that make a Run again: the road from its words, and the drive from the road."""
+"""The commands that repeat a Run: one makes the road from its words, one drives the road."""
 
 import shlex
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ OF_DRIVES = tuple(flag for flag in SETUP if flag.field in ("driver", "simulator"
 
 
 def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
-    """Commands that give this Run again: from its words (as the last road), and from its road file."""
+    """Returns the commands that repeat this Run: from its words, as the last road, and from its road file."""
     lines = []
     request = run.request
     if run.words:
@@ -25,7 +25,7 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
 
 
 def request_words(request: Request, roads: int) -> list[str]:
-    """The words after ``roadgpt run`` that make so many roads of a request."""
+    """Returns the words after ``roadgpt run`` that make this many roads of a request."""
     rest = ["-n", str(roads), "--seed", str(request.seed), *_written(request, SETUP), *_asked(request)]
     if not request.setup.drives:
         rest.append("--no-drive")
@@ -34,7 +34,7 @@ def request_words(request: Request, roads: int) -> list[str]:
 
 
 def _asked(request: Request) -> list[str]:
-    """The language model, where it is not the one that anyone has."""
+    """Returns the options of the language model that differ from their defaults."""
     chat = request.setup.chat
     if chat is None:
         return []

@@ -1,4 +1,4 @@
-"""A Row: what a command tells about one road, as a line to read or as JSON."""
+"""A Row: what a command prints about one road, as a line to read or as JSON."""
 
 import json
 import math
@@ -22,7 +22,7 @@ COLOURS = {
     "INVALID": "cyan",
     "ERROR": "magenta",
 }
-"""Of outcomes on a terminal, from the best to the worst of what was driven."""
+"""Colours of outcomes on a terminal, from the best outcome to the worst."""
 WIDEST = max(len(name) for name in (*COLOURS, "FAIL (out of lane)"))
 
 
@@ -30,13 +30,13 @@ MOST_TOLD = len("PASS (100 % out, 10.00 m)")
 
 
 def colour_of(outcome: str) -> str:
-    """Of an outcome on a terminal, however it is told."""
+    """Returns the colour of an outcome on a terminal."""
     return COLOURS.get(outcome) or COLOURS[outcome.split(" ")[0]]
 
 
 @dataclass(frozen=True)
 class Row:
-    """How one road ended. VALID is a road that was checked and not driven."""
+    """The result of one road. The outcome VALID means that it was checked and not driven."""
 
     file: str
     test_outcome: Outcome
@@ -45,29 +45,29 @@ class Row:
     is_valid: bool = True
     validation_message: str = ""
     findings: tuple[str, ...] = ()
-    """All that the rules say of the road, the first one as ``validation_message``."""
+    """The sentences of all broken rules; the first is ``validation_message`` as well."""
     cause: str | None = None
-    """Of a FAIL: out of lane, fell, stuck or timeout; of an ERROR: unreadable, where the file is at fault."""
+    """Of a FAIL: out of lane, fell, stuck or timeout. Of an ERROR: unreadable, if the file cannot be read."""
     max_oob: float | None = None
     """Largest share of the car outside its lane, 0 to 1."""
     beyond_m: float | None = None
-    """Metres that its body reached beyond the marking, at most."""
+    """The furthest that the car's body was beyond the lane marking, m."""
     margin_m: float | None = None
     length_m: float | None = None
     seconds: float = 0.0
     name: str = ""
-    """What a line calls it, where the path of the file is too long for a line."""
+    """A shorter name for lines, if the path of the file is too long."""
     spent: "Spent | None" = None
-    """What language models were asked for it."""
+    """Tokens, seconds and cost of the language models that were asked for it."""
     words: str = ""
     seed: int | None = None
-    """The road's own."""
+    """The seed of this road."""
     trace: str = ""
-    """Of a driver or a simulator that failed: where."""
+    """The traceback, if a driver or a simulator failed."""
 
     @property
     def outcome(self) -> str:
-        """With its cause or how far outside it was: 'FAIL (out of lane)', 'PASS (mostly outside)'."""
+        """The outcome with its cause or grade: 'FAIL (out of lane)', 'PASS (mostly outside)'."""
         if self.cause:
             return f"{self.test_outcome} ({self.cause})"
         from roadgpt.verdict import graded
@@ -76,18 +76,18 @@ class Row:
 
     @property
     def told(self) -> str:
-        """The outcome as a line has it: a PASS with the share that was outside, and how far out."""
+        """The outcome as lines show it: a PASS with the share of the car that was outside, and how far."""
         if self.test_outcome != "PASS" or not self.max_oob:
             return self.outcome
         return f"PASS ({outside(self.max_oob, self.beyond_m)})"
 
     @property
     def colour(self) -> str:
-        """On a terminal."""
+        """The colour of the outcome on a terminal."""
         return colour_of(self.outcome)
 
     def to_json(self) -> str:
-        """One line."""
+        """Returns the row as one line of JSON."""
         asked = self.spent and {
             "tokens": self.spent.usage.total,
             "model_seconds": _rounded(self.spent.seconds),
@@ -111,7 +111,7 @@ class Row:
         )
 
     def to_line(self) -> str:
-        """Outcome, length, margin, file, and the sentence where something is wrong."""
+        """Returns outcome, length, margin, file, and the sentence if something is wrong."""
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
@@ -121,14 +121,14 @@ class Row:
 
     @property
     def _despite(self) -> str:
-        """What the rules say of a road that was driven all the same."""
+        """The first broken rule of a road that was driven all the same."""
         rest = len(self.findings) - 1
         more = f" and {rest} more finding{'s' * (rest > 1)}" if rest else ""
         return f"  finding: {self.findings[0]}{more}"
 
 
 def outside(share: float | None, beyond: float | None) -> str:
-    """How far outside its lane a car was at most: '62 % out, 1.13 m'; empty where nobody drove."""
+    """Returns how far a car was outside its lane: '62 % out, 1.13 m'; empty if nobody drove."""
     if share is None:
         return ""
     if not share:
@@ -139,25 +139,25 @@ def outside(share: float | None, beyond: float | None) -> str:
 
 
 def metres(margin: float) -> str:
-    """A margin, to the millimetre: those that decide are small."""
+    """Returns a margin as text, to the millimetre, since the deciding margins are small."""
     told = f"{margin:+.3f} m"
     return "below 0 m" if told.startswith("-0.000") else told
 
 
 def spending(spent: "Spent") -> str:
-    """What language models were asked, in a line."""
+    """Returns answers, tokens, seconds and cost of language models as text."""
     money = "price unknown" if spent.cost is None else f"{spent.cost:.4f} USD"
     answers = f"{spent.calls:,} answer{'s' * (spent.calls != 1)}"
     return f"{answers}, {spent.usage.total:,} tokens, {spent.seconds:.1f} s, {money}"
 
 
 def _rounded(number: float | None) -> float | None:
-    """Four decimals; JSON knows no infinity, so that becomes null."""
+    """Rounds to four decimals; returns None for an infinite number, which JSON does not have."""
     return None if number is None or not math.isfinite(number) else round(number, 4)
 
 
 def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
-    """Per outcome: its name, how many roads, their share, the smallest margin, and the most outside."""
+    """Returns for each outcome: its name, number of roads, share, smallest margin, and furthest outside."""
     counted = Counter(row.outcome for row in rows)
     table = []
     for outcome, count in sorted(counted.items(), key=lambda item: (_rank(item[0]), item[0])):
@@ -176,7 +176,13 @@ def _rank(outcome: str) -> int:
 
 
 def row_of(run: "Run", file: str, name: str = "") -> Row:
-    """What is told of a Run whose road is in a file, which a line may call by a shorter name."""
+    """Returns the row of a Run.
+
+    Args:
+        run: The Run.
+        file: Its road file.
+        name: A shorter name for lines.
+    """
     verdict = run.verdict
     return Row(
         file,
@@ -200,5 +206,5 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
 
 
 def unreadable(file: str, error: Exception) -> Row:
-    """What is told of one of many files, that holds no road."""
+    """Returns the row of a file that holds no road."""
     return Row(file, "ERROR", str(error), is_valid=False, validation_message=str(error), cause="unreadable")

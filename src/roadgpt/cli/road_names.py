@@ -1,4 +1,4 @@
-"""The roads that a user names: files, runs, folders of runs, campaigns and tests; one resolver for all."""
+"""Finds the roads that a user names: files, runs, folders of runs, campaigns and tests."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -33,10 +33,10 @@ choice_options: Decorator = together(
 
 
 def choice_of(values: dict[str, bool]) -> "Choice | None":
-    """What the ``choice_options`` say; takes them out of ``values``.
+    """Returns the choice of the ``choice_options``, and removes them from ``values``.
 
     Raises:
-        UsageError: they say two things.
+        UsageError: More than one choice is given.
     """
     choices: tuple[Choice, ...] = ("failures", "faults", "worst")
     said = [name for name in choices if values.pop(name)]
@@ -47,16 +47,16 @@ def choice_of(values: dict[str, bool]) -> "Choice | None":
 
 @dataclass(frozen=True)
 class NamedRoad:
-    """One road."""
+    """A road that the user named."""
 
     said: str
-    """As it can be typed again."""
+    """Its name as it can be typed again."""
     stem: str
-    """For the names of files that are made of it."""
+    """The start of the names of files that are made from it."""
     key: object
-    """Equal for two that are the same."""
+    """Equal for two names of the same road."""
     run: "Callable[[], Run] | None"
-    """Reads its Run; None for the file of a road, which every command reads in its own way."""
+    """Reads its Run; None for a road file, which each command reads in its own way."""
 
 
 def roads_named(
@@ -65,16 +65,16 @@ def roads_named(
     takes_all: bool = False,
     complain: "Callable[[UsageError], None] | None" = None,
 ) -> Iterator[NamedRoad]:
-    """The roads that are meant, each once.
+    """Yields the roads that the names mean, each once.
 
     Args:
-        files: as the user typed them.
-        choice: which of a folder's.
-        takes_all: without a choice, a folder stands for all its roads; else it must hold one only.
-        complain: is told of a wrong name, which is then passed over; without it, it is raised.
+        files: The names, as the user typed them.
+        choice: Which roads of a folder.
+        takes_all: Whether a folder without a choice means all its roads; otherwise it must hold one road.
+        complain: Called with the error of a wrong name, which is then skipped. If None, the error is raised.
 
     Raises:
-        UsageError: a name is wrong, or there is no road of that choice.
+        UsageError: A name is wrong, or the folder has no road of that choice.
     """
     seen = set()
     for file in files:
@@ -143,10 +143,10 @@ def _run(folder: Path, said: str) -> NamedRoad:
 
 
 def _single(file: str) -> NamedRoad:
-    """A run, or the file of a road.
+    """Returns a run or a road file.
 
     Raises:
-        UsageError: there is nothing of that name.
+        UsageError: There is nothing of that name.
     """
     from roadgpt.campaign.selection import near
     from roadgpt.run.folder import is_run, run_of_test

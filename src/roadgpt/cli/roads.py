@@ -1,4 +1,4 @@
-"""Roads that exist, one file after the other: one that cannot be read does not stop the others."""
+"""Reads roads from files; a file that cannot be read does not stop the others."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
-    """What a file holds, a Design or a Road, and remarks on what had to be settled.
+    """Returns the Design or the Road in a file, and remarks on what had to be assumed.
 
     Raises:
-        UsageError: it holds no road, or is a folder of runs, or of something else.
+        UsageError: The file holds no road, or it is a folder that is no run.
     """
     from roadgpt.road import read_blueprint
     from roadgpt.run.card import CARD
@@ -45,16 +45,16 @@ def shown_runs(
     most: int,
     what: str,
 ) -> "list[Run]":
-    """The Runs that are named, to be shown together: of roads that nobody drove they are made; tells remarks.
+    """Returns the Runs that are named, to be shown together; a road file becomes a Run without a drive.
 
     Args:
-        files, choice: as for ``roads_named``.
-        world, geometry: of roads that nobody drove.
-        most: so many can be shown.
-        what: shows them: 'a page'.
+        files, choice: As for ``roads_named``.
+        world, geometry: Used for road files.
+        most: How many can be shown.
+        what: What shows them, such as 'a page'.
 
     Raises:
-        UsageError: as for ``roads_named`` and ``blueprint_of``, there are more, or a run cannot be read.
+        UsageError: A name is wrong, a road cannot be read, or there are more than ``most``.
     """
     if len(files) > most:
         raise UsageError(f"{what} shows one road or two side by side; {len(files)} are given")
@@ -70,15 +70,15 @@ def shown_runs(
 
 
 def shown_run(file: str, world: "World", geometry: "Geometry") -> "Run":
-    """The one Run that is named, as ``shown_runs``."""
+    """Returns the one Run that is named; see ``shown_runs``."""
     return shown_runs([file], None, world, geometry, 1, "it")[0]
 
 
 def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
-    """Its Run, or one made of a road that nobody drove; tells remarks.
+    """Returns the Run of a road, or a new Run without a drive for a road file; prints remarks.
 
     Raises:
-        UsageError: it cannot be read.
+        UsageError: The road cannot be read.
     """
     from roadgpt.run import Setup, prove
 
@@ -92,10 +92,10 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
 
 
 def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) -> None:
-    """Look at every file, and show the rows with their table.
+    """Calls ``look`` for every file, and shows the rows and their table.
 
     Raises:
-        UsageError: there is one file only, and it cannot be used; that needs no table.
+        UsageError: There is only one file, and it cannot be used.
     """
     with screen:
         for file in files:

@@ -1,4 +1,4 @@
-"""Working off one description: ``roadgpt run`` does it once, the conversation as often as it is asked."""
+"""Makes the roads of one description, for ``roadgpt run`` and for the conversation."""
 
 import secrets
 import shlex
@@ -31,7 +31,7 @@ SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be
 
 @dataclass(frozen=True)
 class RunJob:
-    """One description and how it is to be worked off."""
+    """One description with its options."""
 
     words: str
     roads: int
@@ -41,19 +41,19 @@ class RunJob:
     out: Path | None = None
     axes: "Scale" = "equal"
     pictures: "tuple[Format, ...]" = ("png",)
-    """Formats of the pictures of each run; empty: none are drawn."""
+    """Formats of the pictures of each run; none are drawn if empty."""
     formats: tuple[str, ...] = ()
-    """Of the road files beside each run."""
+    """Formats of the road files that are written into each run."""
     junit: Path | None = None
-    """Where the tests are to stand as JUnit XML."""
+    """The JUnit file, if one is wanted."""
 
 
 def carry_out(job: RunJob, screen: Screen) -> None:
-    """Read, say what was understood, design, drive, and show every road as it ends.
+    """Reads the description, makes its roads, and shows each as it ends.
 
     Raises:
-        RoadGPTError: the words, a part or the folder cannot be used, or nothing could be designed.
-        KeyboardInterrupt: the user stopped it; what is finished is complete, and was said.
+        RoadGPTError: The words, a plug-in or the folder cannot be used, or nothing could be designed.
+        KeyboardInterrupt: The user stopped it; finished roads are complete.
     """
     from roadgpt.chat import Meter
     from roadgpt.run import brief_of, campaign
@@ -72,12 +72,12 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     if work.is_complete:
         screen.say(f"all {work.roads} roads are there")
     elif work.kept:
-        screen.say(f"{len(work.kept)} roads were finished before; going on")
+        screen.say(f"{len(work.kept)} roads were finished before; continuing")
     _watch(work, job, screen)
 
 
 def _seed(job: RunJob) -> int:
-    """The one that was given, else that of the campaign which lies in the folder, else a new one."""
+    """Returns the seed that was given, or that of the folder, or a new one."""
     from roadgpt.run import seed_in
 
     if job.seed is not None:
@@ -87,7 +87,7 @@ def _seed(job: RunJob) -> int:
 
 
 def understood(brief: "Brief", map_size: float = inf) -> str:
-    """What was understood of the words and what not, whether there is doubt, and what the map cannot keep."""
+    """Returns how the words are read, a warning if that is unsure, and what does not fit on the map."""
     from roadgpt.brief import remarks
 
     told = f"I read this as: {reading(brief)}"
@@ -97,7 +97,7 @@ def understood(brief: "Brief", map_size: float = inf) -> str:
 
 
 def reading(brief: "Brief") -> str:
-    """What was understood of the words, and which of them were not."""
+    """Returns how the words are read, and which of them were not understood."""
     from roadgpt.brief import sentence
 
     said = sentence(brief).removesuffix(".")
@@ -108,7 +108,7 @@ def reading(brief: "Brief") -> str:
 
 
 def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
-    """Show the roads of a campaign, first those that were there before; end with the table in any case."""
+    """Shows the roads of a folder, starting with those that were there before, and then their table."""
     from roadgpt.run.sbft_json import test_name
 
     try:
@@ -119,7 +119,7 @@ def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
                 screen.detail(f"  {run.description}")
     except KeyboardInterrupt:
         command = ["roadgpt", "run", work.request.words, "-n", str(work.roads), "--out", str(work.folder)]
-        click.echo(f"roadgpt: go on with: {shlex.join(command)} and the options that you gave", err=True)
+        click.echo(f"roadgpt: continue with: {shlex.join(command)} and the same options", err=True)
         raise
     finally:
         screen.close()
@@ -137,13 +137,13 @@ def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
 
 
 def _next(work: "Campaign", screen: Screen) -> list[str]:
-    """What to try where all roads were driven and none failed."""
+    """Returns suggestions if all roads were driven and none failed."""
     quiet = of_rows(work.request, work.roads, screen.rows) if len(screen.rows) == work.roads else None
     return [*lines(quiet)] if quiet is not None else []
 
 
 def _beside(job: RunJob) -> "Draw | None":
-    """What puts pictures and road files into the folder of each run."""
+    """Returns the function that puts pictures and road files into the folder of each run."""
     draw = _pictures(job)
     if not job.formats:
         return draw

@@ -1,4 +1,4 @@
-"""How a command talks while it works: a bar on a terminal, plain lines in a pipe, JSON, or nothing."""
+"""What a command prints while it works: a bar on a terminal, plain lines in a pipe, JSON, or nothing."""
 
 import logging
 import sys
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 
 class Screen:
-    """Told of every road as it ends; at its own end it shows the table of outcomes.
+    """Prints each road as it ends, and at the end a table of outcomes.
 
-    Roads go to standard output, all talk goes there too unless the roads are JSON; the bar goes to standard
-    error, and only where that is a terminal. A total of 0: nobody knows how many there will be.
+    Roads go to standard output, and so does other text unless the roads are JSON. The bar goes to standard
+    error, if that is a terminal. A total of 0 means that the number of roads is unknown.
     """
 
     def __init__(
@@ -60,21 +60,21 @@ class Screen:
 
     @property
     def seconds(self) -> float:
-        """Since the work began."""
+        """Seconds since the work began."""
         return time.perf_counter() - self._begun
 
     def say(self, sentence: str) -> None:
-        """Something for the person who waits."""
+        """Prints a sentence unless quiet."""
         if not self.quiet:
             _show(sentence, on_stderr=self.as_json)
 
     def detail(self, sentence: str) -> None:
-        """Something for the person who asked for more."""
+        """Prints a sentence if verbose."""
         if self.verbose:
             self.say(sentence)
 
     def row(self, row: Row) -> None:
-        """A road has ended."""
+        """Prints a road that has ended."""
         self.rows.append(row)
         if self.as_json:
             _show(row.to_json())
@@ -87,7 +87,7 @@ class Screen:
             self._bar.update(self._task, completed=len(self.rows), rate=rate)
 
     def close(self) -> None:
-        """The table of outcomes, and what was wished for as JUnit XML."""
+        """Prints the table of outcomes, and writes the JUnit file if one is wanted."""
         if self.junit is not None:
             self.junit.write(self.rows)
         if self.quiet or self.as_json or not self.rows:
@@ -108,7 +108,7 @@ class Screen:
 
 
 def _show(line: str, on_stderr: bool = False) -> None:
-    """Print a line, in colour only where someone sees it; click.echo would go past the bar and garble it."""
+    """Prints a line, in colour on a terminal only; click.echo would write into the bar."""
     stream = sys.stderr if on_stderr else sys.stdout
     print(line if stream.isatty() and is_coloured() else click.unstyle(line), file=stream, flush=True)
 
@@ -120,7 +120,7 @@ def _coloured(row: Row) -> str:
 
 
 def new_bar() -> "Progress":
-    """A bar on standard error, with a rate of its own and the time that is left."""
+    """Returns a progress bar on standard error, with a rate and the remaining time."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 

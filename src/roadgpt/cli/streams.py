@@ -1,4 +1,4 @@
-"""Standard output: what it cannot take is told in a sentence, and what others print goes past it."""
+"""Standard output: its errors become sentences, and what drivers print is kept out of it."""
 
 import io
 import os
@@ -12,7 +12,7 @@ LETTERS = "backslashreplace"  # letters that the other end has not are written a
 
 
 class OutputError(Exception):
-    """Standard output takes nothing. No OSError, which click and others would take for theirs."""
+    """Standard output cannot be written to. Not an OSError, which click would handle itself."""
 
     def __init__(self, cause: OSError) -> None:
         self.is_reader_gone = isinstance(cause, BrokenPipeError)
@@ -22,7 +22,7 @@ class OutputError(Exception):
 
 
 class _Output(io.TextIOWrapper):
-    """Standard output that says so when it is at fault."""
+    """Standard output that raises OutputError if it cannot be written to."""
 
     def write(self, text: str) -> int:
         try:
@@ -38,9 +38,9 @@ class _Output(io.TextIOWrapper):
 
 
 def make_ready() -> None:
-    """Let both outputs take every letter, and standard output say when it takes none.
+    """Makes both outputs accept every character, and standard output raise OutputError on failure.
 
-    One that was closed before the program began is there afterwards, and takes nothing.
+    An output that was closed before the program began is replaced by the null device.
     """
     if sys.stdin is None:
         sys.stdin = os.fdopen(_nothing(0, os.O_RDONLY))
@@ -56,7 +56,7 @@ def make_ready() -> None:
 
 
 def _nothing(number: int, mode: int) -> int:
-    """The null device under a file number, so that no other file gets this number."""
+    """Opens the null device under a file number, so that no other file gets this number."""
     opened = os.open(os.devnull, mode)
     if opened != number:
         os.dup2(opened, number)
@@ -65,20 +65,20 @@ def _nothing(number: int, mode: int) -> int:
 
 
 def drop_output() -> None:
-    """Python flushes standard output once more at its end; let it flush into nothing."""
+    """Redirects standard output to the null device, since Python flushes it once more at its end."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, sys.stdout.fileno())
     os.close(nothing)
 
 
 def is_coloured() -> bool:
-    """Does whoever looks at a terminal want colours?"""
+    """Returns whether colours are wanted on a terminal."""
     return not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def apart(steps: Iterable[Step]) -> Iterator[Step]:
-    """The same steps; what is printed while one is made, by a user's driver for example, goes to standard
-    error, so that standard output holds rows and nothing else."""
+    """Yields the steps; what is printed while one is made, for example by a user's driver, goes to standard
+    error, so that standard output holds rows only."""
     made = iter(steps)
     while True:
         with redirect_stdout(sys.stderr):

@@ -1,4 +1,4 @@
-"""``roadgpt study thesis`` and ``alignment``: many roads of many descriptions, and a report on them."""
+"""``roadgpt study thesis`` and ``alignment``: evaluate many roads of many descriptions."""
 
 import shlex
 import sys
@@ -74,12 +74,12 @@ study_options = together(
 @no_drive_option
 @study_options
 def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
-    """Do the evaluation of RoadGPT's thesis again: validity, drives, alignment and diversity.
+    """Repeat the evaluation of RoadGPT's thesis: validity, drives, alignment and diversity.
 
-    Takes the three descriptions of the thesis' table and those of its survey, makes so many roads of each,
-    drives them, and writes one page with all tables, tests, intervals and figures, and the thesis' own counts
-    beside ours. After Ctrl-C the same command goes on where it stopped. With a designer that asks a language
-    model which cannot be asked, the report says so and the exit status is 4.
+    Takes the three descriptions of the thesis' table and those of its survey, makes and drives the roads, and
+    writes one page with tables, tests, intervals and figures. The thesis' own counts stand beside the new
+    ones. After Ctrl-C, the same command continues where it stopped. If a language model cannot be asked, the
+    report says so and the exit status is 4.
 
     \b
     roadgpt study thesis
@@ -96,10 +96,10 @@ def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
 @click.option("--drive", "drives", is_flag=True, help="Drive the roads as well.")
 @study_options
 def alignment(prompts: Path, roads: int, drives: bool, **rest: Any) -> int:
-    """Measure on finished roads what their descriptions asked for, criterion by criterion.
+    """Measure how well roads match their descriptions, criterion by criterion.
 
-    PROMPTS.jsonl has a line {"id": "1", "prompt": "a U-turn", "truth": {"turns": 1}} for each description;
-    the guide has all keys of a truth. Where none is given, roads are held against what the reader read.
+    PROMPTS.jsonl has a line {"id": "1", "prompt": "a U-turn", "truth": {"turns": 1}} for each description.
+    The guide lists all keys of a truth. Without a truth, roads are compared with what the reader read.
 
     \b
     roadgpt study alignment prompts.jsonl
@@ -118,7 +118,7 @@ def _study(
     drives: bool,
     rest: dict[str, Any],
 ) -> int:
-    """Work, report, and say where the report is; the exit status."""
+    """Works, writes the report, prints its path, and returns the exit status."""
     from roadgpt.run import check_parts
     from roadgpt.study.chapters.wording import plural
     from roadgpt.study.execution import work
@@ -146,7 +146,9 @@ def _study(
     try:
         problems = work(plan, place, workers, _drawing(formats), tell)
     except KeyboardInterrupt:
-        click.echo("\nroadgpt: stopped; what is finished is complete, and the same command goes on", err=True)
+        click.echo(
+            "\nroadgpt: stopped; finished roads are complete, and the same command continues", err=True
+        )
         raise
     keep_problems(place, problems)
     if not quiet:
@@ -189,7 +191,7 @@ def _plan(
 
 
 def _command(plan: "StudyPlan", place: Path) -> str:
-    """What makes the study again."""
+    """Returns the command that makes the study again."""
     words = ["roadgpt", "study", plan.kind, *([plan.source] if plan.source else [])]
     words += ["--roads", str(plan.roads), "--seed", str(plan.seed)]
     if plan.designers != ("planner",):
@@ -216,7 +218,7 @@ def _drawing(formats: tuple[Any, ...]) -> "Drawing | None":
 
 
 def _teller(total: int) -> Callable[[str, int], None]:
-    """Says how far it is: in place on a terminal, some lines in a pipe."""
+    """Returns a function that prints the progress: in place on a terminal, some lines in a pipe."""
     begun, is_seen = time.perf_counter(), sys.stderr.isatty()
     first: list[int] = []
     said = [0]

@@ -1,4 +1,4 @@
-"""What is in a folder, in plain lines: one Run, or all of a campaign."""
+"""Summaries of a Run, a folder of runs or a campaign, in plain lines or as JSON."""
 
 import shlex
 from collections import Counter
@@ -27,14 +27,14 @@ MOST_TESTS = 40  # of a cell, one by one
 
 
 def show(path: Path | str, choice: Choice | None = None) -> str:
-    """A Run's summary and the lines that make it again, or the table of a folder, a campaign or a cell.
+    """Returns a Run's summary with the commands that repeat it, or a table of a folder, a campaign or a cell.
 
     Args:
-        path: the folder of a run, its ``test.NNNN.json``, a folder of runs, a campaign, a cell or a test.
-        choice: which of a folder's; several are listed, one is told of in full.
+        path: A run, its ``test.NNNN.json``, a folder of runs, a campaign, a cell or a test.
+        choice: Which roads of a folder; one is summarised, several are listed.
 
     Raises:
-        UsageError: nothing of the kind is there.
+        UsageError: There is nothing of that name.
     """
     return "\n".join(_lines(path, choice))
 
@@ -90,7 +90,7 @@ def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
 
 
 def _cell_lines(place: Selection, status: Status) -> Iterator[str]:
-    """One cell of a campaign, and the first of its tests."""
+    """Yields a cell of a campaign and its first tests."""
     (cell,) = [cell for cell in status.cells if cell.name == place.cell]
     yield LINE.format(*HEAD)
     yield LINE.format(*cell_columns(cell))
@@ -161,7 +161,7 @@ def _outside_line(verdict: Verdict) -> str:
 
 
 def _asked_lines(run: Run) -> Iterator[str]:
-    """What language models were asked, and what was changed of what they answered."""
+    """Yields what the language models cost, and what was changed in their answers."""
     told = run.designing
     if run.spent is not None:
         by = f"{told.model}, {told.rounds} round{'s' * (told.rounds != 1)}: " if told else ""

@@ -1,4 +1,4 @@
-"""``roadgpt show --watch``: a campaign at work, on the whole screen."""
+"""``roadgpt show --watch``: shows the progress of a campaign on the screen."""
 
 import sys
 import time
@@ -18,7 +18,7 @@ LEAST = 12  # letters of a description, below which it is left out
 
 
 def watch_campaign(campaign: Path, once: bool = False) -> None:
-    """Shows a campaign that another command works on, until it ends or Ctrl-C; once if nobody watches.
+    """Shows a campaign that another command works on, until it ends or Ctrl-C; once if there is no terminal.
 
     Raises:
         UsageError: There is no campaign.
@@ -61,7 +61,7 @@ def _picture(status: "Status", width: int) -> "RenderableType":
 
 
 def _cells(status: "Status", width: int) -> "RenderableType":
-    """As many columns as the screen is wide; the last one is cut where it does not fit."""
+    """Returns a table with as many columns as fit on the screen; the last one is cut if need be."""
     from rich.table import Table
     from rich.text import Text
 
@@ -85,7 +85,7 @@ def _cells(status: "Status", width: int) -> "RenderableType":
 
 
 def _chosen(status: "Status") -> "list[CellStatus]":
-    """Cells that are being worked on first, then those with most failures."""
+    """Returns the cells to show: first those that are being worked on, then those with most failures."""
     busy = {lease.cell for lease in status.under_way}
     return sorted(
         status.cells, key=lambda cell: (cell.name not in busy, -cell.outcomes.get("FAIL", 0), cell.name)

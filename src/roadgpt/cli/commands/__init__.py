@@ -1,1 +1,1 @@
-"""One command per file, each called ``command``; the table of them stands in ``roadgpt.cli.app``."""
+"""One command per file, each called ``command``; ``roadgpt.cli.command_table`` lists them."""

@@ -1,4 +1,4 @@
-"""``roadgpt campaign``: thousands of tests, by many workers, that nothing interrupts for good."""
+"""``roadgpt campaign``: runs thousands of tests with many workers; can be resumed after any interruption."""
 
 import sys
 from contextlib import redirect_stdout
@@ -132,7 +132,7 @@ def command(
 
 
 def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
-    """The plan in a file; options that it could name itself have no place beside it."""
+    """Returns the plan in a file; refuses options that belong into the file."""
     from roadgpt.campaign.plan_file import read_plan
     from roadgpt.chat.config import Layer, configured
     from roadgpt.drive.permission import check_named_driver
@@ -183,7 +183,7 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
 
 
 def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
-    """What is about to happen, where it is no surprise."""
+    """Prints how the description is read, how many cells there are, and the folder."""
     from roadgpt.campaign.record import Record
     from roadgpt.cli.run_job import understood
 
@@ -193,4 +193,4 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
         click.echo(understood(cells[0].brief, plan.world.map_size))
     if len(cells) > 1:
         click.echo(f"{len(cells):,} cells, each with tests of its own")
-    click.echo(f"{'going on in' if was_there else 'into'} {out}")
+    click.echo(f"{'resuming in' if was_there else 'into'} {out}")

@@ -1,4 +1,4 @@
-"""``roadgpt check``: what the rules say of roads that exist."""
+"""``roadgpt check``: checks roads of files against the rules."""
 
 import time
 from typing import Any

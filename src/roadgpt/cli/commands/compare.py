@@ -1,4 +1,4 @@
-"""``roadgpt compare``: how alike two roads are."""
+"""``roadgpt compare``: measures how alike two roads are."""
 
 import json
 from dataclasses import asdict

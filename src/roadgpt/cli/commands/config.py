@@ -1,4 +1,4 @@
-"""``roadgpt config``: every setting with the place that it comes from, and the plug-ins."""
+"""``roadgpt config``: lists settings with their origin, and plug-ins."""
 
 import json
 from collections.abc import Sequence
@@ -73,7 +73,7 @@ def _text(value: Any) -> str:
 
 
 def _of_options() -> list[ShownSetting]:
-    """The settings of options.
+    """Returns the settings of options other than those of language models.
 
     Raises:
         UsageError: One cannot be used, or must not come from its place.
@@ -93,7 +93,7 @@ def _of_option(option: SettableOption, layers: "Sequence[Layer]") -> ShownSettin
 
 
 def _plain(value: Any) -> Any:
-    """The value as JSON and a line have it."""
+    """Returns a value as JSON takes it."""
     if isinstance(value, tuple):
         return ",".join(",".join(each) if isinstance(each, tuple) else str(each) for each in value)
     if isinstance(value, bool | int | float):

@@ -1,4 +1,4 @@
-"""``roadgpt doctor``: does this installation work, and if not, what is to be done?"""
+"""``roadgpt doctor``: checks this installation, and says what to do if something is wrong."""
 
 import json
 import platform
@@ -24,7 +24,7 @@ TEST_ROAD = [[40.0, 100.0], [60.0, 100.0], [80.0, 100.0]]  # m; a straight, driv
 
 @dataclass(frozen=True)
 class CheckResult:
-    """One thing that was looked at."""
+    """The result of one check."""
 
     about: str
     is_fine: bool
@@ -32,7 +32,7 @@ class CheckResult:
 
 
 def examined() -> Iterator[CheckResult]:
-    """Everything that is looked at, one answer after another; none of them raises."""
+    """Yields the result of each check; none raises."""
     yield CheckResult("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
     fits = sys.version_info >= (3, 11)
     yield CheckResult("Python", fits, f"{platform.python_version()} on {platform.platform()}")
@@ -71,7 +71,7 @@ def _shelves() -> Iterator[CheckResult]:
 
 
 def _model() -> CheckResult:
-    """Can the language model of the settings be asked? To name none is fine: nothing else needs one."""
+    """Checks that the language model of the settings can be asked; naming none is fine."""
     from roadgpt.chat.diagnosis import diagnose
 
     try:
@@ -81,7 +81,7 @@ def _model() -> CheckResult:
 
 
 def _tried(about: str, look: Callable[[], str]) -> CheckResult:
-    """The answer of a look; whatever it raises is the answer too, since finding that out is the point."""
+    """Returns the result of a check; whatever the check raises becomes its result."""
     try:
         return CheckResult(about, True, look())
     except Exception as error:
@@ -135,7 +135,7 @@ def command(ctx: click.Context, /, as_json: bool) -> None:
         click.echo(json.dumps([asdict(answer) for answer in answers], indent=2))
     problems = sum(not answer.is_fine for answer in answers)
     if problems:
-        raise RoadGPTError(f"{problems} of {len(answers)} looks found a problem; mend those marked above")
+        raise RoadGPTError(f"{problems} of {len(answers)} checks found a problem; see those marked above")
     if not as_json:
         click.echo("all is well")
 

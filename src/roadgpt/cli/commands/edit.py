@@ -1,4 +1,4 @@
-"""``roadgpt edit``: changes a road that exists, by words."""
+"""``roadgpt edit``: changes a road by words."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""``roadgpt export``: roads in the formats of other people's tools."""
+"""``roadgpt export``: writes roads in the formats of other tools."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -74,20 +74,20 @@ def command(
 
 @dataclass
 class _Source:
-    """Makes Runs of files, with what the command line says of those that do not say it themselves."""
+    """Makes a Run of each road; options set what a road file does not hold."""
 
     world: "World"
     said: dict[str, float]
-    """Fields of the World that were asked for, rather than left as usual."""
+    """Fields of the World that were given as options."""
     geometry: "Geometry"
     is_quiet: bool
     has_warned: bool = False
 
     def run_of(self, named: NamedRoad) -> "Run":
-        """Its Run, or one of a road that nobody drove.
+        """Returns the Run of a road, or a new Run without a drive for a road file.
 
         Raises:
-            UsageError: there is none, or it cannot be read.
+            UsageError: The road cannot be read.
         """
         from roadgpt.road import Design, build, read_opendrive
         from roadgpt.run import Request, Run
@@ -112,7 +112,7 @@ class _Source:
             click.echo(f"roadgpt: {file}: {remark}", err=True)
 
     def _warn(self) -> None:
-        """Once, of options that change nothing."""
+        """Says once that options do not change the lanes and limits of runs."""
         if self.said and not (self.has_warned or self.is_quiet):
             flags = ", ".join(flag.flag for flag in WORLD if flag.field in self.said)
             click.echo(f"roadgpt: runs keep their own lanes and limits; {flags} is for road files", err=True)
@@ -127,13 +127,13 @@ def _source(rest: dict[str, Any], geometry: "Geometry", is_quiet: bool) -> _Sour
 
 
 class _Names:
-    """A name for the files of a road that no earlier one has."""
+    """Gives the files of each road a name of their own."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
 
     def of(self, named: NamedRoad) -> str:
-        """That of the source, numbered where an earlier source has the same."""
+        """Returns the name of the source, with a number if it is taken."""
         name, number = named.stem, 1
         while name in self._taken:
             number += 1

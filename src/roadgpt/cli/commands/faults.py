@@ -1,4 +1,4 @@
-"""``roadgpt faults``: which failures are one fault, why each fails, and how often it fails again."""
+"""``roadgpt faults``: groups failures into distinct faults, and finds why each occurs."""
 
 from pathlib import Path
 

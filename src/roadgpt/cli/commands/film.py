@@ -25,7 +25,7 @@ MOUNTS = {"hood": "bonnet"}  # as roadgpt.report.film calls them
 
 
 def _view(value: str) -> str:
-    """The type of --view; the hood has an earlier name, which the names of files keep."""
+    """Checks the value of --view; its earlier name ``bonnet`` is kept, since it names files."""
     if value == "bonnet":
         click.echo("roadgpt: '--view bonnet' is now '--view hood'", err=True)
     elif value not in VIEWS:
@@ -34,7 +34,7 @@ def _view(value: str) -> str:
 
 
 def _size(value: str) -> tuple[int, int]:
-    """The type of an option like 640x360."""
+    """Converts a size such as 640x360 to width and height in pixels."""
     wide, cross, high = value.lower().partition("x")
     if not (cross and wide.isdecimal() and high.isdecimal()):
         raise click.BadParameter(f"'{value}' is no size; give width and height in pixels, such as 640x360")
@@ -42,7 +42,7 @@ def _size(value: str) -> tuple[int, int]:
 
 
 def _seconds(value: str) -> tuple[float, float | None]:
-    """The type of an option like 9 or 4:13; where to begin, and how long."""
+    """Converts 9 or 4:13 to the start and the length of a part of a drive, s; None: to its end."""
     first, colon, last = value.partition(":")
     try:
         begin = float(first or 0) if colon else 0.0
@@ -149,7 +149,7 @@ def command(
 
 
 def _is_of_runs(files: tuple[str, ...]) -> bool:
-    """Is it a folder whose runs have folders of their own?"""
+    """Returns whether the name is no campaign, so that films can go into its runs."""
     from roadgpt.campaign.selection import selection_of
 
     place = selection_of(files[0])
@@ -165,7 +165,7 @@ def _in(place: Path, name: str) -> Path:
 
 
 def _film_all(files: tuple[str, ...], view: str, out: Path | None, settings: "Settings", quiet: bool) -> None:
-    """One film for each in a folder of runs, but for those that are there."""
+    """Films every run of a folder that has no film yet."""
     from roadgpt.run import read_run
     from roadgpt.run.folder import RUNS, is_run
 
@@ -194,6 +194,6 @@ def _make(runs: list[Any], out: Path, view: str, settings: "Settings", quiet: bo
 
 
 def _watched(frames: Iterator[Any], count: int) -> Iterator[Any]:
-    """A bar while frames pass."""
+    """Shows a progress bar while frames are made."""
     with click.progressbar(frames, length=count, label="frames", file=sys.stderr) as bar:
         yield from bar

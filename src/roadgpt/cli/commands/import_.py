@@ -1,4 +1,4 @@
-"""``roadgpt import``: a road out of somebody else's OpenDRIVE file."""
+"""``roadgpt import``: reads a road from an OpenDRIVE file."""
 
 import json
 import shlex
@@ -67,7 +67,7 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
 
 
 def _on_a_map(found: "ImportedRoad") -> tuple["Road", "World", list[str]]:
-    """The road on a map that the rules find it on, that map with its lanes and limits, and what was done."""
+    """Returns the road moved onto a map, the World with that map, and remarks on what was changed."""
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
     from roadgpt.check.sbft import SPLINE_REACH
@@ -93,7 +93,7 @@ def _on_a_map(found: "ImportedRoad") -> tuple["Road", "World", list[str]]:
 
 
 def _drive(file: Path, world: "World") -> str:
-    """The command that drives the road, with lanes and limits as the OpenDRIVE file has them."""
+    """Returns the command that drives the road with the lanes and limits of the OpenDRIVE file."""
     # as a sign shows it: files in m/s are no whole km/h to the last digit
     world = world.model_copy(update={"speed_limit": round(world.speed_limit * 3.6, 3) / 3.6})
     words = [word for flag in WORLD for word in flag.written(getattr(world, flag.field))]
@@ -101,7 +101,7 @@ def _drive(file: Path, world: "World") -> str:
 
 
 def _new(folder: Path, stem: str) -> Path:
-    """A file name that is not taken."""
+    """Returns a file name that is not taken."""
     plain = "".join(c if c.isalnum() or c in "-_." else "_" for c in stem)[:100]
     number, path = 1, Path(f"{plain}.json")
     while (folder / path).exists():

@@ -1,4 +1,4 @@
-"""``roadgpt learn``: descriptions with what they ask for; trains readers and shows how well they read."""
+"""``roadgpt learn``: makes pairs of descriptions and plans; trains, evaluates and exports readers."""
 
 import json
 from collections.abc import Sequence
@@ -56,7 +56,7 @@ def data(out: Path, hand: Path, number: int, seed: int) -> None:
 
 
 def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
-    """Writes pairs that have not been seen; how many."""
+    """Writes pairs that are not in ``seen``, and returns how many."""
     from roadgpt.learn.generator import pairs
 
     written = 0
@@ -235,15 +235,15 @@ def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]", shown
 
 
 def _key(pair: "Pair") -> str:
-    """What makes two descriptions the same one."""
+    """Returns a text that is equal for descriptions that differ in blanks and capitals only."""
     return " ".join(pair.text.lower().split())
 
 
 def _pairs_of(place: Path) -> "list[Pair]":
-    """The pairs of all files of a folder.
+    """Returns the pairs of all files of a folder.
 
     Raises:
-        LearnError: there are none, or a line cannot be used.
+        LearnError: There are none, or a line cannot be used.
     """
     from roadgpt.learn.labels import read_pairs
 

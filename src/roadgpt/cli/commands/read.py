@@ -1,4 +1,4 @@
-"""``roadgpt read``: what a description is read as, without making a road."""
+"""``roadgpt read``: shows how a description is read, without making a road."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -83,7 +83,7 @@ def _as_data(brief: "Brief", map_size: float) -> dict[str, object]:
 
 
 def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
-    """The readings that have a chance, numbered, each with it; and one warning where none is sure."""
+    """Yields the likely readings with their chances, and a warning if none is sure."""
     from roadgpt.cli.run_job import SURE, reading
 
     likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
@@ -99,7 +99,7 @@ def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
 
 
 def _table(brief: "Brief") -> str:
-    """What stands along the road, in driving order, then the wishes for the whole road."""
+    """Returns a table of the features in driving order, then the requirements on the whole road."""
     from roadgpt.brief.normal import normal
     from roadgpt.brief.sentence import clause_columns, road_words
 

@@ -1,4 +1,4 @@
-"""``roadgpt report``: a page on the folder of a campaign or of a study."""
+"""``roadgpt report``: writes a page on a folder of runs, a campaign or a study."""
 
 import shlex
 import webbrowser
@@ -61,7 +61,7 @@ def _written(folder: Path) -> Path:
 
 
 def command_of_many(folder: Path) -> str:
-    """What makes a campaign of many tests again, or goes on with one that a file describes."""
+    """Returns the command that makes a campaign again, or that resumes it if it is made from a file."""
     from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL
     from roadgpt.campaign.record import Record
     from roadgpt.cli.repeat_commands import request_words
@@ -80,7 +80,7 @@ def command_of_many(folder: Path) -> str:
 
 
 def _command(card: "Card", folder: Path) -> str:
-    """What makes the campaign again."""
+    """Returns the command that makes a folder of runs again."""
     from roadgpt.cli.repeat_commands import request_words
 
     if not card.request.words:

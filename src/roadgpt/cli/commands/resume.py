@@ -1,4 +1,4 @@
-"""``roadgpt resume``: goes on with a campaign where it stopped."""
+"""``roadgpt resume``: continues a campaign that was interrupted."""
 
 from pathlib import Path
 

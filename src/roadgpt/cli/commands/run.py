@@ -1,4 +1,4 @@
-"""``roadgpt run``: from a description to roads that were designed, checked, driven, judged and drawn."""
+"""``roadgpt run``: designs, checks, drives, judges and draws roads from a description."""
 
 from pathlib import Path
 from typing import Any

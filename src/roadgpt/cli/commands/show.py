@@ -1,4 +1,4 @@
-"""``roadgpt show``: what is in a run, a folder of runs or a campaign, and how far a campaign is."""
+"""``roadgpt show``: summarises a run, a folder of runs or a campaign, or shows a campaign's progress."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""``roadgpt study``: the thesis' evaluation, and people's."""
+"""``roadgpt study``: evaluates roads as the thesis did, by measurements and by a survey of people."""
 
 import click
 
@@ -9,7 +9,7 @@ from roadgpt.cli.option_groups import CommandGroup
 
 @click.group(cls=CommandGroup)
 def command() -> None:
-    """Studies of many roads, and of people who rate them."""
+    """Evaluate many roads, by measurements or by people who rate them."""
 
 
 command.add_command(study_commands.thesis)

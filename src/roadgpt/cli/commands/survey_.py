@@ -85,7 +85,11 @@ def new(
 )
 @click.option("--open", "is_open", is_flag=True, help="Let anyone join who has the shared link.")
 @click.option(
-    "--port", type=whole(0, 65_535, "a port"), default=PORT, show_default=True, help="0: a free one."
+    "--port",
+    type=whole(0, 65_535, "a port"),
+    default=PORT,
+    show_default=True,
+    help="Port of the server; 0: a free one.",
 )
 @click.option("--host", default="127.0.0.1", show_default=True, help="127.0.0.1: this machine; 0.0.0.0: all.")
 @click.option(
