@@ -110,7 +110,7 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path: Path) -> None
     process.send_signal(signal.SIGINT)
     said, errors = process.communicate(timeout=SOON)
     assert process.returncode == 130, errors
-    assert f"go on with: roadgpt resume {tmp_path / 'c'}" in errors
+    assert f"continue with: roadgpt resume {tmp_path / 'c'}" in errors
     assert "Traceback" not in errors + said
     gone(workers)
     assert 0 < done_in(tmp_path / "c") < 5000
@@ -198,7 +198,7 @@ def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixtur
     ("words", "sentence"),
     [
         (["redrive", "DIR", "99"], "holds no result of test 99 of c01"),
-        (["redrive", "DIR", "x"], "'x' is no test; give its number"),
+        (["redrive", "DIR", "x"], "'x' is not a test; give its number"),
         (["redrive", "DIR", "c7/1"], "there is no cell 'c7'"),
         (["status", "DIR/nowhere"], "there is no campaign in"),
         (["top", "DIR/nowhere"], "there is no campaign in"),
@@ -210,7 +210,7 @@ def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixtur
             "no executor called 'nobody'",
         ),
         (["campaign", "a road", "-n", "3", "--out", "DIR"], "holds another campaign"),
-        (["campaign", "plan.toml", "--seed", "3"], "--seed has no place beside plan.toml"),
+        (["campaign", "plan.toml", "--seed", "3"], "--seed cannot be given with plan.toml"),
         (["campaign", "a road", "-n", "3", "--max-cost", "1"], "is for language models"),
     ],
 )

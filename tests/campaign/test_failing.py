@@ -121,7 +121,7 @@ def test_what_is_done_is_kept_when_it_is_stopped(
     monkeypatch.setattr(fault_log, "repeated", stopped)
     done = CliRunner().invoke(app, ["faults", str(folder), "--repeat", "1", "--no-plot"])
     assert done.exit_code == 130
-    assert f"go on with: roadgpt faults {folder} --repeat 1 --no-plot" in done.output
+    assert f"continue with: roadgpt faults {folder} --repeat 1 --no-plot" in done.output
     roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
     assert asked.count(asked[0]) == 1
     assert asked.count(asked[1]) == 2

@@ -190,10 +190,10 @@ def test_films_of_several_go_into_a_folder(monkeypatch: pytest.MonkeyPatch) -> N
     ("words", "said"),
     [
         (["view", "two", "--failures"], "a page shows one road or two side by side; these are"),
-        (["view", "two", "--failures", "--worst"], "--failures and --worst say different things"),
+        (["view", "two", "--failures", "--worst"], "--failures and --worst contradict each other"),
         (
             ["view", "one/2", "--worst"],
-            "--worst picks among the roads of a campaign or a folder of runs; one/2 is neither",
+            "--worst selects roads of a campaign or a folder of runs; one/2 is neither",
         ),
         (["show", "runs/runs/0001", "--worst"], "runs/runs/0001 is neither"),
         (["redrive", "one"], "say which tests of one: their numbers"),

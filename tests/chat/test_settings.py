@@ -188,9 +188,9 @@ def test_the_command_shows_origins_and_masks_keys(monkeypatch: pytest.MonkeyPatc
     assert lines["model"].split()[1:] == ["mine", "roadgpt.toml"]
     assert lines["max_cost"].split()[1:] == ["0.5", "--max-cost"]
     assert lines["api_key"].endswith(f"sk-... ({len(KEY)} letters)  environment (OPENAI_API_KEY)")
-    assert "ROADGPT_MODLE in the environment is no setting" in result.stderr
+    assert "ROADGPT_MODLE in the environment is not a setting" in result.stderr
     write(Path(".env"), "ROADGPT_RETRY=1\nOTHER=2")
-    assert "ROADGPT_RETRY in .env is no setting" in invoke("config", "show").stderr
+    assert "ROADGPT_RETRY in .env is not a setting" in invoke("config", "show").stderr
     assert KEY not in result.output
     told = json.loads(invoke("config", "show", "--json").stdout)
     assert told["model"] == "mine"
@@ -201,7 +201,7 @@ def test_the_command_shows_origins_and_masks_keys(monkeypatch: pytest.MonkeyPatc
 def test_options_for_models_are_refused_where_none_is_asked() -> None:
     result = invoke("run", "a road", "--reader", "grammar", "--max-cost", "1")
     assert result.exit_code == 2
-    assert "--max-cost is for language models; say --designer chat or --reader chat" in result.stderr
+    assert "--max-cost is for language models; give --designer chat or --reader chat" in result.stderr
 
 
 def test_doctor_looks_for_the_model_that_is_named(stub: Stub, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -320,5 +320,5 @@ def test_settings_of_others_in_the_environment_are_no_strangers(monkeypatch: pyt
     monkeypatch.setenv("ROADGPT_BEAMNG_LEVEL", "tig")
     monkeypatch.setenv("ROADGPT_FRICTOIN", "1")
     result = invoke("config", "show")
-    assert "ROADGPT_FRICTOIN in the environment is no setting" in result.stderr
+    assert "ROADGPT_FRICTOIN in the environment is not a setting" in result.stderr
     assert "ROADGPT_BEAMNG_LEVEL" not in result.stderr

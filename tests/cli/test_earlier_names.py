@@ -142,7 +142,7 @@ def test_options_of_files_and_of_tests_are_not_mixed(folder: Path) -> None:
         (["view", "road.json", "--axes", "thesis"], "--axes is for pictures; say --format png as well"),
         (["view", "road.json", "--format", "png", "--open"], "--open is for the page; leave out --format"),
         (["show", "c", "--watch", "--json"], "leave out --json"),
-        (["show", "c", "--watch", "--failures"], "--failures picks roads"),
+        (["show", "c", "--watch", "--failures"], "--failures selects roads"),
     ):
         result = invoke(*words)
         assert result.exit_code == 2, words

@@ -100,5 +100,5 @@ def test_roads_that_were_made_can_be_changed_one_after_another() -> None:
 def test_help_is_given_where_a_change_is_asked_for(word: str) -> None:
     result = say("a road", "1", word, "quit")
     assert result.exit_code == 0
-    assert "Say what is to be different" in result.stdout
-    assert "description> " not in result.stdout.split("Say what is to be different")[1]
+    assert "Say what to change" in result.stdout
+    assert "description> " not in result.stdout.split("Say what to change")[1]

@@ -71,7 +71,7 @@ def test_a_description_without_a_command_is_told_where_it_belongs() -> None:
 def test_a_description_that_begins_with_a_dash_is_told_where_it_belongs(words: list[str], said: str) -> None:
     result = invoke(*words)
     assert result.exit_code == 2
-    assert f"behind two: roadgpt run -- {said}" in result.stderr.replace("\n", " ")
+    assert f"after two dashes: roadgpt run -- {said}" in result.stderr.replace("\n", " ")
 
 
 def test_behind_two_dashes_it_is_a_description(tmp_path) -> None:
@@ -87,7 +87,7 @@ def test_behind_two_dashes_it_is_a_description(tmp_path) -> None:
     ]
     result = invoke("run", *words)
     assert "No such option" not in result.stderr
-    assert "behind two" not in result.stderr
+    assert "after two dashes" not in result.stderr
 
 
 def test_an_unknown_command_is_a_usage_error() -> None:

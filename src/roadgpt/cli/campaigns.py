@@ -57,7 +57,9 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
         else:
             _with_bar(steps)
     except KeyboardInterrupt:
-        click.echo(f"roadgpt: stopped; what is done is kept, go on with: roadgpt resume {folder}", err=True)
+        click.echo(
+            f"roadgpt: stopped; finished tests are kept; continue with: roadgpt resume {folder}", err=True
+        )
         raise
     sum_up(folder, as_json, quiet)
 

@@ -74,6 +74,8 @@ def _place(out: Path, name: str) -> Path:
         except FileExistsError:
             number += 1
         except OSError as error:
-            raise UsageError(f"cannot make a folder in {out}: {error.strerror}; say --out FOLDER") from error
+            raise UsageError(
+                f"cannot make a folder in {out}: {error.strerror}; give another one with --out"
+            ) from error
         else:
             return place

@@ -56,8 +56,8 @@ def drive_again(
         if not is_same(run, result):
             said = f"{result.outcome} in the campaign ({one_line(result.description)})"
             click.echo(
-                f"roadgpt: test {number} of {cell} was {said}; another version of roadgpt or another machine "
-                "drove it then",
+                f"roadgpt: test {number} of {cell} was {said}; it was driven with another version of roadgpt or "
+                "on another machine",
                 err=True,
             )
 
@@ -83,7 +83,7 @@ def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
         raise no_campaign(Path(names[0]))
     if first.number is None and choice is None and len(names) == 1:
         raise UsageError(
-            f"say which tests of {first.said}: their numbers, as 17 or c02/17, or --worst, --faults or "
+            f"say which tests of {first.said}: their numbers, such as 17 or c02/17, or --worst, --faults or "
             "--failures"
         )
     out = [] if first.number is None and choice is None else chosen(first, choice)
@@ -93,8 +93,8 @@ def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
             (selection_of(f"{first.folder}/{name}") or selection_of(name)) if is_number or choice else None
         )
         if place is None or not place.is_campaign or (place.number is None and choice is None):
-            raise UsageError(f"'{one_line(name, 40)}' is no test; give its number, as 17 or c02/17")
+            raise UsageError(f"'{one_line(name, 40)}' is not a test; give its number, such as 17 or c02/17")
         out += chosen(place, choice)
     if not out:
-        raise UsageError(f"no test of {first.said} is one of --{choice}")
+        raise UsageError(f"{first.said} has no test for --{choice}")
     return out

@@ -20,7 +20,7 @@ def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
         if words is None:
             raise
         raise click.UsageError(
-            f'a description that begins with a dash goes last, behind two: roadgpt run -- "{words}"', ctx
+            f'put a description that begins with a dash last, after two dashes: roadgpt run -- "{words}"', ctx
         ) from error
 
 

@@ -123,7 +123,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
         advice = " or ".join(
             f"--{part} chat" for part, name in (("designer", designer), ("reader", reader)) if name
         )
-        raise UsageError(f"{flag.flag} is for language models; say {advice} as well")
+        raise UsageError(f"{flag.flag} is for language models; give {advice} as well")
     return None
 
 
@@ -133,7 +133,7 @@ def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
         return value
     names = tuple(name.strip() for name in value.split(",") if name.strip())
     if not names:
-        raise click.BadParameter("no format is named; 'roadgpt config plugins' lists the exporters")
+        raise click.BadParameter("no format is given; 'roadgpt config plugins' lists the exporters")
     return names
 
 

@@ -41,7 +41,7 @@ def choice_of(values: dict[str, bool]) -> "Choice | None":
     choices: tuple[Choice, ...] = ("failures", "faults", "worst")
     said = [name for name in choices if values.pop(name)]
     if len(said) > 1:
-        raise UsageError(f"--{said[0]} and --{said[1]} say different things; say one of them")
+        raise UsageError(f"--{said[0]} and --{said[1]} contradict each other; give one of them")
     return said[0] if said else None
 
 
@@ -97,9 +97,7 @@ def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[Name
     place = selection_of(file)
     if place is None or place.number is not None:
         if choice is not None and (place is not None or Path(file).exists()):
-            raise UsageError(
-                f"--{choice} picks among the roads of a campaign or a folder of runs; {file} is neither"
-            )
+            raise UsageError(f"--{choice} selects roads of a campaign or a folder of runs; {file} is neither")
         yield _single(file) if place is None else _test(place)
         return
     found = chosen(place, choice)

@@ -32,7 +32,7 @@ def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
     if Path(file).is_dir() and not Path(file, "road.json").is_file():
         raise UsageError(
             f"{file} is a folder without a road; give a road file, or the folder of a run such as "
-            "DIR/runs/0001, which roadgpt drive --again makes of a test of roadgpt campaign"
+            "DIR/runs/0001, which roadgpt drive --again makes from a test of a campaign"
         )
     return read_blueprint(file)
 

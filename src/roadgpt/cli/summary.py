@@ -62,7 +62,7 @@ def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
         return
     for named in roads_named([str(path)], choice, takes_all=True):
         if named.run is None:
-            raise UsageError(f"{path} is the file of a road, and no run; 'roadgpt check' takes it")
+            raise UsageError(f"{path} is a road file, not a run; use 'roadgpt check'")
         yield row_of(named.run(), named.said).to_json()
 
 

@@ -142,7 +142,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
         name = parameter.name or ""
         is_given = ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE
         if is_given and name not in BESIDE_A_FILE | chat and name in rest:
-            raise UsageError(f"{parameter.opts[0]} has no place beside {path}; write it into the file")
+            raise UsageError(f"{parameter.opts[0]} cannot be given with {path}; write it into the file")
     if ctx.get_parameter_source("drivers") is ParameterSource.COMMANDLINE:
         rest["drivers"] = [driver_again(one) for one in rest["drivers"]]
     written = read_plan(path)

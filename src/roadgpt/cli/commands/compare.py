@@ -86,7 +86,7 @@ def _tell(found: "Similarity") -> None:
         more = {"shape": f"  {found.metres:.1f} m apart", "incline": f"  {found.points:.1f} points apart"}
         click.echo(f"{said:<30} {getattr(found, name):5.2f}{more.get(name, '')}")
     if found.is_duplicate:
-        click.echo("near duplicates: nobody would take them for two tests")
+        click.echo("near duplicates: they are one test rather than two")
 
 
 def _draw(runs: list[Any], out: Path, axes: Any) -> None:

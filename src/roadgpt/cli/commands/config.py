@@ -65,7 +65,7 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
             if each.table == table:
                 click.echo(f"{each.name:<{wide}}  {_text(each.value):<{far}}  {each.origin}")
     for name in unknown_variables({option.variable for option in settable_options()}):
-        click.echo(f"roadgpt: {name} is no setting; there are those above", err=True)
+        click.echo(f"roadgpt: {name} is not a setting; the settings are listed above", err=True)
 
 
 def _text(value: Any) -> str:

@@ -29,7 +29,7 @@ def _view(value: str) -> str:
     if value == "bonnet":
         click.echo("roadgpt: '--view bonnet' is now '--view hood'", err=True)
     elif value not in VIEWS:
-        raise click.BadParameter(f"'{value}' is no view; give {', '.join(VIEWS[:-1])} or {VIEWS[-1]}")
+        raise click.BadParameter(f"'{value}' is not a view; give {', '.join(VIEWS[:-1])} or {VIEWS[-1]}")
     return value
 
 
@@ -134,7 +134,7 @@ def command(
     if is_all or choice in ("failures", "faults"):
         place = out or FILMS
         if place.suffix.lower() in ENDINGS or place.is_file():
-            raise UsageError(f"these are several films; name a folder for them, such as --out {FILMS}")
+            raise UsageError(f"this makes several films; name a folder for them, such as --out {FILMS}")
         for each in roads_named(files, choice, takes_all=True):
             _make(
                 [run_of(each, world, geometry)], _in(place, f"{each.stem}-{view}.mp4"), view, settings, quiet
@@ -144,7 +144,7 @@ def command(
     if out.is_dir():
         raise UsageError(f"{out} is a folder; give the name of a film, such as {out / FILM}")
     if out.suffix.lower() not in ENDINGS:
-        raise UsageError(f"{out} would be a film; give it a name that ends in .mp4")
+        raise UsageError(f"{out} does not end in .mp4; give the film such a name")
     _make(shown_runs(files, choice, world, geometry, MOST, "a film"), out, view, settings, quiet)
 
 

@@ -64,7 +64,7 @@ def command(
         trust_server(base_url, plan.chat.base_url if plan.chat else None, campaign)
     given = {name: value for name, value in limits.items() if value is not None}
     if given and plan.chat is None:
-        raise UsageError(f"--max-tokens and --max-cost are for language models; {campaign} asks none")
+        raise UsageError(f"--max-tokens and --max-cost limit a language model, and {campaign} asks none")
     if given and plan.chat is not None:
         plan = plan.model_copy(update={"chat": plan.chat.model_copy(update=given)})
     watch(campaign, work(campaign, workers, executor, address, plan), as_json, quiet)

@@ -39,7 +39,9 @@ def command(
 
     choice = choice_of(rest)
     if (watch or progress) and choice is not None:
-        raise UsageError(f"--{choice} picks roads, and --watch shows a whole campaign; leave one of them out")
+        raise UsageError(
+            f"--{choice} selects roads, but --watch shows a whole campaign; leave one of them out"
+        )
     if watch and (as_json or len(folders) > 1):
         raise UsageError("--watch shows one campaign on the screen; leave out --json and other folders")
     if watch:

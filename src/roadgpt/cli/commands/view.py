@@ -92,7 +92,7 @@ def command(
     if out.is_dir():
         raise UsageError(f"{out} is a folder; give the name of a page, such as {out / PAGE}")
     if out.suffix.lower() not in ENDINGS:
-        raise UsageError(f"{out} would be a web page; give it a name that ends in .html")
+        raise UsageError(f"{out} does not end in .html; give the page such a name")
     from roadgpt.report.view import write
 
     page = write(shown_runs(files, choice, world, geometry, MOST, "a page"), out)
