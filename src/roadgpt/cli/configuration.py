@@ -188,7 +188,7 @@ def tell_settings(ctx: click.Context) -> None:
     told: dict[str, list[str]] = {}
     for option, setting in found.values():
         shown = ",".join(setting.value) if isinstance(setting.value, tuple) else setting.value
-        told.setdefault(setting.origin.partition(" ")[0], []).append(f"{option.key} = {shown}")
+        told.setdefault(setting.origin.partition(" ")[0], []).append(f"{option.setting_name} = {shown}")
     parts = "; ".join(f"{place} sets {', '.join(values)}" for place, values in told.items())
     click.echo(f"roadgpt: {parts}", err=True)
 

@@ -56,8 +56,8 @@ def drive_again(
         if not is_same(run, result):
             said = f"{result.outcome} in the campaign ({one_line(result.description)})"
             click.echo(
-                f"roadgpt: test {number} of {cell} was {said}; it was driven with another version of roadgpt or "
-                "on another machine",
+                f"roadgpt: test {number} of {cell} was {said}; it was driven with another version of roadgpt "
+                "or on another machine",
                 err=True,
             )
 

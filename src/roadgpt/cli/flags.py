@@ -187,7 +187,12 @@ WORLD = (
         is_rare=True,
     ),
     _of_world(
-        "--friction", "friction", 1.0, "Dry road 1.0, wet 0.6, snow 0.35.", measure(0, 2, above=True), 1.0
+        "--friction",
+        "friction",
+        1.0,
+        "Friction: dry 1.0, wet 0.6, snow 0.35.",
+        measure(0, 2, above=True),
+        1.0,
     ),
 )
 
@@ -208,7 +213,7 @@ SETUP = (
         "--keep-driving",
         "keep_driving",
         False,
-        "Drive on to the end after the car left its lane.",
+        "Continue to the end after the car left its lane.",
         heading=DRIVE,
     ),
     _of_run(

@@ -128,3 +128,10 @@ class CommandGroup(click.Group):
     """A command with sub-commands whose help lists their options in groups."""
 
     command_class = GroupedCommand
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Writes the sub-commands with their first sentences, which are not cut."""
+        with formatter.section("Commands"):
+            formatter.write_dl(
+                [(name, command.get_short_help_str(limit=200)) for name, command in self.commands.items()]
+            )

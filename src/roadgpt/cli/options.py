@@ -89,7 +89,7 @@ driver_again_option = under(
         type=driver_again,
         metavar="FILE.py:CLASS",
         default=None,
-        help="The driver's file, named again: a folder's word alone is not enough to run code.",
+        help="The driver's file, if the folder names one; code that only a folder names is not run.",
     ),
 )
 
@@ -150,7 +150,9 @@ def formats_option(flag: str, required: bool = False, is_settable: bool = False)
             multiple=True,
             required=required,
             callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
-            help="Write road files too: opendrive, csv, ...",
+            help="Write road files too: opendrive, csv, ..."
+            if is_settable
+            else "Formats to write: opendrive, csv, ...; 'roadgpt config plugins' lists them.",
             **settable,
         ),
     )
@@ -200,9 +202,7 @@ axes_option = under(
     rare=True,
 )
 pictures_options = together(axes_option, format_option)
-no_drive_option = under(
-    DRIVE, click.option("--no-drive", is_flag=True, help="Design and check the road; do not drive it.")
-)
+no_drive_option = under(DRIVE, click.option("--no-drive", is_flag=True, help="Do not drive the roads."))
 no_plot_option = under(FILES, click.option("--no-plot", is_flag=True, help="Draw no pictures."))
 quiet_option = under(OUTPUT, click.option("--quiet", "-q", is_flag=True, help="Print errors only."))
 

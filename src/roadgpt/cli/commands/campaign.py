@@ -64,8 +64,8 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "j
         multiple=True,
         default=("beamng_like",),
         show_default=True,
-        help="Name of a driver, or FILE.py:CLASS; give it again for more. Beside FILE.toml: a driver of that "
-        "file whose code may be run.",
+        help="Name of a driver, or FILE.py:CLASS; give it again for more. With FILE.toml: a driver of that "
+        "file whose code you allow to run.",
         cls=SettableOption,
         table="run",
         key="driver",

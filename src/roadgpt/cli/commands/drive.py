@@ -75,7 +75,7 @@ def command(
 
     ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
     points (.csv) or OpenDRIVE (.xodr). A road that breaks a rule is driven all the same, and the rule's
-    sentence stands beside the verdict. INVALID is a road that cannot be driven: it has numbers that are not
+    sentence is shown with the verdict. INVALID is a road that cannot be driven: it has numbers that are not
     finite, two points at one place, or no room for a car. With --rules sbft every broken rule makes a road
     INVALID, as in the competition. The exit status is 0 if every road could be read.
 

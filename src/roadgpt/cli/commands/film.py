@@ -71,7 +71,14 @@ def _seconds(value: str) -> tuple[float, float | None]:
     metavar="FILM.mp4",
     help=f"The film, or the folder for several. [default: {FILM}, {FILMS}]",
 )
-@click.option("--fps", type=click.IntRange(1, 120), default=25, show_default=True, help="Frames per second.")
+@click.option(
+    "--fps",
+    type=click.IntRange(1, 120),
+    default=25,
+    show_default=True,
+    metavar="NUMBER",
+    help="Frames per second.",
+)
 @click.option(
     "--size",
     type=_size,

@@ -25,7 +25,7 @@ SERVER = next(flag for flag in CHAT if flag.field == "base_url")
     SERVER.flag,
     SERVER.field,
     default=None,
-    help="The server's address, named again: a folder's word alone is not enough to send it a key.",
+    help="The server's address; a server that only a folder names gets no key.",
 )
 @fault_options
 @junit_option

@@ -55,11 +55,11 @@ def command(
 
     \b
     Exit status:
-      0  every road was worked on, whatever its outcome
-      2  something that was typed cannot be used
+      0  every road has an outcome, whichever it is
+      2  the description or an option cannot be used
       3  nothing could be designed
       4  a language model could not be asked, or a limit was reached
-    Roads that were finished before are complete.
+    The roads that were finished are complete in every case.
     """
     carry_out(job_of(" ".join(words), roads, **rest), Screen(roads, as_json, quiet, verbose))
 
