@@ -75,7 +75,7 @@ def test_a_number_that_no_store_can_hold_is_no_test(hostile: Path, number: str) 
 def test_a_limit_of_money_where_no_model_is_asked_is_told(hostile: Path) -> None:
     said = roadgpt("resume", hostile, "--max-cost", "3")
     assert said.exit_code == 2
-    assert "are for language models" in said.output
+    assert "limit a language model" in said.output
 
 
 def journal(folder: Path) -> str:

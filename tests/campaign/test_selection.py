@@ -183,7 +183,7 @@ def test_films_of_several_go_into_a_folder(monkeypatch: pytest.MonkeyPatch) -> N
     ]
     assert Path("films").is_dir()
     done = roadgpt("film", "two", "--failures", "--out", "one.mp4")
-    assert "these are several films; name a folder for them" in done.stderr
+    assert "this makes several films; name a folder for them" in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -77,13 +77,13 @@ def shown() -> dict[str, dict[str, object]]:
 
 def given(*words: str) -> dict[str, object]:
     """The values with which ``roadgpt run`` would work."""
-    command = app.get_command(click.Context(app), "run")
+    command = app.get_command(click.Context(app, **app.context_settings), "run")
     assert command is not None
-    return command.make_context("run", ["a road", *words], click.Context(app)).params
+    return command.make_context("run", ["a road", *words], click.Context(app, **app.context_settings)).params
 
 
 def options_of_run() -> set[str]:
-    command = app.get_command(click.Context(app), "run")
+    command = app.get_command(click.Context(app, **app.context_settings), "run")
     assert command is not None
     options = [each for each in command.params if isinstance(each, click.Option)]
     longest = [max(each.opts, key=len).lstrip("-").replace("-", "_") for each in options]
@@ -297,7 +297,7 @@ def test_the_key_of_a_plan_is_taken_too() -> None:
 
 def test_a_campaign_and_a_study_take_the_driver_and_the_designer_of_the_file(home: Path) -> None:
     home.write_text('[run]\ndriver = "pure_pursuit"\ndesigner = "thesis"\nreader = "grammar"')
-    context = click.Context(app)
+    context = click.Context(app, **app.context_settings)
     campaign = app.get_command(context, "campaign")
     study = app.get_command(context, "study")
     assert campaign is not None
@@ -309,10 +309,14 @@ def test_a_campaign_and_a_study_take_the_driver_and_the_designer_of_the_file(hom
 
 def test_the_competition_keeps_its_own_world() -> None:
     Path("roadgpt.toml").write_text("[world]\nmap_size = 400\noob_tolerance = 0.1\nspeed_limit_kmh = 30")
-    compete = app.get_command(click.Context(app), "compete")
+    compete = app.get_command(click.Context(app, **app.context_settings), "compete")
     assert isinstance(compete, click.Group)
     words = ["--module-name", "m", "--class-name", "C"]
-    values = compete.commands["sbft"].make_context("sbft", words, click.Context(app)).params
+    values = (
+        compete.commands["sbft"]
+        .make_context("sbft", words, click.Context(app, **app.context_settings))
+        .params
+    )
     assert (values["map_size"], values["oob_tolerance"], values["speed_limit"]) == (200, 0.95, 70)
 
 

@@ -25,6 +25,7 @@ RENAMED = {
 }
 
 AGAIN = ("--no-plot", "--out", "x")
+PARENT = click.Context(app, **app.context_settings)
 
 
 def invoke(*words: str) -> Result:
@@ -33,7 +34,7 @@ def invoke(*words: str) -> Result:
 
 def resolved(words: list[str]) -> tuple[click.Command, list[str]]:
     """The command that words lead to, and the words that are left."""
-    context = click.Context(app, info_name="roadgpt", resilient_parsing=True)
+    context = click.Context(app, info_name="roadgpt", resilient_parsing=True, **app.context_settings)
     _, command, rest = app.resolve_command(context, words)
     while isinstance(command, click.Group) and rest and rest[0] in command.commands:
         command, rest = command.commands[rest[0]], rest[1:]
@@ -66,7 +67,7 @@ def test_the_shoulder_is_set_by_its_earlier_name_too(
     found, rest = resolved(command.split())
     needed = {"export": ["--to", "csv"]}.get(command, [])
     something = [] if command == "study thesis" else ["something"]
-    context = found.make_context("x", [*rest, *needed, *words, *something])
+    context = found.make_context("x", [*rest, *needed, *words, *something], PARENT)
     assert context.params["verge"] == 1.5
     told = "roadgpt: '--verge' is now '--shoulder'\n" if words[0].startswith("--verge") else ""
     assert capsys.readouterr().err == told
@@ -74,7 +75,7 @@ def test_the_shoulder_is_set_by_its_earlier_name_too(
 
 def test_behind_two_dashes_a_word_is_no_option() -> None:
     found, _ = resolved(["run"])
-    context = found.make_context("run", ["--", "a", "--verge"])
+    context = found.make_context("run", ["--", "a", "--verge"], PARENT)
     assert context.params["words"] == ("a", "--verge")
 
 

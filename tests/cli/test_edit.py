@@ -156,7 +156,7 @@ def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: Stub) -> 
 
 
 def test_options_that_an_edit_does_not_heed_are_refused() -> None:
-    for option, advice in (("--repair", "No such option"), ("--model", "say --designer chat as well")):
+    for option, advice in (("--repair", "No such option"), ("--model", "give --designer chat as well")):
         result = invoke("edit", "design.json", WORDS, option, "none")
         assert result.exit_code == 2
         assert advice in result.stderr

@@ -52,13 +52,13 @@ def every_command() -> list[tuple[str, ...]]:
             return [words]
         return [each for name, its in command.commands.items() for each in inside(its, (*words, name))]
 
-    context = click.Context(app)
+    context = click.Context(app, **app.context_settings)
     commands = {name: app.get_command(context, name) for name in COMMANDS}
     return [each for name, its in commands.items() if its is not None for each in inside(its, (name,))]
 
 
 def command_of(words: tuple[str, ...]) -> click.Command:
-    command = app.get_command(click.Context(app), words[0])
+    command = app.get_command(click.Context(app, **app.context_settings), words[0])
     for word in words[1:]:
         assert isinstance(command, click.Group)
         command = command.commands[word]

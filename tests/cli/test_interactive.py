@@ -48,7 +48,7 @@ def test_it_goes_on_from_one_description_to_the_next() -> None:
 def test_help_is_given_at_either_question_and_is_no_description(word: str) -> None:
     result = say(word, "a road", word, "1", "", "exit")
     assert result.exit_code == 0
-    assert result.stdout.count("Options belong to 'roadgpt run'") == 2
+    assert result.stdout.count("'roadgpt run' takes options") == 2
     assert "1 of 1 roads" in result.stdout
     assert result.stderr == ""
 

@@ -263,7 +263,7 @@ def test_the_command_films_a_run_two_runs_and_a_campaign(
     assert len(asked(tmp_path, "--all").splitlines()) == 1
     assert (folders[0] / "chase.mp4").stat().st_mtime_ns == kept
     for words, said in (
-        ((folders[0], "--out", "a.txt"), "ends in .mp4"),
+        ((folders[0], "--out", "a.txt"), "end in .mp4"),
         ((folders[0], "--out", tmp_path), "is a folder"),
         ((folders[0],) * 3, "3 are given"),
         ((folders[0], "--all"), "holds no runs"),

@@ -97,7 +97,8 @@ def usual_job(words: str, roads: int) -> RunJob:
     Raises:
         UsageError: A setting cannot be used.
     """
-    values = command.make_context("run", ["-n", str(roads), "--", words]).params
+    parent = click.get_current_context(silent=True)
+    values = command.make_context("run", ["-n", str(roads), "--", words], parent).params
     for name in ("words", "roads", "as_json", "quiet", "verbose"):
         values.pop(name)
     return job_of(words, roads, **values)
