@@ -122,7 +122,7 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
     if status.tokens:
         yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
     if not status.is_finished and not status.is_running:
-        yield f"  go on with: roadgpt resume {status.folder}"
+        yield f"  continue with: roadgpt resume {status.folder}"
     yield LINE.format(*HEAD)
     for cell in status.cells[:MOST_CELLS]:
         yield LINE.format(*cell_columns(cell))
