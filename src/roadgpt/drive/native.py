@@ -27,7 +27,7 @@ def addresses() -> tuple[int, ...]:
     library = ctypes.CDLL(str(found[0]))
     made = tuple(ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0 for name in FUNCTIONS)
     if not all(hasattr(kind, "_address") for kind in (mujoco.MjModel, mujoco.MjData)):
-        raise AttributeError("MuJoCo's bindings do not tell where a model lies")
+        raise AttributeError("MuJoCo's bindings do not expose the address of a model")
     return made
 
 
