@@ -33,7 +33,7 @@ Predict = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 def driven(seed: int, wet: bool) -> tuple[np.ndarray, float, bool] | None:
-    """Signs of a road, its margin in metres, and whether the car failed."""
+    """Features of a road, its margin in metres, and whether the car failed."""
     brief = brief_of("a flat road", WORLD, Setup(reader="grammar"))
     road = make_candidate(VariationTask("wild", (), "", (seed,), VariationContext(brief, WORLD, "sbft")))
     if road is None:
@@ -60,7 +60,7 @@ def trees(known: np.ndarray, targets: np.ndarray, fresh: np.ndarray) -> np.ndarr
 
 WAYS: dict[str, Predict] = {
     "largest lane curvature over 13 m, nothing learnt": curvature,
-    "ridge regression on signs and their squares": ridge,
+    "ridge regression on the features and their squares": ridge,
     "trees (the surrogate)": trees,
 }
 
