@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 
 from roadgpt.run.atomic import json_text
 from roadgpt.study.survey.server import Server
-from roadgpt.study.survey.serving import opened
+from roadgpt.study.survey.serving import open_server
 from roadgpt.study.survey.survey import CARD, MEDIA, Item, Medium, Survey
 
 EVIL = "\"><script>document.title='broken'</script><img src=x onerror=alert(1)>{0}{title}&amp;"
@@ -57,7 +57,7 @@ def folder_of(made: Survey, folder: Path) -> Path:
 @contextmanager
 def served(folder: Path, is_open: bool = False) -> Iterator[Server]:
     """The survey on a free port; it stops with the block."""
-    server = opened(folder, "127.0.0.1", 0, is_open)
+    server = open_server(folder, "127.0.0.1", 0, is_open)
     thread = threading.Thread(target=server.serve_forever)
     thread.start()
     try:

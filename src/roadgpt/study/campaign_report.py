@@ -57,9 +57,9 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
     lead = f"{status.done:,} tests in {plural(len(status.cells), 'cell')}"
     lead += "" if status.is_finished else "; the campaign is unfinished"
     found = faults_in(folder, COMPARED)
-    told = fault_summaries(folder, found)
+    summaries = fault_summaries(folder, found)
     pairs = nearest(record, [each for each in fields if each.goal == "boundary"][:MOST_CELLS])
-    gallery, covered = faults(folder, found, told), coverage(record, status.done)
+    gallery, covered = faults(folder, found, summaries), coverage(record, status.done)
     sections = [gallery] if gallery else []
     sections += [Section("Feature map", covered)] if covered else []
     sections += what_to_try(next_steps)
@@ -71,7 +71,7 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
         sections.append(Section("How near to failing", near))
     sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
     driven = status.outcomes.get("PASS", 0) + status.outcomes.get("FAIL", 0)
-    summary = headline(found, told) if driven else []
+    summary = headline(found, summaries) if driven else []
     summary += [*_summary(record, status, fields), *nearest_sentence(pairs)]
     return Page(title, summary, sections, _card(command, record, status), lead)
 

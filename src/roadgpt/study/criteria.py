@@ -109,7 +109,7 @@ def _of_features(
         first, last = (each and part(each) for each in (starts, ends))
         asked = Outline(groups=(), turns=Range(), starts=first, ends=last)
         says = [_says(criterion, group) for group in wanted]
-        ends_say = [each for each in (first, last) if each and (criterion == "order" or _told(each))]
+        ends_say = [each for each in (first, last) if each and (criterion == "order" or _is_specified(each))]
         if any(says) or ends_say:
             good = not any(says) or sequence_holds(found, wanted)
             out[criterion] = good and (not ends_say or not complaints(found, asked))
@@ -130,7 +130,7 @@ def _extent(feature: Feature) -> Feature:
     return Feature(feature.kind, feature.name, degrees=degrees, radius=feature.radius, length=length)
 
 
-def _told(feature: Feature) -> bool:
+def _is_specified(feature: Feature) -> bool:
     return any((feature.side, feature.degrees, feature.radius, feature.length, feature.grade))
 
 
@@ -138,7 +138,7 @@ def _says(criterion: Criterion, group: Group) -> bool:
     """Returns whether a group asks for anything in a criterion; any straight asks for an order."""
     if criterion == "order" and (group.alternating or group.feature.kind == "straight"):
         return True
-    return _told(group.feature)
+    return _is_specified(group.feature)
 
 
 def _merged(groups: tuple[Group, ...]) -> tuple[Group, ...]:

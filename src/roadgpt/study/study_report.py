@@ -19,7 +19,7 @@ from roadgpt.study.chapters.faults import fault_summaries, faults, headline
 from roadgpt.study.chapters.maps import coverage, roads
 from roadgpt.study.chapters.next_steps import Steps, what_to_try
 from roadgpt.study.chapters.out_of_lane import outside_sentences, passed_roads
-from roadgpt.study.chapters.overview import glance
+from roadgpt.study.chapters.overview import overview
 from roadgpt.study.chapters.validity import (
     SBFT,
     STRICT,
@@ -45,8 +45,8 @@ Found = Sequence[tuple[list[RoadRecord], Spread]]
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
     """Writes down why roads are missing, so that later reports can say it."""
-    told = {problem.part: problem.sentence for problem in problems}
-    write_whole(folder / PROBLEMS, json_text(told))
+    sentences = {problem.part: problem.sentence for problem in problems}
+    write_whole(folder / PROBLEMS, json_text(sentences))
 
 
 def write_study(folder: Path) -> Path:
@@ -80,7 +80,7 @@ def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> 
     ]
     if not is_thesis:
         sections = [sections[2], sections[0], *([sections[1]] if plan.setup.drives else [])]
-    first = glance(parts, found, plan.world.map_size)
+    first = overview(parts, found, plan.world.map_size)
     sections = [*([first] if first else []), *sections, diversity(parts, found)]
     sections += _pictures(parts, plan.world.map_size)
     summary = [*_summary(plan, parts, found)]
@@ -106,8 +106,8 @@ def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) ->
             problem = next((part.problem for part in own if part.problem), "nothing was made")
             lines.append(f"{designer} was not run: {problem}.")
             continue
-        told = of_thesis(own) if is_thesis else own
-        said = [*_valid_lines(designer, told, is_thesis), *_left_lines(designer, told, is_thesis)]
+        counted = of_thesis(own) if is_thesis else own
+        said = [*_valid_lines(designer, counted, is_thesis), *_left_lines(designer, counted, is_thesis)]
         passed = passed_roads([road for part in own for road in part.roads])
         said += [*outside_sentences(passed, plan.world), _kept_line(own)]
         pairs = [(p, f) for p, f in zip(parts, found, strict=True) if p.part.designer == designer]
@@ -179,10 +179,10 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
     found = [spread_of(part)]
-    first = glance([part], found, request.world.map_size)
+    first = overview([part], found, request.world.map_size)
     failed = faults_in(folder)
-    told = fault_summaries(folder, failed)
-    opening = [each for each in (first, faults(folder, failed, told)) if each is not None]
+    summaries = fault_summaries(folder, failed)
+    opening = [each for each in (first, faults(folder, failed, summaries)) if each is not None]
     sections = [*opening, *what_to_try(next_steps)]
     sections.append(validity([part], [setup.designer], has_baseline=False))
     if setup.drives:
@@ -192,7 +192,10 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     sections += [diversity([part], found), *_pictures([part], request.world.map_size)]
     page = Page(
         words,
-        [*(headline(failed, told) if told else []), *_campaign_summary(part, setup, request.world, found)],
+        [
+            *(headline(failed, summaries) if summaries else []),
+            *_campaign_summary(part, setup, request.world, found),
+        ],
         sections,
         card_of(command, card.roads, request.seed, setup, request.world, [part]),
         f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",

@@ -12,8 +12,8 @@ import pytest
 from scipy import stats
 
 from roadgpt.errors import UsageError
-from roadgpt.study.survey.analysis import analyse, collected
-from roadgpt.study.survey.answers import gathered
+from roadgpt.study.survey.analysis import analyse, load_answers
+from roadgpt.study.survey.answers import answers_of_raters
 from roadgpt.study.survey.questions import CHECK, MATCHES
 from roadgpt.study.survey.store import ANSWERS, AnswerStore
 from roadgpt.study.survey.survey import Survey
@@ -66,7 +66,7 @@ def test_two_raters_who_never_agree_have_a_negative_alpha(asked: Survey) -> None
         "a" * 64: {id_: MATCHES[0 if n % 2 else 4] for n, id_ in enumerate(overall)},
         "b" * 64: {id_: MATCHES[4 if n % 2 else 0] for n, id_ in enumerate(overall)},
     }
-    found = tally(gathered(asked, given, "people", 2), "alignment")
+    found = tally(answers_of_raters(asked, given, "people", 2), "alignment")
     assert math.isnan(agreement(found.overall[:1])), "one road alone tells nothing of agreement"
     # 5 units, each with one 1 and one 5: observed 1, by chance 50/90
     assert agreement(found.overall) == pytest.approx(1 - 1 / (50 / 90))
@@ -98,7 +98,7 @@ def test_made_up_raters_are_marked_wherever_they_are_seen(made_up: Path) -> None
 
 def test_people_are_not_called_made_up(asked: Survey, tmp_path: Path) -> None:
     given = {f"{n:x}" * 64: {"a1.overall": MATCHES[n % 5], "check": MATCHES[CHECK]} for n in range(4)}
-    analyse(gathered(asked, given, "people", 9, 2), tmp_path)
+    analyse(answers_of_raters(asked, given, "people", 9, 2), tmp_path)
     for path in tmp_path.rglob("*"):
         if path.suffix in {".html", ".md", ".csv", ".tex", ".svg"}:
             assert "synthetic" not in path.read_text("utf-8").lower().replace("synthetic 30", ""), path
@@ -107,7 +107,7 @@ def test_people_are_not_called_made_up(asked: Survey, tmp_path: Path) -> None:
 
 
 def test_the_two_kinds_are_never_in_one_folder(asked: Survey, tmp_path: Path) -> None:
-    people = gathered(asked, {"0" * 64: {"a1.overall": MATCHES[0]}}, "people", 1)
+    people = answers_of_raters(asked, {"0" * 64: {"a1.overall": MATCHES[0]}}, "people", 1)
     for name, file in (("people", "answers.csv"), ("made-up", "answers-synthetic.csv")):
         (tmp_path / name).mkdir()
         (tmp_path / name / file).write_text("as an analysis left it")
@@ -161,14 +161,14 @@ def test_who_agrees_with_the_machine_correlates_with_it(asked: Survey, tmp_path:
     def said(rater: int) -> dict[str, str]:
         return {f"a{n}.overall": MATCHES[min(4, n - 1 + (rater == 2 and n == 1))] for n in range(1, 6)}
 
-    analyse(gathered(asked, {f"{n:x}" * 64: said(n) for n in range(5)}, "people", 5), tmp_path)
+    analyse(answers_of_raters(asked, {f"{n:x}" * 64: said(n) for n in range(5)}, "people", 5), tmp_path)
     assert "Spearman's rho is 1.00 over 5 questions" in (tmp_path / "report.md").read_text("utf-8")
 
 
 def test_bars_are_as_long_as_the_shares_they_show(asked: Survey, tmp_path: Path) -> None:
     """The SVG's own rectangles: of every row they add up to the same width, and the middle lies on zero."""
     given = {f"{n:x}" * 64: {"a1.overall": MATCHES[n]} for n in range(5)}
-    analyse(gathered(asked, given, "people", 5), tmp_path)
+    analyse(answers_of_raters(asked, given, "people", 5), tmp_path)
     root = ET.parse(tmp_path / "figures" / "alignment.svg").getroot()
     boxes = []
     for path in root.iter("{http://www.w3.org/2000/svg}path"):
@@ -190,7 +190,7 @@ def test_hostile_remarks_are_words_in_every_form(asked: Survey, tmp_path: Path) 
         "1" * 64: {"a1.remarks": EVIL, "check": MATCHES[CHECK]},
         "2" * 64: {"a2.remarks": formula, "check": MATCHES[CHECK]},
     }
-    analyse(gathered(asked, given, "people", 2), tmp_path)
+    analyse(answers_of_raters(asked, given, "people", 2), tmp_path)
     page = (tmp_path / "report.html").read_text("utf-8")
     assert "<script" not in page
     assert "<img" not in page
@@ -208,7 +208,11 @@ def test_pairs_are_compared_only_where_roads_differ_at_all(asked: Survey, tmp_pa
     for raters, is_told in ((2, False), (5, True)):
         some = {rater: said for rater, said in given.items() if rater[0] <= str(raters)}
         out = tmp_path / str(raters)
-        text = analyse(gathered(asked, some, "people", raters), out).with_suffix(".md").read_text("utf-8")
+        text = (
+            analyse(answers_of_raters(asked, some, "people", raters), out)
+            .with_suffix(".md")
+            .read_text("utf-8")
+        )
         assert (out / "tables" / "alignment-pairs.csv").exists() == is_told
         assert ("pairs of them are not compared" in text) != is_told
 
@@ -216,17 +220,17 @@ def test_pairs_are_compared_only_where_roads_differ_at_all(asked: Survey, tmp_pa
 def test_a_survey_that_nobody_answered_is_told(tmp_path: Path) -> None:
     folder = folder_of(survey(), tmp_path / "s")
     with pytest.raises(UsageError, match="nobody has been invited yet"):
-        collected(folder)
-    assert collected(folder, 5).source == "synthetic"
+        load_answers(folder)
+    assert load_answers(folder, 5).source == "synthetic"
     assert not (folder / ANSWERS).exists(), "made-up raters never come near the answers"
     store = AnswerStore(folder / ANSWERS)
     rater = store.rater_of(store.add_rater())
     assert rater is not None
     with pytest.raises(UsageError, match="nobody has answered yet"):
-        collected(folder)
+        load_answers(folder)
     store.agree(rater)
     store.save(rater, {"a1.overall": MATCHES[4]})
-    answers = collected(folder)
+    answers = load_answers(folder)
     store.close()
     assert [(row.source, row.score, row.attention) for row in answers.rows] == [("people", 5, "not answered")]
     assert answers.unchecked == (rater.code,)

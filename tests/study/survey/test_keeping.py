@@ -19,7 +19,7 @@ from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey import serving
 from roadgpt.study.survey.questions import ALIKE, MATCHES
 from roadgpt.study.survey.server import Server
-from roadgpt.study.survey.serving import LINKS, opened
+from roadgpt.study.survey.serving import LINKS, open_server
 from roadgpt.study.survey.store import ANSWERS, AnswerStore, digest_of
 from roadgpt.study.survey.survey import read_survey
 from survey_made import Client, agreed, folder_of, port_of, served, survey
@@ -270,16 +270,16 @@ def test_links_that_cannot_be_written_are_not_used_up(
 
 def test_what_cannot_be_served_is_told_in_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="holds no survey"):
-        opened(tmp_path, "127.0.0.1", 0)
+        open_server(tmp_path, "127.0.0.1", 0)
     folder = folder_of(survey(), tmp_path / "s")
     with served(folder) as server, pytest.raises(UsageError, match=r"cannot listen on 127\.0\.0\.1, port"):
-        opened(folder, "127.0.0.1", port_of(server))
+        open_server(folder, "127.0.0.1", port_of(server))
     with pytest.raises(UsageError, match=r"cannot listen on no\.such\.host\.example"):
-        opened(folder, "no.such.host.example", 0)
+        open_server(folder, "no.such.host.example", 0)
     (folder / ANSWERS).unlink()
     (folder / ANSWERS).write_bytes(b"this is no file of answers, but it is long enough to look at" * 20)
     with pytest.raises(RoadGPTError, match="cannot be opened"):
-        opened(folder, "127.0.0.1", 0)
+        open_server(folder, "127.0.0.1", 0)
     (folder / "survey.json").write_text("{}")
     with pytest.raises(UsageError, match="damaged"):
         read_survey(folder)

@@ -124,9 +124,9 @@ def analyse(directory: Path, out: Path | None, synthetic: int | None, agreement:
     Writes report.html, report.md, answers.csv, tables and figures. It also works while the survey is served.
     """
     from roadgpt.study.survey.analysis import analyse as analyse_into
-    from roadgpt.study.survey.analysis import collected
+    from roadgpt.study.survey.analysis import load_answers
 
-    answers = collected(directory, synthetic, seed, agreement)
+    answers = load_answers(directory, synthetic, seed, agreement)
     target = out or directory / ("analysis-synthetic" if synthetic else "analysis")
     made_up = f" --synthetic {synthetic} --agreement {agreement:g} --seed {seed}" if synthetic else ""
     click.echo(str(analyse_into(answers, target, f"roadgpt study survey analyse {directory}{made_up}")))

@@ -86,54 +86,54 @@ def _run_of(folder: Path, name: NumberedTest) -> Run:
         return failed_run(folder, name, has_drive=False)
 
 
-def headline(found: Faults, told: Sequence[FaultSummary]) -> list[str]:
+def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
     """Returns the first lines of a report: how many faults there are and how stable they are."""
     if not found.failures:
         return ["No road failed."]
-    measured = [each.looked.stability.is_stable for each in told if each.looked]
+    measured = [each.looked.stability.is_stable for each in summaries if each.looked]
     sure = f"{sum(measured)} of {len(measured)} that were driven again" if measured else ""
     first = f"{found.headline[:1].upper()}{found.headline[1:]}."
     return [first, *([f"Of the faults, {sure} fail every second time or oftener."] if sure else [])]
 
 
-def faults(folder: Path, found: Faults, told: Sequence[FaultSummary]) -> Section | None:
+def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Section | None:
     """Returns the section: a gallery of the most frequent faults, and a table; None if there is no fault."""
-    if not told:
+    if not summaries:
         return None
     blocks: list[Block] = [f"{DEFINED} {DRAWN}"]
-    missing = [each for each in told if each.looked is None]
+    missing = [each for each in summaries if each.looked is None]
     if missing:
-        what = "was not measured" if len(missing) == len(told) else f"was not measured of {len(missing)}"
+        what = "was not measured" if len(missing) == len(summaries) else f"was not measured of {len(missing)}"
         blocks.append(
             [
                 f"How often they fail again {what}: ",
                 ShellCommand(shlex.join(["roadgpt", "faults", str(folder), "--minimise"])),
                 " drives a typical failure of each fault again and again, with friction, start and sensors "
-                "off a little, and looks for the simplest road that fails alike.",
+                "off a little, and looks for the simplest road that fails in the same way.",
             ]
         )
-    blocks.append(Cards([_card(folder, each, found) for each in told[:SHOWN]]))
-    blocks.append(_all(folder, found, told))
+    blocks.append(Cards([_card(folder, each, found) for each in summaries[:SHOWN]]))
+    blocks.append(_all(folder, found, summaries))
     return Section("Distinct faults", blocks)
 
 
-def _card(folder: Path, told: FaultSummary, found: Faults) -> FigureCard:
-    count = len(told.fault.members)
+def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
+    count = len(summary.fault.members)
     share = f" ({percent(count / found.compared, 0)} of failures)" if found.compared else ""
     title: Line = [
-        f"{told.fault.number} · ",
-        TableCell(count, plural(count, "test"), _picture(folder, told)),
+        f"{summary.fault.number} · ",
+        TableCell(count, plural(count, "test"), _picture(folder, summary)),
         share,
     ]
-    reason = f"{told.reason[:1].upper()}{told.reason[1:]}."
-    lines: list[Line] = [reason, _stable(told)]
-    lines += _farthest(told.fault)
-    if told.looked and told.looked.simplest:
-        lines.append(f"Simplest road that fails alike: {told.looked.simplest}.")
-    lines.append([ShellCommand(shlex.join(["roadgpt", "view", f"{folder}/{told.name}"]))])
-    assert told.run.road is not None
-    station = told.why.station if told.why else told.fault.typical[0].station
-    picture = draw_site(site_of(told.run.road, told.run.world, told.run.drive, station), reason)
+    reason = f"{summary.reason[:1].upper()}{summary.reason[1:]}."
+    lines: list[Line] = [reason, _stable(summary)]
+    lines += _farthest(summary.fault)
+    if summary.looked and summary.looked.simplest:
+        lines.append(f"Simplest road that fails in the same way: {summary.looked.simplest}.")
+    lines.append([ShellCommand(shlex.join(["roadgpt", "view", f"{folder}/{summary.name}"]))])
+    assert summary.run.road is not None
+    station = summary.why.station if summary.why else summary.fault.typical[0].station
+    picture = draw_site(site_of(summary.run.road, summary.run.world, summary.run.drive, station), reason)
     return FigureCard(title, picture, lines)
 
 
@@ -147,22 +147,22 @@ def _farthest(fault: Fault) -> list[Line]:
     return [f"Outside its lane at most: {percent(share, 0)} of the car{beyond}."]
 
 
-def _stable(told: FaultSummary) -> str:
-    if told.looked is None:
+def _stable(summary: FaultSummary) -> str:
+    if summary.looked is None:
         return "Nobody has driven it again."
-    said = told.looked.stability.sentence
+    said = summary.looked.stability.sentence
     return f"{said[:1].upper()}{said[1:]}."
 
 
-def _picture(folder: Path, told: FaultSummary) -> str:
+def _picture(folder: Path, summary: FaultSummary) -> str:
     """Returns the address of the picture of a typical failure; empty if there is none."""
-    place = "/".join(part for part in (FOLDER, told.name.cell, f"{told.name.number:04d}") if part)
+    place = "/".join(part for part in (FOLDER, summary.name.cell, f"{summary.name.number:04d}") if part)
     return next((f"{place}.{kind}" for kind in FORMATS if (folder / f"{place}.{kind}").is_file()), "")
 
 
-def _all(folder: Path, found: Faults, told: Sequence[FaultSummary]) -> Block:
+def _all(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Block:
     rows = []
-    for each in told:
+    for each in summaries:
         its = each.looked.stability if each.looked else None
         rows.append(
             [
@@ -175,8 +175,8 @@ def _all(folder: Path, found: Faults, told: Sequence[FaultSummary]) -> Block:
         )
     heads = ["fault", "tests", "typical test", "failed again", "why"]
     caption = f"All {plural(len(found.them), 'fault')}"
-    if len(told) < len(found.them):
-        caption = f"The first {len(told)} of {len(found.them):,} faults"
+    if len(summaries) < len(found.them):
+        caption = f"The first {len(summaries)} of {len(found.them):,} faults"
     table = Table("faults", caption, heads, rows)
     beside: list[Block] = []
     if (folder / FOLDER / TABLE).is_file():

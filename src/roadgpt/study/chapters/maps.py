@@ -59,7 +59,7 @@ def _map(
     return Figure(f"coverage-{across.lower()}", caption, picture)
 
 
-def small(part: StudyPartRecord, road: RoadRecord) -> Thumbnail:
+def road_thumbnail(part: StudyPartRecord, road: RoadRecord) -> Thumbnail:
     """Returns one road as a small map that links to its run."""
     failed_at = road.failed_at if road.has_left else None
     return Thumbnail(road.index, road.outcome, road.points, failed_at, part.href(road), road.max_oob)
@@ -75,7 +75,7 @@ def roads(parts: Sequence[StudyPartRecord], size: float) -> Section:
     for part in parts[:MOST_PARTS]:
         if not part.roads:
             continue
-        shown = [small(part, road) for road in part.roads[:MOST]]
+        shown = [road_thumbnail(part, road) for road in part.roads[:MOST]]
         more = f" The first {MOST} of {len(part.roads)}." if len(part.roads) > MOST else ""
         caption = f"{part.part.designer}, “{part.part.prompt.prompt}”.{more}"
         blocks.append(Figure(f"roads-{part.part.number}", caption, gallery(shown, size, caption)))

@@ -7,7 +7,7 @@ import numpy as np
 from roadgpt.report.page import Cards, FigureCard, Line, Section, Table, TableCell, cell
 from roadgpt.report.page.gallery import gallery
 from roadgpt.study.chapters.alignment import kept
-from roadgpt.study.chapters.maps import small
+from roadgpt.study.chapters.maps import road_thumbnail
 from roadgpt.study.chapters.wording import decimal, plural
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 from roadgpt.study.similarity import Spread
@@ -18,7 +18,7 @@ SIDE = 3  # roads along each side of a picture
 Found = tuple[list[RoadRecord], Spread]
 
 
-def glance(parts: Sequence[StudyPartRecord], found: Sequence[Found], size: float) -> Section | None:
+def overview(parts: Sequence[StudyPartRecord], found: Sequence[Found], size: float) -> Section | None:
     """Returns three pictures of roads and one table row for each description; None if there are no roads.
 
     Args:
@@ -39,7 +39,7 @@ def _card(part: StudyPartRecord, size: float) -> FigureCard:
     chosen = sorted(first, key=lambda road: road.index)
     words = part.part.prompt.prompt
     label = f"{plural(len(chosen), 'road')} of “{words}”"
-    picture = gallery([small(part, road) for road in chosen], size, label, SIDE)
+    picture = gallery([road_thumbnail(part, road) for road in chosen], size, label, SIDE)
     left = part.count("has_left")
     driven = part.count("is_driven")
     said = f"The car left its lane on {left} of {driven}." if driven else "They were not driven."

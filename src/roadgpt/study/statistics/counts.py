@@ -47,8 +47,8 @@ class ChiSquared:
 
         Empty rows and columns are left out, as in the test.
         """
-        told = self.expected[self.expected > 0]
-        return bool(self.freedom and told.min() >= 1 and (told < FEW).mean() <= MOST_SMALL)
+        present = self.expected[self.expected > 0]
+        return bool(self.freedom and present.min() >= 1 and (present < FEW).mean() <= MOST_SMALL)
 
 
 @dataclass(frozen=True)

@@ -151,7 +151,7 @@ def _signed(ranks: Array, smaller: float) -> float:
 
 def mann_whitney(one: ArrayLike, other: ArrayLike) -> Unpaired:
     """Returns Mann and Whitney's U test of two groups, two-sided; NaN is left out."""
-    x, y = _told(one), _told(other)
+    x, y = _finite(one), _finite(other)
     if not len(x) or not len(y):
         return Unpaired(0.0, 1.0, 0.5)
     if len(np.unique(np.r_[x, y])) == 1:
@@ -185,12 +185,12 @@ def _complete(ratings: ArrayLike) -> Array:
     return np.asarray(x[np.isfinite(x).all(axis=1)])
 
 
-def _told(values: ArrayLike) -> Array:
+def _finite(values: ArrayLike) -> Array:
     x = np.asarray(values, float).ravel()
     return np.asarray(x[np.isfinite(x)])
 
 
 def _both(one: ArrayLike, other: ArrayLike) -> tuple[Array, Array]:
     x, y = np.asarray(one, float).ravel(), np.asarray(other, float).ravel()
-    told = np.isfinite(x) & np.isfinite(y)
-    return x[told], y[told]
+    finite = np.isfinite(x) & np.isfinite(y)
+    return x[finite], y[finite]

@@ -19,7 +19,7 @@ TABLES = {"people": "answers.csv", "synthetic": "answers-synthetic.csv"}
 MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this tries out the analysis and contains no data."
 
 
-def collected(
+def load_answers(
     folder: Path | str, number: int | None = None, seed: int = 0, agreement: float = 0.8
 ) -> Answers:
     """Returns the answers of a survey, or those of made-up raters without opening the file of answers.
@@ -85,22 +85,22 @@ def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
     """Returns the page with the report; its figures are drawn into an existing folder."""
     is_synthetic = answers.source == "synthetic"
     match, alike = tally(answers, "alignment"), tally(answers, "similarity")
-    told = report_blocks.SurveyBlocks(is_synthetic)
+    blocks = report_blocks.SurveyBlocks(is_synthetic)
     about = about_counts(answers)
-    who: list[Block] = [told.numbers(answers)]
+    who: list[Block] = [blocks.numbers(answers)]
     if about:
         drawn = about_bars(about, figures, is_synthetic)
-        who += [told.figure(drawn, "Who answered: how many raters gave each answer."), told.about(about)]
+        who += [blocks.figure(drawn, "Who answered: how many raters gave each answer."), blocks.about(about)]
     parts = [Section("Who answered", who)]
     for title, found in (
         ("Do roads match their descriptions?", match),
         ("How similar are two roads?", alike),
     ):
         if found.units:
-            parts.append(Section(title, _part(told, found, figures, is_synthetic)))
-    parts.append(Section("Do raters agree?", [told.agreement([match, alike])]))
-    parts.append(Section("People and measurements", told.machine([match, alike])))
-    parts.append(Section("Remarks", [told.remarks(answers)]))
+            parts.append(Section(title, _part(blocks, found, figures, is_synthetic)))
+    parts.append(Section("Do raters agree?", [blocks.agreement([match, alike])]))
+    parts.append(Section("People and measurements", blocks.machine([match, alike])))
+    parts.append(Section("Remarks", [blocks.remarks(answers)]))
     return Page(
         title=f"{'SYNTHETIC: ' if is_synthetic else ''}{answers.survey.title}",
         lead=MADE_UP if is_synthetic else "The answers of people.",
@@ -111,11 +111,11 @@ def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
 
 
 def _part(
-    told: report_blocks.SurveyBlocks, found: RatingTally, figures: Path, is_synthetic: bool
+    blocks: report_blocks.SurveyBlocks, found: RatingTally, figures: Path, is_synthetic: bool
 ) -> list[Block]:
     drawn = rating_bars(found, figures, is_synthetic)
     caption = "All answers; the middle answer is centred on zero, and the numbers count raters."
-    return [told.figure(drawn, caption), told.ratings(found), *told.differences(found)]
+    return [blocks.figure(drawn, caption), blocks.ratings(found), *blocks.differences(found)]
 
 
 def _card(answers: Answers, command: str) -> dict[str, str]:

@@ -83,10 +83,10 @@ def answers_in(store: AnswerStore, survey: Survey) -> Answers:
     raters = store.raters()
     given = {rater.digest: store.answers_of(rater) for rater in raters if rater.state == "agreed"}
     states = [rater.state for rater in raters]
-    return gathered(survey, given, "people", len(raters), states.count("withdrawn"))
+    return answers_of_raters(survey, given, "people", len(raters), states.count("withdrawn"))
 
 
-def gathered(
+def answers_of_raters(
     survey: Survey, given: Mapping[str, Mapping[str, str]], source: Source, invited: int, withdrawn: int = 0
 ) -> Answers:
     """Returns the answers as rows.

@@ -16,8 +16,8 @@ from roadgpt.run import Run, read_run
 from roadgpt.run.atomic import json_text, sweep, write_whole
 from roadgpt.study.survey.described_criteria import criteria_of
 from roadgpt.study.survey.films import WHY_NONE, are_possible, make_film
-from roadgpt.study.survey.measured_scores import alike, match
-from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan, named
+from roadgpt.study.survey.measured_scores import match_scores, similarity_scores
+from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan, criterion_text
 from roadgpt.study.survey.questions import ABOUT
 from roadgpt.study.survey.road_plots import Axes, draw_plots
 from roadgpt.study.survey.store import ANSWERS
@@ -128,10 +128,10 @@ class _Work:
             id=name,
             part="alignment",
             prompt=prompt,
-            criteria=tuple(map(named, criteria)),
+            criteria=tuple(map(criterion_text, criteria)),
             media=(*self._plots(name, run, ""), *self._films(name, [run]), *self._view(name, prompt, [run])),
             roads=(plan.run,),
-            machine=match(run, prompt),
+            machine=match_scores(run, prompt),
         )
 
     def pair(self, name: str, plan: PairPlan, runs: list[Run]) -> Item:
@@ -145,10 +145,10 @@ class _Work:
             id=name,
             part="similarity",
             prompt=prompt,
-            criteria=tuple(map(named, plan.criteria)),
+            criteria=tuple(map(criterion_text, plan.criteria)),
             media=(*plots, *self._films(name, runs), *self._view(name, prompt, runs)),
             roads=plan.runs,
-            machine=alike(*runs),
+            machine=similarity_scores(*runs),
         )
 
     def _plots(self, name: str, run: Run, lead: str) -> list[Medium]:

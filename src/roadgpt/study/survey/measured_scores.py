@@ -27,7 +27,7 @@ ALIKE = {
 }
 
 
-def match(run: Run, prompt: str) -> dict[str, float]:
+def match_scores(run: Run, prompt: str) -> dict[str, float]:
     """Returns whether a road keeps each criterion, 1 or 0; empty if it was not made from this description."""
     if run.road is None or run.brief is None or prompt != run.words.strip():
         return {}
@@ -40,7 +40,7 @@ def match(run: Run, prompt: str) -> dict[str, float]:
     return {ours: float(kept[theirs]) for ours, theirs in MATCH.items() if theirs in kept}
 
 
-def alike(one: Run, other: Run) -> dict[str, float]:
+def similarity_scores(one: Run, other: Run) -> dict[str, float]:
     """Returns how similar two roads are, 0 to 1, criterion by criterion."""
     if one.road is None or other.road is None:
         return {}

@@ -111,7 +111,7 @@ def read_plan(path: Path | str) -> SurveyPlan:
     return plan
 
 
-def named(criterion: str) -> str:
+def criterion_text(criterion: str) -> str:
     """Returns a criterion as raters read it: "number of turns" for ``turns``."""
     return CRITERIA.get(criterion, criterion)
 

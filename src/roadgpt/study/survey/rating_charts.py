@@ -33,7 +33,7 @@ MADE_UP = "SYNTHETIC: made-up raters, no data of people"
 
 
 @dataclass(frozen=True)
-class Drawn:
+class PageFigure:
     """A figure as SVG for the page."""
 
     name: str
@@ -41,7 +41,7 @@ class Drawn:
 
 
 @in_our_style
-def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Drawn:
+def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> PageFigure:
     """Draws all ratings of one part, item by item."""
     items = list(dict.fromkeys(unit.item.id for unit in found.units))
     high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW
@@ -112,7 +112,7 @@ def _legend(figure: Figure, answers: Sequence[str], high: float) -> None:
 @in_our_style
 def about_bars(
     counts: Sequence[tuple[str, Sequence[tuple[str, int]]]], folder: Path, is_synthetic: bool
-) -> Drawn:
+) -> PageFigure:
     """Draws how often each answer was given to each question about the raters."""
     rows = -(-len(counts) // 2)
     heights = [
@@ -142,7 +142,7 @@ def about_bars(
     return _finished(figure, "raters", "answers of raters about themselves", folder, is_synthetic)
 
 
-def _finished(figure: Figure, name: str, label: str, folder: Path, is_synthetic: bool) -> Drawn:
+def _finished(figure: Figure, name: str, label: str, folder: Path, is_synthetic: bool) -> PageFigure:
     """Writes a figure as PNG, PDF and SVG; returns an SVG whose text takes the page's colours."""
     if is_synthetic:
         figure.text(0.995, 0.995, MADE_UP, size=10, weight="bold", color=VERMILLION, ha="right", va="top")
@@ -155,4 +155,4 @@ def _finished(figure: Figure, name: str, label: str, folder: Path, is_synthetic:
         svg = embedded(figure, label).replace("<svg ", f'<svg style="{IN_PAGE}" ', 1)
     figure.patch.set_alpha(1)
     save_all(figure, folder / f"{name}.png", ("pdf", "png"))
-    return Drawn(name, svg)
+    return PageFigure(name, svg)

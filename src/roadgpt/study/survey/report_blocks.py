@@ -8,8 +8,8 @@ from roadgpt.report.page import Block, Details, Figure, Table, TableCell, cell
 from roadgpt.study.statistics import conover, friedman, spearman, wilcoxon
 from roadgpt.study.survey.answers import Answers
 from roadgpt.study.survey.questions import REMARKS
-from roadgpt.study.survey.rating_charts import Drawn
-from roadgpt.study.survey.tally import RatingTally, Unit, agreement, matrix
+from roadgpt.study.survey.rating_charts import PageFigure
+from roadgpt.study.survey.tally import RatingTally, Unit, agreement, score_matrix
 
 LEVEL = 0.05
 NAMES = {"alignment": "road and description", "similarity": "two roads"}
@@ -31,7 +31,7 @@ def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[st
             share = sum(score >= 4 for score in scores) / len(scores)
             lines.append(
                 f"Overall, {share:.0%} of {len(scores)} ratings say {says} (one of the two highest answers)"
-                f"{_told_alpha(agreement(found.overall))}."
+                f"{_alpha_text(agreement(found.overall))}."
             )
     return lines
 
@@ -42,7 +42,7 @@ class SurveyBlocks:
 
     is_synthetic: bool
 
-    def figure(self, drawn: Drawn, caption: str) -> Figure:
+    def figure(self, drawn: PageFigure, caption: str) -> Figure:
         """Returns a figure with its caption."""
         return Figure(drawn.name, self._marked(caption), drawn.svg)
 
@@ -133,7 +133,7 @@ class SurveyBlocks:
         units = found.overall
         if len(units) < 2 or not found.raters:
             return ["One item alone cannot be compared with others."]
-        scores = matrix(units)
+        scores = score_matrix(units)
         if len(units) == 2:
             paired = wilcoxon(scores[:, 0], scores[:, 1])
             return [
@@ -203,7 +203,7 @@ class SurveyBlocks:
                 continue
             people = [float(unit.given.mean()) for unit in units]
             machine = [float(unit.measured or 0.0) for unit in units]
-            told = spearman(people, machine)
+            correlation = spearman(people, machine)
             rows = [
                 [
                     cell(u.item.id),
@@ -215,11 +215,12 @@ class SurveyBlocks:
                 for u, one, two in zip(units, people, machine, strict=True)
             ]
             line = f"{NAMES[found.part].capitalize()}: "
-            if isfinite(told.rho):
+            if isfinite(correlation.rho):
                 line += (
-                    f"Spearman's rho is {told.rho:.2f} over {told.pairs} questions, each with people's mean "
+                    f"Spearman's rho is {correlation.rho:.2f} over {correlation.pairs} questions, each with "
+                    f"people's mean (p {_p(correlation.p)}, as if questions were independent; those "
+                    "about one road are not)."
                 )
-                line += f"(p {_p(told.p)}, as if questions were independent; those about one road are not)."
             else:
                 line += (
                     "the scores of people or the measured scores are all equal, or too few for a correlation."
@@ -245,7 +246,7 @@ class SurveyBlocks:
         return self.table("remarks", f"{len(rows)} remarks", ("item", "description", "remark"), rows)
 
 
-def _told_alpha(alpha: float) -> str:
+def _alpha_text(alpha: float) -> str:
     return f"; Krippendorff's alpha is {_number(alpha)}" if isfinite(alpha) else ""
 
 

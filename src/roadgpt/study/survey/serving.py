@@ -24,7 +24,7 @@ NEEDS = "serving a survey needs Starlette, uvicorn and Jinja2"
 Tell = Callable[[str], None]
 
 
-def opened(folder: Path | str, host: str, port: int, is_open: bool = False) -> "Server":
+def open_server(folder: Path | str, host: str, port: int, is_open: bool = False) -> "Server":
     """Returns a server of the survey in a folder; it listens already, and ``serve_forever`` makes it answer.
 
     Raises:
@@ -67,10 +67,10 @@ def serve(
         url: address at which raters reach the server, if not at host and port.
 
     Raises:
-        UsageError: as for ``opened``, or there are too many raters.
-        RoadGPTError: as for ``opened``, or the links cannot be written.
+        UsageError: as for ``open_server``, or there are too many raters.
+        RoadGPTError: as for ``open_server``, or the links cannot be written.
     """
-    server = opened(folder, host, port, is_open)
+    server = open_server(folder, host, port, is_open)
     store = server.app.store
     try:
         base = url.rstrip("/") or f"http://{_shown(host)}:{server.port}"

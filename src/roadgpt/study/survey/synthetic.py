@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from roadgpt.errors import UsageError
-from roadgpt.study.survey.answers import Answers, gathered
+from roadgpt.study.survey.answers import Answers, answers_of_raters
 from roadgpt.study.survey.questions import CHECK, MATCHES, Question
 from roadgpt.study.survey.survey import Survey
 
@@ -42,7 +42,7 @@ def synthetic(
         digest = hashlib.sha256(f"synthetic {seed} {rater}".encode()).hexdigest()
         is_awake = bool(rng.random() >= failing)
         given[digest] = _answers(survey, truth, agreement if is_awake else 0.0, is_awake, rng)
-    return gathered(survey, given, "synthetic", number)
+    return answers_of_raters(survey, given, "synthetic", number)
 
 
 def _truths(survey: Survey, rng: np.random.Generator) -> dict[str, int]:

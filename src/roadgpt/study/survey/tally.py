@@ -117,7 +117,7 @@ def tally(answers: Answers, part: Rated) -> RatingTally:
     return RatingTally(part, raters, tuple(units))
 
 
-def matrix(units: Sequence[Unit]) -> Array:
+def score_matrix(units: Sequence[Unit]) -> Array:
     """Returns the scores ``(people, units)``."""
     return np.stack([unit.scores for unit in units], axis=1)
 
@@ -126,4 +126,4 @@ def agreement(units: Sequence[Unit]) -> float:
     """Returns Krippendorff's alpha of ordinal ratings; NaN if it is undefined, as for a single unit."""
     if len(units) < 2 or not len(units[0].scores):
         return float("nan")
-    return krippendorff(matrix(units), "ordinal")
+    return krippendorff(score_matrix(units), "ordinal")

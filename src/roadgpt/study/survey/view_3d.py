@@ -7,12 +7,12 @@ from roadgpt.report.view import page_of, scene
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
 
-UNTOLD = {"outcome": "", "description": "", "about": "", "words": "", "places": []}
+HIDDEN = {"outcome": "", "description": "", "about": "", "words": "", "places": []}
 
 
 def write_view(runs: Sequence[Run], titles: Sequence[str], path: Path) -> None:
     """Writes the page of one road or of two."""
     write_whole(
         path,
-        page_of([scene(run) | {"title": title} | UNTOLD for run, title in zip(runs, titles, strict=True)]),
+        page_of([scene(run) | {"title": title} | HIDDEN for run, title in zip(runs, titles, strict=True)]),
     )
