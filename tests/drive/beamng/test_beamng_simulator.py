@@ -189,7 +189,7 @@ def test_who_does_not_move_is_stuck_and_an_ai_that_never_sets_off_is_an_error(fa
 
     assert simulator(fake).simulate(SHORT, WORLD, Asleep(), 7).ended == "stuck"
     with FakeBeamNG(protocol=OURS, is_blind=True) as blind:
-        with pytest.raises(SimulationError, match=r"did not start to move.*selftest"):
+        with pytest.raises(SimulationError, match=r"did not start to move.*doctor beamng"):
             simulator(blind).simulate(SHORT, WORLD, BeamngLike(), 7)
         leave_all()
 
