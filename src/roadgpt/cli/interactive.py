@@ -38,7 +38,7 @@ how long and how steep the road is. For example:
   a flat road with four sharp left turns
 Then say how many roads you want. Words that were not understood are listed before
 the first road is made.
-In this conversation all options have their defaults. 'roadgpt run' takes options, for example:
+Here all options have their defaults, or what your settings say. 'roadgpt run' takes options:
   roadgpt run "a winding road downhill" -n 20 --seed 7 --friction 0.6
 'roadgpt run --help' lists them."""
 
