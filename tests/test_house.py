@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from collections import defaultdict
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -113,6 +114,33 @@ def test_a_file_is_short_finished_and_well_named(path: Path) -> None:
     assert not {"utils", "util", "common", "helpers", "misc"} & {
         *path.relative_to(SOURCE).with_suffix("").parts
     }
+
+
+# the competition's own names, and the one file that competes where RoadGPT is not installed
+SHARED_NAMES = {"Budget", "RoadGPTError", "RoadGPTTestGenerator"}
+
+
+def test_a_class_name_means_one_thing() -> None:
+    places = defaultdict[str, list[str]](list)
+    for path in sources():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                places[node.name].append(str(path.relative_to(SOURCE)))
+    twice = {name: where for name, where in places.items() if len(where) > 1}
+    assert set(twice) == SHARED_NAMES
+    for where in twice.values():
+        assert sum("names" in Path(each).parts for each in where) == len(where) - 1
+
+
+def test_only_commands_use_the_annexes() -> None:
+    plan = (ROOT / "docs" / "house.md").read_text(encoding="utf-8").split("```")[1]
+    block = plan.split("annexes")[1].split("doors")[0]
+    annexes = {*re.findall(r"^  (\w+)/", block, flags=re.MULTILINE)}
+    assert annexes == {"sbft", "study", "learn"}
+    for path in sources():
+        room = room_of(path)
+        if room not in {*annexes, "cli"}:
+            assert not imports_of(path) & annexes, path
 
 
 def test_no_text_names_a_place_on_one_machine() -> None:
