@@ -46,18 +46,18 @@ def folder(value: str) -> Path:
 beamng_options = under(
     "BeamNG",
     _option(
-        "--beamng-home", "HOME", "Start the BeamNG.tech in this folder. For --simulator beamng.", folder,
+        "--beamng-home", "HOME", "Start the BeamNG.tech in this folder (for --simulator beamng).", folder,
         path_guard,
     ),
     _option(
-        "--beamng-user", "USER", "BeamNG's user folder; further workers get folders beside it.", folder,
+        "--beamng-user", "USER", "BeamNG's user folder; other workers get folders next to it.", folder,
         path_guard,
     ),
-    _option("--beamng-host", "HOST", "Host of a BeamNG that runs already.", str, place_guard),
+    _option("--beamng-host", "HOST", "Host of a BeamNG that is already running.", str, place_guard),
     _option(
         "--beamng-port", "PORT", "Port of BeamNG. [default: 25252]", whole(1, 65535, "a port"), place_guard
     ),
-    _option("--beamng-level", "LEVEL", "Level in which roads are laid. [default: tig, or a flat one]", str),
+    _option("--beamng-level", "LEVEL", "Level in which roads are placed. [default: tig, or a flat one]", str),
     _option(
         "--beamng-aggression", "AGGRESSION", "Aggression of BeamNG's AI, 0.3 to 1. [default: 0.7]",
         measure(0.3, 1),
@@ -67,7 +67,7 @@ beamng_options = under(
         whole(1, 1_000_000, "a number of roads"),
     ),
     _option("--headless", "HEADLESS", "Run BeamNG without a window."),
-    _option("--nogpu", "NOGPU", "Run BeamNG without drawing anything."),
-    _option("--gfx", "GFX", "Graphics interface that BeamNG uses.", click.Choice(["dx11", "vk"])),
+    _option("--nogpu", "NOGPU", "Run BeamNG without rendering."),
+    _option("--gfx", "GFX", "Graphics API that BeamNG uses.", click.Choice(["dx11", "vk"])),
     rare=True,
 )  # fmt: skip

@@ -27,15 +27,15 @@ if TYPE_CHECKING:
     type=whole(2, 1000, "a number of runs"),
     default=5,
     show_default=True,
-    help="Runs of one road, for their spread.",
+    help="Runs of the same road, to measure how much they differ.",
 )
 @beamng_options
 def beamng_command(out: Path, repeats: int) -> None:
     """Test RoadGPT with an installed BeamNG.tech, and write a report.
 
-    The test covers the connection, the level, BeamNG's AI on flat, floating and steep roads, the spread of
-    repeated runs, one of RoadGPT's drivers, a picture of the road, and a level folder. It takes some minutes.
-    The exit status is 0 if no check finds a problem.
+    The test covers the connection, the level, BeamNG's AI on flat, floating and steep roads, how much
+    repeated runs differ, one of RoadGPT's drivers, a picture of the road, and a level folder. It takes some
+    minutes. The exit status is 0 if no check finds a problem.
 
     \b
     roadgpt doctor beamng --beamng-home C:\\BeamNG.tech.v0.39 --beamng-user C:\\BeamNG.user

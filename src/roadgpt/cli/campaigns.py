@@ -33,10 +33,13 @@ worker_options = under(
         type=whole(1, MOST_WORKERS, "the number of workers"),
         default=1,
         show_default=True,
-        help="Tests at a time; use as many as there are cores.",
+        help="Number of tests run in parallel; use one per core.",
     ),
     click.option(
-        "--executor", default="processes", show_default=True, help="Where workers run: processes, or ray."
+        "--executor",
+        default="processes",
+        show_default=True,
+        help="Where workers run: processes of this machine, or ray.",
     ),
     click.option("--address", default="", help="Address of a Ray cluster. [default: this machine]"),
 )

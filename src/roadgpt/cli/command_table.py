@@ -7,8 +7,8 @@ from typing import NamedTuple
 HEADINGS = {
     "Make": {
         "run": "Make roads from a description: design, check, drive and judge them.",
-        "read": "Show how a description is read, and how sure the reader is.",
-        "edit": "Change a road by words.",
+        "read": "Show how RoadGPT interprets a description, and how confident it is.",
+        "edit": "Change a road with a request in plain words.",
         "drive": "Drive roads from files, or drive tests of a campaign again.",
     },
     "Look": {
@@ -18,14 +18,14 @@ HEADINGS = {
         "compare": "Measure how alike two roads are, and draw both.",
     },
     "Search": {
-        "campaign": "Search for failures, or make roads by the thousand, with workers.",
+        "campaign": "Search for failures, or make thousands of roads, with parallel workers.",
         "resume": "Continue a campaign that was interrupted.",
         "faults": "Group failures into distinct faults, and find why each occurs.",
     },
     "Evaluate": {
         "check": "Check roads against the rules.",
         "report": "Write a report on a folder of runs, a campaign or a study.",
-        "study": "Repeat the thesis' evaluation, measure alignment, survey people.",
+        "study": "Repeat the evaluation of the thesis, measure alignment, survey people.",
     },
     "Exchange": {
         "export": "Write roads for other tools: OpenDRIVE, OpenSCENARIO and others.",
@@ -34,8 +34,8 @@ HEADINGS = {
     },
     "Set up": {
         "config": "Show all settings and where each comes from; list plug-ins.",
-        "doctor": "Check this installation, or a BeamNG.tech.",
-        "learn": "Train, evaluate and export a reader of your own.",
+        "doctor": "Check this installation, or an installed BeamNG.tech.",
+        "learn": "Train, evaluate and export your own model that reads descriptions.",
     },
 }
 

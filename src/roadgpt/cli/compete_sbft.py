@@ -58,7 +58,7 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     "--module-path",
     type=click.Path(exists=True, file_okay=False),
     default=None,
-    help="Further folder in which Python looks for the module.",
+    help="Additional folder in which Python looks for the module.",
 )
 @click.option(
     "--python",
@@ -111,7 +111,7 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     is_eager=True,
     expose_value=False,
     callback=_write_client,
-    help="Only write the file that the competition's environment needs to call RoadGPT.",
+    help="Write the file with which the competition's environment calls RoadGPT, and exit.",
 )
 @screen_options
 def sbft_command(
@@ -135,7 +135,7 @@ def sbft_command(
 
     The generator runs unchanged, in a process of its own, until the budget is used up: seconds, tests, or
     both. Files and tables are in the competition's format. The exit status is 1 if the generator crashed,
-    hung or called sys.exit; all tests before that are on the disk.
+    hung or called sys.exit; all tests before that are saved.
 
     \b
     roadgpt compete sbft --module-name my_generator --class-name MyGenerator --test-budget 100

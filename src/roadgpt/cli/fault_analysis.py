@@ -23,12 +23,16 @@ DRIVES = whole(1, 1000, "drives")
 fault_options = under(
     "Failures",
     click.option("--faults", is_flag=True, help="At the end, analyse the failures as 'roadgpt faults' does."),
-    click.option("--minimise", is_flag=True, help="Also find the simplest road that still shows each fault."),
+    click.option(
+        "--minimise",
+        is_flag=True,
+        help="For each fault, also find the simplest road on which it still occurs; implies --faults.",
+    ),
     click.option(
         "--repeat",
         type=DRIVES,
         default=None,
-        help=f"Also set how many disturbed drives each fault gets. [default: {REPEAT}]",
+        help=f"Number of slightly disturbed drives for each fault; implies --faults. [default: {REPEAT}]",
     ),
 )
 

@@ -49,7 +49,7 @@ def _first_sentence(part: Any) -> str:
 def plugins_command(as_json: bool) -> None:
     """List the plug-ins: readers, designers, rules, exporters, simulators, drivers and others.
 
-    Each line has the name that options take, the package that it is from, and what it does.
+    Each line shows the name of a plug-in as options take it, the package that provides it, and what it does.
     """
     parts = installed()
     if as_json:

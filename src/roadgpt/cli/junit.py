@@ -35,7 +35,7 @@ junit_option = under(
         type=file,
         default=None,
         metavar="FILE.xml",
-        help="Write the tests as JUnit XML too.",
+        help="Also write the tests as JUnit XML.",
     ),
 )
 

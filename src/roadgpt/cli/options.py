@@ -63,7 +63,7 @@ def competition_options(oob_tolerance: float, speed_limit_kmh: float) -> Decorat
             type=measure(0, 1, above=True),
             default=oob_tolerance,
             show_default=True,
-            help="Share of the car that may be out of its lane.",
+            help="Share of the car that may be outside its lane.",
         ),
         click.option(
             "--speed-limit",
@@ -89,7 +89,8 @@ driver_again_option = under(
         type=driver_again,
         metavar="FILE.py:CLASS",
         default=None,
-        help="The driver's file, if the folder names one; code that only a folder names is not run.",
+        help="The driver's file. Repeat it here if the folder names one: for safety, code is not run just "
+        "because a folder names it.",
     ),
 )
 
@@ -150,7 +151,7 @@ def formats_option(flag: str, required: bool = False, is_settable: bool = False)
             multiple=True,
             required=required,
             callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
-            help="Write road files too: opendrive, csv, ..."
+            help="Also write road files: opendrive, csv, ..."
             if is_settable
             else "Formats to write: opendrive, csv, ...; 'roadgpt config plugins' lists them.",
             **settable,
@@ -194,7 +195,8 @@ axes_option = under(
         type=click.Choice(["equal", "thesis"]),
         default="equal",
         show_default=True,
-        help="Axes of pictures: to scale, or as in RoadGPT's thesis, 220 m by 220 m and 200 m by 20 m.",
+        help="Axes of pictures: equal, to scale; or thesis, with the ranges of RoadGPT's thesis: 220 m by "
+        "220 m seen from above, 200 m by 20 m for the height.",
         cls=SettableOption,
         table="run",
         key="axes",
@@ -210,7 +212,7 @@ screen_options = under(
     OUTPUT,
     click.option("--json", "as_json", is_flag=True, help="Print one JSON line per road."),
     click.option("--quiet", "-q", is_flag=True, help="Print errors only."),
-    click.option("--verbose", "-v", is_flag=True, help="Print details: brief, versions, times."),
+    click.option("--verbose", "-v", is_flag=True, help="Print details: requirements, versions, times."),
 )
 
 files_argument = click.argument("files", nargs=-1, required=True, metavar="ROAD...")

@@ -45,7 +45,7 @@ study_options = together(
         DESIGN,
         click.option(
             "--designer", "designers", multiple=True, default=("planner",), show_default=True,
-            help="What designs the roads; give it again to compare designers.",
+            help="What designs roads; repeat the option to compare designers.",
             cls=SettableOption, table="run", key="designer", guard=designer_guard,
         ),
     ),
@@ -55,7 +55,7 @@ study_options = together(
     click.option("--out", type=folder, default=None, help="Folder for the study. [default: in roadgpt-runs]"),
     click.option(
         "--workers", type=whole(1, 64, "processes"), default=2, show_default=True,
-        help="How many descriptions are worked on at a time; the files are the same.",
+        help="Number of descriptions processed in parallel; it does not change the files.",
     ),
     setup_options(*SHOWN),
     world_options(),
@@ -63,23 +63,23 @@ study_options = together(
     under(FILES, click.option("--no-plot", is_flag=True, help="Draw no pictures of single runs.")),
     under(
         OUTPUT,
-        click.option("--quiet", "-q", is_flag=True, help="Print only errors and where the report is."),
+        click.option("--quiet", "-q", is_flag=True, help="Print only errors and the path of the report."),
     ),
     chat_options,
 )  # fmt: skip
 
 
 @click.command(cls=GroupedCommand)
-@click.option("--roads", "-n", type=ROADS, default=100, show_default=True, help="Roads of each description.")
+@click.option("--roads", "-n", type=ROADS, default=100, show_default=True, help="Roads per description.")
 @no_drive_option
 @study_options
 def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
     """Repeat the evaluation of RoadGPT's thesis: validity, drives, alignment and diversity.
 
     Takes the three descriptions of the thesis' table and those of its survey, makes and drives the roads, and
-    writes one page with tables, tests, intervals and figures. The thesis' own counts stand beside the new
-    ones. After Ctrl-C, the same command continues where it stopped. If a language model cannot be asked, the
-    report says so and the exit status is 4.
+    writes one page with tables, tests, intervals and figures. The report shows the thesis' own counts next
+    to the new ones. After Ctrl-C, the same command continues where it stopped. If a language model cannot be
+    used, the report says so and the exit status is 4.
 
     \b
     roadgpt study thesis
@@ -92,14 +92,15 @@ def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
 
 @click.command(cls=GroupedCommand)
 @click.argument("prompts", metavar="PROMPTS.jsonl", type=click.Path(path_type=Path))
-@click.option("--roads", "-n", type=ROADS, default=10, show_default=True, help="Roads of each description.")
+@click.option("--roads", "-n", type=ROADS, default=10, show_default=True, help="Roads per description.")
 @click.option("--drive", "drives", is_flag=True, help="Drive the roads as well.")
 @study_options
 def alignment(prompts: Path, roads: int, drives: bool, **rest: Any) -> int:
     """Measure how well roads match their descriptions, criterion by criterion.
 
     PROMPTS.jsonl has a line {"id": "1", "prompt": "a U-turn", "truth": {"turns": 1}} for each description.
-    The guide lists all keys of a truth. Without a truth, roads are compared with what the reader read.
+    The guide "Evaluate roads" lists all keys of "truth". Without "truth", roads are compared with the
+    requirements that the reader found in the description.
 
     \b
     roadgpt study alignment prompts.jsonl

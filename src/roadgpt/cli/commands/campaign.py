@@ -40,15 +40,17 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "j
 
 @click.command(cls=DescribedCommand)
 @click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION|FILE.toml")
-@click.option("-n", "--tests", type=TESTS, default=None, help="How many tests.")
+@click.option("-n", "--tests", type=TESTS, default=None, help="Number of tests.")
 @click.option(
     "--goal",
     type=click.Choice(["failures", "coverage", "hardest", "boundary"]),
     default=None,
-    help="What to search for. [default: nothing; roads are made as they come]",
+    help="What to search for. [default: no search; the designer makes the roads]",
 )
 @click.option(
-    "--generator", default=None, help="Test generator. [default: quality_diversity; words without a goal]"
+    "--generator",
+    default=None,
+    help="Test generator. [default: quality_diversity, or 'words' if no --goal is given]",
 )
 @click.option("--seconds", type=SECONDS, default=None, help="Start no more tests after this many seconds.")
 @click.option("--seed", type=SEED, default=0, show_default=True, help="The same seed gives the same table.")
@@ -64,8 +66,8 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "j
         multiple=True,
         default=("beamng_like",),
         show_default=True,
-        help="Name of a driver, or FILE.py:CLASS; give it again for more. With FILE.toml: a driver of that "
-        "file whose code you allow to run.",
+        help="Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With FILE.toml: allows "
+        "the code of this driver, which FILE.toml names, to be run.",
         cls=SettableOption,
         table="run",
         key="driver",
@@ -98,11 +100,11 @@ def command(
     quiet: bool,
     **rest: Any,
 ) -> None:
-    """Search for roads that a driver fails on, or make roads by the thousand.
+    """Search for roads that a driver fails on, or make thousands of roads.
 
     Give a description, or a FILE.toml that lists prompts, designers, drivers, simulators and seeds; each
     combination is then a cell with tests of its own. A campaign can be resumed after Ctrl-C, a crash or a
-    power cut. The table of results is the same whatever happened, and however many workers there are.
+    power cut. The table of results depends neither on interruptions nor on the number of workers.
 
     \b
     roadgpt campaign "an uphill road with 3 turns" --goal failures -n 200 -j 2 --seed 7

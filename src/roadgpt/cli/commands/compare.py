@@ -35,7 +35,7 @@ NAMES = {
     help="The picture: .png, .svg or .pdf. An existing file is replaced.",
 )  # fmt: skip
 @click.option("--no-plot", is_flag=True, help="Draw no picture.")
-@click.option("--mirror", is_flag=True, help="Count a road and its mirror image as alike.")
+@click.option("--mirror", is_flag=True, help="Treat a road and its mirror image as alike.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @axes_option
 @world_options("map_size")
@@ -53,8 +53,8 @@ def command(
 ) -> None:
     """Measure how alike two roads are, and draw one above the other, as in RoadGPT's thesis.
 
-    A and B are runs, tests of campaigns or road files. A similarity is a number from 0, nothing in common, to
-    1, the same. Moving or rotating a road does not change it.
+    A and B are runs, tests of campaigns or road files. A similarity is a number from 0 (nothing in
+    common) to 1 (identical). Moving or rotating a road does not change it.
 
     \b
     roadgpt compare DIR/runs/0001 DIR/runs/0002

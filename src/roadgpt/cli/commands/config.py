@@ -34,18 +34,20 @@ class ShownSetting(NamedTuple):
 
 
 @command.command()
-@click.option("--origin", "with_origin", is_flag=True, help="With --json: also where each setting is from.")
+@click.option(
+    "--origin", "with_origin", is_flag=True, help="With --json: also print where each setting comes from."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @chat_options
 def show(with_origin: bool, as_json: bool, **values: Any) -> None:
-    """Show all settings that options, the environment or a file can make, and where each comes from.
+    """Show all settings that options, environment variables or files can set, and where each comes from.
 
-    An option on the command line counts first; then the environment, such as ROADGPT_FRICTION; then the file
-    .env in this folder; then roadgpt.toml in this folder; then your own roadgpt/config.toml. The tables of
-    these files are [run], [world], [chat] and [beamng]. Keys of servers are masked.
+    An option on the command line takes precedence; then an environment variable, such as ROADGPT_FRICTION;
+    then the file .env in this folder; then roadgpt.toml in this folder; then your own roadgpt/config.toml.
+    The tables of the TOML files are [run], [world], [chat] and [beamng]. API keys are masked.
 
-    A folder may come from somebody else. Its files cannot name a driver's file, a program, a server that gets
-    your key, or a plug-in that asks a language model.
+    A folder may come from somebody else. For safety, .env and roadgpt.toml cannot name a driver's file, a
+    program, a server that gets your API key, or a plug-in that asks a language model.
     """
     from roadgpt.chat.config import unknown_variables
 

@@ -74,15 +74,15 @@ def command(
     """Drive roads that exist, or drive tests of a campaign again.
 
     ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
-    points (.csv) or OpenDRIVE (.xodr). A road that breaks a rule is driven all the same, and the rule's
-    sentence is shown with the verdict. INVALID is a road that cannot be driven: it has numbers that are not
-    finite, two points at one place, or no room for a car. With --rules sbft every broken rule makes a road
-    INVALID, as in the competition. The exit status is 0 if every road could be read.
+    points (.csv) or OpenDRIVE (.xodr). A road that breaks a rule is driven anyway, and the broken rule is
+    shown with the verdict. A road is INVALID if it cannot be driven: it has numbers that are not finite, two
+    points at the same place, or no room for a car. With --rules sbft every broken rule makes a road INVALID,
+    as in the competition. The exit status is 0 if every road could be read.
 
     With --again, give a campaign and the numbers of its tests in results.csv, such as CAMPAIGN 17 or
-    CAMPAIGN/c02/17. Road, world, driver and seed are those of the test, so the drive should be the same byte
-    for byte; the command says so if it is not. Each test is written as a folder of a run. Looking at a test
-    needs no driving: show, view, film and export take CAMPAIGN/c02/17.
+    CAMPAIGN/c02/17. Road, world, driver and seed are taken from the test, so the drive should be identical
+    byte for byte; the command says so if it is not. Each test is written into a run folder of its own. To
+    look at a test without driving it again, give CAMPAIGN/c02/17 to show, view, film or export.
 
     \b
     roadgpt drive my_road.json --friction 0.6

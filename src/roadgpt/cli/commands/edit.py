@@ -32,7 +32,7 @@ from roadgpt.cli.screen import Screen
     "--designer",
     default="planner",
     show_default=True,
-    help="What changes the road: planner, by rules, or chat, a language model.",
+    help="What changes the road: planner (by rules) or chat (a language model).",
 )
 @chat_options_but("repair", "strategy")
 @world_options("map_size")
@@ -55,18 +55,19 @@ def command(
     quiet: bool,
     **rest: Any,
 ) -> None:
-    """Change a road by words.
+    """Change a road with a request in plain words.
 
     RUN is a run, a folder that holds one run, or a file with a RoadGPT design. The changed road is written
     into a new folder. Every number that the words do not concern stays the same. World, driver and rules are
-    those of the run; --map-size is for a design from a file.
+    those of the run; --map-size applies only to a design
+    from a file.
 
     \b
     roadgpt edit my-roads/runs/0001 "make the second turn sharper and the end downhill"
     roadgpt edit design.json "add a hairpin after the first turn, then remove the last straight"
 
     The exit status is 2 if the words cannot be read, refer to something that is not on the road, or ask for
-    a road that cannot be valid. Nothing is written then.
+    a road that cannot be valid. In these cases nothing is written.
     """
     chat = chat_of(rest, designer=designer)
     job = EditJob(

@@ -36,10 +36,11 @@ def command(
 ) -> int:
     """Write roads in the formats of other tools, such as OpenDRIVE.
 
-    RUN is a run, a folder of runs, a campaign, or a test of a campaign, such as CAMPAIGN/c01/17; it has its
-    own lanes, limits and drive. ROAD is a RoadGPT design, an SBFT test, a list of points, or an OpenDRIVE
-    file, whose own lanes and limits are kept unless an option changes them. A file is named after its RUN or
-    ROAD, and replaces a file of the same name. The names are printed.
+    RUN is a run, a folder of runs, a campaign, or a test of a campaign, such as CAMPAIGN/c01/17; the lane
+    widths, speed limits and drive that were recorded with it are exported. ROAD is a RoadGPT design, an SBFT
+    test, a list of points, or an OpenDRIVE file; the lanes and speed limits of an OpenDRIVE file are kept
+    unless an option changes them. Each file is named after its RUN or ROAD, and replaces a file of the same
+    name. The names of the files are printed.
 
     \b
     roadgpt export roadgpt-runs/hairpins-7 --to opendrive

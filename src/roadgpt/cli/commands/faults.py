@@ -19,16 +19,22 @@ from roadgpt.cli.options import (
 @click.command(cls=GroupedCommand)
 @click.argument("place", type=folder, metavar="DIR")
 @click.option(
-    "--repeat", type=DRIVES, default=REPEAT, show_default=True, help="Disturbed drives of each fault."
+    "--repeat",
+    type=DRIVES,
+    default=REPEAT,
+    show_default=True,
+    help="Number of slightly disturbed drives for each fault.",
 )
-@click.option("--minimise", is_flag=True, help="Also find the simplest road that still shows each fault.")
+@click.option(
+    "--minimise", is_flag=True, help="For each fault, also find the simplest road on which it still occurs."
+)
 @click.option(
     "-j",
     "workers",
     type=whole(1, 256, "processes"),
     default=1,
     show_default=True,
-    help="Faults analysed at a time.",
+    help="Number of faults analysed in parallel.",
 )
 @driver_again_option
 @format_option
@@ -46,11 +52,11 @@ def command(
 ) -> None:
     """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
 
-    Two failures are the same fault if the 60 m of road around the lane departure are alike. The most typical
-    failure of each fault is driven several times with a slightly different friction, start and delay of what
-    the driver sees; the share that fails again is reported. DIR/faults gets a picture and a sentence for each
-    fault, faults.csv has a line per fault, and failures.csv a line per failure. Finished work is not
-    repeated, so Ctrl-C loses nothing.
+    Two failures belong to the same fault if the 60 m of road around the lane departure are alike. The most
+    typical failure of each fault is driven again several times with slightly varied friction, start position
+    and perception delay; the share of drives that fail again is reported. DIR/faults gets a picture and a
+    sentence for each fault, faults.csv with a line per fault, and failures.csv with a line per failure.
+    Finished work is not repeated, so Ctrl-C loses nothing.
 
     \b
     roadgpt faults roadgpt-runs/hairpins-7

@@ -69,7 +69,7 @@ def _seconds(value: str) -> tuple[float, float | None]:
     type=click.Path(path_type=Path),
     default=None,
     metavar="FILM.mp4",
-    help=f"The film, or the folder for several. [default: {FILM}, {FILMS}]",
+    help=f"The film, or the folder for several films. [default: {FILM}, {FILMS}]",
 )
 @click.option(
     "--fps",
@@ -92,13 +92,13 @@ def _seconds(value: str) -> tuple[float, float | None]:
     type=_seconds,
     default=None,
     metavar="N|FROM:TO",
-    help="Which seconds of the drive to film. [default: all, and the outcome]",
+    help="Which seconds of the drive to film. [default: the whole drive, followed by the outcome]",
 )
 @click.option(
     "--all",
     "is_all",
     is_flag=True,
-    help="Film every road of a folder; films of runs go into the runs.",
+    help="Film every road in a folder; the film of a run is saved in the run's own folder.",
 )
 @choice_options
 @world_options("map_size")
@@ -120,7 +120,7 @@ def command(
 
     RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; a test of a campaign, such as CAMPAIGN/c01/17;
     or a road file, along which the camera moves without a car. The film shows the description, the speed, the
-    place on the road and the margin, and at the end the outcome. An existing film of the same name is
+    position along the road and the margin, and at the end the outcome. An existing film of the same name is
     replaced. Filming needs PyAV: python -m pip install 'roadgpt[film]'.
 
     \b

@@ -26,22 +26,27 @@ hand_option = click.option(
     type=folder,
     default=Path("data/descriptions"),
     show_default=True,
-    help="Folder with the hand-written pairs: train, validation, test, each of JSON lines.",
+    help="Folder with the hand-written training pairs: JSON lines in its folders train, validation and test.",
 )
 
 
 @click.group(cls=CommandGroup)
 def command() -> None:
-    """Train, evaluate and export a reader of your own."""
+    """Train, evaluate and export a reader of your own: the model that reads descriptions."""
 
 
 @command.command()
 @click.argument("out", type=folder)
 @hand_option
-@click.option("--number", "-n", type=COUNT, default=100_000, show_default=True, help="Pairs to generate.")
+@click.option(
+    "--number", "-n", type=COUNT, default=100_000, show_default=True, help="Number of pairs to generate."
+)
 @click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
 def data(out: Path, hand: Path, number: int, seed: int) -> None:
-    """Check the hand-written pairs, and write generated pairs into the folder OUT."""
+    """Check the hand-written training pairs, and write generated pairs into the folder OUT.
+
+    A pair is a description and the requirements that it states.
+    """
     from roadgpt.learn.near_duplicates import report
 
     splits = {name: _pairs_of(hand / name) for name in SPLITS if (hand / name).is_dir()}
@@ -76,16 +81,22 @@ def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
 @hand_option
 @click.option("--weights", type=folder, help="Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.")
 @click.option("--installed", is_flag=True, help="Start from the installed reader instead.")
-@click.option("--steps", type=COUNT, default=14_000, show_default=True, help="Batches of each process.")
-@click.option("--size", type=COUNT, default=48, show_default=True, help="Pairs in a batch.")
+@click.option(
+    "--steps",
+    type=COUNT,
+    default=14_000,
+    show_default=True,
+    help="Number of batches that each process trains on.",
+)
+@click.option("--size", type=COUNT, default=48, show_default=True, help="Number of pairs in a batch.")
 @click.option(
     "--workers",
     type=whole(1, 64, "processes"),
     default=2,
     show_default=True,
-    help="Training processes; use one per core.",
+    help="Number of training processes; use one per core.",
 )
-@click.option("--own", type=folder, help="Folder with pairs of your own to train on as well.")
+@click.option("--own", type=folder, help="Folder with training pairs of your own, used in addition.")
 @click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
 def train(
     out: Path,
@@ -100,7 +111,7 @@ def train(
 ) -> None:
     """Train a reader, or continue from the checkpoint in the folder OUT.
 
-    Ctrl-C loses the batches since the last save. The same command continues from there.
+    Ctrl-C loses only the batches since the last save; the same command continues from that save.
 
     \b
     roadgpt learn train runs/reader --weights MINILM
@@ -136,10 +147,17 @@ def train(
 @click.argument("out", type=folder)
 @hand_option
 @click.option(
-    "--chats", type=COUNT, default=None, help="Also write this many pairs as chats, for larger models."
+    "--chats",
+    type=COUNT,
+    default=None,
+    help="Also write this many pairs as chats, to fine-tune larger models.",
 )
 @click.option(
-    "--seed", type=SEED, default=1, show_default=True, help="Seed of the pairs in which words are counted."
+    "--seed",
+    type=SEED,
+    default=1,
+    show_default=True,
+    help="Seed of the generated pairs in which words are counted.",
 )
 def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int) -> None:
     """Write the reader of a CHECKPOINT folder, quantised to int8, into the folder OUT, ready for use."""
@@ -156,12 +174,13 @@ def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int
 
 @command.command()
 @click.argument("out", type=folder)
-@click.option("--number", "-n", type=COUNT, default=1000, show_default=True, help="Pairs to write.")
+@click.option("--number", "-n", type=COUNT, default=1000, show_default=True, help="Number of pairs.")
 @click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same chats.")
 def chats(out: Path, number: int, seed: int) -> None:
-    """Write pairs as chats into the folder OUT, for fine-tuning a larger model.
+    """Write training pairs as chats into the folder OUT, for fine-tuning a larger model.
 
-    In chat-brief.jsonl the answer is what the description asks for; in chat-design.jsonl it is a road.
+    Each chat asks with a generated description. In chat-brief.jsonl the answer is the requirements that the
+    description states; in chat-design.jsonl it is a road that meets them.
     """
     out.mkdir(parents=True, exist_ok=True)
     _write_chats(out, number, seed)
@@ -187,7 +206,7 @@ def _write_chats(out: Path, number: int, seed: int) -> None:
     type=click.Choice(SPLITS),
     default="validation",
     show_default=True,
-    help="Which part of the pairs to evaluate on.",
+    help="Part of the hand-written pairs to evaluate on.",
 )
 @click.option(
     "--reader",
@@ -195,9 +214,14 @@ def _write_chats(out: Path, number: int, seed: int) -> None:
     multiple=True,
     default=("model", "grammar"),
     show_default=True,
-    help="Reader to evaluate; give it again for more.",
+    help="Reader to evaluate; repeat the option for more readers.",
 )
-@click.option("--misses", type=whole(0, 10_000, "a number"), default=0, help="Show this many wrong readings.")
+@click.option(
+    "--misses",
+    type=whole(0, 10_000, "a number"),
+    default=0,
+    help="Show this many descriptions that were misread.",
+)
 @click.option(
     "--card", type=click.Path(path_type=Path), help="Write the model card of the first reader to this file."
 )

@@ -24,9 +24,9 @@ TEMPERATURE = 1.3  # of readings beside the likeliest one
 @setup_options("reader")
 @world_options("map_size")
 @click.option("--table", "as_table", is_flag=True, help="Print a row for each turn and straight.")
-@click.option("--json", "as_json", is_flag=True, help="Print what was read as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print the interpretation as JSON.")
 @click.option(
-    "--alternatives", "number", type=FEW, default=1, help="Show up to this many different readings."
+    "--alternatives", "number", type=FEW, default=1, help="Show up to this many different interpretations."
 )
 @chat_options_but("repair", "strategy")
 def command(
@@ -38,7 +38,7 @@ def command(
     number: int,
     **asked: Any,
 ) -> None:
-    """Show how a description is read, how sure the reader is, and whether the road fits on the map.
+    """Show how RoadGPT interprets a description, how confident it is, and whether the road fits on the map.
 
     \b
     roadgpt read "uphill, 3 turns, the last one a hairpin"

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 def command(folder: Path, opens: bool, junit: Path | None) -> None:
     """Write a report on a folder of runs, a campaign or a study.
 
-    DIR is the folder that roadgpt run, roadgpt campaign or roadgpt study wrote. It gets report.html,
-    report.md and the tables as CSV and LaTeX. The page needs no network and no server, and links to the runs
-    in DIR.
+    DIR is the folder that roadgpt run, roadgpt campaign or roadgpt study wrote. The command writes
+    report.html, report.md and the tables as CSV and LaTeX into DIR. The page needs no network and no server,
+    and links to the runs in DIR.
 
     \b
     roadgpt report roadgpt-runs/an-uphill-road-with-3-turns-7 --open

@@ -25,7 +25,8 @@ SERVER = next(flag for flag in CHAT if flag.field == "base_url")
     SERVER.flag,
     SERVER.field,
     default=None,
-    help="The server's address; a server that only a folder names gets no key.",
+    help="Address of the server. Repeat it here if the campaign names one: for safety, no API key is sent to "
+    "an address just because a folder names it.",
 )
 @fault_options
 @junit_option

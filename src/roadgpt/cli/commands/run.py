@@ -29,8 +29,8 @@ from roadgpt.cli.screen import Screen
 
 @click.command(cls=DescribedCommand)
 @click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION")
-@click.option("-n", "--roads", type=ROADS, default=1, show_default=True, help="How many roads.")
-@click.option("--seed", type=SEED, default=None, help="The same seed gives the same roads. [default: drawn]")
+@click.option("-n", "--roads", type=ROADS, default=1, show_default=True, help="Number of roads.")
+@click.option("--seed", type=SEED, default=None, help="The same seed gives the same roads. [default: random]")
 @click.option("--out", type=folder, default=None, help="Folder for the runs. [default: a new one]")
 @setup_options("reader", "designer", "driver", "simulator", "keep_driving")
 @world_options()
@@ -55,11 +55,11 @@ def command(
 
     \b
     Exit status:
-      0  every road has an outcome, whichever it is
+      0  every road has an outcome, even if it is FAIL, INVALID or ERROR
       2  the description or an option cannot be used
       3  nothing could be designed
-      4  a language model could not be asked, or a limit was reached
-    The roads that were finished are complete in every case.
+      4  a language model could not be used, or its token or cost limit was hit
+    Roads finished before an error are saved in full.
     """
     carry_out(job_of(" ".join(words), roads, **rest), Screen(roads, as_json, quiet, verbose))
 

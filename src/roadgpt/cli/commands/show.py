@@ -14,7 +14,7 @@ from roadgpt.errors import UsageError
 @click.command(cls=GroupedCommand)
 @click.argument("folders", nargs=-1, required=True, metavar="RUN...")
 @choice_options
-@click.option("--watch", is_flag=True, help="Keep showing how far a campaign is, until it ends.")
+@click.option("--watch", is_flag=True, help="Show the progress of a campaign until it ends.")
 @under(
     OUTPUT,
     click.option("--json", "as_json", is_flag=True, help="Print one JSON object for each campaign or road."),
@@ -24,7 +24,7 @@ from roadgpt.errors import UsageError
 def command(
     folders: tuple[str, ...], watch: bool, as_json: bool, progress: bool, once: bool, **rest: Any
 ) -> None:
-    """Summarise a run, a folder of runs or a campaign, and say how to make it again.
+    """Summarise a run, a folder of runs or a campaign, and print the command that repeats it.
 
     RUN is a run, such as DIR/runs/0001 or DIR/test.0001.json; the folder DIR that holds the runs; a campaign;
     a cell of a campaign, such as CAMPAIGN/c01; or a test of a campaign, such as CAMPAIGN/c01/17.

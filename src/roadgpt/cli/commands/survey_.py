@@ -22,18 +22,20 @@ def command() -> None:
 
 @command.command()
 @click.argument("file", metavar="[SURVEY.toml]", required=False, type=click.Path(path_type=Path))
-@click.option("--from", "study", type=folder, metavar="STUDY_DIR", help="Draw roads from folders of runs.")
+@click.option(
+    "--from", "study", type=folder, metavar="STUDY_DIR", help="Draw roads from its folders of runs."
+)
 @click.option("--out", type=folder, required=True, metavar="DIR", help="The survey's folder.")
-@click.option("--asks", default="", help="With --from: who asks; raters read it first.")
+@click.option("--asks", default="", help="With --from: who conducts the survey; raters see it first.")
 @click.option("--contact", default="", help="With --from: where raters can send questions.")
 @click.option(
     "--pairs",
     type=whole(0, 20, "a number"),
     default=2,
     show_default=True,
-    help="With --from: pairs to compare.",
+    help="With --from: number of pairs of roads to compare.",
 )
-@click.option("--seed", type=SEED, default=0, show_default=True, help="With --from: which roads are drawn.")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="With --from: seed of the draw.")
 @click.option("--no-films", is_flag=True, help="Make no films, which take most of the time.")
 def new(
     file: Path | None,
@@ -47,8 +49,9 @@ def new(
 ) -> None:
     """Make a survey from runs: plots, films and 3-D views of every road, and the questions.
 
-    SURVEY.toml names the runs; --from draws one valid road from each folder of runs below a folder, and pairs
-    of roads of one description. It writes a SURVEY.toml, which you can edit, into the survey's folder.
+    SURVEY.toml names the runs. Instead, --from STUDY_DIR draws one valid road from each folder of runs in
+    STUDY_DIR, and pairs of roads with the same description; it writes them as a SURVEY.toml, which you can
+    edit, into the survey's folder.
 
     \b
     roadgpt study survey new SURVEY.toml --out my-survey
@@ -81,7 +84,10 @@ def new(
 @command.command()
 @survey_folder
 @click.option(
-    "--raters", type=whole(0, 10_000, "people"), default=0, help="How many raters get a link of their own."
+    "--raters",
+    type=whole(0, 10_000, "people"),
+    default=0,
+    help="Number of raters who each get a personal link.",
 )
 @click.option("--open", "is_open", is_flag=True, help="Let anyone join who has the shared link.")
 @click.option(
@@ -91,10 +97,10 @@ def new(
     show_default=True,
     help="Port of the server; 0: a free one.",
 )
-@click.option("--host", default="127.0.0.1", show_default=True, help="127.0.0.1: this machine; 0.0.0.0: all.")
 @click.option(
-    "--url", default="", help="Address at which raters reach the server, if it stands behind another one."
+    "--host", default="127.0.0.1", show_default=True, help="127.0.0.1: only this machine; 0.0.0.0: all."
 )
+@click.option("--url", default="", help="Address at which raters reach the server, if it is behind a proxy.")
 def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url: str) -> None:
     """Serve a survey until Ctrl-C; each answer is on the disk before it is confirmed.
 
@@ -114,10 +120,18 @@ def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url
 @survey_folder
 @click.option("--out", type=folder, metavar="DIR", help="Folder for the report. [default: in the survey's]")
 @click.option(
-    "--synthetic", type=whole(1, 10_000, "a number"), help="Analyse this many made-up raters instead."
+    "--synthetic",
+    type=whole(1, 10_000, "a number"),
+    help="Analyse answers of this many simulated raters instead.",
 )
-@click.option("--agreement", type=measure(0, 1), default=0.8, show_default=True, help="How often they agree.")
-@click.option("--seed", type=SEED, default=0, show_default=True, help="Seed of made-up raters.")
+@click.option(
+    "--agreement",
+    type=measure(0, 1),
+    default=0.8,
+    show_default=True,
+    help="With --synthetic: how often raters agree, 0 to 1.",
+)
+@click.option("--seed", type=SEED, default=0, show_default=True, help="With --synthetic: seed of the raters.")
 def analyse(directory: Path, out: Path | None, synthetic: int | None, agreement: float, seed: int) -> None:
     """Analyse the answers: figures, medians, tests, agreement, and measurements.
 
