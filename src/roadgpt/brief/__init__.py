@@ -6,8 +6,8 @@ created without arguments or with ChatSettings as ``settings``, with one method
     read(words: str) -> Brief
 
 ``read`` raises BriefError, with one sentence that says what to change, if the description is empty, is not
-about a road, contradicts itself or asks for something impossible. It lists the words that it did not
-understand in ``Brief.unused``. All readers share one table of what the words mean: ``words.py``.
+about a road, contradicts itself or asks for something impossible. Words that the reader did not understand
+are listed in ``Brief.unused``. All readers take the meanings of words from one table, in ``words.py``.
 """
 
 from functools import cache
@@ -105,16 +105,16 @@ def read(
 
     Args:
         words: the description, up to 2,000 characters.
-        reader: name of an installed reader, or 'model:FOLDER' for the model reader with other weights.
+        reader: name of an installed reader, or 'model:FOLDER' for the model reader with weights in FOLDER.
         map_size: side of the square map that has to hold the road, in metres; None skips this check.
         min_radius: radius of the tightest turn allowed, in metres.
         max_grade: steepest slope allowed, as a ratio (0.15 is 15 %).
-        chat: which language model to ask, for readers that use one; None takes the user's settings.
+        chat: settings of the language model, for readers that use one; None takes the user's settings.
         road_width: width of the carriageway in metres.
 
     Raises:
-        NoRoomError: the map is too small for such a road; the message says what would fit on it, and which
-            size of map would hold this road.
+        NoRoomError: the map is too small for such a road; the message says what would fit on this map, and
+            which size of map would hold the road.
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
         PartError: no reader of that name is installed.
@@ -145,18 +145,19 @@ def alternatives(
 ) -> tuple[Brief, ...]:
     """Returns up to ``number`` different readings of a description, the likeliest first.
 
-    A reader that has only one reading returns that one. Readings that no road on this map can satisfy are
-    left out.
+    If the reader can only give one reading, the result has only that one. Readings that no road on this map
+    can satisfy are left out.
 
     Args:
         words: the description, up to 2,000 characters.
         number: the largest number of readings to return.
         reader: name of an installed reader.
         map_size: side of the square map in metres; None skips the check whether the road fits.
-        temperature: how freely the other readings are sampled; 1 is the model's own distribution.
+        temperature: how freely the readings after the first are sampled; 1 samples from the model's own
+            distribution, lower values stay closer to the likeliest reading.
         seed: seed of the sampling; the same seed gives the same readings.
         min_radius: radius of the tightest turn allowed, in metres.
-        max_grade: steepest slope allowed, as a ratio.
+        max_grade: steepest slope allowed, as a ratio (0.15 is 15 %).
 
     Raises:
         BriefError: as in ``read``, for the likeliest reading.
@@ -184,11 +185,11 @@ def _is_possible(brief: Brief, map_size: float | None, min_radius: float, max_gr
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:
-    """Returns the reader of that name; each reader is created once and then kept.
+    """Returns the reader of that name; each reader is created once and then reused.
 
     Args:
-        name: name of an installed reader; 'model:FOLDER' reads with the weights in that folder.
-        chat: which language model to ask, for readers that use one; None takes the user's settings.
+        name: name of an installed reader; 'model:FOLDER' is the model reader with the weights in FOLDER.
+        chat: settings of the language model, for readers that use one; None takes the user's settings.
 
     Raises:
         PartError: no such reader is installed, or the folder holds no weights.

@@ -1,4 +1,4 @@
-"""The turns and straights that a road is made of, as numbers."""
+"""The numerical description of the turns and straights that a road is made of."""
 
 from math import inf, radians
 from typing import NamedTuple
@@ -7,45 +7,50 @@ from roadgpt.brief.words import Range
 
 
 class Element(NamedTuple):
-    """A turn (a clothoid, an arc and a clothoid), or a straight where ``turn`` is 0; on one slope."""
+    """One turn or one straight with constant grade; ``turn`` is 0 for a straight.
+
+    A turn consists of a clothoid, an arc and a second clothoid.
+    """
 
     straight: float = 0.0
-    """Length of a straight in metres. The length of a turn follows from its other numbers."""
+    """Length of a straight in metres; not used for a turn, whose length follows from its other fields."""
     turn: float = 0.0
-    """Change of heading in degrees, left positive."""
+    """Change of heading in degrees, positive to the left; 0 for a straight."""
     radius: float = inf
-    """Radius of the arc in metres."""
+    """Radius of the arc of a turn in metres; infinite for a straight."""
     transition: float = 0.0
-    """Length in metres of the clothoid at either end of a turn."""
+    """Length in metres of each of the two clothoids of a turn."""
     incline: float = 0.0
     """Grade in percent, uphill positive."""
     vertical_radius: float | None = None
-    """Radius in metres of the parabola from the slope before; None leaves it open."""
+    """Radius in metres of the vertical curve (a parabola) between the previous grade and this one; None
+    leaves the choice to the design."""
     required_length: Range | None = None
-    """Metres that a straight was asked to have; None of a turn, or of a straight that only joins others."""
+    """Range in metres that the length of a straight must lie in; None for a turn, and for a straight that was
+    added only to join other elements."""
     required_grade: Range | None = None
-    """Percent that the grade as a whole must lie in; None where nothing was asked."""
+    """Range in percent that the mean grade must lie in; None if the description asks for no grade here."""
 
     @property
     def length(self) -> float:
-        """Metres along the plan."""
+        """Length in metres along the plan view of the road."""
         return self.radius * radians(abs(self.turn)) + self.transition if self.turn else self.straight
 
     @property
     def is_elastic(self) -> bool:
-        """Whether this is a straight that may be made longer."""
+        """Whether this is a straight that the design may lengthen."""
         return not self.turn and (self.required_length is None or self.required_length.hi == inf)
 
     @property
     def has_fixed_length(self) -> bool:
-        """Whether this is a straight whose length was asked for with an upper limit."""
+        """Whether this is a straight whose required length has an upper limit."""
         return self.required_length is not None and self.required_length.hi < inf
 
     @property
     def curvature(self) -> float:
-        """Curvature of the arc in 1/m, left positive; 0 of a straight."""
+        """Curvature of the arc in 1/m, positive to the left; 0 for a straight."""
         return (1 if self.turn > 0 else -1) / self.radius
 
 
 Elements = tuple[Element, ...]
-"""Elements of a road in driving order."""
+"""The elements of a road in driving order."""

@@ -1,4 +1,6 @@
-"""Finds contradictions and impossible requirements before any design starts, and says what to change."""
+"""Finds contradictions and impossible requirements in a Brief before a road is designed, and says what to
+change.
+"""
 
 from math import inf
 from typing import NamedTuple
@@ -46,18 +48,19 @@ def check(
     max_grade: float = STEEPEST / 100,
     road_width: float = ROAD_WIDTH,
 ) -> None:
-    """Checks that some road could satisfy a Brief, as far as its numbers alone can tell.
+    """Checks, from the numbers of a Brief alone, whether some road could satisfy it.
 
     Args:
-        brief: what was asked for, in normal form or not.
+        brief: the requirements, in normal form or not.
         map_size: side of the square map in metres; None skips the check whether the road fits.
         min_radius: radius of the tightest turn allowed, in metres.
-        max_grade: steepest slope allowed, as a ratio; no design is steeper than 15 %.
+        max_grade: steepest slope allowed, as a ratio (0.15 is 15 %); values above 0.15 have no effect.
         road_width: width of the carriageway in metres.
 
     Raises:
         NoRoomError: the map is too small; a larger one may hold the road.
-        BriefError: the first contradiction or impossible requirement found, in one sentence.
+        BriefError: there is a contradiction or an impossible requirement; the message, one sentence, names
+            the first one found.
     """
     for clause in brief.clauses:
         _counts(clause)

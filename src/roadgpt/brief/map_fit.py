@@ -1,4 +1,4 @@
-"""Checks whether a Brief can fit on the map, as far as its numbers can tell, and proposes what would."""
+"""Checks from the numbers of a Brief whether its road can fit on the map, and proposes what would fit."""
 
 from math import ceil, floor, sqrt
 
@@ -19,29 +19,31 @@ LARGEST_MAP = 10_000.0  # metres
 
 
 def longest_straight(map_size: float, road_width: float = ROAD_WIDTH) -> float:
-    """Returns the longest straight that fits on the map, in metres.
+    """Returns the length of the longest straight that fits on the map, in metres.
 
-    It runs from corner to corner, far enough from the border that the whole carriageway lies on the map.
+    The straight runs from corner to corner, far enough from the border that the whole carriageway lies on the
+    map.
     """
     return sqrt(2) * (map_size - road_width - 2 * EDGE)
 
 
 def map_for_straight(metres: float, road_width: float = ROAD_WIDTH) -> float:
-    """Returns the side in metres of the smallest map that holds a straight, in steps of 50 m."""
+    """Returns the side in metres of the smallest map for a straight of this length, in steps of 50 m."""
     return ceil((metres / sqrt(2) + road_width + 2 * EDGE) / ROUND_MAP) * ROUND_MAP
 
 
 def check_room(brief: Brief, map_size: float, min_radius: float, road_width: float = ROAD_WIDTH) -> None:
-    """Checks that a Brief may fit on a map; only the design itself can tell whether it does.
+    """Checks that a map is not obviously too small for a Brief; only the design shows whether the road really
+    fits.
 
     Args:
-        brief: what was asked for, in normal form.
+        brief: the requirements, in normal form.
         map_size: side of the square map in metres.
         min_radius: radius of the tightest turn allowed, in metres.
         road_width: width of the carriageway in metres.
 
     Raises:
-        NoRoomError: it cannot fit; the message says what would.
+        NoRoomError: the road cannot fit; the message says what would.
         BriefError: a radius is larger than the map.
     """
     _straights(brief, map_size, road_width)

@@ -1,4 +1,4 @@
-"""Computes how many metres of road a Brief needs at least."""
+"""Computes a lower bound of the length of the roads that satisfy a Brief."""
 
 from math import radians
 
@@ -11,10 +11,10 @@ GAP = 16.0  # metres of straight between two turns to the same side
 
 
 def least_length(brief: Brief, min_radius: float) -> float:
-    """Returns the least length in metres for the clauses and the number of turns.
+    """Returns the smallest length in metres of a road with the clauses and the number of turns of a Brief.
 
     Args:
-        brief: what was asked for.
+        brief: the requirements.
         min_radius: radius of the tightest turn allowed, in metres.
     """
     metres = sum(_way(clause, min_radius) for clause in brief.clauses)

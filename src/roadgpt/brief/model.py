@@ -1,6 +1,6 @@
-"""The Brief: what a description asks for, as data.
+"""The Brief: the requirements for a road that were read from a description, as data.
 
-People write Briefs, so their numbers are in the units that people use: degrees, metres and percent.
+Numbers in a Brief are in everyday units (degrees, metres and percent), so that people can write Briefs.
 """
 
 from collections.abc import Iterator
@@ -44,8 +44,8 @@ class Frozen(BaseModel):
 
 
 class Amount(Frozen):
-    """A number as it was asked for: exact (lo == hi), a lower bound (hi is None), an upper bound (lo is None)
-    or a range.
+    """A number as the description gives it: exact (lo == hi), a lower bound (hi is None), an upper bound (lo
+    is None) or a range.
     """
 
     lo: Annotated[float | None, Field(allow_inf_nan=False)] = None
@@ -61,7 +61,7 @@ class Amount(Frozen):
 
     @property
     def exact(self) -> bool:
-        """True if a single number was asked for, rather than a bound or a range."""
+        """True if the amount is a single number, not a bound or a range."""
         return self.lo == self.hi
 
 
@@ -90,9 +90,9 @@ class Clause(Frozen):
 
     kind: Kind
     count: Amount = Amount(lo=1, hi=1)
-    """How many features of this kind follow one another. For serpentine, zigzag, slalom, winding and
-    switchback with a number ("4 switchbacks"), it is the number of turns. An s_bend or a chicane counts as
-    one feature ("two S-bends" is 2)."""
+    """How many features of this kind follow one another. For a serpentine, zigzag, slalom, winding road or
+    switchback with a number ("4 switchbacks"), ``count`` is the number of turns. An s_bend or a chicane
+    counts as one feature ("two S-bends" is 2)."""
     side: Side | None = None
     """The side of every turn; if the turns alternate, the side of the first."""
     alternating: bool = False
@@ -104,7 +104,7 @@ class Clause(Frozen):
     length: Amount | None = None
     """In metres: the length of each straight, or of each turn along its curve."""
     size: Size | None = None
-    """The size of a straight that was given in words: "a long straight"."""
+    """The size of a straight if the description gives a word instead of a number: "a long straight"."""
     slope: Slope | None = None
     incline: Amount | None = None
     """The grade in percent, always positive; ``slope`` says whether it is up or down."""
@@ -113,7 +113,7 @@ class Clause(Frozen):
 class Brief(Frozen):
     """A description and the requirements that were read from it.
 
-    ``clauses`` stand in driving order. If any clause is a turn, the clauses name *all* turns of the road. The
+    ``clauses`` are in driving order. If any clause is a turn, the clauses name *all* turns of the road. The
     other fields are requirements for the road as a whole, which hold in addition to the clauses.
     """
 
@@ -130,13 +130,13 @@ class Brief(Frozen):
     radius: Amount | None = None
     """The radius of every turn in metres."""
     turning: Amount | None = None
-    """The sum of the angles of all turns in degrees, left and right alike."""
+    """The sum of the absolute turning angles of all turns in degrees."""
     slope: Slope | None = None
     """The slope of the whole road."""
     incline: Amount | None = None
     """The grade of the whole road in percent, always positive; ``slope`` says whether it is up or down."""
     steepest: Amount | None = None
-    """The grade of the steepest place in percent, always positive, up or down."""
+    """The absolute value of the grade at the steepest place, in percent."""
     climb: Amount | None = None
     """The height of the end above the start in metres, negative if the road falls."""
     hills: Amount | None = None
@@ -148,9 +148,9 @@ class Brief(Frozen):
     ends: Clause | None = None
     """The last feature, if the clauses do not already name it."""
     motorway: bool = False
-    """True if a motorway was asked for; see ``brief.motorway``."""
+    """True if the description asks for a motorway; see ``brief.motorway``."""
     hard: bool = False
-    """True if the road shall be hard for a lane keeper: tight turns, fast approaches, crests."""
+    """True if the road should be difficult for a lane keeper: tight turns, fast approaches, crests."""
     unused: tuple[str, ...] = ()
     """The words of the description that were not understood."""
     confidence: Annotated[float, Field(ge=0, le=1)] = 1.0

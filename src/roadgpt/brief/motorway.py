@@ -1,9 +1,9 @@
-"""Motorways, freeways, Autobahnen: what the word requires, and whether the map can hold such a road.
+"""Motorways, freeways, Autobahnen: what these words require, and whether the map can hold such a road.
 
-The readers read the word as sweeping turns. An actual motorway is wider still: if the map can hold it, every
-turn has a radius of 600 m or more, and no place is steeper than 5 percent. On a smaller map its turns are
-only as wide as sweeping ones, and ``remarks`` says so. What the description says about the turns themselves
-("a motorway with a hairpin") takes precedence over the word.
+The readers read "motorway" as a road with sweeping turns. An actual motorway has wider turns than that: if
+the map can hold them, every turn gets a radius of 600 m or more, and no place is steeper than 5 percent. On a
+smaller map, the turns are only sweeping ones, and ``remarks`` reports this. Requirements for the turns
+themselves ("a motorway with a hairpin") take precedence over those of the word "motorway".
 
 Sources: AASHTO, A Policy on Geometric Design of Highways and Streets (2018), for 70 mph: radii of 2,040 ft or
 more (622 m) at 6 percent superelevation, grades up to 5 percent in mountains, curves of at least 15 ft for
@@ -36,12 +36,12 @@ NOT_ONE = _bag(
     "no not without off from to towards toward near beside leaving leave join joining over under",
     "kein keine keiner ohne neben zur zum von pas sans vers quitter sin hacia junto senza verso accanto non",
 )
-"""If one of these stands before the word, the road is not a motorway, or is only near one."""
+"""Words that, right before "motorway", mean that the road is not a motorway, or only near one."""
 BACK = 3  # how many words before it are checked
 PARTS_OF_ONE = _bag(
     "exit exits ramp ramps slip interchange junction entrance bridge services ausfahrt auffahrt"
 )
-"""If one of these follows the word, it names another road that belongs to a motorway."""
+"""Words that, right after "motorway", name another road that belongs to the motorway, such as a ramp."""
 OPEN_KINDS = frozenset({"turn", "s_bend", "winding"})
 """The kinds of turns whose radius is not fixed by their kind."""
 SHORTEST_CURVE = 320.0  # metres
@@ -82,7 +82,7 @@ def has_low_grades(brief: Brief) -> bool:
 
 
 def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
-    """Returns sentences, without full stops, on what the word requires and whether this map can hold it."""
+    """Returns sentences, without full stops, on what "motorway" requires and whether this map can hold it."""
     if not brief.motorway:
         return ()
     wide, low = f"turns of {MOTORWAY_RADIUS:g} m radius or more", f"grades of {MOTORWAY_GRADE:g} % or less"

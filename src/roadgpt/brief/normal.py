@@ -1,21 +1,21 @@
 """The normal form of a Brief: two Briefs that ask for the same road have the same normal form.
 
-- ``words``, ``unused`` and ``confidence`` say where a Brief came from, not what it asks for: they are
+- ``words``, ``unused`` and ``confidence`` describe the origin of a Brief, not its requirements, and are
   cleared.
-- A slope with a number has no adverb: 'steeply up' at 12 percent is up at 12 percent. A number alone is
-  uphill.
-- Straights, crests and dips stand one by one, and so do turns that alternate from a known side. Other equal
-  neighbours are merged into one clause with a count.
-- A serpentine 'of 4 turns or more' is a serpentine. ``alternating`` is not set for kinds that always
-  alternate.
+- A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A number
+  without a slope means uphill.
+- Straights, crests and dips become one clause each, and so do turns that alternate from a known side. Other
+  equal neighbours are merged into one clause with a count.
+- A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
+  that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
 - If all clauses have the same slope, it becomes the slope of the whole road.
 - Fields that only repeat the clauses (number of turns, left or right, slope, first and last feature) are
   cleared.
 - If 4 of 5 turns go left, 1 goes right; if none goes left, all turns go right.
 - 'N turns' and nothing else is one clause; 'N or more turns' and nothing else is a requirement for the road.
-- If nothing is said about turns, at least one is meant; if only straights are named, none. In that case, and
-  only then, '0 or more turns' is kept.
+- A Brief that does not mention turns requires at least one turn; a Brief that names only straights requires
+  none. Only a Brief that names only straights can keep the requirement '0 or more turns'.
 """
 
 from math import inf
@@ -69,7 +69,7 @@ def _simpler(brief: Brief) -> Brief:
 
 
 def clauses_turn(clauses: list[Clause] | tuple[Clause, ...]) -> bool:
-    """Returns True if any clause is a turn."""
+    """Returns True if any of the clauses contains a turn."""
     return any(clause.kind not in STRAIGHT for clause in clauses)
 
 
@@ -104,7 +104,7 @@ def _turns(clause: Clause | None) -> bool:
 
 
 def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:
-    """Returns how many turns the clauses have together; exactly 0 if none of them is a turn."""
+    """Returns the total number of turns of the clauses; exactly 0 if none of them contains a turn."""
     lo, hi = 0.0, 0.0
     for clause in clauses:
         if clause.kind not in STRAIGHT:
@@ -114,7 +114,7 @@ def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:
 
 
 def turns_of(clause: Clause) -> tuple[float, float]:
-    """Returns the least and largest number of turns of a turning clause; the largest may be ``inf``."""
+    """Returns the least and largest number of turns of a clause that turns; the largest may be ``inf``."""
     own = KINDS[clause.kind].turns
     least, most = (own.lo, own.hi) if own else (1.0, 1.0)
     lo, hi = clause.count.lo or 0.0, inf if clause.count.hi is None else clause.count.hi

@@ -1,8 +1,8 @@
-"""Turns a Brief into ranges that can be measured on the finished geometry.
+"""Converts a Brief to ranges that can be measured on the finished geometry.
 
-Designers aim inside an Outline, and the rule ``promises`` compares a finished road with it. All numbers are
-in the units of ``words.py`` (degrees, metres, percent with uphill positive), measured in the way that
-``check.measures`` measures them.
+Designers aim for values inside the ranges of an Outline, and the rule ``promises`` compares a finished road
+with them. All numbers are in the units of ``words.py`` (degrees, metres, percent with uphill positive), and
+are measured as in ``check.measures``.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -44,7 +44,7 @@ class Feature:
 
     kind: Literal["turn", "straight"]
     name: str
-    """The word for it in messages, such as 'hairpin'."""
+    """The name of the feature in messages, such as 'hairpin'."""
     side: Side | None = None
     degrees: Range | None = None
     radius: Range | None = None
@@ -54,7 +54,7 @@ class Feature:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """``lo`` to ``hi`` equal features in a row; if ``hi`` is None, there is no upper limit."""
+    """A row of ``lo`` to ``hi`` equal features; if ``hi`` is None, there is no upper limit."""
 
     feature: Feature
     lo: int = 1
@@ -68,7 +68,7 @@ class Outline:
     """All requirements of a Brief as measurable ranges."""
 
     groups: tuple[Group, ...]
-    """The features in driving order; if any of them is a turn, they name all turns of the road."""
+    """The features in driving order; if any feature is a turn, the groups name all turns of the road."""
     turns: Range
     left: Range = NO_LIMIT
     right: Range = NO_LIMIT
@@ -76,12 +76,13 @@ class Outline:
     each_turn: Feature = Feature("turn", "turn")
     """Limits for every turn, in addition to those of its group."""
     grade: Literal["up", "down", "flat"] | None = None
-    """The slope of the whole road: 'up' or 'down' in every 20 m window, or 'flat', which is within 1 %."""
+    """The slope of the whole road: 'up' or 'down' means that every 20 m window rises or falls; 'flat' means
+    that all grades lie within 1 percent."""
     grade_range: Range | None = None
-    """In percent: the mean grade of the whole road if ``grade`` is 'up' or 'down', else the grade at
-    every place."""
+    """Range in percent: for the mean grade of the whole road if ``grade`` is 'up' or 'down', else for the
+    grade at every place."""
     turning: Range | None = None
-    """The sum of the angles of all turns in degrees."""
+    """The range of the sum of the angles of all turns, in degrees."""
     steepest: Range | None = None
     climb: Range | None = None
     hills: Range | None = None

@@ -1,8 +1,9 @@
-"""Writes a Brief as one short line and reads it back, for people who label descriptions and for models.
+"""Writes a Brief as one short line, called a plan, and reads it back; for people who label data and for
+models.
 
     turn x3 left up; straight long down; hairpin right | len=300 hard
 
-The clauses stand in driving order, separated by ``;``. After ``|`` stand the requirements for the whole road.
+The clauses are in driving order, separated by ``;``. The requirements for the whole road follow after ``|``.
 A number is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief.
 """
 
@@ -42,7 +43,7 @@ Model = TypeVar("Model", Brief, Clause)
 
 
 def plan(brief: Brief) -> str:
-    """Returns the line of a Brief; the line leaves out the description, unused words and the confidence."""
+    """Returns the plan of a Brief; the plan omits the description, the unused words and the confidence."""
     wishes = _mods(brief, ROAD_KEYS)
     for place in PLACES:
         clause = getattr(brief, place)
@@ -75,10 +76,10 @@ def _amount(amount: Amount) -> str:
 
 
 def read_plan(line: str) -> Brief:
-    """Returns the Brief that a line describes.
+    """Returns the Brief that a plan describes.
 
     Raises:
-        BriefError: a word, key or number is not part of the language, or a field is given twice.
+        BriefError: a word, key or number is not part of the plan language, or a field is given twice.
     """
     clauses, _, wishes = line.partition("|")
     fields: dict[str, object] = {

@@ -5,10 +5,10 @@ from roadgpt.errors import BriefError
 
 
 class TooMuchError(BriefError):
-    """Raised if more is asked for than the usual map of 250 m is known to hold; another map may hold it.
+    """Raised if a description asks for more than the usual map of 250 m can hold; a larger map may hold it.
 
     Attributes:
-        brief: what is asked for; ``brief.read`` checks it against the actual map.
+        brief: the requirements; ``brief.read`` checks them against the actual map.
     """
 
     def __init__(self, sentence: str, brief: Brief) -> None:
@@ -17,10 +17,10 @@ class TooMuchError(BriefError):
 
 
 class NoRoomError(BriefError):
-    """Raised if the map is too small for what is asked for.
+    """Raised if the map is too small for the requirements.
 
     Attributes:
-        brief: what is asked for.
+        brief: the requirements.
     """
 
     def __init__(self, sentence: str, brief: Brief) -> None:

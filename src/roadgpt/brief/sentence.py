@@ -20,7 +20,7 @@ WAVY = ("serpentine", "zigzag", "winding", "slalom")
 
 
 def sentence(brief: Brief) -> str:
-    """Returns what was understood as a sentence, such as 'An uphill road with 3 turns.'"""
+    """Returns a sentence that states the requirements of a Brief, such as 'An uphill road with 3 turns.'"""
     said = normal(brief)
     adjectives = [_exact_metres(said.length)]
     if said.slope and not said.incline:
@@ -129,7 +129,9 @@ def clause_columns(clause: Clause) -> tuple[str, str]:
 
 
 def road_words(brief: Brief) -> str:
-    """Returns what is asked of the whole road, such as 'uphill, 3 turns'; empty if nothing is."""
+    """Returns the requirements for the whole road as text, such as 'uphill, 3 turns'; empty if there are
+    none.
+    """
     slope = SLOPE_WORDS[brief.slope] if brief.slope and not brief.incline else ""
     turns = ""
     if not brief.clauses and brief.turns and brief.turns not in (at_least(1), exactly(0), at_least(0)):

@@ -1,6 +1,6 @@
-"""Derives the sides of turns where the numbers leave no choice.
+"""Derives the sides of turns that follow from the other numbers.
 
-Of 5 turns of which 4 go left, 1 goes right; of 3 turns of which none goes left, all go right.
+If 4 of 5 turns go left, 1 goes right; if none of 3 turns goes left, all go right.
 """
 
 from roadgpt.brief.model import Amount, Brief, Clause, Side, exactly
@@ -21,13 +21,13 @@ def with_other_side(whole: Brief, turns: Amount) -> Brief:
 
 
 def forced_side(whole: Brief) -> Side | None:
-    """Returns the side to which all turns go because none may go to the other; None if both may."""
+    """Returns the side of all turns if turns to the other side are excluded; None if they are not."""
     sides = [one for one, other in SIDES if getattr(whole, other) == NONE]
     return sides[0] if len(sides) == 1 else None
 
 
 def as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """Turns '4 turns or more, none to the right' into a clause of turns to the left."""
+    """Converts the requirement '4 turns or more, none to the right' to a clause of turns to the left."""
     side, turns = forced_side(whole), whole.turns
     if clauses or not side or not turns or not turns.lo or whole.starts or whole.ends:
         return whole, clauses

@@ -1,8 +1,8 @@
-"""The table of what words mean, from which the readers, the Outline and the documents take their numbers.
+"""The table of what words such as "hairpin" mean, used by the readers, the Outline and the documentation.
 
-Every number is in the unit that people use (degrees, metres, percent with uphill positive) and applies to a
-measurement on the finished geometry: the angle and the tightest radius of a turn, the length of a straight,
-the mean grade of a feature. Designers aim well inside these ranges; measured curvature is averaged over 5 m.
+Every number is in everyday units (degrees, metres, percent with uphill positive) and applies to a measurement
+on the finished geometry: the angle and the tightest radius of a turn, the length of a straight, the mean
+grade of a feature. Designers aim well inside these ranges; measured curvature is averaged over 5 m.
 """
 
 from __future__ import annotations
@@ -35,7 +35,9 @@ class Range:
 
 
 def overlap(one: Range | None, other: Range | None) -> Range | None:
-    """Returns the intersection of two ranges (None is no limit); ``lo`` is above ``hi`` if it is empty."""
+    """Returns the intersection of two ranges; None means no limit, and an empty intersection has ``lo`` >
+    ``hi``.
+    """
     if one is None or other is None:
         return one or other
     return Range(max(one.lo, other.lo), min(one.hi, other.hi))
@@ -46,19 +48,19 @@ class Meaning:
     """What a word requires; a field that is None requires nothing."""
 
     names: tuple[str, ...]
-    """The English words with this meaning; RoadGPT itself uses the first one."""
+    """The English words with this meaning; RoadGPT's own texts use the first one."""
     turns: Range | None = None
-    """How many turns one such feature has, if no number is given."""
+    """How many turns one such feature has, if the description gives no number."""
     alternating: bool = False
     degrees: Range | None = None
-    """The change of heading of each turn in degrees; for a straight, the sum of all changes along it."""
+    """The change of heading of each turn in degrees; for a straight, the total change of heading along it."""
     aim: Range | None = None
-    """The degrees that designers aim for, if the whole allowed range would include poor examples of the
+    """The degrees that designers aim for, if some values in the allowed range would be poor examples of the
     word."""
     radius: Range | None = None
     """The radius in metres at the tightest place of each turn."""
     length: Range | None = None
-    """In metres."""
+    """The length of the feature in metres."""
     grade: Range | None = None
     """The mean grade of the feature in percent, uphill positive."""
 
@@ -100,7 +102,8 @@ SHARPNESS: Mapping[Sharpness, Meaning] = {
         ("sharp", "tight", "hard"), degrees=Range(30, 120), aim=Range(35, 115), radius=Range(0, 30)
     ),
 }
-"""On a map that cannot hold radii of 60 m, a sweeping turn may be as tight as a gentle one."""
+"""The meanings of words for sharpness. On a map that cannot hold radii of 60 m, a sweeping turn may be as
+tight as a gentle one."""
 
 SIZES: Mapping[Size, Meaning] = {
     "long": Meaning(("long",), length=Range(60)),
@@ -119,9 +122,9 @@ SLOPES: Mapping[Slope, Meaning] = {
 }
 
 MOUNTAIN = Range(4, 15)
-"""The grade in percent of the steepest place of 'a mountain road', up or down."""
+"""The grade of the steepest place of 'a mountain road' in percent, up or down."""
 HILLS = 3
-"""How often 'a hilly road' changes between climbing and falling at least: up, down, up, down."""
+"""The least number of changes between climbing and falling of 'a hilly road': up, down, up, down."""
 ROAD_SIZES: Mapping[Size, Range] = {"long": Range(250), "short": Range(20, 150)}
 """The length in metres of 'a long road' and 'a short road'."""
 
@@ -139,7 +142,7 @@ TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 
 def degrees_slack(degrees: float) -> float:
-    """Returns the tolerance of an angle in degrees: 10 %, but at most 7, or at most 10 from 90 degrees on."""
+    """Returns the tolerance of an angle in degrees: 10 %, limited to 7 degrees (10 from 90 degrees on)."""
     return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
 
 
@@ -167,7 +170,8 @@ OTHER_TURNS = (
     ("several, a series of", "3 or more", "-", "-"),
     ("many, lots of, numerous", "4 or more", "-", "-"),
 )
-"""Words of the grammar reader that stand for a turn with given numbers, or for a number."""
+"""Rows of the table for other words of the grammar reader, such as 'kink': words, turns, degrees, radius in
+m."""
 
 
 def _turns() -> list[str]:

@@ -5,9 +5,9 @@
     reply.data      # a validated Road; if the model gave none, ask() raised a ReplyError
 
 A provider is a plug-in registered under the entry point ``roadgpt.providers``: a class that is created with
-ChatSettings and has a method ``ask``. Its answers are data: they are validated against the schema, and never
-executed, used in a path, or trusted beyond the schema. Keys come from the environment, a .env file or the
-user's settings, and are sent to the server only.
+ChatSettings and has a method ``ask``. The answers of a model are data: they are validated against the schema,
+and never executed, used in a path, or trusted beyond the schema. API keys come from the environment, a .env
+file or the user's settings, and are sent to the server only.
 """
 
 import inspect
@@ -49,11 +49,12 @@ class Chat(Protocol):
 
     @property
     def spent(self) -> Spent:
-        """What all questions to this Chat have cost so far, including those without a usable answer."""
+        """The total cost so far of all questions to this Chat, including those without a usable answer."""
         ...
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """Returns the answer to the last of the messages; with a schema, ``reply.data`` is an instance of it.
+        """Returns the answer to the last message; if a schema is given, ``reply.data`` is a validated
+        instance of it.
 
         Raises:
             BudgetError: the question could exceed the limit of tokens or money; it was not asked.
@@ -65,7 +66,10 @@ class Chat(Protocol):
 
 
 def open_chat(settings: ChatSettings) -> Chat:
-    """Returns a Chat with the model of the settings, which counts its costs and records if that is set.
+    """Returns a Chat with the model in the settings, which counts its costs.
+
+    If the settings name a folder for recording, all exchanges are stored there; if they name a folder to
+    replay, the answers come from that folder instead of a server.
 
     Raises:
         ChatError: there is no key or no model, or the library of the provider is not installed.
@@ -94,17 +98,19 @@ def _filled(settings: ChatSettings) -> ChatSettings:
 
 
 def asks_a_model(part: Any) -> bool:
-    """Returns True if a reader or designer takes ChatSettings, as ``__init__(self, settings)``."""
+    """Returns True if a plug-in is a class that takes ChatSettings, as ``__init__(self, settings)``."""
     return isinstance(part, type) and "settings" in inspect.signature(part).parameters
 
 
 def settings_for(part: Any, settings: ChatSettings | None) -> ChatSettings | None:
-    """Returns the settings to create a plug-in with, by default the user's own; None if it takes none."""
+    """Returns the settings for creating a plug-in: those given, else the user's; None if it takes no
+    settings.
+    """
     return (settings or configured()) if asks_a_model(part) else None
 
 
 def instantiate(part: Any, settings: ChatSettings | None = None) -> Any:
-    """Returns an object of a plug-in, created with the settings if its class takes some."""
+    """Returns an instance of a plug-in, created with ``settings`` if its class takes ChatSettings."""
     if asks_a_model(part):
         return part(settings)
     return part() if callable(part) else part

@@ -1,4 +1,4 @@
-"""Addresses of servers: the URL that is asked, and the origin that a key belongs to."""
+"""Addresses of servers: the URL for requests, and the origin (scheme, host, port) that a key is valid for."""
 
 from urllib.parse import urlsplit
 
@@ -10,7 +10,7 @@ Origin = tuple[str, str, int | None]
 
 
 def address_of(base_url: str | None) -> str:
-    """Returns the address of a server, with the usual path added if none was given."""
+    """Returns the URL of a server, with the usual path appended if ``base_url`` has no path."""
     place = (base_url or OPENAI).rstrip("/")
     for door in DOORS:
         place = place.removesuffix(door)
@@ -21,7 +21,7 @@ def address_of(base_url: str | None) -> str:
 
 
 def origin_of(base_url: str | None) -> Origin:
-    """Returns scheme, host and port in normal form; those of OpenAI if no server is named."""
+    """Returns the scheme, host and port of a URL in normal form; those of OpenAI's server for None."""
     parts = urlsplit((base_url or OPENAI).strip())
     scheme = parts.scheme.lower()
     try:

@@ -1,4 +1,4 @@
-"""Reads the answer of a server from its JSON, in which every field may be missing or of another type."""
+"""Extracts the answer from the JSON of a server, in which any field may be missing or have another type."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +12,7 @@ MOST_TOKENS = 100_000_000  # of one exchange; a larger number is not taken for a
 
 @dataclass(frozen=True)
 class Answer:
-    """One answer of a server."""
+    """The answer of a server to one request."""
 
     text: str = ""
     model: str = ""
@@ -22,7 +22,7 @@ class Answer:
 
 
 def from_chat(body: dict[str, Any]) -> Answer:
-    """Returns the answer in a response of the Chat Completions API."""
+    """Extracts the answer from a response of the Chat Completions API."""
     choices = body.get("choices")
     choice = choices[0] if isinstance(choices, list) and choices and isinstance(choices[0], dict) else {}
     message = choice.get("message")
@@ -42,7 +42,7 @@ def from_chat(body: dict[str, Any]) -> Answer:
 
 
 def from_responses(body: dict[str, Any]) -> Answer:
-    """Returns the answer in a response of the Responses API."""
+    """Extracts the answer from a response of the Responses API."""
     said: list[str] = []
     refusal: str | None = None
     output = body.get("output")

@@ -1,8 +1,8 @@
-"""Sends one request through the library ``openai``, with time limits, retries, and errors as sentences.
+"""Sends requests through the library ``openai``, with time limits, retries, and plain sentences as errors.
 
-The answer is read as bytes under limits of time and size, and parsed by our own rules, because servers
-that call themselves compatible leave fields out and add others. The key is removed from everything that
-comes back.
+The answer is read as bytes under limits of time and size, and parsed by RoadGPT's own rules, because servers
+that claim to be compatible omit fields and add others. The API key is removed from everything that a server
+returns.
 """
 
 import contextvars
@@ -76,19 +76,19 @@ class ApiClient:
             raise ChatError(f"a connection to {self.place} cannot be made: {why}") from None
 
     def chat(self, body: dict[str, Any]) -> dict[str, Any]:
-        """Returns the response of the Chat Completions API."""
+        """Sends a request to the Chat Completions API and returns the response."""
         return self._with_patience(self._client.chat.completions.with_streaming_response.create, body)
 
     def respond(self, body: dict[str, Any]) -> dict[str, Any]:
-        """Returns the response of the Responses API."""
+        """Sends a request to the Responses API and returns the response."""
         return self._with_patience(self._client.responses.with_streaming_response.create, body)
 
     def begin_conversation(self) -> dict[str, Any]:
-        """Starts a conversation that the server stores, and returns its description."""
+        """Starts a conversation that the server stores, and returns the server's description of it."""
         return self._with_patience(self._client.conversations.with_streaming_response.create, {})
 
     def models(self) -> list[dict[str, Any]]:
-        """Returns the models of the server, as it describes them."""
+        """Returns the models of the server, each as the dictionary that the server sends."""
         found = self._with_patience(self._client.models.with_streaming_response.list, {}).get("data")
         return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
@@ -156,7 +156,7 @@ class ApiClient:
         return answer
 
     def redacted(self, value: Any) -> Any:
-        """Returns a value without the key, wherever it occurs."""
+        """Returns a copy of a text, list or dictionary from which the API key has been removed."""
         return redacted(value, self._key)
 
     def _fault_of(self, error: BaseException) -> BaseException:

@@ -1,14 +1,15 @@
-"""Finds settings in options, the environment, .env and TOML files, in this order, and remembers their origin.
+"""Looks up settings in options, the environment, .env and TOML files, in this order, and remembers their
+origin.
 
     option        --model gpt-5-mini
     environment   ROADGPT_MODEL=gpt-5-mini       also OPENAI_BASE_URL and OPENAI_API_KEY
     .env          the same names, in the working folder
     TOML          roadgpt.toml in the working folder, then the user's config.toml: model under [chat]
 
-The plan file of a campaign (its table [chat]) comes between the options and the environment. A key is never a
-setting: it has no option, is not part of ChatSettings, and is only shown masked. It is sent to servers
-that the user names by an option, the environment or the user's own file; other files may come from
-somebody else.
+The plan file of a campaign (its table [chat]) comes between the options and the environment. An API key is
+not a setting: it has no option, is not part of ChatSettings, and is only shown masked. It is sent only to
+servers that the user names by an option, the environment or the user's own file, because somebody else may
+have written the other files.
 """
 
 import os
@@ -35,7 +36,7 @@ DEFAULT = "default"
 DOTENV = ".env"
 PROJECT = "roadgpt.toml"
 FOLDER = (DOTENV, PROJECT)
-"""Files that come with a working folder, and so may have been written by somebody else."""
+"""Files in the working folder, which may have been written by somebody else."""
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 LINE = re.compile(r"\s*(?:export\s+)?([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
 OF_OTHERS = "ROADGPT_NO_NUMBA"  # used in the room drive
@@ -43,18 +44,18 @@ MOST_BYTES = 1_000_000  # of a settings file
 
 
 class Setting(NamedTuple):
-    """A value and where it was found."""
+    """The value of a setting and where it was found."""
 
     value: Any
     origin: str
 
 
 class Layer(NamedTuple):
-    """One place in which settings are looked up."""
+    """One source of settings, such as the environment or a file."""
 
     name: str
     found: dict[str, Any]
-    """Values by field, or by the name of the variable if the place is the environment."""
+    """Values by field, or by the name of the variable if the source is the environment."""
     tables: Mapping[str, Any] = MappingProxyType({})
     """All tables of a TOML file, by name; ``roadgpt.cli.configuration`` reads those other than ``[chat]``."""
 
@@ -75,7 +76,7 @@ def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 def settings_with_origin(
     flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 ) -> dict[str, Setting]:
-    """Returns every setting with its origin; the first place that has it counts.
+    """Returns every setting with its origin; the first source that has a setting takes precedence.
 
     Raises:
         UsageError: a settings file cannot be read, or has a setting that does not exist.
@@ -132,14 +133,15 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 
 
 def key_for(base_url: str | None) -> Key | None:
-    """Returns the key for a server; None if there is none.
+    """Returns the API key for a server; None if there is none.
 
-    A server that is named only by a file of the working folder gets a key only from such a file. A server
-    that is named only by a plan, a campaign or a run gets none. Those files may come from somebody else.
+    A server that is named only by a file in the working folder gets a key only from such a file. A server
+    that is named only by a plan, a campaign or a run gets no key. Somebody else may have written these files.
 
     Raises:
         UsageError: a settings file cannot be read.
-        ChatError: the key contains impossible characters, or is the user's while the server is a file's.
+        ChatError: the key contains invalid characters, or only the user has a key and only a file names the
+            server.
     """
     host = origin_of(base_url)[1]
     names = ["ROADGPT_API_KEY", "OPENAI_API_KEY"]
@@ -164,7 +166,12 @@ def key_for(base_url: str | None) -> Key | None:
 
 
 def trust_server(base_url: str, wanted: str | None, place: object) -> None:
-    """Records that the user names the server that a file names, so that it may get the user's key.
+    """Allows a server that a file names to receive the user's key, because the user names the same server.
+
+    Args:
+        base_url: the server that the user names.
+        wanted: the server that the file names; None if it names no server.
+        place: the file or folder, for the message.
 
     Raises:
         UsageError: the file names another server.
@@ -176,7 +183,7 @@ def trust_server(base_url: str, wanted: str | None, place: object) -> None:
 
 
 def untrusted_source(base_url: str | None) -> str:
-    """Returns the file that names this server if the user does not; empty if the user or nobody names it."""
+    """Returns the file that names this server; empty if the user names it, too, or if no file does."""
     if not base_url:
         return ""
     wanted = origin_of(base_url)
@@ -193,7 +200,7 @@ def untrusted_source(base_url: str | None) -> str:
 
 
 def layers() -> list[Layer]:
-    """Returns every place of settings, in the order of precedence.
+    """Returns all sources of settings, in order of precedence, highest first; options are not included.
 
     Raises:
         UsageError: A file of settings cannot be read, or its table ``[chat]`` has an unknown key.
@@ -288,7 +295,7 @@ def _chat_table(whole: Mapping[str, Any], path: str) -> dict[str, Any]:
 
 
 def unknown_variables(others: Collection[str] = ()) -> list[str]:
-    """Returns the names of variables that look like settings of RoadGPT but are not, with their origin.
+    """Returns the names, with origin, of variables that look like settings of RoadGPT but are not.
 
     Args:
         others: Names of variables that set options other than those of a language model.

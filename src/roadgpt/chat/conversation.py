@@ -1,7 +1,7 @@
 """One conversation through the Responses API, which replaces the discontinued Assistants API.
 
-If the server can store the conversation, the model knows the earlier roads of a campaign. If it cannot,
-the last messages are sent along.
+If the server can store the conversation, the model remembers the earlier roads of a campaign. If the server
+cannot, the most recent messages are sent with each request.
 """
 
 from collections.abc import Sequence
@@ -26,14 +26,14 @@ class Conversation:
         self._turns: list[Message] = []
 
     def keep(self, messages: Sequence[Message], answer: str) -> None:
-        """Remembers one successful exchange."""
+        """Stores the messages and the answer of one successful exchange."""
         said = [message for message in messages if message.role != "system"]
         self._turns = [*self._turns, *said, Message(role="assistant", text=answer)][-MOST_TURNS:]
 
     def respond(
         self, client: ApiClient, quirks: ServerQuirks, messages: Sequence[Message], body: dict[str, Any]
     ) -> Answer:
-        """Returns the answer to messages that continue the conversation."""
+        """Sends messages that continue the conversation, and returns the answer."""
         rules = "\n\n".join(message.text for message in messages if message.role == "system")
         asked = [message for message in messages if message.role != "system"]
         if rules:

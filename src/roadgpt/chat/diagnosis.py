@@ -1,4 +1,4 @@
-"""Checks for ``roadgpt doctor`` whether the language model of the settings can be asked."""
+"""Checks for ``roadgpt doctor`` whether the configured language model can be used."""
 
 from importlib.metadata import PackageNotFoundError, version
 

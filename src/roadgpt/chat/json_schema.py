@@ -1,9 +1,9 @@
-"""Converts a pydantic model to a flat JSON schema, with the few keywords that all servers accept.
+"""Converts a pydantic model to a flat JSON schema that uses only the keywords that all servers accept.
 
-These are objects with every field required and no others, strings, numbers, booleans, lists, enumerations and
-null. Patterns, lengths, numeric limits, defaults and tuples are left out: one server ignores them, another
-rejects them, a third then answers without any constraint. They still apply, because every reply is
-validated against the pydantic model.
+The schema has objects with every field required and no others, strings, numbers, booleans, lists,
+enumerations and null. Patterns, lengths, numeric limits, defaults and tuples are left out: some servers
+ignore them, some reject them, and some then answer without any constraint. The limits still hold, because
+every reply is validated against the pydantic model.
 """
 
 from typing import Any
@@ -15,10 +15,11 @@ MOST_DEPTH = 5  # OpenAI's limit on nesting
 
 
 def fixed_description(text: str) -> ConfigDict:
-    """Returns the configuration of a model whose schema is described by this text, not by its docstring.
+    """Returns a configuration that makes ``text``, instead of the docstring, the description in a model's
+    schema.
 
-    Recorded answers are found by a hash of the question, of which the schema is a part. So a docstring may
-    change, but the text of the schema may not.
+    Recorded answers are found by a hash of the question, which includes the schema. So the docstring of a
+    model may change, but the description in its schema may not.
     """
     return ConfigDict(json_schema_extra={"description": text})
 
@@ -27,7 +28,7 @@ def schema_of(model: type[BaseModel]) -> dict[str, Any]:
     """Returns the flat JSON schema of a model.
 
     Raises:
-        TypeError: the model refers to itself or has objects without named fields; the caller has a bug.
+        TypeError: the model refers to itself or has objects without named fields; a bug in the caller.
     """
     whole = model.model_json_schema()
     return _flat(whole, whole.get("$defs", {}), 0)

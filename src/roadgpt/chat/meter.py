@@ -1,7 +1,7 @@
 """Counts what the questions of a campaign cost, and stops before a limit is exceeded.
 
-Readers and designers each have a Chat of their own; one Meter counts for all of them. ``counting`` sets the
-current one around a block of code.
+Each reader and each designer has its own Chat; one Meter counts for all of them. ``counting`` makes a meter
+the current one inside a ``with`` block.
 """
 
 from collections import Counter
@@ -35,17 +35,17 @@ class Meter:
         return cls() if settings is None else cls(settings.max_tokens, settings.max_cost)
 
     def add(self, spent: Spent) -> None:
-        """Adds costs."""
+        """Adds costs to the total."""
         self.spent = self.spent + spent
 
     def reply_tokens(self, prompt: int, most: int, price: tuple[float, float] | None, model: str) -> int:
-        """Returns how many tokens an answer may have without exceeding a limit.
+        """Returns the largest number of tokens that an answer may have without exceeding a limit.
 
         Args:
-            prompt: estimated tokens of the question.
-            most: the largest number of tokens of any answer.
+            prompt: estimated number of tokens of the question.
+            most: the largest number of tokens allowed for any answer.
             price: USD per million tokens of prompt and of completion; None if unknown.
-            model: name of the model, for the message.
+            model: name of the model, for the error message.
 
         Raises:
             BudgetError: too few tokens are left for an answer.
@@ -93,11 +93,12 @@ _now: ContextVar[_Now | None] = ContextVar("roadgpt_meter", default=None)
 
 @contextmanager
 def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
-    """Counts all questions of a block with this meter.
+    """Counts all questions that are asked inside a ``with`` block with this meter.
 
     Args:
         meter: the meter.
-        occasion: the road that the questions are for; recordings distinguish equal questions by it.
+        occasion: a label for the road that the questions are about; recordings use it to tell equal questions
+            apart.
     """
     before = _now.set(_Now(meter, occasion))
     try:
@@ -107,13 +108,13 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
 
 
 def occasion() -> str:
-    """Returns what the current questions are for."""
+    """Returns the label of the road that the current questions are about, as given to ``counting``."""
     now = _now.get()
     return now.occasion if now else ""
 
 
 class Account:
-    """Counts what one Chat spends, for the meter of the campaign or against limits of its own."""
+    """Counts what one Chat spends, with the campaign's meter or, without a campaign, with its own meter."""
 
     def __init__(self, settings: ChatSettings) -> None:
         self.settings = settings
@@ -122,15 +123,15 @@ class Account:
 
     @property
     def meter(self) -> Meter:
-        """The meter of the campaign; outside of a campaign, the Chat's own."""
+        """The meter of the current campaign; the Chat's own meter if there is no campaign."""
         now = _now.get()
         return now.meter if now else self._own
 
     def reply_tokens(self, messages: Sequence[Message], model: str) -> int:
-        """Returns how many tokens the answer to these messages may have.
+        """Returns the largest number of tokens that the answer to these messages may have.
 
         Raises:
-            BudgetError: too few are left.
+            BudgetError: too few tokens are left for an answer.
         """
         prompt = sum(tokens_in(message.text) for message in messages)
         price = price_of(self.settings, model)
@@ -143,7 +144,7 @@ class Account:
         return cost
 
     def add(self, spent: Spent) -> None:
-        """Adds costs that were counted elsewhere, as in a recording."""
+        """Adds costs that are already known, such as those of a recorded exchange."""
         self.spent = self.spent + spent
         self.meter.add(spent)
 

@@ -36,7 +36,7 @@ class Usage(ChatValue):
 
     @property
     def total(self) -> int:
-        """Tokens of question and answer together."""
+        """The number of tokens of question and answer together."""
         return self.prompt + self.completion
 
     def __add__(self, other: "Usage") -> "Usage":
@@ -55,10 +55,10 @@ class Reply(ChatValue):
     usage: Usage = Usage()
     seconds: float = 0.0
     cost: float | None = None
-    """In USD; None if the price of the model is unknown."""
+    """The cost in USD; None if the price of the model is unknown."""
     finish: str = "stop"
     conversation: str | None = None
-    """The id of the conversation on the server, with ``api="responses"``."""
+    """The id of the conversation on the server; only set with ``api="responses"``."""
 
 
 class Spent(ChatValue):
@@ -69,7 +69,7 @@ class Spent(ChatValue):
     usage: Usage = Usage()
     seconds: float = 0.0
     cost: float | None = 0.0
-    """In USD; None if a model was asked whose price is unknown."""
+    """The cost in USD; None if any model that was asked has an unknown price."""
 
     def __add__(self, other: "Spent") -> "Spent":
         cost = None if self.cost is None or other.cost is None else self.cost + other.cost
@@ -81,7 +81,7 @@ class Spent(ChatValue):
         )
 
     def since(self, before: "Spent") -> "Spent":
-        """Returns what was spent after ``before``."""
+        """Returns the difference between these costs and ``before``, an earlier state of them."""
         cost = None if self.cost is None or before.cost is None else round(self.cost - before.cost, DECIMALS)
         return Spent(
             calls=self.calls - before.calls,
@@ -95,37 +95,38 @@ class Spent(ChatValue):
 
 
 class ChatSettings(ChatValue):
-    """Which language model is asked and how; stored in run folders, and never contains a key."""
+    """The language model to ask and how to ask it; stored in run folders, and never contains an API key."""
 
     provider: str = "openai"
     """Name of an installed provider."""
     model: str | None = None
     """The server's name of the model; None uses the only model that the server has."""
     base_url: str | None = None
-    """Address of the server up to ``/v1``; None is OpenAI's own."""
+    """Address of the server up to ``/v1``; None means OpenAI's server."""
     api: Api = "chat"
-    """The Chat Completions API, or the Responses API with a conversation that the server stores."""
+    """'chat' is the Chat Completions API; 'responses' is the Responses API, whose conversation the server
+    stores."""
     temperature: Annotated[float, Field(ge=0, le=2)] | None = None
-    """None uses the server's default."""
+    """The sampling temperature, from 0 to 2; None uses the server's default."""
     timeout: Annotated[float, Field(gt=0, le=86_400)] = 60.0
-    """Seconds for one complete answer."""
+    """Time limit in seconds for one complete answer."""
     retries: Annotated[int, Field(ge=0, le=20)] = 3
-    """How often a request is repeated that failed because of the server, not because of the question."""
+    """The largest number of times that a request is repeated after a failure of the server."""
     max_completion: Annotated[int, Field(ge=16, le=1_000_000)] = 4096
-    """Limit of the tokens of one reply."""
+    """The largest number of tokens of one reply."""
     max_tokens: Annotated[int, Field(ge=1)] | None = None
-    """Limit of the tokens of the whole campaign, questions and answers."""
+    """The largest total number of tokens of all questions and answers of the campaign; None is no limit."""
     max_cost: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
-    """Limit in USD for the whole campaign."""
+    """The largest cost of the whole campaign in USD; None is no limit."""
     price: str | None = None
     """USD per million tokens of prompt and completion, as "0.15/0.60"; None uses the built-in table."""
     record: str | None = Field(default=None, exclude=True)
-    """Folder in which every exchange is stored; not written to files, so that a replay gives the same
+    """Folder in which every exchange is stored; never written to files, so that a replay writes the same
     files."""
     replay: str | None = Field(default=None, exclude=True)
-    """Folder from which every answer is taken instead of asking a server."""
+    """Folder of recorded exchanges, from which every answer is taken instead of asking a server."""
     rounds: Annotated[int, Field(ge=1, le=20)] = 3
-    """The largest number of questions for one road."""
+    """The largest number of questions that may be asked for one road."""
     repair: Repair = "full"
     strategy: Strategy = "whole"
 
@@ -156,7 +157,7 @@ class ChatSettings(ChatValue):
         return price
 
     def essence(self) -> Self:
-        """Returns the settings without those that may change when a campaign is resumed.
+        """Returns the settings with defaults for those that may change when a campaign is resumed.
 
         These are the limits of tokens and money, the price, the time-out, the retries and the folders of
         recordings.
@@ -166,14 +167,17 @@ class ChatSettings(ChatValue):
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
 
     def came_with(self, file: object) -> Self:
-        """Returns settings from somebody else's file: without folders, and without a key for its server."""
+        """Returns the settings without folders, and notes that ``file``, not the user, names their server.
+
+        For settings from somebody else's file. The user's API key is then not sent to the server.
+        """
         if self.base_url:
             SERVERS.add_from_file(str(origin_of(self.base_url)), file)
         return self.model_copy(update={"record": None, "replay": None})
 
 
 def two_prices(text: str) -> tuple[float, float]:
-    """Returns USD per million tokens of prompt and of completion, from a text like "0.15/0.60".
+    """Parses a text like "0.15/0.60" to two prices: USD per million tokens of prompt and of completion.
 
     Raises:
         ValueError: the text is not two numbers.

@@ -1,9 +1,9 @@
-"""Prices of tokens: USD per million, for the question and for the answer.
+"""Prices of language models in USD per million tokens, separately for the question and the answer.
 
 Source: OpenAI's price page as stored in the package genai-prices 0.2.3, standard rates for prompts below
-272,000 tokens, taken on 2026-11-20. Discounts for cached prompts are not counted, so a sum may be too high
-but never too low. Models that are not in the table, and all models on other servers, have no known price:
-use ``--price``.
+272,000 tokens, taken on 2026-11-20. Discounts for cached prompts are not counted, so a computed cost may be
+too high but never too low. Models that are not in the table, and all models on other servers, have no known
+price: use ``--price``.
 """
 
 import re
@@ -54,7 +54,7 @@ def has_openai_prices(base_url: str | None) -> bool:
 
 
 def price_of(settings: ChatSettings, model: str = "") -> tuple[float, float] | None:
-    """Returns USD per million tokens of prompt and of completion; None if unknown."""
+    """Returns the prices of a model: USD per million tokens of prompt and of completion; None if unknown."""
     if settings.price is not None:
         return two_prices(settings.price)
     if not has_openai_prices(settings.base_url):
@@ -67,5 +67,5 @@ def price_of(settings: ChatSettings, model: str = "") -> tuple[float, float] | N
 
 
 def cost_of(usage: Usage, price: tuple[float, float] | None) -> float | None:
-    """Returns the cost in USD; None if the price is unknown."""
+    """Returns the cost of these tokens in USD; None if the price is unknown."""
     return None if price is None else (usage.prompt * price[0] + usage.completion * price[1]) / 1e6

@@ -17,7 +17,7 @@ FAILURES = {kind.__name__: kind for kind in (RefusedError, UnparsableError, Repl
 def question_of(
     settings: ChatSettings, messages: Sequence[Message], schema: type[BaseModel] | None
 ) -> dict[str, Any]:
-    """Returns everything that defines a question, including the model that is asked."""
+    """Returns everything that defines a question, including the name of the model, as a dictionary."""
     parameters = {
         "api": settings.api,
         "temperature": settings.temperature,
@@ -33,7 +33,7 @@ def question_of(
 
 
 class Recorder:
-    """Asks a Chat and stores every answer, whether or not it could be used."""
+    """Wraps a Chat and stores every answer, whether or not the answer could be used."""
 
     def __init__(self, settings: ChatSettings, live: Any) -> None:
         assert settings.record is not None
@@ -43,12 +43,12 @@ class Recorder:
 
     @property
     def spent(self) -> Spent:
-        """What the underlying Chat has spent."""
+        """The costs of the wrapped Chat so far."""
         spent: Spent = self._live.spent
         return spent
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """Returns the answer of the underlying Chat; raises what it raises."""
+        """Returns the answer of the wrapped Chat; raises the same errors as ``Chat.ask``."""
         question = question_of(self._settings, messages, schema)
         before = self.spent
         try:
@@ -66,7 +66,7 @@ class Recorder:
 
 
 def replayed(kept: dict[str, Any], schema: type[BaseModel] | None, account: Account) -> Reply:
-    """Returns the recorded Reply; its data is validated again and its cost counted again.
+    """Returns a recorded Reply; validates its data again and counts its cost again.
 
     Raises:
         ReplyError: the exchange was recorded as a failure.

@@ -1,4 +1,4 @@
-"""An error of one request to a server, and how long to wait before the next try."""
+"""The error of a failed request to a server, and the waiting time before the next attempt."""
 
 import random
 import time
@@ -14,7 +14,7 @@ PATIENCE = 120.0  # s, the longest wait that a server may ask for
 
 @dataclass
 class RequestError(Exception):
-    """A request that failed."""
+    """Raised if a request to a server failed."""
 
     sentence: str
     status: int | None = None
@@ -22,13 +22,15 @@ class RequestError(Exception):
     """The server's own error message in lower case."""
     parameter: str = ""
     wait: float | None = None
-    """Seconds that the server asks to wait."""
+    """The number of seconds that the server asks the client to wait; None if it does not say."""
     is_retryable: bool = False
     """True if the same request may succeed later."""
 
 
 def retry_after(headers: Any) -> float | None:
-    """Returns the seconds of a retry-after header in any of its forms; None if there is none."""
+    """Returns the waiting time in seconds that a retry-after header, in any of its forms, asks for; else
+    None.
+    """
     for name, unit in (("retry-after-ms", 0.001), ("retry-after", 1.0)):
         text = headers.get(name)
         if not text:
@@ -46,7 +48,7 @@ def retry_after(headers: Any) -> float | None:
 
 
 def retry_delay(fault: RequestError, attempt: int) -> float | None:
-    """Returns the seconds until the next try; None if the server asks for more than PATIENCE."""
+    """Returns the seconds until the next attempt; None if the server asks for more than PATIENCE seconds."""
     if fault.wait is not None:
         if fault.wait > PATIENCE:
             fault.sentence += f"; it asks to wait {fault.wait:.0f} s, so try again later"

@@ -1,7 +1,7 @@
-"""Limits the size and time of every reply, whatever its status, and refuses redirects to other servers.
+"""Limits the size and time of every HTTP response, including errors, and refuses redirects to other servers.
 
 A server may answer with a gigabyte even when it reports an error, and a compressed megabyte may contain a
-gigabyte. So every reply is decompressed here piece by piece, and only up to the limit.
+gigabyte. So every response is decompressed piece by piece, and only up to the limit.
 """
 
 import time

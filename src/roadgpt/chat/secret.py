@@ -1,4 +1,4 @@
-"""Keys: shown only masked, and removed from every text that comes back from a server."""
+"""API keys: shown only masked, and removed from every text that a server returns."""
 
 import re
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ SHORTEST = 8  # characters of a key that is searched for in texts; shorter ones 
 
 @dataclass(frozen=True)
 class Key:
-    """A key and its origin; its text form is masked."""
+    """An API key and its origin; converted to text, the key is masked."""
 
     value: str = field(repr=False)
     origin: str
@@ -24,11 +24,11 @@ class Key:
 
 
 NO_KEY = Key("none", "nowhere")
-"""For servers that need no key; the library requires one."""
+"""A placeholder for servers that need no key, because the library requires one."""
 
 
 def masked(value: str) -> str:
-    """Returns a form of a key that can be shown: its beginning and its length."""
+    """Returns a form of a key that may be shown: its beginning and its length."""
     head = value[:3] if len(value) >= 20 else ""
     return f"{head}... ({len(value)} letters)"
 
@@ -37,7 +37,8 @@ def usable(key: Key) -> Key:
     """Returns the key without surrounding blanks.
 
     Raises:
-        ChatError: it is empty or has characters that no header can carry; the message does not show it.
+        ChatError: the key is empty or has characters that an HTTP header cannot contain; the message does not
+            show the key.
     """
     value = key.value.strip()
     if not value or not re.fullmatch(r"[!-~]+", value):
@@ -49,7 +50,9 @@ def usable(key: Key) -> Key:
 
 
 def redacted(value: Any, key: Key) -> Any:
-    """Returns a text, or all texts in lists and dictionaries, without the key and all that looks like one."""
+    """Removes the key, and everything that looks like a key, from a text or from all texts in lists and
+    dictionaries.
+    """
     if isinstance(value, str):
         if len(key.value) >= SHORTEST and key.value in value:
             value = value.replace(key.value, GONE)

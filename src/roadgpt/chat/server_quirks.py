@@ -1,7 +1,7 @@
-"""Remembers what a server accepts while the process runs, so that it is found out only once.
+"""Remembers what a server accepts, so that each process has to find it out only once.
 
-JSON is asked for in three ways, from the strictest to the loosest: with a schema that the server enforces;
-as any JSON object, with the schema in words; as plain text, from which the JSON is read.
+There are three ways of asking for JSON, from the strictest to the loosest: with a schema that the server
+enforces; as any JSON object, with the schema in the prompt; as plain text, from which the JSON is extracted.
 """
 
 from dataclasses import dataclass, field
@@ -23,22 +23,24 @@ class ResponseFormat(IntEnum):
 
 @dataclass
 class ServerQuirks:
-    """What is known about one model on one server."""
+    """What has been found out about one model on one server."""
 
     caps: tuple[str, ...]
-    """Names for the limit of a reply that are still to be tried; the first is in use."""
+    """Possible names of the parameter for the length limit of a reply; the first is in use."""
     response_format: ResponseFormat = ResponseFormat.SCHEMA
     dropped: set[str] = field(default_factory=set)
-    """Parameters that the server rejected."""
+    """Names of the parameters that the server rejected."""
     unusable: dict[ResponseFormat, int] = field(default_factory=dict)
     keeps_conversations: bool = True
 
     def failed(self, response_format: ResponseFormat) -> None:
-        """Counts a reply in this format that could not be used."""
+        """Counts a reply in this format that was not usable."""
         self.unusable[response_format] = self.unusable.get(response_format, 0) + 1
 
     def worked(self, response_format: ResponseFormat, refused: set[ResponseFormat]) -> None:
-        """Starts with this format from now on, if all stricter ones were rejected or failed repeatedly."""
+        """Makes this format the first to try from now on, if all stricter ones were rejected or failed
+        repeatedly.
+        """
         self.unusable[response_format] = 0
         above = range(self.response_format, response_format)
         if all(
@@ -52,7 +54,7 @@ _known: dict[tuple[str, str, str], ServerQuirks] = {}
 
 
 def quirks_of(place: str, model: str, api: str) -> ServerQuirks:
-    """Returns what is known about a model on a server, for one of its two APIs."""
+    """Returns what has been found out about a model on a server, for one of the server's two APIs."""
     # OpenAI's newer models reject the old name, most other servers silently ignore the new one
     caps = ("max_completion_tokens", "max_tokens")
     caps = caps if has_openai_prices(place) else caps[::-1]
@@ -62,5 +64,5 @@ def quirks_of(place: str, model: str, api: str) -> ServerQuirks:
 
 
 def forget() -> None:
-    """Forgets everything, as a new process would."""
+    """Forgets everything about all servers, as if the process had just started."""
     _known.clear()

@@ -1,11 +1,11 @@
-"""Stores exchanges on disk: the hash of a question names the file with its answers.
+"""Stores exchanges with a language model on disk, one file per question, named by the question's hash.
 
     DIR/3f/3f9a...json    {"question": {provider, model, messages, schema, parameters},
                            "answers": {occasion: [...]}}
 
-The same question may be asked for several roads, and more than once for one. So answers are grouped by
-occasion (the number of the road), in the order in which they arrived. A key is never part of a question or
-an answer.
+The same question may be asked for several roads, and more than once for one road. So answers are grouped by
+occasion (the number of the road), in the order in which they arrived. An API key is never part of a question
+or an answer.
 """
 
 import hashlib
@@ -20,17 +20,18 @@ from roadgpt.reading import read_json
 
 FORMAT = 1
 Turns = Counter[tuple[str, str, str]]
-"""How often a question was stored or taken in this campaign, by ('kept' or 'taken', name, occasion)."""
+"""How often each question was stored or answered in a campaign; keys: ('kept' or 'taken', name, occasion)."""
 
 
 class ExchangeStore:
-    """A folder of exchanges."""
+    """A folder of recorded exchanges."""
 
     def __init__(self, folder: str) -> None:
         self.folder = Path(folder)
 
     def keep(self, question: dict[str, Any], occasion: str, answer: dict[str, Any], turns: Turns) -> None:
-        """Stores an answer; the first one of a campaign for its occasion replaces older ones.
+        """Stores an answer; a campaign's first answer for an occasion replaces answers from earlier
+        campaigns.
 
         Raises:
             ChatError: the folder cannot be written to.
@@ -52,10 +53,10 @@ class ExchangeStore:
             ) from None
 
     def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
-        """Returns the next answer to a question on an occasion; None if there is none left.
+        """Returns the next recorded answer to a question on an occasion; None if no answer is left.
 
-        Answers recorded outside of a campaign serve on every occasion; outside of a campaign, all
-        recordings serve.
+        Answers that were recorded outside a campaign are used for every occasion that has none of its own.
+        Outside a campaign, the answers of all occasions are used.
         """
         name = name_of(question)
         answers = self._answers(name)
@@ -69,7 +70,7 @@ class ExchangeStore:
         return listed[turn]
 
     def models(self) -> list[str | None]:
-        """Returns the names of the models that were asked."""
+        """Returns the names of the models to which the recorded questions were sent."""
         names = {self._read(path).get("question", {}).get("model") for path in self.folder.glob("??/*.json")}
         return sorted(names, key=str)
 
@@ -99,5 +100,5 @@ def name_of(question: dict[str, Any]) -> str:
 
 
 def text_of(value: Any, indent: int | None = None) -> str:
-    """Returns JSON in one canonical form."""
+    """Returns a value as JSON in one canonical form."""
     return json.dumps(value, sort_keys=True, ensure_ascii=True, indent=indent, allow_nan=False)

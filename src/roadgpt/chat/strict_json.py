@@ -1,8 +1,8 @@
-"""Reads JSON from what a model wrote: strictly, but ignoring any text around it.
+"""Reads JSON from the text that a model wrote: strictly, but ignoring any text around it.
 
-Code fences, text before and after, and a model's reasoning are skipped. NaN and infinities, keys that
-occur twice with different values, extreme nesting and extreme length are rejected with one sentence.
-Nothing is evaluated.
+Code fences, text before and after, and a model's reasoning are skipped. NaN and infinities, keys that occur
+twice with different values, extreme nesting and extreme length are rejected with one sentence. Nothing is
+evaluated.
 """
 
 import json
@@ -27,21 +27,23 @@ Schema = TypeVar("Schema", bound=BaseModel)
 
 
 class NotReadableError(ValueError):
-    """What a model wrote is not what was asked for; the message says why in a few words."""
+    """Raised if a model's text is not in the requested form; the message gives the reason in a few words."""
 
 
 def plain(text: str, most: int = 80) -> str:
-    """Returns words of a model or a server for one line of a message: printable and shortened to ``most``."""
+    """Returns text from a model or a server for a one-line message: printable, shortened to ``most``
+    characters.
+    """
     shown = "".join(letter if letter.isprintable() else " " for letter in text[: 4 * most])
     shown = " ".join(shown.split())
     return shown if len(shown) <= most else f"{shown[:most].rstrip()} ..."
 
 
 def read_as(schema: type[Schema], text: str) -> Schema:
-    """Returns the first object in a text as an instance of the schema.
+    """Returns the first JSON object in a text as an instance of the schema.
 
     Raises:
-        NotReadableError: there is none, or it does not fit the schema.
+        NotReadableError: there is no object, or the object does not fit the schema.
     """
     data = read_object(text)
     try:
@@ -62,7 +64,7 @@ def read_object(text: str) -> dict[str, Any]:
     """Returns the first JSON object in a text.
 
     Raises:
-        NotReadableError: the text is blank, too long, or has no object that can be read.
+        NotReadableError: the text is blank, too long, or has no readable object.
     """
     if not text.strip():
         raise NotReadableError("it is blank")

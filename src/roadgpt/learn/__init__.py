@@ -1,6 +1,7 @@
-"""Makes training data for readers, trains them, and scores how well they read. Verb: ``readings``.
+"""Makes training data for readers, trains readers, and scores how well they read. Main function:
+``readings``.
 
-Hand-written pairs of a description and its plan are in ``data/descriptions``; ``generator.pairs`` draws
+Hand-written pairs of a description and its plan are in ``data/descriptions``; ``generator.pairs`` generates
 any number of others. ``labels`` reads and checks pairs, ``near_duplicates`` finds descriptions that are
-copies of each other, and ``evaluate`` compares what a reader makes of them with the labels.
+nearly the same, and ``evaluate`` compares the readings of a reader with the labels.
 """

@@ -1,4 +1,4 @@
-"""Varies hand-written pairs: mirrored, with another number, joined, with one more requirement."""
+"""Varies hand-written pairs: mirrors them, changes a number, joins two pairs, or adds a requirement."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,13 @@ LONGEST = 420  # letters of a joined text
 
 
 def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.Generator) -> Pair:
-    """Returns a hand-written pair, mostly varied at random; ``others`` are more pairs by language."""
+    """Returns a hand-written pair, in most cases with random variations.
+
+    Args:
+        pair: the pair of a description and its plan.
+        others: hand-written pairs by language, one of which may be joined to the pair.
+        rng: source of randomness.
+    """
     if rng.random() < 0.5:
         pair = _made(pair, mirrored(pair.text, pair.plan))
     if rng.random() < 0.4:
@@ -44,7 +50,7 @@ def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the pair with another count; None unless the count occurs once in the text and in the plan."""
+    """Returns the text and plan with another count; None unless the count occurs once in each of them."""
     counts = re.findall(r"(?:\bx|turns=)(\d+)(?![\d.])", pair.plan)
     if (
         len(counts) != 1
@@ -69,7 +75,7 @@ def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
 
 
 def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns two pairs as one, if both plans have clauses only; else None."""
+    """Returns the text and plan of two pairs joined as one road; None if a plan has more than clauses."""
     if any("|" in pair.plan or pair.plan.startswith("!") for pair in (one, other)):
         return None
     if len(one.text) + len(other.text) > LONGEST:
@@ -88,7 +94,7 @@ def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] 
 
 
 def with_requirement(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the pair with one more requirement for the whole road; None if that is not possible."""
+    """Returns the text and plan with one more requirement for the whole road; None if none can be added."""
     if "|" in pair.plan or pair.plan.startswith("!") or pair.lang not in LANGUAGES:
         return None
     try:

@@ -1,7 +1,8 @@
 """Back-labelling: designs and measures roads, and describes the measurements in several styles.
 
-The generator goes from phrases to plans; this goes from geometry to phrases, so that the numbers of a
-description occur together as they do on roads: lengths that add up, radii that suit their angles.
+The module ``generator`` draws phrases and derives plans from them; this module starts from the geometry. So
+the numbers of a description occur together as they do on roads: lengths that add up, radii that suit their
+angles.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,13 +22,13 @@ from roadgpt.road import World, build
 FAMILY = "measured-en"
 MOST_CLAUSES = 7
 FACTS = {"degrees": 0.6, "radius": 0.35, "slope": 0.6, "length": 0.6}
-"""How often each kind of fact is mentioned."""
+"""The probability with which each kind of fact is mentioned."""
 WHOLE = {"length": 0.4, "climb": 0.25}
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How one person writes: the words for turns and straights, conjunctions and units."""
+    """The writing style of one person: the words for turns and straights, conjunctions and units."""
 
     turn: Sequence[str]
     straight: Sequence[str]
@@ -69,7 +70,7 @@ STYLES = (
 
 
 def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
-    """Yields endless descriptions of measured roads with their plans; the same seed gives the same pairs."""
+    """Yields an endless series of descriptions of measured roads with their plans; seeded by ``seed``."""
     rng = np.random.default_rng([seed, 11])
     asked, place = pairs(seed, {"en": 1.0}), world or World()
     while True:
@@ -86,8 +87,8 @@ def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
 
 
 def described(brief: Brief, rng: np.random.Generator) -> Pair | None:
-    """Returns a description of some facts of a measured road with its plan; None if it has no or too many
-    clauses.
+    """Returns a description of some facts of a measured road, and its plan; None if the road has no clauses
+    or too many.
     """
     kept = {fact for fact, share in FACTS.items() if rng.random() < share}
     style = STYLES[int(rng.integers(len(STYLES)))]

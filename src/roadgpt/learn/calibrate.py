@@ -1,4 +1,4 @@
-"""Calibrates a reader's confidence to how often it was right on descriptions held back from training."""
+"""Fits a reader's confidence to how often the reader was right on descriptions held back from training."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ PULL = 0.01  # weight decay, so that few pairs do not lead to extreme weights
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """The content of ``settings.json``."""
+    """The content of ``settings.json``: the threshold of refusals and the weights of the confidence model."""
 
     refuse_from: float
     confidence: dict[str, float]

@@ -1,4 +1,4 @@
-"""Turns generated and hand-written pairs into batches of numbers for training."""
+"""Converts generated and hand-written pairs to batches of numbers for training."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,12 +19,12 @@ from roadgpt.learn.shared_values import with_shared_values
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SAID_BACK = 0.06
-"""Share of hand-written pairs whose text is replaced by RoadGPT's own sentence."""
+"""Share of hand-written pairs whose text is replaced by RoadGPT's own sentence for the plan."""
 
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """A pair as numbers: pieces of the text, and tokens of the plan with both end tokens."""
+    """A pair as numbers: the pieces of the text, and the tokens of the plan including start and end token."""
 
     pieces: tuple[int, ...]
     tokens: tuple[int, ...]
@@ -33,7 +33,7 @@ class Example:
 def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
     """Returns a pair as numbers; None if its plan has a number that is not in the text, or is too long.
 
-    With ``rng`` the slots are numbered at random, so that all slot tokens are learnt equally.
+    With ``rng``, the slots are numbered at random, so that the network learns all slot tokens equally well.
     """
     taken = slotted(pair.text)
     tokens = tokens_of(with_shared_values(pair.plan, taken.slots), taken.slots)
@@ -57,7 +57,9 @@ def _reslotted(
 
 
 def examples(seed: int, hand: Sequence[Pair], hand_share: float, pieces: WordPieces) -> Iterator[Example]:
-    """Yields endless examples; a share of them is hand-written and varied."""
+    """Yields an endless series of examples; the share ``hand_share`` of them is hand-written, with
+    variations.
+    """
     rng = np.random.default_rng([seed, 7])
     generated = pairs(seed)
     by_language: dict[str, list[Pair]] = {}
@@ -82,7 +84,17 @@ def _said_back(pair: Pair) -> Pair:
 
 
 def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Iterator[tuple[Numbers, Numbers]]:
-    """Yields batches of similar length: pieces (size, n) and tokens (size, m), padded with zeros."""
+    """Yields batches of examples of similar length, padded with zeros.
+
+    Args:
+        stream: the examples.
+        size: number of examples in a batch.
+        pool: number of batches whose examples are sorted by length together.
+        seed: seed of the order of the batches.
+
+    Yields:
+        The pieces, of shape (size, most pieces), and the tokens, of shape (size, most tokens).
+    """
     rng = np.random.default_rng([seed, 8])
     while True:
         many = sorted(
@@ -94,7 +106,7 @@ def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Itera
 
 
 def padded(rows: Sequence[Sequence[int]]) -> Numbers:
-    """Returns the rows as one array, padded with zeros."""
+    """Returns the rows as one array; shorter rows are padded with zeros at the end."""
     out = np.zeros((len(rows), max(len(row) for row in rows)), dtype=np.int64)
     for index, row in enumerate(rows):
         out[index, : len(row)] = row

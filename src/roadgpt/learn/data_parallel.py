@@ -22,10 +22,10 @@ def train_together(
     plan: TrainingSettings,
     report: Callable[[str], None],
 ) -> None:
-    """Trains as ``train`` does, with ``plan.workers`` processes; on a GPU only one is used.
+    """Trains as ``train`` does, but with ``plan.workers`` processes; on a GPU, only one process is used.
 
     Raises:
-        LearnError: a worker ended before its work was done.
+        LearnError: a worker process ended before its work was done.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for left_over in folder.glob("weights-*"):  # left by a training that was stopped between two saves

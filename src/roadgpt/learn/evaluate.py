@@ -1,4 +1,4 @@
-"""Scores a reader: compares its Briefs with the labels, as a whole and by parts."""
+"""Scores a reader: compares its Briefs with the labels, as a whole and by aspects such as slope and order."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -18,32 +18,32 @@ PARTS = ("turns", "slope", "order and side")
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One description, its label, and what a reader made of it."""
+    """One description, its label, and what a reader returned for it."""
 
     pair: Pair
     got: str
-    """The plan in normal form, or '!refused'."""
+    """The plan of the reader in normal form, or '!refused'."""
     confidence: float
     reason: str
-    """Why the description was refused."""
+    """The reason why the reader refused the description."""
     right: bool
     parts: frozenset[str]
-    """Those of PARTS that are right; all of them if a refusal was right."""
+    """The aspects listed in PARTS that are right; all of them if the description was rightly refused."""
 
     @property
     def is_honest(self) -> bool:
-        """True if the description asks for a road that can be built."""
+        """True if the label says that the description asks for a road that can be built."""
         return not self.pair.plan.startswith("!")
 
     @property
     def was_refused(self) -> bool:
-        """True if the reader refused."""
+        """True if the reader refused the description."""
         return self.got.startswith("!")
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """Shares of a set of readings, each from 0 to 1, and how many readings they are based on."""
+    """Shares of readings that are right in some respect, each from 0 to 1, and the number of readings."""
 
     number: int
     exact: float
@@ -55,7 +55,7 @@ class Score:
     refused_wrongly: float
 
     def row(self, name: str) -> str:
-        """Returns one row of a Markdown table."""
+        """Returns the scores as one row of a Markdown table, which begins with ``name``."""
         shares = (
             self.exact,
             self.turns,
@@ -75,7 +75,7 @@ HEAD = (
 
 
 def readings(pairs: Iterable[Pair], read: Read) -> list[Reading]:
-    """Returns the readings of all descriptions; a refusal is a reading, too."""
+    """Reads all descriptions and returns the results; a refusal also counts as a reading."""
     return [_reading(pair, read) for pair in pairs]
 
 
@@ -112,7 +112,7 @@ def _order(brief: Brief) -> tuple[object, ...]:
 
 
 def score(found: Sequence[Reading]) -> Score:
-    """Returns which shares of the readings are right."""
+    """Returns the shares of these readings that are right."""
     honest = [reading for reading in found if reading.is_honest]
     others = [reading for reading in found if not reading.is_honest]
     return Score(
@@ -133,7 +133,9 @@ def _share(rights: Iterable[bool]) -> float:
 
 
 def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]:
-    """Returns the scores of groups, such as languages or families."""
+    """Returns the scores of groups of readings, such as languages or families; ``key`` maps a pair to its
+    group.
+    """
     groups: dict[str, list[Reading]] = {}
     for reading in found:
         groups.setdefault(key(reading.pair), []).append(reading)
@@ -141,7 +143,8 @@ def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]
 
 
 def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
-    """Counts how often a word of a plan was wanted and another was written in its place; '-' stands for none.
+    """Counts, over all wrong readings, which word of the label's plan was replaced by which word; '-' is
+    none.
 
     The words of a plan are compared without regard to their order, and those that differ are paired
     alphabetically.
@@ -167,6 +170,6 @@ def _words(line: str) -> list[str]:
 
 
 def worst(found: Sequence[Reading], number: int = 30) -> list[Reading]:
-    """Returns the misses of which the reader was most confident."""
+    """Returns the wrong readings in which the reader was most confident."""
     misses = [reading for reading in found if not reading.right]
     return sorted(misses, key=lambda reading: (-reading.confidence, reading.pair.text))[:number]

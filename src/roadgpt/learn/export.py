@@ -25,28 +25,29 @@ from roadgpt.learn.pretrained import NOTICE
 
 OPSET = 17
 COUNTED = 20_000
-"""Number of generated pairs in which the words are counted."""
+"""Number of generated pairs in which words are counted to find those that the reader has learnt."""
 
 
 class EncoderGraph(nn.Module):
-    """Maps pieces (batch, n) to keys and values of the description (layers, 2, batch, heads, n, size)."""
+    """Maps pieces (batch, n) to keys and values of shape (layers, 2, batch, heads, n, head size)."""
 
     def __init__(self, reader: ReaderNetwork) -> None:
         super().__init__()
         self.reader = reader
 
     def forward(self, pieces: Tensor) -> Tensor:
-        """Encodes the pieces; pieces with the number 0 are padding."""
+        """Returns the keys and values of a description; pieces with the number 0 are padding."""
         seen = (pieces == 0)[:, None, None, :] * -1e4
         memory = self.reader.encode(pieces, seen)
         return torch.stack([torch.stack(pair) for pair in self.reader.start(memory)])
 
 
 class DecoderGraph(nn.Module):
-    """One step of the decoder.
+    """One step of the decoder, which takes the last token of a plan and scores the next one.
 
-    token (batch, 1), place (1,), own (layers, 2, batch, heads, t, size), across and seen (batch, 1, 1, n) ->
-    scores (batch, tokens), own with t + 1.
+    Inputs: ``token`` (batch, 1); ``place`` (1,), its position; ``own`` (layers, 2, batch, heads, t, head
+    size), the keys and values of the plan so far; ``across``, those of the description; ``seen`` (batch, 1,
+    1, n), the mask of the description. Outputs: the scores (batch, tokens), and ``own`` with t + 1 tokens.
     """
 
     def __init__(self, reader: ReaderNetwork) -> None:
@@ -70,7 +71,7 @@ class DecoderGraph(nn.Module):
 
 
 def export(reader: ReaderNetwork, folder: Path) -> None:
-    """Writes ``encoder.onnx`` and ``decoder.onnx`` with weights in int8."""
+    """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, with weights in int8."""
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
 
@@ -114,13 +115,13 @@ def _graphs(
 def export_checkpoint(
     checkpoint: Path, folder: Path, train_pairs: Sequence[Pair], held_back: Sequence[Pair], seed: int
 ) -> None:
-    """Writes everything that the reader needs from the folder of a training.
+    """Writes everything that the reader needs, from the checkpoint of a training.
 
     Args:
         checkpoint: folder with ``checkpoint.pt`` and ``pieces.txt``.
-        folder: gets the graphs, the pieces, the learnt words and the settings.
+        folder: where the graphs, the pieces, the learnt words and the settings are written.
         train_pairs: hand-written pairs that the model was trained on.
-        held_back: pairs that it was not trained on, for the calibration of the confidence.
+        held_back: pairs that the model was not trained on, for the calibration of the confidence.
         seed: seed of the generated pairs in which words are counted.
 
     Raises:

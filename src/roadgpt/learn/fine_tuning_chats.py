@@ -1,4 +1,4 @@
-"""Writes pairs as chats to fine-tune any larger model: description to Brief, or description to Design."""
+"""Writes pairs as chats for fine-tuning a larger model: from description to Brief, or to Design."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -19,14 +19,16 @@ TO_DESIGN = "Design a road for the description and answer with its road segments
 
 
 def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
-    """Yields one line of JSON for each pair."""
+    """Yields one line of JSON for each pair: a chat that asks for the Brief of a description and gives it."""
     for pair in pairs:
         answer = ADVICE[pair.plan] if pair.plan in REFUSALS else _json(read_plan(pair.plan))
         yield _chat(TO_BRIEF, pair.text, answer)
 
 
 def design_chats(pairs: Iterable[Pair], world: World, seed: int) -> Iterator[str]:
-    """Yields one line of JSON for each pair for which a road can be designed."""
+    """Yields one line of JSON, a chat from description to Design, for each pair for which a road can be
+    designed.
+    """
     for number, pair in enumerate(pairs):
         if pair.plan in REFUSALS:
             continue

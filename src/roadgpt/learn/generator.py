@@ -1,4 +1,4 @@
-"""Generates descriptions in any number: drawn from grammars, checked for plausibility, with typing noise."""
+"""Generates any number of descriptions from grammars, checks their plausibility, and adds typing errors."""
 
 import re
 from collections.abc import Iterator
@@ -17,9 +17,9 @@ from roadgpt.learn.plausibility import makes_sense
 from roadgpt.learn.standard import standard
 
 SPOILED = 0.045
-"""Share of valid descriptions that are made contradictory or impossible."""
+"""Share of valid descriptions that are made contradictory or impossible on purpose."""
 COMPOSED = 0.6
-"""Share of the English pairs that are composed instead of drawn from a grammar."""
+"""Share of the English pairs that come from ``compositions`` instead of a grammar."""
 SHARES = {"en": 0.62, "de": 0.10, "fr": 0.10, "es": 0.09, "it": 0.09}
 WISH = re.compile(r"\|\s*(?:(?:starts|ends)\([^()]*\)|[^\s;|]+)")
 KIND = re.compile(
@@ -38,7 +38,7 @@ class Pair:
 
 
 def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair]:
-    """Yields endless pairs; the same seed gives the same pairs."""
+    """Yields an endless series of pairs; the same seed gives the same pairs."""
     rng = np.random.default_rng(seed)
     shares = languages or SHARES
     codes, weights = list(shares), np.cumsum(list(shares.values()))
@@ -63,7 +63,7 @@ def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
 
 
 def draw(language: str, rng: np.random.Generator, symbol: str = "top") -> Pair | None:
-    """Returns one pair; None if what was drawn makes no sense."""
+    """Returns one random pair from a grammar; None if the result makes no sense."""
     try:
         text, raw = Speaker(grammar_of(language), rng).say(symbol)
         plan = assembled(raw)
@@ -86,7 +86,7 @@ def _composed(rng: np.random.Generator) -> Pair | None:
 
 
 def assembled(raw: str) -> str | None:
-    """Returns the plan in standard form from what the rules wrote; None if it makes no sense."""
+    """Returns the standard form of the plan that the grammar rules wrote; None if the plan makes no sense."""
     if "!" in raw:
         return "!" + raw.split("!")[1].split()[0]
     wishes = [wish.lstrip("| ").replace("straight_", "straight ") for wish in WISH.findall(raw)]

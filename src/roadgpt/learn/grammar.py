@@ -7,9 +7,10 @@ A grammar is a text. ``= name`` begins the rules of a symbol; each following lin
     [rather ]<#2-9:n> bends, the last one a hairpin   => turn x<=n-1>; hairpin
 
 ``3*`` is a weight, ``{a|b}`` a choice, ``[a]`` is used half of the time (``[20:a]`` in 20 % of cases),
-``<name>`` is another symbol (``<name?>`` half of the time, ``<name?20>``, ``<name:label>``), ``<#2-9>`` a
-number (``<#20-90/5>`` in steps), ``<=n-1>`` a sum of numbers in the text. Without ``=>``, the plan joins
-those of the parts in order. In a plan, ``|word`` is a requirement for the whole road wherever it stands.
+``<name>`` is another symbol (``<name?>`` half of the time, ``<name?20>`` in 20 % of cases, ``<name:label>``
+with a label), ``<#2-9>`` a number (``<#20-90/5>`` in steps of 5), ``<=n-1>`` a sum of numbers in the text.
+Without ``=>``, the plan of a rule consists of the plans of its parts in order. In a plan, ``|word`` is a
+requirement for the whole road, wherever it occurs.
 """
 
 import re
@@ -30,17 +31,17 @@ PART = re.compile(r"<([^<>]+)>")
 NUMBER = re.compile(r"#(\d+)-(\d+)(?:/(\d+))?")
 SUM = re.compile(r"=(\w+)([-+*])(\w+)")
 JOINT = re.compile(r"<((?:link|lastlink|vlink|oops|prewish|tailwish|lenwish|sidewish|hardwish)[?0-9]*)>")
-"""Symbols between other symbols; they get a space on both sides, and ``tidy`` removes what is not needed."""
+"""Symbols that join other symbols; they get a space on both sides, and ``tidy`` removes unneeded spaces."""
 DEEPEST = 30
 
 
 class Discarded(Exception):  # noqa: N818 - not an error: another draw follows
-    """Raised if what was drawn does not fit together; the caller draws again."""
+    """Raised if the parts that were drawn do not fit together; the caller draws again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Production:
-    """One way to write a symbol."""
+    """One rule of a symbol: a text, and the plan that it stands for."""
 
     text: str
     plan: str | None
@@ -53,11 +54,11 @@ class Grammar:
     language: str
     rules: Mapping[str, tuple[Production, ...]]
     weights: Mapping[str, tuple[float, ...]]
-    """Cumulative weights for drawing."""
+    """The cumulative weights of the rules of each symbol, for drawing."""
 
 
 def read_grammar(text: str, language: str) -> Grammar:
-    """Returns the grammar that a text describes.
+    """Parses the text of a grammar.
 
     Raises:
         LearnError: a symbol is used but has no rules.
@@ -105,7 +106,7 @@ def _name(part: str) -> tuple[str, str, int]:
 
 
 class Speaker:
-    """Draws descriptions from a grammar; each speaker prefers digits or words throughout a description."""
+    """Draws descriptions from a grammar; each speaker writes all numbers as digits, or all as words."""
 
     def __init__(self, grammar: Grammar, rng: np.random.Generator) -> None:
         self.grammar = grammar
@@ -113,10 +114,10 @@ class Speaker:
         self.digits = float(rng.choice([0.02, 0.5, 0.97], p=[0.35, 0.2, 0.45]))
 
     def say(self, symbol: str, depth: int = 0) -> tuple[str, str]:
-        """Returns a text for a symbol, and its plan.
+        """Returns a random text for a symbol, and the plan of the text.
 
         Raises:
-            Discarded: what was drawn does not fit together.
+            Discarded: the parts that were drawn do not fit together.
         """
         if depth > DEEPEST:
             raise Discarded

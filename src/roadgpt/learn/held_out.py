@@ -1,4 +1,4 @@
-"""Descriptions that no training may see: the project's own development prompts, stored as hashes."""
+"""Descriptions that must not be used for training: the project's development prompts, stored as hashes."""
 
 import re
 from hashlib import sha256
@@ -33,7 +33,7 @@ HELD_OUT = frozenset(
         "f510591305b6",
     }
 )
-"""The first 12 digits of the SHA-256 of each text in its plain form."""
+"""The first 12 hexadecimal digits of the hash of each text, as computed by ``fingerprint``."""
 
 
 def is_held_out(text: str) -> bool:
@@ -42,6 +42,6 @@ def is_held_out(text: str) -> bool:
 
 
 def fingerprint(text: str) -> str:
-    """Returns the hash of the plain words of a text."""
+    """Returns the hash of the words of a text, in lower case without accents and punctuation."""
     bare = " ".join(re.findall(r"[^\W_]+", plain(text)))
     return sha256(bare.encode()).hexdigest()[:12]

@@ -11,7 +11,7 @@ from roadgpt.learn.generator import Pair
 
 LEAST = 4  # times that a word must have been seen with a token
 LIFT = 2.5
-"""How many times more often than by chance."""
+"""How many times more often than by chance a word must occur with a plan token to count as learnt."""
 
 
 def joints() -> frozenset[str]:

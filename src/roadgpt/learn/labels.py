@@ -1,4 +1,4 @@
-"""Reads, checks and splits hand-written pairs; no family of phrasing is in two splits."""
+"""Reads, checks and splits hand-written pairs; all pairs of a family of phrasing are in the same split."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -19,7 +19,7 @@ SPLITS = ("train", "validation", "test")
 
 
 def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
-    """Returns all usable pairs of JSON-lines files, and a sentence for each line that is not usable."""
+    """Returns all usable pairs of JSON-lines files, and one sentence for each line that is not usable."""
     good: list[Pair] = []
     problems: list[str] = []
     seen: dict[str, str] = {}
@@ -49,7 +49,8 @@ def read_pair(line: str) -> Pair:
     """Returns the pair in one line of JSON, with its plan in standard form.
 
     Raises:
-        LearnError: no JSON, a missing field, a plan that cannot be read, or a text that is too long.
+        LearnError: the line is not JSON, lacks a field, has a plan that cannot be read, or a text that is too
+            long.
     """
     try:
         fields = json.loads(line)
@@ -74,7 +75,14 @@ def read_pair(line: str) -> Pair:
 def split(
     pairs: Sequence[Pair], test: int = 500, validation: float = 0.12, seed: int = 3
 ) -> dict[str, list[Pair]]:
-    """Splits pairs by whole families: at least ``test`` pairs for the test, and a share for validation."""
+    """Splits pairs into test, validation and training sets; all pairs of a family go to the same set.
+
+    Args:
+        pairs: the hand-written pairs.
+        test: least number of pairs in the test set.
+        validation: least share of the pairs in the validation set, from 0 to 1.
+        seed: seed of the order in which families are assigned.
+    """
     families: dict[str, list[Pair]] = {}
     for pair in pairs:
         families.setdefault(pair.family, []).append(pair)

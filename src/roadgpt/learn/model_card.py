@@ -18,15 +18,16 @@ def card(
     shown: Sequence[Reading],
     training: str,
 ) -> str:
-    """Returns the card as Markdown. It shows no description of the test split, since authors of pairs may
-    read it.
+    """Returns the model card as Markdown.
+
+    The card shows no description of the test split, since authors of pairs may read the card.
 
     Args:
         weights: folder of the exported model.
         data: number of pairs in each part of the data.
         found: the model's readings of the test split.
-        others: readings of the same split by other readers, by name.
-        shown: the model's readings of the validation split, for confusions and misses.
+        others: readings of the same split by other readers, by name of the reader.
+        shown: the model's readings of the validation split; the card shows confusions and wrong ones of them.
         training: one paragraph on the training.
     """
     return "\n".join(

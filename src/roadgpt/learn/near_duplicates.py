@@ -1,6 +1,6 @@
-"""Finds descriptions that were not written one by one: no two may share more than 60 % of their 5-grams.
+"""Finds descriptions that are nearly the same: two descriptions may share 60 % of their 5-grams at most.
 
-Numbers, sides and synonyms are masked first, so that a template filled with other words is found, too.
+Numbers, sides and synonyms are masked first, so that the same template with other words is also found.
 """
 
 import json
@@ -32,7 +32,7 @@ class NearDuplicate:
 
 
 def masked(text: str) -> tuple[str, ...]:
-    """Returns the words of a text with numbers, sides and synonyms masked."""
+    """Returns the words of a text, with numbers, sides and synonyms replaced by masks."""
     return tuple(_mask(word) for word in re.findall(r"\d+(?:[.,]\d+)?|[^\W\d_]+", plain(text)))
 
 
@@ -44,7 +44,7 @@ def _mask(word: str) -> str:
 
 
 def grams(text: str) -> Counter[tuple[str, ...]]:
-    """Counts the 5-grams of a text; a shorter text is one gram of all its words."""
+    """Counts the 5-grams of a text (five words in a row); all words of a shorter text form a single gram."""
     said = masked(text)
     size = min(GRAM, len(said))
     return Counter(said[at : at + size] for at in range(max(1, len(said) - size + 1)))
@@ -53,7 +53,11 @@ def grams(text: str) -> Counter[tuple[str, ...]]:
 def near_duplicates(texts: Sequence[str], most: float = MOST_SHARED) -> list[NearDuplicate]:
     """Returns all pairs of texts that share more than ``most`` of the shorter one's 5-grams, worst first.
 
-    Texts of masked words only are skipped, since there are few ways to write "two left bends".
+    Texts that consist of masked words only are skipped, since there are few ways to write "two left bends".
+
+    Args:
+        texts: the texts to compare.
+        most: the largest share of common 5-grams that is allowed, from 0 to 1.
     """
     counted = [grams(text) for text in texts]
     places: dict[tuple[str, ...], list[int]] = defaultdict(list)
@@ -80,7 +84,7 @@ def _are_bare(one: Counter[tuple[str, ...]], other: Counter[tuple[str, ...]]) ->
 
 
 def report(texts: Mapping[str, Sequence[str]]) -> list[str]:
-    """Returns a sentence for each pair of near-duplicates; ``texts`` maps a split to its texts."""
+    """Returns a sentence for each pair of near-duplicates; ``texts`` maps names of splits to texts."""
     side = [name for name, its in texts.items() for _ in its]
     every = [text for its in texts.values() for text in its]
     return [

@@ -1,4 +1,4 @@
-"""Makes valid descriptions impossible by an added requirement that contradicts them or cannot be met."""
+"""Makes descriptions impossible by adding a requirement that contradicts them or cannot be met."""
 
 import json
 import re
@@ -14,13 +14,13 @@ TURNING = re.compile(
 )
 WORDS = json.loads((files("roadgpt.learn") / "words" / "spoilers.json").read_text(encoding="utf-8"))
 CONFLICTS: dict[str, dict[str, list[str]]] = WORDS["conflicts"]
-"""Maps what a plan requires to the requirements, by language, that contradict it."""
+"""Maps a requirement of a plan to texts, by language, that contradict this requirement."""
 BEYOND: dict[str, list[str]] = WORDS["beyond"]
-"""Requirements that no road can meet, by language."""
+"""Texts, by language, with requirements that no road can meet."""
 
 
 def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
-    """Returns the description with a requirement that contradicts it; None if none is available."""
+    """Returns the description with a requirement that contradicts it; None if no such text is available."""
     kinds = [kind for kind in _holds(plan) if language in CONFLICTS[kind]]
     if not kinds:
         return None
@@ -29,7 +29,7 @@ def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) 
 
 
 def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
-    """Returns the description with a requirement that no road can meet; None if none is available."""
+    """Returns the description with a requirement that no road can meet; None if no such text is available."""
     if language not in BEYOND or plan.startswith("!"):
         return None
     ways = BEYOND[language]

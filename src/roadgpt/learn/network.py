@@ -1,6 +1,7 @@
-"""The model: the pretrained MiniLM encoder, and a small decoder that writes plans.
+"""The network of the model reader: the pretrained MiniLM encoder, and a small decoder that writes plans.
 
-Attention is written by hand, because only then can it be exported to ONNX with variable lengths.
+Attention is implemented here instead of taken from PyTorch, because only then can it be exported to ONNX with
+variable lengths.
 """
 
 import math
@@ -15,7 +16,7 @@ from torch.nn import functional
 
 @dataclass(frozen=True, slots=True)
 class NetworkSizes:
-    """Sizes of the network."""
+    """The dimensions of the network."""
 
     pieces: int = 30522
     tokens: int = 93
@@ -27,17 +28,17 @@ class NetworkSizes:
     decoder_inner: int = 1024
     decoder_heads: int = 6
     places: int = 128
-    """The longest text in pieces."""
+    """The largest length of a text in pieces."""
     plan_places: int = 96
-    """The longest plan in tokens."""
+    """The largest length of a plan in tokens."""
 
     def as_dict(self) -> dict[str, int]:
-        """Returns the sizes for a checkpoint."""
+        """Returns the sizes as a dictionary, to be stored in a checkpoint."""
         return asdict(self)
 
 
 class Attention(nn.Module):
-    """Multi-head attention over keys and values that are computed elsewhere."""
+    """Multi-head attention over keys and values that are computed by the caller."""
 
     def __init__(self, width: int, heads: int, dropout: float) -> None:
         super().__init__()
@@ -46,17 +47,17 @@ class Attention(nn.Module):
         self.dropout = dropout
 
     def split(self, x: Tensor) -> Tensor:
-        """Reshapes (batch, length, width) to (batch, heads, length, size)."""
+        """Reshapes (batch, length, width) to (batch, heads, length, head size)."""
         return x.view(x.shape[0], x.shape[1], self.heads, self.size).transpose(1, 2)
 
     def forward(self, x: Tensor, key: Tensor, value: Tensor, mask: Tensor | None) -> Tensor:
         """Returns the attended values, shape (batch, queries, width).
 
         Args:
-            x: what asks, (batch, queries, width).
-            key: keys, already split, (batch, heads, length, size).
-            value: values, already split, (batch, heads, length, size).
-            mask: added to the scores; None masks nothing.
+            x: input from which the queries are computed, (batch, queries, width).
+            key: keys, already split, (batch, heads, length, head size).
+            value: values, already split, (batch, heads, length, head size).
+            mask: added to the attention scores; None masks nothing.
         """
         query = self.split(self.query(x))
         scores = query @ key.transpose(2, 3) / math.sqrt(self.size)
@@ -69,7 +70,7 @@ class Attention(nn.Module):
 
 
 class EncoderLayer(nn.Module):
-    """A layer of BERT, with layer norms after the sums."""
+    """A layer of BERT, with layer normalisation after each residual sum."""
 
     def __init__(self, shape: NetworkSizes, dropout: float) -> None:
         super().__init__()
@@ -80,7 +81,7 @@ class EncoderLayer(nn.Module):
         self.dropout = nn.Dropout(dropout)
 
     def forward(self, x: Tensor, mask: Tensor) -> Tensor:
-        """Applies the layer to x (batch, length, width)."""
+        """Applies the layer to x (batch, length, width); ``mask`` is added to the attention scores."""
         attention = self.attention
         key, value = attention.split(attention.key(x)), attention.split(attention.value(x))
         x = self.norm(x + self.dropout(attention(x, key, value, mask)))
@@ -89,7 +90,9 @@ class EncoderLayer(nn.Module):
 
 
 class DecoderLayer(nn.Module):
-    """Attention to the plan so far, then to the description, with layer norms before each."""
+    """A decoder layer: attention to the plan so far, then to the description; layer normalisation before
+    each.
+    """
 
     def __init__(self, shape: NetworkSizes, dropout: float) -> None:
         super().__init__()
@@ -112,10 +115,10 @@ class DecoderLayer(nn.Module):
 
         Args:
             x: the embedded tokens.
-            own: keys and values of the plan so far, each (batch, heads, tokens so far, size).
-            across: keys and values of the description, each (batch, heads, pieces, size).
-            mask: added to the scores of the plan so far.
-            seen: added to the scores of the description.
+            own: keys and values of the plan so far, each (batch, heads, tokens so far, head size).
+            across: keys and values of the description, each (batch, heads, pieces, head size).
+            mask: added to the attention scores of the plan so far.
+            seen: added to the attention scores of the description.
         """
         x = x + self.dropout(self.own(self.norms[0](x), *own, mask))
         x = x + self.dropout(self.across(self.norms[1](x), *across, seen))
@@ -123,12 +126,12 @@ class DecoderLayer(nn.Module):
         return out
 
     def own_keys(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Returns keys and values of new tokens, each (batch, heads, tokens, size)."""
+        """Returns keys and values of new tokens, each (batch, heads, tokens, head size)."""
         y = self.norms[0](x)
         return self.own.split(self.own.key(y)), self.own.split(self.own.value(y))
 
     def across_keys(self, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Returns keys and values of the description, each (batch, heads, pieces, size)."""
+        """Returns keys and values of the description, each (batch, heads, pieces, head size)."""
         return self.across.split(self.across.key(memory)), self.across.split(self.across.value(memory))
 
 
@@ -155,7 +158,9 @@ class ReaderNetwork(nn.Module):
             nn.init.normal_(embedding.weight, std=0.02)
 
     def encode(self, pieces: Tensor, seen: Tensor) -> Tensor:
-        """Encodes piece numbers (batch, length) to (batch, length, width); ``seen`` is the mask to add."""
+        """Encodes piece numbers (batch, length) to (batch, length, width); ``seen`` is added to attention
+        scores.
+        """
         places = self.places.weight[: pieces.shape[1]]
         x = self.dropout(self.norm(self.pieces(pieces) + places + self.kind))
         for layer in self.layers:
@@ -163,13 +168,23 @@ class ReaderNetwork(nn.Module):
         return x
 
     def start(self, memory: Tensor) -> list[tuple[Tensor, Tensor]]:
-        """Returns, for every decoder layer, keys and values of the description: (batch, heads, pieces,
-        size).
+        """Returns, for every decoder layer, the keys and values of the description.
+
+        Each has the shape (batch, heads, pieces, head size).
         """
         return [layer.across_keys(memory) for layer in self.decoder]
 
     def write(self, tokens: Tensor, memory: Tensor, seen: Tensor) -> Tensor:
-        """Returns the scores after every token of whole plans, (batch, length, tokens), for training."""
+        """Returns, for training, the scores of the next token after every token of whole plans.
+
+        Args:
+            tokens: the plans, (batch, length).
+            memory: the encoded descriptions, (batch, pieces, width).
+            seen: mask of the descriptions, added to the attention scores.
+
+        Returns:
+            The scores, (batch, length, tokens).
+        """
         length = tokens.shape[1]
         x = self.dropout(self.tokens(tokens) + self.plan_places.weight[:length])
         ahead = torch.full((length, length), -1e4, device=x.device, dtype=x.dtype).triu(1)
@@ -178,11 +193,15 @@ class ReaderNetwork(nn.Module):
         return self.scores(x)
 
     def scores(self, x: Tensor) -> Tensor:
-        """Returns scores (..., tokens) for x (..., width); the token embeddings also serve for output."""
+        """Returns the scores (..., tokens) for x (..., width), computed with the token embeddings as output
+        weights.
+        """
         return functional.linear(self.final(x), self.tokens.weight) * self.shape.width**-0.5 * 8 + self.bias
 
     def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
-        """Returns the scores of the next token at every place, (batch, length, tokens); piece 0 pads."""
+        """Returns the scores of the next token at every position, (batch, length, tokens); piece 0 is
+        padding.
+        """
         seen = (pieces == 0)[:, None, None, :] * -1e4
         return self.write(tokens, self.encode(pieces, seen), seen)
 
@@ -190,7 +209,10 @@ class ReaderNetwork(nn.Module):
 def load_minilm(reader: ReaderNetwork, path: Path, pieces: Sequence[str]) -> None:
     """Loads the pretrained weights of all-MiniLM-L6-v2 (safetensors) into the encoder.
 
-    ``pieces`` may be part of BERT's vocabulary, in any order; ``vocab.txt`` must be beside the weights.
+    Args:
+        reader: the network, which is changed.
+        path: the file of the weights; ``vocab.txt`` must be in the same folder.
+        pieces: the word pieces of the network, a selection of BERT's vocabulary in any order.
     """
     from safetensors.torch import load_file
 

@@ -1,4 +1,4 @@
-"""Makes texts look typed by people: typing errors, capitals, missing full stops, polite phrases."""
+"""Makes generated texts look typed by people: typing errors, capitals, missing full stops, polite phrases."""
 
 import json
 import re
@@ -14,14 +14,14 @@ NEIGHBOURS = {
 }  # fmt: skip
 WORDS = json.loads((files("roadgpt.learn") / "words" / "typing.json").read_text(encoding="utf-8"))
 SLIPS: dict[str, list[tuple[str, str]]] = WORDS["slips"]
-"""Words and common misspellings or abbreviations of them, by language."""
+"""Pairs of a word and a common misspelling or abbreviation of it, by language."""
 BEFORE: dict[str, list[str]] = WORDS["before"]
 AFTER: dict[str, list[str]] = WORDS["after"]
-"""Polite phrases after a description, by language."""
+"""Polite phrases to add after a description, by language."""
 
 
 def tidy(text: str) -> str:
-    """Returns the text with spaces and articles corrected after its rules were put together."""
+    """Returns the text with corrected spaces and articles, after grammar rules have put it together."""
     text = re.sub(r"\s+", " ", text)
     text = re.sub(r"\s+([,.;:!?])(?!\d)", r"\1", text)
     text = re.sub(r"([,.;:])(?:\s*[,;])+", r"\1", text)
@@ -31,7 +31,7 @@ def tidy(text: str) -> str:
 
 
 def noisy(text: str, language: str, rng: np.random.Generator) -> str:
-    """Returns the text as somebody in a hurry, or somebody polite, would type it."""
+    """Returns the text with random typing errors or polite phrases, as if typed by a person."""
     if rng.random() < 0.12:
         ways = BEFORE[language]
         text = ways[int(rng.integers(len(ways)))] + text

@@ -1,4 +1,4 @@
-"""Reads the weights of an exported reader, so that training can start from the installed one."""
+"""Reads the weights of an exported reader, so that a new training can start from the installed reader."""
 
 from pathlib import Path
 from typing import Any
@@ -10,11 +10,13 @@ from roadgpt.errors import LearnError
 
 Floats = npt.NDArray[np.float32]
 OURS = "reader."
-"""Prefix of the names of our network's weights in the graphs."""
+"""Prefix of the names of the reader's own weights in the ONNX graphs."""
 
 
 def exported_weights(folder: Path) -> dict[str, Floats]:
-    """Returns the parameters by their name in ``roadgpt.learn.network.ReaderNetwork``, rounded as in int8.
+    """Returns the weights by their parameter names in ``roadgpt.learn.network.ReaderNetwork``.
+
+    Weights that were exported in int8 keep the rounding of int8.
 
     Raises:
         LearnError: the folder has no exported reader.

@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 MARKS = 25
-"""Number of unused words of the vocabulary, from [unused1], that stand for slots and marks, plus one."""
+"""The entries [unused1] to [unused24] (one less than this number) of the vocabulary stand for slots and
+marks."""
 LATIN = re.compile(r"(##)?[a-zß0-9]+|[!-/:-@\[-`{-~°º€]")
 SPECIAL = ("[UNK]", "[CLS]", "[SEP]")
 
 
 def trimmed(vocabulary: Sequence[str]) -> list[str]:
-    """Returns the pieces that are kept, padding first."""
+    """Returns the pieces of the vocabulary that are kept, with the padding piece first."""
     kept = ["[PAD]", *(f"[unused{number}]" for number in range(1, MARKS)), *SPECIAL]
     seen = set(kept)
     for piece in vocabulary:
@@ -24,5 +25,5 @@ def trimmed(vocabulary: Sequence[str]) -> list[str]:
 
 
 def read_vocabulary(path: Path) -> list[str]:
-    """Returns the pieces in BERT's ``vocab.txt`` or a part of it."""
+    """Returns the pieces in a vocabulary file with one piece per line, such as BERT's ``vocab.txt``."""
     return path.read_text(encoding="utf-8").rstrip("\n").split("\n")

@@ -13,7 +13,7 @@ TURNS_OF = {"s_bend": 2, "chicane": 2, "slalom": 4, "serpentine": 4, "zigzag": 4
 
 
 def makes_sense(brief: Brief) -> bool:
-    """Returns True if this can be built, as far as simple rules can tell."""
+    """Returns True if a road can satisfy the Brief, as far as simple rules can tell."""
     says_something = bool(brief.clauses or _wishes_anything(brief)) and not _shapes_no_turn(brief)
     return says_something and not contradiction(brief) and not impossibility(brief)
 
@@ -82,7 +82,7 @@ def _least(clause: Clause) -> float:
 
 
 def impossibility(brief: Brief) -> bool:
-    """Returns True if the Brief fits on no map of 250 m, or breaks a rule for every road."""
+    """Returns True if the road does not fit on a map of 250 m, or breaks a rule that holds for every road."""
     turns = sum(_least(clause) for clause in brief.clauses if clause.kind not in STRAIGHT_KINDS)
     if max(turns, brief.turns.lo or 0 if brief.turns else 0) > MOST_TURNS:
         return True

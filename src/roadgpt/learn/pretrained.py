@@ -1,4 +1,4 @@
-"""Prepares a new training: checks the public weights that the encoder starts from by their hash."""
+"""Prepares a new training: verifies, by their hash, the public weights that the encoder starts from."""
 
 from collections.abc import Sequence
 from hashlib import file_digest
@@ -21,11 +21,11 @@ model.safetensors has the SHA-256
 Changes: the vocabulary was cut to Latin letters, all layers were trained further, and the weights
 were rounded to 8 bits. pieces.txt is a part of the vocabulary of BERT (Google, Apache-2.0).
 """
-"""The notice that is shipped with the weights."""
+"""The text of the licence notice that is distributed with the weights."""
 
 
 def begin(out: Path, weights: Path | None, exported: Path | None = None) -> Sequence[str]:
-    """Returns the word pieces of a training, and prepares its folder if it is new.
+    """Returns the word pieces of a training, and prepares the folder of the training if it is new.
 
     Args:
         out: folder of the training.

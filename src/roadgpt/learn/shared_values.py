@@ -1,7 +1,7 @@
-"""Moves a value that all turns share to the whole road, in the plan that a network learns to write.
+"""Rewrites plans for training: a value that all turns share is written once, for the whole road.
 
-The normal form repeats it in every clause, and a small network that has to write "r=20.." seven times
-loses count.
+The normal form repeats such a value in every clause, and a small network that has to write "r=20.." seven
+times loses count.
 """
 
 from collections.abc import Sequence
@@ -13,15 +13,17 @@ from roadgpt.brief.readers.model.slots import NumberSlot
 
 FIELDS = ("degrees", "radius")
 FEWEST = 2
-"""The number of turning clauses from which this makes a plan shorter."""
+"""The least number of turning clauses for which the rewritten plan is shorter."""
 
 
 def with_shared_values(line: str, slots: Sequence[NumberSlot]) -> str:
-    """Returns the plan with shared degrees and radii after the bar, if the text has them only once.
+    """Moves degrees and radii that all turns share to the part of a plan that holds for the whole road.
+
+    Values that occur more than once in the text are not moved.
 
     Args:
         line: a plan, or a refusal.
-        slots: the numbers of its text.
+        slots: the numbers in the description.
 
     Returns:
         A plan with the same normal form.

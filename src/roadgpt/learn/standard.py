@@ -1,4 +1,4 @@
-"""The standard form of a plan, which is the one that the model learns to write."""
+"""The standard form of plans, in which all training data is written."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
@@ -6,5 +6,5 @@ from roadgpt.brief.plan import plan
 
 
 def standard(brief: Brief) -> str:
-    """Returns the plan of a Brief's normal form."""
+    """Returns the plan of the normal form of a Brief."""
     return plan(normal(brief))

@@ -1,4 +1,4 @@
-"""Trains the network: seeded, resumable from its checkpoint, with progress and a loss curve."""
+"""Trains the network: seeded, resumable from a checkpoint, with progress reports and a loss curve."""
 
 import json
 import math
@@ -22,30 +22,30 @@ from roadgpt.learn.onnx_weights import exported_weights
 POOL = 24  # number of batches whose examples are sorted by length together
 SMOOTHING = 0.03
 FROZEN = ("pieces", "places", "kind", "norm")
-"""The embeddings of a pretrained encoder are not trained, so that words without any pair keep their
-meaning."""
+"""Names of the encoder's embeddings, which are not trained if the encoder is pretrained, so that words that
+occur in no pair keep their meaning."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrainingSettings:
-    """How to train."""
+    """Settings of a training."""
 
     steps: int = 14_000
     size: int = 48
-    """Pairs per batch."""
+    """Number of pairs in a batch."""
     encoder_rate: float = 1.5e-4
     decoder_rate: float = 7e-4
     warm_up: int = 150
     cool_down: float = 0.3
-    """Share of the steps at the end during which the learning rate falls to zero."""
+    """Share of the steps, from 0 to 1, at the end of training, in which the learning rate falls to zero."""
     hand_share: float = 0.6
     seed: int = 1
     save_every: int = 100
     workers: int = 1
-    """Processes that train in parallel and average their weights whenever they save (local SGD)."""
+    """Number of processes that train in parallel and average their weights at each checkpoint (local SGD)."""
     rank: int = 0
     is_pretrained: bool = True
-    """True if the encoder started from MiniLM; its embeddings are then not trained."""
+    """True if the encoder starts from MiniLM; its embeddings are then not trained."""
 
 
 def train(
@@ -57,16 +57,17 @@ def train(
     report: Callable[[str], None] = print,
     check: Callable[[], None] = lambda: None,
 ) -> ReaderNetwork:
-    """Trains from the folder's checkpoint, if there is one, and leaves a checkpoint there.
+    """Trains from the checkpoint in the folder, or from the start if there is none, and writes checkpoints
+    there.
 
     Args:
-        folder: gets ``checkpoint.pt`` and ``losses.jsonl``.
+        folder: where ``checkpoint.pt`` and ``losses.jsonl`` are written.
         pieces: the vocabulary of word pieces.
         weights: ``model.safetensors`` of all-MiniLM-L6-v2, or the folder of an exported reader; None
             starts from random weights.
         hand: hand-written pairs for training.
-        plan: how to train.
-        report: receives a progress line from time to time.
+        plan: settings of the training.
+        report: called with a progress line from time to time.
         check: called before every step and while waiting for other workers; raises if one has ended.
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -188,7 +189,9 @@ def average(
     step: int,
     check: Callable[[], None] = lambda: None,
 ) -> None:
-    """Waits for the weights of all workers at this step, and continues with their mean."""
+    """Waits until all workers have saved their weights at this step, and continues with the mean of the
+    weights.
+    """
     own = folder / f"weights-{step}-{plan.rank}.pt"
     torch.save(reader.state_dict(), own.with_suffix(".new"))
     own.with_suffix(".new").replace(own)

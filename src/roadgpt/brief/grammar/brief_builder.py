@@ -1,4 +1,4 @@
-"""Builds the Brief from the phrases, one after another."""
+"""Builds the Brief from the phrases of a description, in the order of the phrases."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,7 +19,7 @@ SCOPED = ("with", "into", "enter", "for")
 
 
 def build_brief(found: Sequence[Phrase]) -> tuple[Brief, list[Term]]:
-    """Returns the Brief that the phrases make, and the terms that had no place in it.
+    """Returns the Brief that the phrases describe, and the terms that could not be used in it.
 
     Raises:
         BriefError: a full circle is asked for, or more features than any map holds.

@@ -1,4 +1,4 @@
-"""Groups words that belong together: one Phrase for each feature, slope or requirement, in the order said."""
+"""Groups words that belong together into Phrases: one for each feature, slope or requirement."""
 
 from collections.abc import Sequence
 from math import radians, tan
@@ -32,11 +32,11 @@ JOINTS = {
     "start": 9,
     "end": 9,
 }
-"""How strongly a word joins things; of two in a row ('and then') the stronger one counts."""
+"""Maps each joining word or sign to its strength; of two in a row ('and then') the stronger one is used."""
 
 
 def chunk(items: Sequence[Term]) -> list[Phrase]:
-    """Returns the phrases of a description."""
+    """Groups the terms of a description into phrases and returns the phrases in text order."""
     chunker = _Chunker(items)
     for at, item in enumerate(items):
         chunker.take(at, item)

@@ -1,4 +1,4 @@
-"""Settles words with more than one meaning by their neighbours."""
+"""Resolves words with more than one meaning by the words next to them."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -40,13 +40,13 @@ CLIMBING = frozenset({"up~", "down~", "slope", "flat~"})
 SLOPING = CLIMBING | {"up", "down", "hill"}
 VERBS = frozenset({"twists", "twist", "winds", "wind", "snakes", "weaves", "meanders"})
 HILLS = frozenset({"climbs", "ascents", "descents", "inclines", "declines", "drops", "rises"})
-"""Nouns in 'with steep climbs', verbs elsewhere."""
+"""Words that are nouns after an adjective, as in 'with steep climbs', and verbs elsewhere."""
 LANES = frozenset({"lane", "lanes"})
 BEFORE_A_VERB = frozenset({"", "that", "road", "and", "then", ",", "stop", "first_of_all", "start", "end"})
 
 
 def settle(items: Sequence[Term]) -> list[Term]:
-    """Returns the same terms, each with only one meaning."""
+    """Returns the terms of a description, each reduced to the one meaning that its neighbours suggest."""
     out = list[Term]()
     at = 0
     while at < len(items):

@@ -1,4 +1,6 @@
-"""Puts features in driving order from phrases: decides what belongs to what was said before."""
+"""Arranges the phrases of a description as features in driving order, and merges phrases about the same
+feature.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -10,12 +12,12 @@ from roadgpt.brief.words import KINDS
 from roadgpt.errors import BriefError
 
 MOST = 200
-"""The largest number of anything; no map holds more."""
+"""The largest count accepted for any feature; no map holds more."""
 
 
 @dataclass(slots=True)
 class RoadWishes:
-    """What was said about the road as a whole; the fields are those of a Brief."""
+    """The requirements of a description for the road as a whole; the fields are those of a Brief."""
 
     turns: Amount | None = None
     left: Amount | None = None
@@ -38,34 +40,34 @@ class RoadWishes:
 
 @dataclass(slots=True)
 class DrivingOrder:
-    """The features of a road in driving order; a slope alone ('uphill, then ...') is one without a kind."""
+    """The features of a road in driving order; a slope without a feature ('uphill, then ...') has no kind."""
 
     things: list[Phrase] = field(default_factory=list)
     wishes: RoadWishes = field(default_factory=RoadWishes)
     mostly: Side | None = None
-    """The side of 'mostly left turns'; how many turns that means is known only at the end."""
+    """The side named in 'mostly left turns'; the number of turns is computed when the description ends."""
     hills_are_counted: bool = False
-    """True for 'at least 2 changes of slope', rather than just 'hilly'."""
+    """True if the description counts slopes ('at least 2 changes of slope'), not if it only says 'hilly'."""
     lists: list[tuple[Phrase, int]] = field(default_factory=list)
-    """Features that are spelled out ('three turns: left, right, left'), each with how many stood before
-    the list."""
+    """Features that are followed by a list of their parts ('three turns: left, right, left'), each with the
+    number of features that precede the list."""
 
     @property
     def last(self) -> Phrase | None:
-        """The feature said last."""
+        """The most recently mentioned feature."""
         return self.things[-1] if self.things else None
 
     @property
     def last_turn(self) -> Phrase | None:
-        """The turn or group of turns said last."""
+        """The most recently mentioned turn or group of turns."""
         return next((thing for thing in reversed(self.things) if turns(thing)), None)
 
     def add(self, thing: Phrase, leading: bool) -> None:
-        """Adds a feature in its place.
+        """Inserts a feature at its place in driving order, or merges it with the feature that it refers to.
 
         Args:
-            thing: the feature, with its count if one was said.
-            leading: True for 'after X, Y', where X is said first and also comes first.
+            thing: the feature, with its count if the description gives one.
+            leading: True for the X of 'after X, Y', which comes first in the text and on the road.
         """
         if self._joins(thing):
             return
@@ -230,7 +232,7 @@ class DrivingOrder:
         self.things.insert(len(self.things) // 2, replace(thing, joint="then"))
 
     def expand(self) -> None:
-        """Splits features in a row into single ones: 3 turns -> turn, turn, turn."""
+        """Splits features with a count into single features: '3 turns' becomes three features of one turn."""
         out = list[Phrase]()
         for thing in self.things:
             if (
@@ -260,20 +262,20 @@ class DrivingOrder:
 
 
 def turns(thing: Phrase) -> bool:
-    """Returns True if it is a turn, or a side that stands for one: 'first left, then right'."""
+    """Returns True if the phrase is a turn, or a side that stands for a turn: 'first left, then right'."""
     return thing.turning or (thing.kind is None and thing.side is not None)
 
 
 def plural(thing: Phrase) -> bool:
-    """Returns True if it is more than one."""
+    """Returns True if the phrase stands for more than one feature."""
     return thing.count is not None and thing.count != exactly(1)
 
 
 def how_many(thing: Phrase) -> int:
-    """Returns the least number of a feature, at most MOST.
+    """Returns the smallest number of features that a phrase allows, limited to MOST.
 
     Raises:
-        BriefError: more were asked for than any map holds.
+        BriefError: the description asks for more features than any map holds.
     """
     number = thing.count.lo if thing.count and thing.count.lo is not None else 1
     if number > MOST:
@@ -282,7 +284,7 @@ def how_many(thing: Phrase) -> int:
 
 
 def default_count(thing: Phrase) -> None:
-    """Fills in the count that the form of a word implies: 'turns' are two or more."""
+    """Sets the count that a plural implies if the description gives no number: 'turns' means two or more."""
     if thing.times and thing.times.lo and thing.times.exact:
         lo = how_many(thing) * thing.times.lo
         thing.count = exactly(lo)
@@ -295,7 +297,7 @@ def default_count(thing: Phrase) -> None:
 
 
 def overlay(under: Phrase, over: Phrase) -> None:
-    """Copies what ``over`` says to ``under`` where that says nothing."""
+    """Fills in the fields that are empty in ``under`` with their values in ``over``."""
     for name in ("side", "sharpness", "size", "degrees", "radius", "length", "incline"):
         if getattr(under, name) is None:
             setattr(under, name, getattr(over, name))

@@ -1,9 +1,9 @@
 """English vocabulary, first part: features along the road, sides, shapes and slopes.
 
-A key names one meaning, or several that stand in a row; its phrases are separated by '|'. Accents, case and
-hyphens do not matter. '+' marks a plural, '~' a verb, '#' a number; ``handlers.py`` says what the meanings
-do. If a phrase stands under two keys, the first one counts, except for bounds, which need a number beside
-them.
+A key names one meaning, or several meanings in a row; its phrases are separated by '|'. Accents, case and
+hyphens do not matter. '+' marks a plural, '~' a verb, '#' a number. ``handlers.py`` defines the effect of
+each meaning. If a phrase occurs under two keys, the first key is used, except that meanings that are bounds
+('over') are only used next to a number.
 """
 
 ROAD_WORDS: dict[str, str] = {

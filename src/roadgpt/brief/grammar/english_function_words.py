@@ -1,7 +1,7 @@
 """English vocabulary, second part: numbers, bounds, units, conjunctions, scope, and words without effect.
 
-The format is that of ``english.py``; '-' are words that are understood but do not affect the shape of the
-road.
+The format is that of ``english.py``. The key '-' lists words that are understood but do not affect the shape
+of the road.
 """
 
 FUNCTION_WORDS: dict[str, str] = {

@@ -1,4 +1,4 @@
-"""German vocabulary, in the format of ``english.py``; accents are left out ('hochstens')."""
+"""German vocabulary, in the format of ``english.py``; words are written without accents ('hochstens')."""
 
 GERMAN: dict[str, str] = {
     "turn": "kurve | biegung | abbiegung",

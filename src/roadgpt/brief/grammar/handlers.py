@@ -1,4 +1,4 @@
-"""Handlers: what each meaning does to the Phrase that it is read into."""
+"""Handlers: one for each meaning of a word; a handler enters the meaning into the current Phrase."""
 
 from collections.abc import Callable
 from typing import TypeGuard
@@ -31,7 +31,7 @@ KINDS: dict[str, tuple[Kind, bool]] = {
 
 
 def handle_kind(now: Phrase, item: Term) -> None:
-    """Applies a kind of feature to a phrase; 'hairpin bend' and 'zig-zag switchbacks' are single features."""
+    """Sets the kind of feature of a phrase; 'hairpin bend' and 'zig-zag switchbacks' are single features."""
     kind, many = KINDS[item.name]
     if now.kind in WAVY and kind not in STRAIGHT and kind not in ("turn", now.kind):
         now.alternating = now.kind != "winding"
@@ -102,9 +102,11 @@ def _is_height(now: Phrase, item: Term, after: str) -> bool:
 
 
 MOST_RISE = 20.0
-"""In metres: 'a 10 m climb' is 10 m high, 'a 50 m climb' 50 m long."""
+"""The largest length in metres that is read as a height before a noun: 'a 10 m climb' is 10 m high, 'a 50 m
+climb' is 50 m long."""
 MOST_HEIGHT = 30.0
-"""In metres: 'climbs 20 metres' is a height, 'climbs 100 metres' a distance."""
+"""The largest length in metres that is read as a height after a verb: 'climbs 20 metres' is a height, 'climbs
+100 metres' a distance."""
 
 
 def _take_percent(now: Phrase, item: Term, after: str) -> None:

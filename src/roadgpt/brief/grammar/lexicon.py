@@ -13,7 +13,8 @@ from roadgpt.brief.grammar.tokens import Token, tokens
 from roadgpt.brief.grammar.unsupported_words import UNSUPPORTED_WORDS
 
 ALIKE = 0.75
-"""The share of common letters from which a word may be another one mistyped."""
+"""The least similarity, from 0 to 1 (``difflib``), at which an unknown word is taken for a mistyped known
+one."""
 LEAST_LETTERS = 5  # of a word in which a typing error is corrected; shorter ones are too similar
 MOST_LETTERS = 20
 UNKNOWN = "?"
@@ -25,7 +26,9 @@ Meanings = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Lexeme:
-    """A meaning and the tokens from which it was read, ``start`` to ``stop`` (excluded)."""
+    """A meaning and the range of tokens from which it was read, from ``start`` up to but not including
+    ``stop``.
+    """
 
     name: str
     start: int
@@ -36,7 +39,7 @@ class Lexeme:
 
 @dataclass(frozen=True, slots=True)
 class Lexicon:
-    """Phrases, as tuples of words, and their meanings."""
+    """A dictionary of phrases, as tuples of words, and their meanings."""
 
     phrases: dict[tuple[str, ...], tuple[Meanings, ...]]
     longest: dict[str, int]
@@ -61,12 +64,14 @@ class Lexicon:
 
 @cache
 def lexicon() -> Lexicon:
-    """Returns all vocabularies compiled: first what no Brief can express, then English, then the others."""
+    """Returns the combined vocabularies; words that a Brief cannot express come first, then English, then
+    others.
+    """
     return Lexicon.of((UNSUPPORTED_WORDS, ROAD_WORDS, FUNCTION_WORDS, GERMAN, ROMANCE))
 
 
 def lex(found: Sequence[Token]) -> list[Lexeme]:
-    """Returns the meanings of a description in order; words without a meaning become UNKNOWN."""
+    """Returns the meanings in a description in text order; words without a meaning become UNKNOWN."""
     known, out, at = lexicon(), list[Lexeme](), 0
     while at < len(found):
         token = found[at]
@@ -131,14 +136,16 @@ def _is_number(token: Token) -> bool:
 
 
 def similar(word: str) -> str | None:
-    """Returns a word about roads that may have been meant, such as 'turns' for 'trns', or None."""
+    """Returns the word about roads that a mistyped word resembles, such as 'turns' for 'trns'; None if none
+    does.
+    """
     known = {w for listed in ROAD_WORDS.values() for w in listed.split() if len(w) > 3 and w.isalpha()}
     near = get_close_matches(word, sorted(known), n=1, cutoff=ALIKE)
     return near[0] if near else None
 
 
 def is_strange(word: str) -> bool:
-    """Returns True if no vocabulary has this word."""
+    """Returns True if no phrase of any vocabulary begins with this word."""
     return word not in lexicon().longest
 
 

@@ -1,4 +1,4 @@
-"""The last stage: turns the features along the road into a Brief."""
+"""The last stage of the grammar reader: converts the features along the road to a Brief."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -27,11 +27,11 @@ def lower(order: DrivingOrder, road_said: bool) -> Brief:
     """Returns the Brief of all features and requirements.
 
     Args:
-        order: the features in driving order, and what was said about the road as a whole.
+        order: the features in driving order, and the requirements for the road as a whole.
         road_said: True if the description names the road itself ('a road with ...').
 
     Raises:
-        BriefError: all turns of an S-bend or a chicane are said to go to one side.
+        BriefError: all turns of an S-bend or a chicane are required to go to one side.
     """
     in_driving_order(order)
     _deal_out(order)

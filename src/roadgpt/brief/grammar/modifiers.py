@@ -1,4 +1,4 @@
-"""Applies phrases that name no feature: they say more about the one before, or about the road."""
+"""Applies phrases that name no feature of their own to the previous feature or to the road as a whole."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from roadgpt.errors import BriefError
 
 
 def modify(order: DrivingOrder, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
-    """Applies a phrase that names no feature to the feature before it or to the road.
+    """Applies a phrase that names no feature of its own to the previous feature or to the road as a whole.
 
     Returns:
         True if something in the phrase was used.

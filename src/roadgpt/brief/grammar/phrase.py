@@ -1,4 +1,4 @@
-"""A Phrase: everything that was said about one feature, one slope or one requirement."""
+"""Defines Phrase: everything that a description says about one feature, one slope or one requirement."""
 
 from dataclasses import dataclass, field
 
@@ -13,22 +13,25 @@ WAVY: frozenset[Kind] = frozenset({"winding", "serpentine", "zigzag", "slalom"})
 
 @dataclass(slots=True)
 class Phrase:
-    """What was said about one feature; a field is empty if nothing was said."""
+    """What a description says about one feature, slope or requirement; fields that it does not mention are
+    empty.
+    """
 
     joint: str = ""
     fresh: bool = False
-    """True if a pause, or the beginning, stands before it."""
+    """True if the phrase begins the description or follows a pause, such as a full stop."""
     count: Amount | None = None
     counted: bool = True
-    """True if a number was said, rather than 'several'."""
+    """True if the count is a number in the text, not a word such as 'several'."""
     article: bool = False
     again: bool = False
     negated: bool = False
     only: bool = False
     scope: str = ""
-    """'all', 'each', 'both' or 'rest' of the features said before."""
+    """The word 'all', 'each', 'both' or 'rest' if the phrase refers to features mentioned before."""
     pick: tuple[int, int] | None = None
-    """The first of the features said before, and how many; a negative first counts from the last."""
+    """Which earlier features the phrase refers to: the index of the first, and their number; a negative index
+    counts from the last feature."""
     kind: Kind | None = None
     many: bool = False
     verb: bool = False
@@ -40,23 +43,23 @@ class Phrase:
     sharpness: Sharpness | None = None
     size: Size | None = None
     slope: str = ""
-    """up, down or flat."""
+    """'up', 'down' or 'flat'; empty if no slope is mentioned."""
     climbs: bool = False
-    """True if the slope was said as a verb: 'climbs' rather than 'uphill'."""
+    """True if the slope is expressed by a verb: 'climbs' rather than 'uphill'."""
     slope_noun: bool = False
     after_road: bool = False
-    """True if the slope was said after the road: 'a road going uphill'."""
+    """True if the slope follows the word for the road: 'a road going uphill'."""
     steep: bool = False
     mild: bool = False
     mostly: bool = False
     each_side: bool = False
     same_hand: bool = False
     series: tuple[str, tuple[float, ...]] | None = None
-    """For 'two bends of 45 and 90 degrees': the name of the field, and the numbers."""
+    """For 'two bends of 45 and 90 degrees': the name of the field, and the numbers, one for each feature."""
     each: bool = False
-    """True for 'of 40 m each': the number applies to every single one."""
+    """True for 'of 40 m each': the number applies to every single feature."""
     half: int = 0
-    """1 or 2: the first or the second half of the road; 3: half of the features said before."""
+    """1 or 2 for the first or second half of the road, 3 for half of the features mentioned before."""
     nearly: bool = False
     degrees: Amount | None = None
     radius: Amount | None = None
@@ -81,15 +84,15 @@ class Phrase:
     place: str = ""
     hilly: bool = False
     more: str = ""
-    """'left', 'right' or 'same': to which side more turns go."""
+    """The side to which most turns go, 'left' or 'right'; 'same' if both sides have equally many turns."""
     climbs_said: bool = False
-    """True for 'with steep climbs': there are some, somewhere."""
+    """True for 'with steep climbs': the road has climbs, but their places are not given."""
     changes: bool = False
-    """True if the count says how often the slope changes."""
+    """True if the count is the number of changes of slope."""
     relative: bool = False
-    """True if it begins with 'which': 'the last turn, which is downhill'."""
+    """True if the phrase is a relative clause: 'the last turn, which is downhill'."""
     slope_alone: bool = False
-    """True if only a slope was said, which then became a straight."""
+    """True if the description gives only a slope here, for which a straight was inserted."""
     free_turns: bool = False
     hard: bool = False
     mountain: bool = False
@@ -97,15 +100,15 @@ class Phrase:
     loop: bool = False
     items: list[Term] = field(default_factory=list)
     exception: list[Term] = field(default_factory=list)
-    """The word 'except', if the phrase follows it."""
+    """The term 'except', if the phrase follows that word; else empty."""
     ignored: list[Term] = field(default_factory=list)
 
     @property
     def turning(self) -> bool:
-        """True if it is a feature that turns."""
+        """True if the phrase names a feature that turns."""
         return self.kind is not None and self.kind not in STRAIGHT
 
     @property
     def empty(self) -> bool:
-        """True if nothing has been said yet."""
+        """True if the phrase has no content yet."""
         return not self.items

@@ -17,7 +17,7 @@ UNITS: dict[str, tuple[str, float]] = {
     "speed": ("speed", 1.0),
     "times": ("times", 1.0),
 }
-"""Maps a unit to our unit and its size in it."""
+"""Maps each unit to the unit that RoadGPT uses for it, and to its size in that unit: 'km' to ('m', 1000)."""
 BEFORE = frozenset({">=", "<=", ">", "<", "exact"})
 RANGE_WORDS = frozenset({"to", "bis", "a", "till", "until", "-"})
 LOOK_BACK = 3  # items between a bound and its number: 'a minimum radius of 20 m'
@@ -25,7 +25,7 @@ LOOK_BACK = 3  # items between a bound and its number: 'a minimum radius of 20 m
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A meaning; or a quantity, which has an ``amount`` and is named 'count' or after its unit."""
+    """A meaning of one or more words; or a quantity, with an ``amount``, named 'count' or after its unit."""
 
     name: str
     start: int
@@ -33,7 +33,7 @@ class Term:
     text: str = ""
     amount: Amount | None = None
     exact: bool = True
-    """True if a number was said, rather than 'several'."""
+    """True if the text contains the number, not a word such as 'several'."""
     series: tuple[float, ...] = ()
     """All numbers of a list, such as '45, 60 and 90 degrees'; ``amount`` is the first."""
 
@@ -49,7 +49,7 @@ class _Read:
 
 
 def quantities(lexemes: Sequence[Lexeme]) -> list[Term]:
-    """Returns the terms of a description, with its numbers put together."""
+    """Combines numbers with their bounds and units, and returns all terms of the description in order."""
     out, at = list[Term](), 0
     while at < len(lexemes):
         lexeme = lexemes[at]

@@ -1,4 +1,4 @@
-"""Rearranges what was said before the thing it refers to, or out of driving order; runs at the end."""
+"""Rearranges features that are mentioned out of driving order; runs after all phrases were read."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from roadgpt.brief.normal import STRAIGHT
 
 
 def in_driving_order(order: DrivingOrder) -> None:
-    """Moves the beginning to the front: 'finally a left turn, but first two right turns'."""
+    """Moves features that start the road to the front: 'finally a left turn, but first two right turns'."""
     things = order.things
     ends = next((at for at, thing in enumerate(things) if thing.joint == "end"), len(things))
     start = next((at for at in range(ends + 1, len(things)) if things[at].joint == "start"), None)
@@ -19,7 +19,7 @@ def in_driving_order(order: DrivingOrder) -> None:
 
 
 def place_picks(order: DrivingOrder) -> None:
-    """Applies what is said about single turns: 'the last turn is sharp; four turns'."""
+    """Applies phrases about single turns to those turns: 'the last turn is sharp; four turns'."""
     picked = [thing for thing in order.things if thing.pick is not None and turns(thing)]
     others = [
         thing for thing in order.things if turns(thing) and thing.pick is None and thing.scope != "rest"
@@ -63,7 +63,9 @@ def _alone(order: DrivingOrder, picked: list[Phrase]) -> None:
 
 
 def share_of_the_rest(order: DrivingOrder) -> None:
-    """Counts the rest: 'the first two turns are left, the others right; five turns in total'."""
+    """Computes how many turns are 'the others': 'the first two turns are left, the others right; five in
+    total'.
+    """
     rest = next((thing for thing in order.things if thing.scope == "rest"), None)
     if rest is None or rest.kind in WAVY:
         return
@@ -74,7 +76,7 @@ def share_of_the_rest(order: DrivingOrder) -> None:
 
 
 def most_to_one_side(order: DrivingOrder) -> None:
-    """Turns 'mostly left turns, 5 in total' into more than half."""
+    """Requires more than half of the turns to go to the side named in 'mostly left turns, 5 in total'."""
     if order.mostly is None:
         return
     wished = order.wishes.turns
@@ -83,7 +85,9 @@ def most_to_one_side(order: DrivingOrder) -> None:
 
 
 def hills_of_a_list(order: DrivingOrder) -> None:
-    """Removes the three changes of 'hilly' if a list names fewer: 'hilly road: up, down, up' has two."""
+    """Drops the three changes of slope that 'hilly' implies if a list names fewer, as in 'hilly: up, down,
+    up'.
+    """
     hills, changes, before = order.wishes.hills, 0, ""
     for thing in order.things:
         for slope in _SLOPES.get(thing.kind or "", (thing.slope,)):
@@ -99,7 +103,9 @@ _SLOPES = {"crest": ("up", "down"), "dip": ("down", "up")}
 
 
 def turns_left_open(order: DrivingOrder, road_said: bool) -> bool:
-    """Returns True if more turns are allowed, as for 'a road with a crest' but not for 'a straight road'."""
+    """Returns True if the road may have turns that are not named: for 'a road with a crest', not 'a straight
+    road'.
+    """
     things = order.things
     if order.wishes.turns is not None or not things or any(t.kind not in STRAIGHT for t in things):
         return False
@@ -111,7 +117,9 @@ def turns_left_open(order: DrivingOrder, road_said: bool) -> bool:
 
 
 def as_one_turn(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Adds the turn that 'one' stands for, as in 'a long bend, then a short sharp one'; False if none."""
+    """Adds the turn meant by 'one' in 'a long bend, then a short sharp one'; returns False if 'one' means no
+    turn.
+    """
     last = order.last_turn
     said = phrase.sharpness or phrase.size or phrase.side
     alone = phrase.joint in ("then", "and") or (last is not None and not plural(last))

@@ -1,4 +1,4 @@
-"""French, Spanish and Italian vocabulary, in the format of ``english.py``; accents are left out."""
+"""French, Spanish and Italian vocabulary, in the format of ``english.py``; words have no accents."""
 
 ROMANCE: dict[str, str] = {
     # French

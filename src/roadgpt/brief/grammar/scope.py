@@ -1,4 +1,6 @@
-"""Applies words about features said before: 'both to the right', 'the last one sharp', 'no turns'."""
+"""Applies phrases to features that were mentioned before: 'both to the right', 'the last one sharp', 'no
+turns'.
+"""
 
 from dataclasses import replace
 
@@ -13,7 +15,7 @@ ATTRIBUTES = ("side", "sharpness", "degrees", "radius", "incline")
 
 
 def select(order: DrivingOrder, phrase: Phrase, after: Phrase | None) -> bool:
-    """Applies a phrase to the features that it refers to; returns False if it was not used."""
+    """Applies a phrase to the earlier features that it refers to; returns False if it was not used."""
     if phrase.pick is not None:
         return _pick(order, phrase)
     if (phrase.kind in STRAIGHT and phrase.scope == "each") or (
@@ -78,7 +80,9 @@ def _targets(order: DrivingOrder, phrase: Phrase) -> list[Phrase]:
 
 
 def give(thing: Phrase, phrase: Phrase) -> None:
-    """Applies what a phrase says to a feature, overriding what was said before."""
+    """Copies the properties in ``phrase`` to the feature ``thing``, and replaces those that ``thing`` already
+    had.
+    """
     if phrase.kind not in (None, "turn"):
         thing.kind = phrase.kind
     for name in ATTRIBUTES:
@@ -138,7 +142,9 @@ def _pick(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def halve(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Reads 'the first half uphill' for that half of the turns; returns False if no turns are named."""
+    """Applies a phrase such as 'the first half uphill' to that half of the turns; returns False if there are
+    none.
+    """
     order.expand()
     turning = [thing for thing in order.things if turns(thing)]
     if not turning:
@@ -150,7 +156,7 @@ def halve(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def take_some(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Reads 'two of them to the left', 'one of which is a hairpin'; returns False if no turns are named."""
+    """Applies 'two of them to the left' or 'one of which is a hairpin'; returns False without turns."""
     whole = order.last_turn
     if whole is None:
         return False
@@ -177,7 +183,7 @@ def take_some(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def negate(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Reads 'no left turns', 'not steep', 'without hairpins'; returns False if a Brief cannot express it."""
+    """Applies 'no left turns', 'not steep' or 'without hairpins'; False if a Brief cannot express this."""
     wishes = order.wishes
     if phrase.hilly or phrase.slope_noun:
         wishes.slope = wishes.slope or "flat"

@@ -1,4 +1,4 @@
-"""Decides which features a slope that was said alone belongs to, and which slopes hold for the whole road."""
+"""Decides whether a slope without a feature of its own ('then uphill') applies to features or to the road."""
 
 from dataclasses import replace
 
@@ -23,7 +23,9 @@ _WORDS: dict[tuple[str, str], Slope] = {
 
 
 def slope_of(phrase: Phrase) -> Slope | None:
-    """Returns the slope of a phrase as a Brief has it; a number replaces 'steeply' and 'gently'."""
+    """Returns the slope of a phrase as a value of a Brief; 'steeply' and 'gently' are dropped if it has a
+    number.
+    """
     if not phrase.slope:
         return None
     if phrase.slope == "flat":
@@ -33,7 +35,9 @@ def slope_of(phrase: Phrase) -> Slope | None:
 
 
 def settle_slopes(order: DrivingOrder) -> None:
-    """Assigns every slope that was said alone to its features or to the road, or makes it a straight."""
+    """Assigns each slope without a feature of its own to earlier features or to the road, or inserts a
+    straight.
+    """
     alone = [thing for thing in order.things if _alone(thing)]
     if alone and not _shared_out(order, alone):
         only = len({_said(thing) for thing in order.things if thing.slope}) == 1 and not _rises_and_falls(

@@ -1,4 +1,4 @@
-"""Splits a description into words, numbers and signs."""
+"""Splits a description into tokens: words, numbers and punctuation marks."""
 
 import re
 import unicodedata
@@ -57,7 +57,9 @@ Sort = Literal["word", "number", "ratio", "sign"]
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A piece of the description: ``text`` is looked up, ``raw`` is as it was written."""
+    """A piece of a description: ``raw`` is its original spelling, ``text`` the form to look up in
+    vocabularies.
+    """
 
     text: str
     raw: str
@@ -78,7 +80,7 @@ def _plain_letter(letter: str) -> str:
 
 
 def tokens(text: str) -> list[Token]:
-    """Returns the tokens of a description in order; signs without a meaning here are left out."""
+    """Returns the tokens of a description in order; punctuation without a meaning for roads is left out."""
     folded, places = plain(text), _places(text)
     found = [
         (match.lastgroup, match.group(), match.span())

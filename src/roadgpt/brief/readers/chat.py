@@ -1,7 +1,8 @@
-"""The chat reader: a language model writes the plan of a description, which is then checked like any other.
+"""The chat reader: asks a language model for the plan of a description, and checks it like any other plan.
 
-The model answers in the plan language of ``roadgpt.brief.plan``; every word of it is looked up and nothing is
-executed. If the answer is not a valid plan, the model gets it back with a sentence that says why.
+The model answers in the plan language of ``roadgpt.brief.plan``; every word of the answer is looked up and
+nothing is executed. If the answer is not a valid plan, the model is asked again, with a sentence that states
+the error.
 """
 
 from collections.abc import Sequence
@@ -96,7 +97,7 @@ class ChatReader:
 
         Raises:
             BriefError: the description is empty, too long, not about a road, or contradicts itself.
-            ChatError: the model could not be asked, or gave no valid plan.
+            ChatError: the model could not be asked, or returned no valid plan.
         """
         if not words.strip():
             raise BriefError(f"the description is empty; {EXAMPLE}")

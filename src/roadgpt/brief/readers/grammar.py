@@ -1,4 +1,6 @@
-"""The grammar reader: rules that work without a model, and list every word that they did not understand."""
+"""The grammar reader: reads descriptions by rules, without a model, and reports the words it did not
+understand.
+"""
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.grammar.brief_builder import build_brief
@@ -25,7 +27,8 @@ SURE = TURNING | {
     "more_right",
     "same_sides",
 }
-"""Meanings that occur in descriptions of roads and hardly anywhere else."""
+"""Meanings that occur in descriptions of roads and hardly anywhere else; one of them shows that a text is
+about a road."""
 LIKELY = frozenset(
     {"straight", "crest", "dip", "hill", "left", "right", "up", "down", "up~", "down~", "flat", "flat~"}
     | {"steep", "hard", "hard_road", "slope", "hills", "height", "radius", "%"}

@@ -1,1 +1,1 @@
-"""Providers: one plug-in for servers with OpenAI's protocol, and one for replayed exchanges."""
+"""Providers, which are plug-ins: one for servers with OpenAI's protocol, and one for replayed exchanges."""

@@ -1,8 +1,8 @@
 """Asks any server with OpenAI's protocol: OpenAI, Azure, Ollama, llama.cpp, vLLM, LM Studio and others.
 
-A server may not support schemas, may silently ignore them, or may reject a parameter. What it supports is
-found out by asking, from the strictest response format down, and is remembered. The reply is validated in
-any case.
+A server may not support schemas, may silently ignore them, or may reject a parameter. The provider finds out
+by trying response formats, starting with the strictest, and remembers what the server supports. The reply is
+always validated.
 """
 
 import json
@@ -47,7 +47,7 @@ class OpenAI:
 
     @property
     def spent(self) -> Spent:
-        """What all questions have cost so far."""
+        """The total cost of all questions so far."""
         return self._account.spent
 
     def _only_model(self) -> str:
@@ -181,19 +181,21 @@ class OpenAI:
 
 @dataclass
 class FormatFallback:
-    """Asks one question in one response format after another, from the strictest to the loosest."""
+    """Asks one question in different response formats, from the strictest to the loosest, until one works."""
 
     messages: list[Message]
     response_format: ResponseFormat
     is_last: bool
-    """True if this is the last try; plain text is not asked for twice."""
+    """True if no other attempt follows; plain text is not asked for twice."""
     refused: set[ResponseFormat] = field(default_factory=set)
     why: str = ""
-    """Why the last answer was not usable."""
+    """The reason why the last answer was not usable."""
 
     def goes_down(self, fault: RequestError) -> bool:
-        """Moves on to the next format if this one may be the cause; returns False if it is not, or if it
-        is the last.
+        """Moves on to the next looser format after a failed request, if the format may be the cause.
+
+        Returns:
+            False if the format is not the cause, or if there is no looser format.
         """
         if self.response_format == ResponseFormat.TEXT or not _is_about_format(fault):
             return False
@@ -202,7 +204,16 @@ class FormatFallback:
         return True
 
     def tries_again(self, messages: Sequence[Message], why: str) -> bool:
-        """Moves on to the next format, or repeats the last one once; returns False if both are done."""
+        """Prepares another attempt after an unusable answer: with the next looser format, or once more as
+        plain text.
+
+        Args:
+            messages: the original question.
+            why: why the answer was not usable; the model is shown this reason.
+
+        Returns:
+            False if no attempt is left.
+        """
         self.why = why
         if self.response_format == ResponseFormat.TEXT and self.is_last:
             return False

@@ -1,4 +1,6 @@
-"""Answers from recorded exchanges instead of a server: the same bytes, without a network or a key."""
+"""Returns recorded answers instead of asking a server: always the same bytes, without a network or an API
+key.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,14 +39,14 @@ class Replay:
 
     @property
     def spent(self) -> Spent:
-        """What the recorded exchanges cost."""
+        """The costs that were recorded with the exchanges replayed so far."""
         return self._account.spent
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
         """Returns the answer that was recorded for this question.
 
         Raises:
-            ChatError: no answer to it was recorded.
+            ChatError: no answer to this question was recorded.
             ReplyError: the recorded exchange ended with this error.
             UsageError: the recording cannot be read.
         """

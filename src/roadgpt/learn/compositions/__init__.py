@@ -1,8 +1,8 @@
-"""Composes English descriptions of turns that are numbered, repeated, kept apart or counted by side.
+"""Composes English descriptions of turns that are numbered, repeated, separated or counted by side.
 
-Grammars write one feature after another. Here one sentence speaks of many features at once ("six bends, 30
-m of straight between any two", "turns 2 and 4 go left, the others right"), and the plan follows by
-counting. These pairs teach a network to keep counting beyond the numbers in people's examples.
+The grammars write one feature after another. In these compositions, one sentence refers to many features at
+once ("six bends, 30 m of straight between any two", "turns 2 and 4 go left, the others right"), and the plan
+follows by counting. These pairs teach a network to count beyond the numbers in hand-written examples.
 """
 
 from collections.abc import Callable
@@ -48,7 +48,7 @@ SHARES = np.cumsum([share for _, share in WAYS])
 
 
 def composed(rng: np.random.Generator) -> Composition | None:
-    """Returns a description and its plan in standard form; None if no such road is possible."""
+    """Returns a random description and its plan in standard form; None if no such road is possible."""
     way = WAYS[int(np.searchsorted(SHARES, rng.random() * SHARES[-1], side="right"))][0]
     voice = Voice(rng)
     said = way(voice)

@@ -1,4 +1,4 @@
-"""The first few turns in one way and the rest in another."""
+"""Descriptions in which the first few turns have one property and the rest another."""
 
 from roadgpt.learn.compositions.voice import SHARPNESS, Composition, DescribedTurn, Voice, clauses
 
@@ -12,11 +12,13 @@ ASPECTS: tuple[tuple[str, Words, float], ...] = (
     ("side", (("left", "left"), ("to the left", "left"), ("right", "right")), 0.4),
     ("sharpness", SHARPNESS, 0.25),
 )
-"""In what the parts differ, the words for it, and how often they do."""
+"""The property in which the two parts differ, the words for its values, and how often it is used (0 to 1)."""
 
 
 def by_parts(voice: Voice) -> Composition:
-    """Returns three to eight turns in two parts that differ, sometimes with a hairpin at an end."""
+    """Returns a description of three to eight turns in two parts that differ, sometimes with a hairpin at an
+    end.
+    """
     total = voice.whole(3, 8)
     first = voice.whole(1, total - 1)
     turns = [DescribedTurn() for _ in range(total)]

@@ -1,10 +1,12 @@
-"""Numbers that are corrected, and lists that say that they are complete."""
+"""Descriptions in which a number is corrected, and descriptions that state that their list is complete."""
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, Voice
 
 
 def corrected(voice: Voice) -> Composition:
-    """Returns a description in which a number is corrected; the rest stands."""
+    """Returns a description in which one number is corrected afterwards, with the plan for the corrected
+    number.
+    """
     side, other = voice.pick(SIDES), voice.pick(SIDES)
     wrong, angle = (5 * voice.whole(5, 22) for _ in range(2))
     said, length = voice.metres()
@@ -19,7 +21,7 @@ def corrected(voice: Voice) -> Composition:
 
 
 def nothing_more(voice: Voice) -> Composition:
-    """Returns a list of features that says that there are no others."""
+    """Returns a description that lists features and states that there are no others."""
     said: list[str] = []
     parts: list[str] = []
     for _ in range(voice.whole(1, 4)):

@@ -1,4 +1,4 @@
-"""Requirements for the whole road in any order: negated bounds, lengths beside radii beside heights."""
+"""Descriptions with requirements for the whole road in any order: negated bounds, lengths, radii, heights."""
 
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ class _Wish(NamedTuple):
 
 
 def with_limits(voice: Voice, said: Composition) -> Composition:
-    """Returns the same road with one to three limits for the whole of it, before or after the rest."""
+    """Returns the composition with one to three limits for the whole road added before or after its text."""
     ways = [_grade, _length, _height]
     if not any(word in said.plan for word in ("sharp", "gentle", "sweeping")):
         ways.append(_radius_of_hairpins if "hairpin" in said.plan else _radius)
@@ -43,7 +43,7 @@ def _joined(voice: Voice, parts: list[str]) -> str:
 
 
 def limited(voice: Voice) -> Composition:
-    """Returns a number of turns and two to four requirements with numbers, in any order."""
+    """Returns a description of a number of turns and two to four requirements with numbers, in any order."""
     number = voice.whole(2, 7)
     count, side = voice.pick((voice.turns(number), f"{voice.pick(NOUNS)}: {number}")), ""
     if voice.chance(0.2):

@@ -1,4 +1,4 @@
-"""Turns that are named by their numbers: which go left, which are hairpins, sharp, or have an angle."""
+"""Descriptions that refer to turns by number: which go left, are hairpins, are sharp, or have an angle."""
 
 from roadgpt.learn.compositions.voice import (
     NOUNS,
@@ -15,7 +15,7 @@ GO = (("go", "goes"), ("turn", "turns"), ("are", "is"), ("bend", "bends"), ("go 
 
 
 def numbered_sides(voice: Voice) -> Composition:
-    """Returns three to eight turns, of which some have their sides given by their numbers."""
+    """Returns a description of three to eight turns that gives the sides of some turns by their numbers."""
     total = voice.whole(3, 8)
     side = voice.pick(SIDES)
     names, chosen, is_one = _chosen(voice, total)
@@ -28,7 +28,9 @@ def numbered_sides(voice: Voice) -> Composition:
 
 
 def numbered_kinds(voice: Voice) -> Composition:
-    """Returns three to seven turns, of which some differ from the others; sometimes all have one side."""
+    """Returns a description of three to seven turns, some of them different; sometimes all turns have one
+    side.
+    """
     total = voice.whole(3, 7)
     names, chosen, is_one = _chosen(voice, total)
     shape, kind, mods = _shape(voice, len(chosen) == 1)

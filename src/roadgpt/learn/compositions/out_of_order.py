@@ -1,10 +1,10 @@
-"""Features in another order than they are driven: what comes before, what lies between, how it ends."""
+"""Descriptions that name features out of driving order: what comes before, what lies between, how it ends."""
 
 from roadgpt.learn.compositions.voice import SHARPNESS, SIDES, Composition, Voice
 
 
 def out_of_order(voice: Voice) -> Composition:
-    """Returns two or three features out of their order."""
+    """Returns a description that names two or three features out of driving order."""
     names = "abc" if voice.chance(0.65) else "ab"
     things: list[tuple[str, str]] = []
     for _ in names:

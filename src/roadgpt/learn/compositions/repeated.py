@@ -1,10 +1,13 @@
-"""Patterns that are repeated, and sides as letters with an angle for each."""
+"""Descriptions of repeated patterns, and of sides given as letters, with an angle for each side."""
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, DescribedTurn, Voice, clauses
 
 
 def repeated(voice: Voice) -> Composition:
-    """Returns a pattern of two or three features two to four times, sometimes with one more feature."""
+    """Returns a description of a pattern of two or three features that is repeated two to four times.
+
+    Sometimes one more feature follows the pattern.
+    """
     parts = [_part(voice, may_be_straight=at > 0) for at in range(voice.whole(2, 3))]
     times = voice.pick((2, 2, 3, 3, 4))
     pattern = voice.say("pattern joints").join(said for said, _ in parts)
@@ -36,7 +39,9 @@ def _part(voice: Voice, may_be_straight: bool) -> tuple[str, str]:
 
 
 def lettered(voice: Voice) -> Composition:
-    """Returns a list of letters like 'L, L, R', with one angle for the lefts and another for the rights."""
+    """Returns a description with sides as letters ('L, L, R'), one angle for all lefts and another for all
+    rights.
+    """
     turns = [DescribedTurn(mods={"side": voice.pick(SIDES)}) for _ in range(voice.whole(3, 7))]
     text = voice.pick((", ", "-", " ", ", ")).join(turn.mods["side"][0].upper() for turn in turns)
     said = []

@@ -1,4 +1,4 @@
-"""Turns kept apart: with a straight between any two of them, after each, or before each."""
+"""Descriptions of turns separated by straights: between any two turns, or after or before each turn."""
 
 from roadgpt.learn.compositions.voice import SHARPNESS, SIDES, Composition, DescribedTurn, Voice
 
@@ -12,7 +12,7 @@ NOUNS = (
 
 
 def spaced_turns(voice: Voice) -> Composition:
-    """Returns two to eight turns with straights between, after or before them."""
+    """Returns a description of two to eight turns with straights between, after or before them."""
     things, turns, wish = _things(voice)
     said, clause = _straight(voice)
     way = voice.pick(("between", "between", "between", "after", "before"))

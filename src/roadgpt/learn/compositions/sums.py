@@ -1,10 +1,14 @@
-"""Counts that add up: a number of turns, how many go to each side, and which come first or last."""
+"""Descriptions with counts that add up: the number of turns, how many go to each side, which come first or
+last.
+"""
 
 from roadgpt.learn.compositions.voice import NOUNS, OTHER, SIDES, Composition, DescribedTurn, Voice, clauses
 
 
 def sided_sum(voice: Voice) -> Composition:
-    """Returns a number of turns and how many go to each side, sometimes with their order."""
+    """Returns a description with the number of turns and how many go to each side, sometimes with their
+    order.
+    """
     total = voice.whole(2, 9)
     side = voice.pick(SIDES)
     few = voice.whole(1, max(1, total // 2))
@@ -29,7 +33,7 @@ def _sided(voice: Voice, number: int, side: str) -> str:
 
 
 def ranged(voice: Voice) -> Composition:
-    """Returns a range such as three to five turns, one of which may be different."""
+    """Returns a description with a range such as three to five turns, sometimes with one different turn."""
     low = voice.whole(2, 5)
     high = low + voice.whole(1, 3)
     numbers = {"low": low, "high": high, "less": low - 1, "more": high + 1}

@@ -1,4 +1,6 @@
-"""Draws phrases from lists, writes numbers as digits or words, and puts plans together from turns."""
+"""Tools for compositions: draws phrases at random, writes numbers as digits or words, and joins turns to a
+plan.
+"""
 
 import json
 from collections.abc import Sequence
@@ -24,7 +26,7 @@ BEGIN = frozenset(
     ["put", "repeat", "do", "finish", "end", "it", "start", "between", "before", "after", "prior", "once"]
     + ["first", "at", "twice", "total", "overall", "length"]
 )
-"""Words that begin a sentence of their own."""
+"""Words that can begin a sentence without one of the standard openings."""
 
 
 class Composition(NamedTuple):
@@ -40,17 +42,19 @@ class DescribedTurn:
 
     kind: str = "turn"
     mods: dict[str, str] = field(default_factory=dict)
-    """Plan words by what they specify: side, sharpness, slope, deg."""
+    """The plan words of the turn by what they specify: side, sharpness, slope or deg."""
 
     @property
     def clause(self) -> str:
-        """The clause of the turn, without a count."""
+        """The clause of the turn in a plan, without a count."""
         order = ("side", "sharpness", "slope", "deg")
         return " ".join([self.kind, *(self.mods[key] for key in order if key in self.mods)])
 
 
 def clauses(turns: Sequence[DescribedTurn]) -> str:
-    """Returns the clauses of consecutive turns; equal neighbours are counted."""
+    """Returns the clauses of consecutive turns as part of a plan; equal neighbours become one clause with a
+    count.
+    """
     out = []
     for clause, same in groupby(turn.clause for turn in turns):
         number = len([*same])
@@ -60,54 +64,54 @@ def clauses(turns: Sequence[DescribedTurn]) -> str:
 
 
 class Voice:
-    """Draws what is said and how; one voice prefers digits or words throughout."""
+    """Draws phrases at random; each voice writes all its numbers as digits, or all of them as words."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.rng = rng
         self.spells = rng.random() < 0.45
 
     def pick(self, ways: Sequence[Thing]) -> Thing:
-        """Returns one of the alternatives."""
+        """Returns one of the alternatives, drawn at random."""
         return ways[int(self.rng.integers(len(ways)))]
 
     def say(self, way: str, *parts: str, **named: str) -> str:
-        """Returns a phrase of this kind with its parts filled in."""
+        """Returns a random phrase of the kind ``way``, with its placeholders filled in."""
         return self.pick(PHRASES[way]).format(*parts, **named)
 
     def chance(self, share: float) -> bool:
-        """Returns True in this share of cases."""
+        """Returns True with probability ``share``, which is from 0 to 1."""
         return bool(self.rng.random() < share)
 
     def whole(self, low: int, high: int) -> int:
-        """Returns a whole number from ``low`` to ``high``, both included."""
+        """Returns a random whole number from ``low`` to ``high``, both included."""
         return int(self.rng.integers(low, high + 1))
 
     def number(self, value: int) -> str:
-        """Returns the number in digits or in words, as this voice prefers."""
+        """Returns the number as digits or as words, depending on the voice."""
         return spell(value, "en") if self.spells else str(value)
 
     def metres(self, low: int = 15, high: int = 80) -> tuple[str, int]:
-        """Returns the words for a length, and its number."""
+        """Returns a random length from ``low`` to ``high`` metres in steps of 5, as words and as a number."""
         value = 5 * self.whole(low // 5, high // 5)
         units = (" metres", " meters") if self.spells else (" m", " m", "m", " metres", " meters")
         return f"{self.number(value)}{self.pick(units)}", value
 
     def angle(self, low: int = 20, high: int = 120) -> tuple[str, int]:
-        """Returns the words for an angle, and its number."""
+        """Returns a random angle from ``low`` to ``high`` degrees in steps of 5, as words and as a number."""
         value = 5 * self.whole(low // 5, high // 5)
         return f"{self.number(value)}{self.pick((' degrees', ' degrees', ' deg', '°'))}", value
 
     def percent(self, low: int = 3, high: int = 12) -> tuple[str, int]:
-        """Returns the words for a grade, and its number."""
+        """Returns a random grade from ``low`` to ``high`` percent, as words and as a number."""
         value = self.whole(low, high)
         return f"{self.number(value)}{self.pick((' %', ' percent', '%', ' per cent'))}", value
 
     def turns(self, number: int) -> str:
-        """Returns the words for this number of turns."""
+        """Returns the words for this number of turns, such as '3 bends'."""
         return f"{self.number(number)} {self.pick(NOUNS)}"
 
     def ordinal(self, at: int, total: int) -> str:
-        """Returns the name of a turn, counted from 0."""
+        """Returns the ordinal of a turn, such as 'third' or 'last'; ``at`` counts from 0."""
         if at == total - 1 and self.chance(0.6):
             return self.pick(("last", "final", "last"))
         if self.chance(0.25):
@@ -115,7 +119,7 @@ class Voice:
         return ORDINALS[at]
 
     def listed(self, names: Sequence[str]) -> str:
-        """Returns 'a, b and c'."""
+        """Returns the names joined to one text: 'a, b and c'."""
         if len(names) == 1:
             return names[0]
         return f"{', '.join(names[:-1])}{self.pick((' and ', ' and ', ', and ', ' & '))}{names[-1]}"

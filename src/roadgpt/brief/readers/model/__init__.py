@@ -1,7 +1,9 @@
-"""The model reader: reads descriptions in five languages with a network of our own, offline, in milliseconds.
+"""The model reader: reads descriptions in five languages with RoadGPT's own network, offline, in
+milliseconds.
 
-Rules take the numbers out of the text and put them into the plan that the network writes. The network can
-only write plans that can be read. The weights and their documentation are in ``weights/``.
+Rules take the numbers out of the text before the network reads it, and insert them into the plan that the
+network writes. The decoding is constrained, so that the network can only write valid plans. The weights and
+their documentation are in ``weights/``.
 """
 
 from collections.abc import Sequence
@@ -70,7 +72,7 @@ class ModelReader:
         """Returns the Brief of a description.
 
         Raises:
-            TooMuchError: more is asked for than the usual map holds; the error carries the Brief.
+            TooMuchError: the description asks for more than the usual map holds; the error carries the Brief.
             BriefError: the description is empty, too long, not about a road, contradicts itself, or asks for
                 something impossible.
         """
@@ -98,7 +100,8 @@ class ModelReader:
         Args:
             words: the description.
             number: the largest number of readings.
-            temperature: how freely the other readings are sampled; 1 is the network's own distribution.
+            temperature: how freely the readings after the first are sampled; 1 samples from the network's own
+                distribution, lower values stay closer to the likeliest reading.
             seed: seed of the sampling.
 
         Raises:

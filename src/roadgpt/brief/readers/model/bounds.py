@@ -1,8 +1,8 @@
 """Corrects the bounds of measures in a plan by the words next to the number, such as "at least".
 
-A small network sometimes reads "no larger than" as "at least", or drops the bound. Only phrases are corrected
-whose meaning is the same throughout the training pairs; "over 60 m" often means a distance, and is left
-alone.
+A small network sometimes reads "no larger than" as "at least", or drops the bound. Only phrases that have the
+same meaning throughout the training pairs are used for corrections; "over 60 m" often means a distance, and
+is ignored.
 """
 
 from collections.abc import Sequence
@@ -13,9 +13,9 @@ from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
 from roadgpt.brief.readers.model.word_set import word_set
 
 Bound = Literal["lo", "hi", "none"]
-"""At least, at most, or certainly no bound ("60 m or so")."""
+"""'lo' is a lower bound, 'hi' an upper bound, 'none' certainly no bound ("60 m or so")."""
 KEYS = frozenset(["deg=", "r=", "len=", "pct=", "steepest="])
-"""Keys whose bounds are corrected; not the climb, whose bounds are reversed when the road falls."""
+"""Plan keys whose bounds are corrected. The climb is left out, since its bounds swap when the road falls."""
 SMALLER = word_set(
     "below under less smaller shorter fewer lower inside unter weniger kleiner kurzer geringer",
     "unterhalb moins inferieur inferieure inferieurs inferieures sous menos menor inferior inferiores",
@@ -28,8 +28,8 @@ LARGER = word_set(
     "maggiore superiore dessus encima oltre bigger",
 )
 BELOW = word_set("below under less unter inferieur inferieure inferior inferiore")
-"""Words that mean at most on their own, unless negated; other comparatives refer to something said
-earlier."""
+"""Words that mean "at most" on their own, unless negated; other comparatives ("smaller") may refer to
+something that was mentioned earlier."""
 LEAST = word_set("least minimum min mindestens minimal wenigstens moins minimo minima menos meno almeno")
 MOST = word_set("most maximum max hochstens hoechstens maximal massimo maximo maxima massima")
 ALONE = word_set("min max minimum maximum mindestens wenigstens hochstens hoechstens maximal almeno")
@@ -54,7 +54,7 @@ REACH = 4
 
 
 def bounded(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]:
-    """Returns the tokens of a plan with the bounds of its measures as the words have them."""
+    """Returns the tokens of a plan, with the bounds of measures corrected to those in the text."""
     words = [word.text for word in text.words]
     out: list[str] = []
     at = 0
@@ -92,7 +92,7 @@ def _with_bound(amount: Sequence[str], words: list[str]) -> list[str]:
 
 
 def bound_before(words: Sequence[str], at: int) -> Bound | None:
-    """Returns the bound that the words right before a number express; None if none is certain."""
+    """Returns the bound given by the words right before a number ("at least"); None if none is certain."""
     last = at - 1
     while last >= 0 and words[last] in FILLERS and at - 1 - last < MOST_FILLERS:
         last -= 1
@@ -116,7 +116,7 @@ def _sentence(words: Sequence[str], at: int) -> Sequence[str]:
 
 
 def bound_behind(words: Sequence[str], at: int) -> Bound | None:
-    """Returns the bound that the words right after a number and its unit express: "40 m or more"."""
+    """Returns the bound given by the words right after a number and its unit ("40 m or more"), or None."""
     after = [word for word in words[at + 1 : at + 5] if word not in UNITS and not word.startswith("[unused2")]
     if len(after) < 2 or after[0] not in OR:
         return None

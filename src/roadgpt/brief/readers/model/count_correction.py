@@ -1,9 +1,11 @@
-"""Corrects the counts of a plan: each is a number that was said, or follows from those by a sum.
+"""Corrects the counts in a plan, each of which must be a number in the text or follow from such numbers by a
+sum.
 
-A small network copies numbers well and calculates badly: "seven turns, the first two uphill" became 2 and 4.
-If exactly one count of a plan was not said, and exactly one number that was said is in no count, the sum
-decides. If every count was said, but a number of turns is no sum of them, it is kept in the Brief as the
-total number of turns, so that the contradiction is reported.
+A small network copies numbers well and calculates badly: for "seven turns, the first two uphill", it wrote
+counts of 2 and 4. If exactly one count of a plan is not in the text, and exactly one number in the text is
+not a count of the plan, the missing count is computed as a sum or difference. If every count is in the text,
+but a number of turns is no sum of the counts, that number is kept in the Brief as the total number of turns,
+so that the contradiction is reported.
 """
 
 from collections.abc import Iterator
@@ -20,7 +22,7 @@ MULTIPLES = word_set(
     "gleiche halb deux fois moitie meme encore dos veces doble ambas misma mitad due volte doppio",
     "entrambe stessa meta alternating",
 )
-"""Words that imply numbers which do not appear as digits."""
+"""Words that imply numbers without naming them, such as "twice"."""
 ONE = word_set("one ein eine einen einer eins un une una uno single sole")
 """Words that may be the number 1 or an article."""
 MORE = word_set(
@@ -29,7 +31,7 @@ MORE = word_set(
 )
 """Words that exclude turns other than the named ones: "no further turns"."""
 MOST_COUNTS = 8
-"""Eight counts have 255 sums; a description that names more is not checked."""
+"""The largest number of counts that are checked: eight counts already have 255 possible sums."""
 
 
 def with_checked_counts(brief: Brief, text: SlottedText) -> Brief:

@@ -1,4 +1,4 @@
-"""Finds the words that have no effect on the plan: numbers not copied, sides not used, words never learnt."""
+"""Finds words without effect on the plan: numbers not copied, sides not used, words unknown from training."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,13 +10,15 @@ from roadgpt.reading import read_text
 
 SIDES = frozenset({"left", "right"})
 TRACES = frozenset({"left", "right", "lefts=", "rights=", "alternating"})
-"""The tokens that a side leaves in a plan; "first left, then right" leaves only the first."""
+"""The tokens of a plan that show that a side was read; "first left, then right" leaves only 'left'."""
 SHORTEST = 3  # letters; shorter words are function words in all five languages
 
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """The words that were frequent in training: those that change plans, and mere function words."""
+    """The words that a reader has learnt: those that were frequent in training with some effect, and function
+    words.
+    """
 
     known: frozenset[str]
 
@@ -26,7 +28,9 @@ class Coverage:
         return cls(frozenset(read_text(path).split("\n")))
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
-        """Returns the words that the plan does not reflect, as they were written, each once and in order."""
+        """Returns the words that the plan does not reflect, in their original spelling, each once and in text
+        order.
+        """
         out: list[str] = []
         slot = 0
         has_side = bool(TRACES & {*tokens})

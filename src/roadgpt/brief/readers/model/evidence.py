@@ -1,7 +1,7 @@
-"""Checks by rules which numbers without a digit a plan may contain.
+"""Decides by rules which numbers that are not written in a description its plan may contain.
 
 Words can imply a number ("right angle", "mountain road"). A plan may contain such a number only if some word
-of the description, in any of the five languages, can mean it.
+of the description, in any of the five languages, can imply it.
 """
 
 import re
@@ -22,7 +22,7 @@ HILLY = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """Which kinds of implied numbers a description can mean."""
+    """Which kinds of numbers a description can imply: angles, a grade ("mountain"), a count of hills."""
 
     angles: bool = True
     mountains: bool = True
@@ -30,6 +30,8 @@ class Evidence:
 
     @classmethod
     def of(cls, text: str) -> "Evidence":
-        """Returns the evidence in a description as the model sees it: lower case, without accents."""
+        """Returns the evidence in a description, which must be lower case and without accents, as for the
+        model.
+        """
         patterns = (ANGLE, MOUNTAIN, HILLY)
         return cls(*(pattern.search(text) is not None for pattern in patterns))

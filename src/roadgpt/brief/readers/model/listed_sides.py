@@ -1,7 +1,7 @@
 """Finds sides that are listed one after another ("left, right, right"), to compare a plan's turns with them.
 
-A small network loses count of repetitions. If all sides that a description names stand in one list, a plan
-whose turns have these sides is preferred to a likelier one whose turns do not.
+A small network loses count of repetitions. If all sides in a description are part of one list, a plan whose
+turns have these sides is preferred to a likelier plan whose turns do not.
 """
 
 from roadgpt.brief.model import Brief
@@ -17,10 +17,10 @@ JOINTS = frozenset(
 
 
 def listed_sides(text: SlottedText) -> tuple[str, ...]:
-    """Returns the sides of the only list that names any; empty if it has fewer than FEWEST sides.
+    """Returns the sides of the only list of sides in the text; empty if it has fewer than FEWEST sides.
 
-    Empty also if another number or a word like "twice" is said, since a side may then stand for several
-    turns.
+    The result is also empty if the text contains another number or a word like "twice", since one side may
+    then stand for several turns.
     """
     lists: list[list[str]] = [[]]
     for word in text.words:
@@ -37,7 +37,7 @@ def listed_sides(text: SlottedText) -> tuple[str, ...]:
 
 
 def sides_of(brief: Brief) -> tuple[str | None, ...]:
-    """Returns the side of every turn in order; empty if the number of turns is open."""
+    """Returns the side of every turn in order; empty if the number of turns is not exact."""
     turning = [clause for clause in normal(brief).clauses if clause.kind not in STRAIGHT]
     if any(clause.kind not in SINGLE or not clause.count.exact for clause in turning):
         return ()

@@ -1,4 +1,4 @@
-"""Assigns to each number of a description the unit that belongs to it, even if the unit stands elsewhere."""
+"""Finds the unit of each number in a description, even if the unit does not directly follow the number."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,13 +7,13 @@ from itertools import pairwise
 from roadgpt.brief.readers.model.units import JOINTS, TIMES, UNITS, Unit
 
 LARGEST_SEEN = 20
-"""Bare numbers up to this one stay digits."""
+"""Numbers without a unit up to this one remain digits in the text for the model; larger ones become slots."""
 SIDES = frozenset(["left", "right", "l", "r"])
 
 
 @dataclass(slots=True)
 class Number:
-    """A number, its place in the text, and what it measures."""
+    """A number, its position in the text, and what it measures."""
 
     value: float
     first: int
@@ -22,11 +22,11 @@ class Number:
     is_bare: bool = True
     factor: float = 1.0
     spread: int = 0
-    """For a count: how many more or fewer are acceptable."""
+    """For a count: the tolerance; counts that differ by up to this many are acceptable."""
 
 
 def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
-    """Returns the unit that begins at this token (measure, size, number of words); None if none does."""
+    """Returns the unit that begins at this token (measure, size, number of words); None if there is none."""
     for size in (2, 1):
         found = UNITS.get(tuple(tokens[at : at + size]))
         if found:
@@ -44,7 +44,7 @@ def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
 
 
 def take_unit(number: Number, tokens: list[str]) -> None:
-    """Gives a number the unit that follows it, and converts its value to metres, percent or degrees."""
+    """Assigns to a number the unit that follows it, and converts its value to metres, percent or degrees."""
     if number.unit:
         return
     at = number.last + 1
@@ -61,7 +61,9 @@ def take_unit(number: Number, tokens: list[str]) -> None:
 
 
 def share_units(numbers: list[Number], tokens: list[str]) -> None:
-    """Gives "40" in "40 to 60 metres" its unit; works backwards, so that a list passes the unit on."""
+    """Assigns to "40" in "40 to 60 metres" the unit of "60"; works backwards, so that it also handles longer
+    lists.
+    """
     for one, other in zip(numbers[-2::-1], numbers[:0:-1], strict=False):
         between = tokens[one.last + 1 : other.first]
         while between and between[-1] in ("about", "than", "de", "di", "maximal", "another"):
@@ -77,7 +79,9 @@ def share_units(numbers: list[Number], tokens: list[str]) -> None:
 
 
 def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
-    """Gives bare measures a unit that is announced for all of them, as in "lengths in feet: 250 straight"."""
+    """Assigns to numbers without a unit the unit announced for all of them, as in "lengths in feet: 250
+    straight".
+    """
     factors = {UNITS.get((unit,), ("", 0.0)) for word, unit in pairwise(tokens) if word in ("in", "en")}
     sizes = [factor for unit, factor in factors if unit == "metres" and factor < 1.0]
     if len(sizes) != 1 or any(number.unit == "metres" for number in numbers):
@@ -90,12 +94,12 @@ def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
 
 
 def is_count(tokens: Sequence[str], number: Number) -> bool:
-    """True if the number may be a count."""
+    """Returns True if the number may be a count: whole, not too large, and not a radius."""
     return (
         number.value <= LARGEST_SEEN and number.value == int(number.value) and not is_radius(tokens, number)
     )
 
 
 def is_radius(tokens: Sequence[str], number: Number) -> bool:
-    """True if the number follows "R" and is too large for a count, as in R15."""
+    """Returns True if the number follows "R" and is 10 or more, as in R15."""
     return number.value >= 10 and number.first > 0 and tokens[number.first - 1] == "r"

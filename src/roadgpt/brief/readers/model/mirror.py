@@ -26,7 +26,9 @@ TOKENS = {"left": "right", "right": "left", "lefts=": "rights=", "rights=": "lef
 
 
 def mirrored(text: str, plan: str) -> tuple[str, str] | None:
-    """Returns text and plan with sides swapped; None if the plan has no side, or a word is ambiguous."""
+    """Returns text and plan with left and right swapped; None if the plan has no side, or a word is
+    ambiguous.
+    """
     if not re.search(r"\b(?:left|right|lefts|rights)\b", plan):
         return None
     swapped = in_mirror(text)
@@ -36,13 +38,13 @@ def mirrored(text: str, plan: str) -> tuple[str, str] | None:
 
 
 def in_mirror(text: str) -> str | None:
-    """Returns the text with sides swapped; None if it names no side, or a word may not mean one."""
+    """Returns the text with left and right swapped; None if it names no side, or a word is ambiguous."""
     swapped = re.sub(r"[^\W\d_]+", lambda match: _other(match[0]), text)
     return None if swapped == text or UNSAFE.search(text) else swapped
 
 
 def in_mirror_tokens(tokens: Sequence[str]) -> tuple[str, ...]:
-    """Returns the tokens of a plan with sides swapped."""
+    """Returns the tokens of a plan with left and right swapped."""
     return tuple(TOKENS.get(token, token) for token in tokens)
 
 

@@ -1,7 +1,7 @@
 """Finds numbers that must not be negative: "minus three turns", "a straight of -50 m".
 
-The network ignores the sign. Grades and climbs may be negative, and a dash may be just a dash, so only
-what is certainly a length, a radius or a count is reported.
+The network ignores the sign. Grades and climbs may be negative, and a dash may be just punctuation, so only
+negative numbers that are certainly lengths, radii or counts are reported.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ BEFORE_DASH = word_set(
     "of with has have having exactly precisely is are = : radius length mit von hat avec de con tiene",
     "di r",
 )
-"""After these words, a dash right before a number is a sign."""
+"""Words after which a dash right before a number is a minus sign."""
 LENGTHS = word_set(
     "straight straights radius radii r length long lang gerade geraden lange kurvenradius longueur",
     "droite rayon recta longitud radio rettilineo lunghezza raggio tangent",
@@ -24,7 +24,9 @@ NEAR = 4
 
 
 def negative_number(text: SlottedText) -> str | None:
-    """Returns the first such expression, for example "minus three turns"; None if there is none."""
+    """Returns the first negative length, radius or count, for example "minus three turns"; None if there is
+    none.
+    """
     words = [word.text for word in text.words]
     for at, word in enumerate(words):
         if not _is_number(word) or not _is_below_nothing(words, at):

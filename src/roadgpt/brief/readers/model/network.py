@@ -21,31 +21,29 @@ START = NUMBER_OF["<start>"]
 MOST_TOKENS = 90
 WIDTH = 4
 FAVOUR = 0.3
-"""Log-probabilities are divided by the length to this power."""
+"""Exponent of the length normalisation: a plan's log-probability is divided by its length to this power."""
 REFUSED = [NUMBER_OF[word] for word in REFUSALS]
 LAYERS, HEADS, SIZE = 3, 6, 64
 
 
 @dataclass(frozen=True, slots=True)
 class WrittenPlan:
-    """A plan as the network wrote it."""
+    """A plan as the network wrote it: its tokens and their probabilities."""
 
     tokens: tuple[str, ...]
     log_chances: tuple[float, ...]
-    """The log-probability of each token, including the end token, among the tokens that were allowed."""
+    """The log-probability of each token, including the end token, among the tokens allowed there."""
     refusal: float
-    """The probability of a refusal before the first token."""
+    """The probability, at the first token, that the network refuses the description."""
 
     @property
     def score(self) -> float:
-        """The log-probability, corrected for length, since each further token lowers it however sure it
-        is.
-        """
+        """The log-probability, normalised for length, because otherwise long plans would score lower."""
         return sum(self.log_chances) / float(max(1, len(self.log_chances)) ** FAVOUR)
 
 
 class Network:
-    """Turns word pieces into plans."""
+    """The trained network, which reads a description and writes plans."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -60,7 +58,7 @@ class Network:
         return _session(self.folder / "decoder.onnx")
 
     def encode(self, text: SlottedText) -> Array:
-        """Returns the keys and values of a description, shape (layers, 2, 1, heads, n, size)."""
+        """Returns the keys and values of a description, of shape (layers, 2, 1, heads, pieces, head size)."""
         numbers, _ = self.pieces.encode(word.text for word in text.words)
         out: Array = self._encoder.run(None, {"pieces": np.array([numbers], dtype=np.int64)})[0]
         return out
@@ -68,7 +66,14 @@ class Network:
     def write(
         self, across: Array, text: SlottedText, refuse_from: float = 0.5, width: int = WIDTH
     ) -> tuple[WrittenPlan, ...]:
-        """Returns the likeliest plans for a description, best first, from a beam search of this width."""
+        """Returns the likeliest plans for a description, best first, from a beam search.
+
+        Args:
+            across: the keys and values of the description, as ``encode`` returns them.
+            text: the description.
+            refuse_from: probability of a refusal, from 0 to 1, from which refusals are allowed as plans.
+            width: number of plans that the beam search keeps at each step.
+        """
         drafts, done = [Draft.of(text)], list[Draft]()
         own, refusal = _nothing(), 0.0
         for place in range(MOST_TOKENS):
@@ -102,7 +107,9 @@ class Network:
     def drawn(
         self, across: Array, text: SlottedText, rng: np.random.Generator, temperature: float
     ) -> WrittenPlan:
-        """Returns a plan sampled token by token, more freely at a higher temperature. It never refuses."""
+        """Returns a plan sampled token by token, more freely at a higher temperature; the plan is never a
+        refusal.
+        """
         draft, own = Draft.of(text), _nothing()
         for place in range(MOST_TOKENS):
             scores, own = self._step([draft], place, own, across)
@@ -145,9 +152,7 @@ class Draft:
 
     @property
     def score(self) -> float:
-        """The log-probability, corrected for length, since each further token lowers it however sure it
-        is.
-        """
+        """The log-probability, normalised for length, because otherwise long plans would score lower."""
         return sum(self.chances) / float(max(1, len(self.chances)) ** FAVOUR)
 
     def longer(self, token: int, chance: float) -> "Draft":
@@ -159,7 +164,7 @@ class Draft:
         return Draft(writer, (*self.tokens, TOKENS[token]), (*self.chances, chance), token)
 
     def written(self, refusal: float) -> "WrittenPlan":
-        """Returns the plan as it stands."""
+        """Returns the draft as a WrittenPlan, with the given probability of a refusal."""
         return WrittenPlan(self.tokens, self.chances, refusal)
 
 

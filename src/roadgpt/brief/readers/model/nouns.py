@@ -1,4 +1,4 @@
-"""Words for turns and sides in five languages, as plain words, used by several rules."""
+"""Words for turns and sides in five languages, in lower case without accents, used by several rules."""
 
 from roadgpt.brief.readers.model.word_set import word_set
 
@@ -9,10 +9,9 @@ RIGHT = word_set(
     "right rights righthand rightward rechte rechts rechtskurven droite derecha destra r rh dx dcha"
 )
 TURNS = word_set("turns bends corners curves kurven virages tournants courbes curvas")
-"""Plurals for turns without a particular shape; Italian "curve" is left out, since it is singular in
-English."""
+"""Plural nouns for turns in general; Italian "curve" is left out, since it is singular in English."""
 SHAPES = word_set("hairpins switchbacks kehren tournants epingles horquillas tornanti")
-"""Plurals for turns of a particular shape."""
+"""Plural nouns for turns of a particular shape."""
 ONE_TURN = word_set("turn bend curve corner hairpin switchback kurve kehre virage tournant curva")
 COUNTED = TURNS | SHAPES | {"curve"}
-"""Words that a number can count."""
+"""Nouns that a number can count."""

@@ -1,8 +1,7 @@
-"""Numbers as words in five languages: writes them and reads them back.
+"""Number words in five languages: writes them and reads them back.
 
-``spell`` writes a number; ``words`` maps the spellings of 0 to 1500 (above 200 only multiples of 5), as
-tuples of plain words (lower case, no accents, no hyphens), to the number, so that reading is a look-up of
-the longest match.
+``spell`` writes a number as words. ``words`` is the table for reading: it maps the spellings of 0 to 1500
+(above 200 only multiples of 5), as tuples of words in lower case without accents and hyphens, to the number.
 """
 
 import unicodedata
@@ -186,7 +185,7 @@ ITALIAN_TENS = [
 
 
 def plain(text: str) -> str:
-    """Returns the text in lower case without accents; it keeps its length, so places in it stay valid."""
+    """Returns the text in lower case without accents; all positions in it remain valid."""
     return "".join(_plain_letter(letter) for letter in text)
 
 
@@ -290,7 +289,8 @@ def _spellings(number: int, language: str) -> Iterator[str]:
 
 @cache
 def words() -> dict[tuple[str, ...], dict[str, int]]:
-    """Returns every spelling, split into plain words, with its value in each language that has it.
+    """Returns the table of all spellings, each split into words, with the value in each language that uses
+    it.
 
     The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
     """

@@ -1,8 +1,8 @@
-"""Replaces numbers that are unusually large or small, so that the network reads them as for the usual map.
+"""Replaces unusually large or small numbers in a description, so that the network does not refuse them.
 
-The network was trained for one map of 250 m and refuses what does not fit there. But whether a road fits
-is not for the network to decide: if it calls a road impossible, it is given the same words with ordinary
-numbers, and the original numbers are put into what it reads. The checks then compare that with the actual
+The network was trained for one map of 250 m and refuses roads that do not fit on it. But other maps may hold
+such a road. So if the network calls a road impossible, it reads the same description again with ordinary
+numbers, and the original numbers are then restored in its plan. Later checks compare the plan with the actual
 map and its limits. The network still refuses what is impossible on any map ("with a roundabout").
 """
 
@@ -13,17 +13,17 @@ from roadgpt.brief.readers.model.nouns import COUNTED
 from roadgpt.brief.readers.model.slots import SlottedText, Word, slot_name
 
 MARKS = frozenset({"[unused21]", "[unused22]", "[unused23]"})
-"""Marks after a measure: too large, too small, rather small."""
+"""Tokens that follow a measure that is too large, too small, or rather small."""
 MOST_TURNS = 12
 """The largest number of turns that the network was trained to write."""
 STAND_INS = ("9", "11", "7", "10", "8", "12")
-"""Counts that the network reads as ordinary ones."""
+"""Counts that replace larger ones in the text; the network reads them as ordinary."""
 BEFORE_NOUN = 3
-"""The largest number of words between a number and what it counts: "40 very sharp turns"."""
+"""The largest number of words between a number and the noun it counts: "40 very sharp turns"."""
 
 
 class OrdinaryNumbers(NamedTuple):
-    """The words with ordinary numbers, and the count that each stand-in replaces."""
+    """A description with ordinary numbers, and the original count for each stand-in."""
 
     text: SlottedText
     counts: dict[str, str]
@@ -34,7 +34,9 @@ class OrdinaryNumbers(NamedTuple):
 
 
 def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
-    """Returns the description with ordinary numbers; unchanged if its numbers are ordinary already."""
+    """Returns the description with ordinary numbers; the text is unchanged if its numbers are ordinary
+    already.
+    """
     free = [number for number in STAND_INS if all(word.text != number for word in text.words)]
     counts: dict[str, str] = {}
     out: list[Word] = []

@@ -1,7 +1,7 @@
 """Constrained decoding: the grammar of plans as an automaton, so that the model can only write valid plans.
 
-Modifiers stand in the fixed order in which ``brief.plan`` prints them. A measured number is one of the
-slots of the description, with a unit that fits, or a number that a word implies ("right angle": 90).
+Modifiers have a fixed order, the one in which ``brief.plan`` prints them. A measured number is either a slot
+of the description with a suitable unit, or a number that a word implies ("right angle": 90).
 """
 
 from collections.abc import Sequence
@@ -41,14 +41,14 @@ ROAD_ORDER: list[list[str]] = [
     *([key] for key in ROAD_KEYS), *([place] for place in PLACES),
 ]  # fmt: skip
 UNSAID = {"deg=": ("15", "30", "45", "60", "90", "120", "180"), "steepest=": ("4",)}
-"""Numbers that need not be in the text."""
+"""Numbers that a plan may contain although they are not in the text, by plan key."""
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
 END = "<end>"
 MOST_CLAUSES = 20
 
 
 class PlanAutomaton:
-    """Follows a plan token by token and knows which tokens may come next."""
+    """The state of a plan that is being written token by token; knows which tokens may come next."""
 
     def __init__(
         self, slots: Sequence[NumberSlot], said: frozenset[str], evidence: Evidence | None = None
@@ -71,11 +71,11 @@ class PlanAutomaton:
         return other
 
     def allowed(self) -> list[int]:
-        """Returns the numbers of all tokens that may come next."""
+        """Returns the indices of all tokens that may come next."""
         return [NUMBER_OF[word] for word in dict.fromkeys(self._next())]
 
     def push(self, word: str) -> None:
-        """Moves on by one token."""
+        """Advances the state by one token."""
         if self.key and (word in ("..", "-") or word in SLOT_TOKENS or word in COUNTS or word.isdigit()):
             self.amount.append(word)
             return

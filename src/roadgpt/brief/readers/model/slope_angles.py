@@ -26,11 +26,11 @@ BETWEEN = word_set(
 TURNING = COUNTED | ONE_TURN | LEFT | RIGHT | {"heading"}
 SKIPPED = frozenset(["-", "of", "to", "the", "nach", "a", "la", "vers"])
 REACH = 4
-"""How many words of BETWEEN may stand between the slope and its number."""
+"""How many of the words in BETWEEN may separate the slope from its number."""
 
 
 def as_grade(number: Number, tokens: Sequence[str]) -> None:
-    """Converts a number of degrees that says how steep something is to percent."""
+    """Converts a number of degrees to percent if the words next to it show that it is a slope."""
     if number.unit == "degrees" and number.value <= STEEPEST and _is_tilt(number, tokens):
         number.value, number.unit = round(100 * tan(radians(number.value)), 1), "percent"
 

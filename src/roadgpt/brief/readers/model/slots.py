@@ -1,9 +1,10 @@
-"""Takes the numbers out of a description before the model reads it, so that the model only copies numbers.
+"""Replaces the numbers in a description by slots before the model reads it, so that the model only copies
+slots.
 
     "three bends in 300 ft at 1:8"  ->  3 bends in [1] metres at [2] percent        [1] = 91.4, [2] = 12.5
 
-Small bare numbers stay digits, because counts matter to the reading ("4 turns, the first two uphill"). Every
-other number becomes a slot: a token whose value is kept apart, in metres, degrees or percent.
+Small numbers without a unit remain digits, because the model needs counts ("4 turns, the first two uphill").
+Every other number becomes a slot: a token whose value is stored separately, in metres, degrees or percent.
 """
 
 import re
@@ -50,7 +51,7 @@ THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of the description, as the model sees it (``text``) and as it was written (``written``)."""
+    """A word of a description: ``text`` is the form for the model, ``written`` the original spelling."""
 
     text: str
     written: str
@@ -58,7 +59,7 @@ class Word:
 
 @dataclass(frozen=True, slots=True)
 class NumberSlot:
-    """A number kept apart from the text: its value in the base unit, rounded to one decimal."""
+    """A number that a slot stands for: its value in metres, degrees or percent, rounded to one decimal."""
 
     value: float
     unit: Unit
@@ -73,12 +74,12 @@ class SlottedText:
 
     @property
     def text(self) -> str:
-        """The words as the model sees them, joined by spaces."""
+        """The words in the form that the model reads, joined by spaces."""
         return " ".join(word.text for word in self.words)
 
 
 def slotted(text: str) -> SlottedText:
-    """Takes the numbers out of a description."""
+    """Returns the description with its numbers replaced by slots."""
     said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
     tokens = [plain(word) for word in said]
     numbers = _numbers(tokens)
@@ -93,12 +94,12 @@ def slotted(text: str) -> SlottedText:
 
 
 def slot_name(index: int) -> str:
-    """Returns the unused word of the vocabulary that stands for a slot."""
+    """Returns the token that stands for a slot: one of BERT's unused vocabulary entries."""
     return f"[unused{index + 1}]"
 
 
 def language_of(tokens: Sequence[str]) -> str:
-    """Returns the language whose frequent words occur most; English if there are none."""
+    """Returns the language whose frequent words occur most often in the text; English if none occur."""
     found = set(tokens)
     return max(FUNCTION_WORDS, key=lambda code: (len(found & FUNCTION_WORDS[code]), code == "en"))
 

@@ -1,9 +1,9 @@
 """Test-time augmentation: reads variants of a description and combines the plans that the network writes.
 
-The variants are the description itself, its mirror image (left and right swapped), and the description
-with or without its full stop. A plan that the network writes for every variant is right more often than
-one that it writes for the first alone. If the first variant leaves no doubt, the others are skipped to
-save time.
+The variants are the description itself, its mirror image (left and right swapped), and the description with
+or without its full stop. A plan that the network writes for every variant is correct more often than one that
+it writes for the original alone. If the plan for the original is nearly certain, the other variants are
+skipped to save time.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,13 +19,14 @@ from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
 from roadgpt.errors import BriefError
 
 UNSEEN = 1.5
-"""A plan missing from the results of a variant counts there as the lowest score less this."""
+"""The score of a plan for a variant that did not produce this plan is the variant's lowest score minus
+UNSEEN."""
 ENDS = " .!"
 SURE = -0.1
-"""Log-probability of a whole plan from which one variant is enough. Of 943 descriptions held back from
-training, 781 reached it, and the other variants changed none of them."""
+"""Log-probability of a whole plan above which the other variants are skipped. Of 943 descriptions held back
+from training, 781 reached it, and the other variants changed none of them."""
 UNDECIDED = (0.03, 0.97)
-"""Probabilities of a refusal between which one variant is not enough."""
+"""If the probability of a refusal lies between these values, the other variants are read as well."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +37,15 @@ class ScoredPlan:
     line: str
     """The plan with its numbers filled in, or the name of a refusal."""
     score: float
-    """Mean log-probability over the variants, with a small bonus for long plans."""
+    """Mean over the variants of the length-normalised log-probability."""
     log_chances: tuple[float, ...]
-    """Log-probabilities of its tokens, for the variant that scores it highest."""
+    """Log-probabilities of the plan's tokens, for the variant in which the plan scores highest."""
     agreement: float
-    """Share of the variants that score it highest."""
+    """Share of the variants, from 0 to 1, in which this plan has the highest score."""
 
     @property
     def is_refusal(self) -> bool:
-        """True if it says that the words do not describe a road that can be built."""
+        """True if the network refuses the description, because it describes no road that can be built."""
         return self.tokens[0] in REFUSALS
 
     @property
@@ -59,16 +60,16 @@ class VariantPlans:
 
     plans: dict[str, tuple[float, WrittenPlan]]
     refusal: float
-    """The probability that the words do not describe a road that can be built."""
+    """The probability that the description asks for no road that can be built."""
 
     @property
     def least(self) -> float:
-        """The lowest score."""
+        """The lowest score of the plans."""
         return min(score for score, _ in self.plans.values())
 
     @property
     def is_clear(self) -> bool:
-        """True if neither the plan nor the question whether there is a road at all is in doubt."""
+        """True if one plan is nearly certain, and so is whether the description is to be refused."""
         if not self.plans or UNDECIDED[0] < self.refusal < UNDECIDED[1]:
             return False
         _, best = max(self.plans.values(), key=lambda plan: plan[0])
@@ -86,8 +87,9 @@ def scored_plans(
     Args:
         network: writes the plans.
         words: the description.
-        refuse_from: mean probability from which a refusal is accepted; above 1 it never is.
-        shown: maps the text to what the network is given.
+        refuse_from: probability of a refusal, from 0 to 1, from which refusals are allowed as plans; a value
+            above 1 never allows them.
+        shown: applied to the text before the network reads it, for example to replace unusual numbers.
     """
     text = shown(slotted(words))
     variants = [_plans_of_variant(network, text, refuse_from, False)]

@@ -1,6 +1,6 @@
-"""Reads tolerances: "four turns, plus or minus one" is three to five; "60 m ± 5 m" is 60 m.
+"""Reads tolerances: "four turns, plus or minus one" is read as three to five turns, "60 m ± 5 m" as 60 m.
 
-Lengths and angles have a tolerance of their own (``brief.words``), so the one in the text is dropped.
+Lengths and angles always have the tolerances in ``brief.words``, so those in the text are dropped.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ SIGNS = frozenset(
 )
 OPENING = frozenset([",", "(", "-"])
 LONGEST = 4
-"""The number of words of the longest sign, with a bracket before it."""
+"""The number of words of the longest expression for "plus or minus", including a bracket before it."""
 
 
 def tolerances_first(said: Sequence[str]) -> list[str]:
@@ -45,7 +45,7 @@ def _is_count(tokens: Sequence[str], at: int) -> bool:
 
 
 def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
-    """Returns the numbers without the tolerances; the number before a tolerance then ends after it."""
+    """Removes the numbers that are tolerances; a count that has a tolerance keeps it as ``spread``."""
     out: list[Number] = []
     for number in numbers:
         if out and _is_tolerance(tokens[out[-1].last + 1 : number.first]) and number.value < out[-1].value:

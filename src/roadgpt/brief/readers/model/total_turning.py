@@ -1,6 +1,6 @@
 """Reads the sum of all turning angles, as in "a total heading change of at least 300 deg".
 
-The network has no word for it, so it is taken out of the description before the network reads the rest.
+The network's vocabulary cannot express this sum, so the phrase is removed before the network reads the rest.
 """
 
 import re
@@ -39,19 +39,19 @@ WAYS = tuple(
 
 
 class TotalTurning(NamedTuple):
-    """The sum of all turning angles in degrees, and the description without it."""
+    """The required sum of all turning angles in degrees, and the rest of the description."""
 
     degrees: Amount
     rest: str
 
     @property
     def is_more_said(self) -> bool:
-        """True if the rest of the description says anything else."""
+        """True if the rest of the description contains any other words."""
         return len(self.rest.split()) > 1
 
 
 def total_turning(words: str) -> TotalTurning | None:
-    """Returns what a description says about the sum of all turning angles; None if it says nothing."""
+    """Returns the sum of all turning angles that a description asks for; None if it asks for none."""
     text = slotted(words)
     line = " ".join(word.text for word in text.words)
     found = next((match for way in WAYS if (match := way.search(line))), None)

@@ -1,4 +1,4 @@
-"""Units, and other words that stand beside numbers, in five languages, as plain words."""
+"""Units and other words that occur next to numbers, in five languages, in lower case without accents."""
 
 from typing import Literal
 
@@ -7,7 +7,7 @@ from roadgpt.brief.readers.model.word_set import word_set
 Unit = Literal["metres", "percent", "degrees", "kmh", ""]
 
 UNITS: dict[tuple[str, ...], tuple[Unit, float]] = {}
-"""Maps the words of a unit to what it measures and to its size in metres, percent or degrees."""
+"""Maps the words of a unit to what it measures, and to its size in metres, percent or degrees."""
 
 _SAID: tuple[tuple[str, Unit, float], ...] = (
     (
@@ -33,11 +33,11 @@ TIMES = frozenset(
     ["h", "hr", "hrs", "hour", "std", "stunde", "heure", "hora", "ora"]
     + ["s", "sec", "second", "sekunde", "seconde", "segundo", "secondo"]
 )
-"""What a length is divided by to become a speed."""
+"""Units of time: a length divided by one of them is a speed."""
 
 
 def plain_unit(text: str) -> str:
-    """Returns the word of a unit without accents."""
+    """Returns a unit without accents."""
     return text.translate(str.maketrans("èéí", "eei"))
 
 
@@ -46,7 +46,7 @@ for _words, _unit, _size in _SAID:
         UNITS[tuple(plain_unit(_word).split("_"))] = (_unit, _size)
 
 ONES = frozenset(["a", "an", "one", "ein", "eine", "einen", "einem", "eins", "un", "une", "uno", "una"])
-"""Words that are the number one before a unit ("a kilometre") or in a ratio ("one in ten")."""
+"""Words that mean the number one before a unit ("a kilometre") or in a ratio ("one in ten")."""
 SHARES: dict[str, float] = {
     word: share
     for share, words in {
@@ -64,7 +64,7 @@ AND_A_HALF: dict[str, float] = {"anderthalb": 1.5, "eineinhalb": 1.5, "zweieinha
 SHARE_FILLERS = frozenset(
     {"of", "a", "an", "de", "d", "'", "un", "di", "eines", "einem", "-", "full", "whole", "ganzer"}
 )
-"""Words between a fraction and its unit."""
+"""Words that may occur between a fraction and its unit."""
 RATIO = frozenset({":", "in", "zu", "sur", "su", "en", "auf"})
 """Words between the two numbers of a ratio: "1:8", "one in eight", "1 zu 8"."""
 JOINTS = frozenset(
@@ -94,7 +94,7 @@ JOINTS = frozenset(
         "..",
     ]
 )
-"""Words between two numbers of which only the last has its unit: "40 to 60 metres"."""
+"""Words between two numbers that share the unit after the second: "40 to 60 metres"."""
 SETS: dict[tuple[str, ...], int] = {
     tuple(key.split()): number
     for number, keys in {
@@ -108,7 +108,7 @@ SETS: dict[tuple[str, ...], int] = {
     }.items()
     for key in keys.split("|")
 }
-"""Words for a set of things, and how many they are."""
+"""Words for a set of things ("a couple of"), and the number of things they mean."""
 ORDINALS = frozenset(["st", "nd", "rd", "th", "er", "ere", "eme", "e", "a", "o", "nde", "ste", "te"])
 FUNCTION_WORDS: dict[str, frozenset[str]] = {
     code: frozenset(its.split())
@@ -128,7 +128,8 @@ FUNCTION_WORDS: dict[str, frozenset[str]] = {
         " dopo",
     }.items()
 }
-"""Frequent words by which a language is guessed, since some words are numbers in one language only."""
+"""Frequent words of each language, used to guess the language, since some words are numbers in one language
+only."""
 AMBIGUOUS = frozenset(
     [
         "once",

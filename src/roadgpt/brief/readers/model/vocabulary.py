@@ -1,4 +1,4 @@
-"""The tokens that the model writes: plans cut into words, with slots in place of measured numbers.
+"""The tokens that the model writes: plans split into words, with slots in place of measured numbers.
 
 turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1] | up
 """
@@ -34,7 +34,7 @@ CLAUSE_KEYS = ["deg=", "r=", "len=", "pct="]
 ROAD_KEYS = ["turns=", "lefts=", "rights=", "steepest=", "climb=", "hills=", "deg=", "r=", "len=", "pct="]
 PLACES = ["starts(", "ends("]
 FIXED = ("15", "30", "45", "60", "90", "120", "180")
-"""Numbers that words imply without naming them: a kink, a dog-leg, a right angle."""
+"""Angles in degrees that words imply without naming them: a kink, a dog-leg, a right angle."""
 NUMBERS = [*(str(number) for number in range(LARGEST_SEEN + 1)), *(n for n in FIXED if int(n) > LARGEST_SEEN)]
 SLOT_TOKENS = [f"[{index + 1}]" for index in range(SLOTS)]
 ENDS = ("<pad>", "<start>", "<end>")
@@ -56,7 +56,7 @@ UNIT_OF = {
 
 
 def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
-    """Returns the tokens of a plan; None if one of its numbers is neither a slot nor a token."""
+    """Returns the tokens of a plan; None if one of its numbers has neither a slot nor a token of its own."""
     out: list[str] = []
     key = ""
     taken: set[int] = set()
@@ -91,7 +91,7 @@ def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set
 
 
 def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
-    """Returns the plan that the tokens write, with the slots filled in."""
+    """Returns the plan that the tokens represent, with the values of the slots filled in."""
     out: list[str] = []
     for word in tokens:
         if word in SLOT_TOKENS:

@@ -1,4 +1,4 @@
-"""BERT's word pieces: greedy longest match in a vocabulary of lower-case pieces."""
+"""BERT's word pieces: splits words by the greedy longest match in a vocabulary of lower-case pieces."""
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
@@ -6,19 +6,19 @@ from functools import lru_cache
 UNKNOWN = "[UNK]"
 LONGEST = 40  # letters; anything longer is not split
 WINDOW = 126
-"""The largest number of pieces that are read, besides the two at the ends."""
+"""The largest number of pieces of a text that are read, without the special pieces at its two ends."""
 
 
 class WordPieces:
-    """Splits words into pieces of a vocabulary, which is a list of pieces in the order of their numbers."""
+    """Splits words into pieces of a vocabulary; the index of a piece in the list is its number."""
 
     def __init__(self, pieces: Sequence[str]) -> None:
         self.number = {piece: index for index, piece in enumerate(pieces)}
         self._split = lru_cache(maxsize=4096)(self._pieces)
 
     def encode(self, words: Iterable[str]) -> tuple[list[int], list[int]]:
-        """Returns the numbers of all pieces with the two end pieces, and for each the index of its word
-        (-1 at the ends).
+        """Returns the numbers of all pieces, and for each piece the index of its word (-1 for the special end
+        pieces).
         """
         numbers, of_word = [self.number["[CLS]"]], [-1]
         for index, word in enumerate(words):
