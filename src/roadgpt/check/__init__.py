@@ -1,7 +1,7 @@
-"""Checks roads against rules. A Finding is one rule's objection to one place. Main function: ``inspect``.
+"""Checks roads against rules. A Finding describes one violation of a rule. Main function: ``inspect``.
 
-A rule is a function in a file of its own under ``rules/``. It checks one property and returns a Finding with
-numbers in it for every place that it objects to, or an empty tuple:
+A rule is a function in a file of its own under ``rules/``. It checks one property of the road and returns one
+Finding, with measured values, for each violation; an empty tuple means that the road satisfies the rule:
 
     def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]
 
@@ -34,7 +34,7 @@ RULE_SETS = {
     ),
     "sbft": ("sbft",),
 }
-"""The rules of each set in the order in which they are applied. The first objection is the verdict."""
+"""The rules of each set in the order in which they are applied. The first Finding decides the verdict."""
 
 
 class Rule(Protocol):
@@ -46,18 +46,20 @@ class Rule(Protocol):
 
 
 def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict") -> tuple[Finding, ...]:
-    """Returns all findings of a rule set in its order. The first is the verdict; a road without any is valid.
+    """Returns the findings of all rules of a set, in the order of the rules.
+
+    A road without findings is valid. Otherwise the first finding is the reason for which it is invalid.
 
     Args:
         road: The road to check.
-        brief: What was asked for, if anything was.
-        world: Map and limits.
+        brief: The requirements that the road should meet; None where there are none.
+        world: The map and the limits, such as the least radius and the steepest grade.
         rules: Name of the rule set, "strict" or "sbft".
 
     Raises:
         UsageError: There is no rule set of this name.
-        PartError: No rules are installed, or a rule of the set is missing. A road never passes for lack of
-            rules.
+        PartError: No rules are installed, or a rule of the set is missing. This ensures
+            that no road passes because rules are missing.
     """
     found: list[Finding] = []
     for _, rule in rules_of(rules):
@@ -69,7 +71,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
 
 @cache
 def rules_of(rules: str) -> tuple[tuple[str, Rule], ...]:
-    """Returns the names and functions of a rule set in order.
+    """Returns the name and the function of each rule of a set, in the order in which they are applied.
 
     Raises:
         UsageError: There is no rule set of this name.

@@ -1,6 +1,6 @@
-"""Finds where a description asks for a crest, a dip or a hump.
+"""Finds the parts of a road where the description asks for a crest, a dip or a hump.
 
-There the road may be as abrupt as physics allows.
+In these parts the rule ``too_abrupt`` allows vertical accelerations up to gravity.
 """
 
 from roadgpt.brief.model import Brief
@@ -20,9 +20,10 @@ def asks_for_bumps(brief: Brief | None) -> bool:
 
 
 def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
-    """Returns start and end stations in metres of the gaps between turns that are to hold a crest or a dip.
+    """Returns start and end stations in metres of the parts between turns where a crest or dip is requested.
 
-    Where the description leaves open how many turns come before it, every gap is returned.
+    If the description does not fix the number of turns before the crest or dip, all parts between turns are
+    returned. Each part extends 30 m into the neighbouring turns.
     """
     if brief is None or not asks_for_bumps(brief):
         return []

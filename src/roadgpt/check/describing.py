@@ -1,4 +1,4 @@
-"""Describes a finished road in the terms of a description: from geometry back to a Brief."""
+"""Describes a finished road by a Brief, the form in which descriptions are represented."""
 
 from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.check.measures import LEVEL, MeasuredFeature, Measures, measure
@@ -6,10 +6,11 @@ from roadgpt.road import Road
 
 
 def describe(road: Road) -> Brief:
-    """Returns the Brief that names everything along the road, in whole degrees, metres and percent.
+    """Returns a Brief that lists the turns and straights of a road, in whole degrees, metres and percent.
 
-    Every turn and every straight is a clause of its own: side, degrees and radius, or length, and the grade
-    from end to end where it is not level. Length and climb of the whole road are given too.
+    Each turn is a clause with side, angle and radius, and each straight a clause with its length. A clause
+    also states the mean grade, unless the turn or straight is level. The Brief includes the length and the
+    climb of the whole road.
 
     Raises:
         UsageError: The road has no two different points.
@@ -18,7 +19,7 @@ def describe(road: Road) -> Brief:
 
 
 def described(found: Measures) -> Brief:
-    """Returns the same Brief for a road that has been measured."""
+    """Returns the Brief that ``describe`` returns, from measurements of the road."""
     return Brief(
         clauses=tuple(_clause(feature) for feature in found.features),
         turns=None if found.turns else exactly(0),

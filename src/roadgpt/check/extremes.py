@@ -1,7 +1,9 @@
-"""Finds where a road is tightest, steepest and lowest: exactly for pieces and parabolas, sampled for splines.
+"""Finds where a road is tightest, steepest and lowest.
 
-The curvature of a piece and the grade of a parabola change linearly, so both have their extremes where one
-begins or ends. A parabola is lowest there or where its grade is 0.
+The result is exact for lines, arcs, clothoids and parabolas; splines are sampled.
+
+The curvature of a line, arc or clothoid and the grade of a parabola change linearly, so their extremes are at
+the ends. A parabola is lowest at one of its ends or where its grade is 0.
 """
 
 import numpy as np
@@ -14,7 +16,9 @@ KINK = 2.0  # m: shorter than a car's wheelbase
 
 
 def tightest(road: Road) -> tuple[float, float]:
-    """Returns station and curvature (1/m, positive to the left) of the first of the tightest places."""
+    """Returns the station (m) and the curvature (1/m, positive to the left) where the road is tightest.
+
+    Of several equally tight places, the first is returned."""
     if isinstance(road.plan, PieceCurve):
         pieces = road.plan.pieces
         ends = np.cumsum([piece.length for piece in pieces])
@@ -26,7 +30,9 @@ def tightest(road: Road) -> tuple[float, float]:
 
 
 def steepest(road: Road) -> tuple[float, float]:
-    """Returns station and grade (ratio, uphill positive) of the first of the steepest places."""
+    """Returns the station (m) and the grade (ratio, uphill positive) where the road is steepest.
+
+    Of several equally steep places, the first is returned."""
     if isinstance(road.elevation, GradeProfile):
         s = _stations(road.elevation, road.length)
         return _greatest(s, road.elevation.grade(s))
@@ -34,12 +40,10 @@ def steepest(road: Road) -> tuple[float, float]:
 
 
 def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
-    """Returns where the grade changes: start and end stations (m), and the change per metre.
+    """Returns start and end stations (m) of the parts where the grade changes, and its change per metre.
 
-    The change is negative on a crest.
-
-    Parabolas are returned as they are. Other profiles are divided into parts of about ``KINK`` metres; a kink
-    counts as spread over its part.
+    The change is negative on a crest. Each parabola is one part. Other profiles are divided into parts of
+    about ``KINK`` metres, and the change of grade at a kink is distributed over its part.
     """
     if isinstance(road.elevation, GradeProfile):
         s = _stations(road.elevation, road.length)

@@ -1,13 +1,14 @@
-"""What a rule objects to at one place on a road."""
+"""Defines the Finding: one violation of a rule by a road."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One rule's sentence.
+    """One violation of a rule: the name of the rule and a sentence that describes the violation.
 
-    ``s`` is the station and (x, y) the point, in metres, where there is a single place.
+    ``s`` is the station in metres and (x, y) the point of the violation in metres. They are None for a
+    violation that concerns the whole road.
     """
 
     rule: str
@@ -16,4 +17,4 @@ class Finding:
     x: float | None = None
     y: float | None = None
     stops: bool = False
-    """Whether the road cannot be driven at all: there is no road, or no room for a car."""
+    """Whether the road cannot be driven at all, for example because it is too short for a car."""

@@ -1,8 +1,9 @@
-"""Matches the turns and straights of a measured road with the groups of an Outline.
+"""Matches the turns and straights of a measured road with the requested ones of an Outline.
 
-Turns are matched in order, one to one. A straight that was asked for between two turns may be the whole
-straight there. Where several were asked for, or its grade changes, it may be a piece of it; pieces are
-matched in order, each once.
+Turns are matched one to one and in order. A requested straight matches either the whole straight between two
+turns of the road, or a piece of that straight with a uniform class of grade (up, flat or down). If several
+straights are requested between two turns, they are matched with such pieces in order, each piece at most
+once.
 """
 
 from functools import cache
@@ -15,12 +16,14 @@ from roadgpt.check.measures import MeasuredFeature, Measures
 
 
 class Complaint(NamedTuple):
-    """A sentence about what was asked and what the road has, with a station in metres where there is one."""
+    """A requirement that the road does not meet: a sentence with the requested and the measured value.
+
+    ``s`` is the station in metres; None if the requirement concerns the whole road."""
 
     sentence: str
     s: float | None = None
     on_heights: bool = False
-    """Whether other heights on the same plan could remedy it."""
+    """Whether the requirement could be met by changing only the heights of the road."""
 
 
 class _Cost(NamedTuple):
@@ -38,7 +41,7 @@ IMPOSSIBLE = _Cost(inf, ())
 
 
 def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
-    """Returns whether a measured feature fulfils a requested one."""
+    """Returns whether a measured turn or straight meets all requirements of a requested one."""
     return (
         stretch.kind == feature.kind
         and feature.side in (None, stretch.side)
@@ -60,13 +63,13 @@ def _is_rounded_off(stretch: MeasuredFeature, asked: Range) -> bool:
 def turn_complaints(
     number: int, turn: MeasuredFeature, feature: Feature, side: str | None = None
 ) -> tuple[Complaint, ...]:
-    """Returns what is wrong with one turn.
+    """Returns one complaint for each requirement that a turn does not meet.
 
     Args:
         number: Number of the turn, from 1.
         turn: The turn as measured.
         feature: The turn as asked for.
-        side: The side that an alternation requires; None for the feature's own side.
+        side: "left" or "right" where turns must alternate; None to use the side of ``feature``.
     """
     if side is None and fits(turn, feature):
         return ()
@@ -88,7 +91,9 @@ def turn_complaints(
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """Returns what is wrong with the turns and straights under the match with the fewest wrong features."""
+    """Returns the complaints about the turns and straights of a road, compared in driving order.
+
+    Of all ways to match measured with requested features, the one with the fewest mismatches is used."""
     turns, gaps, groups = found.turns, found.gaps, asked.groups
     turns_are_free = not asked.names_all_turns
 

@@ -1,17 +1,20 @@
-"""Measures the turns, straights and grades of a finished road on its centre line alone.
+"""Measures the turns, straights and grades of a finished road from the points of its centre line.
 
-The measurement knows nothing about how the road was made. Units are those of requirements (``brief.words``):
-degrees, metres, percent uphill positive. The centre line is resampled about every metre in plan:
+The measurement does not use any other information about the road. Angles are in degrees, lengths in metres,
+and grades in percent, uphill positive. The centre line is resampled about every metre in plan:
 
 * Curvature: change of heading per metre, averaged over 5 m.
-* Turn: a part of the road that bends to one side with a curvature above 1/300 per metre; where wider turns
-  are asked for, as on a motorway, above the curvature of such turns. Parts to one side less than 8 m apart
-  are one turn. Its angle is measured out to where the curvature falls below a tenth of that limit or changes
-  sign. Parts that turn less than 4 degrees are not joined, and less than 10 degrees in all is not a turn.
-* Straight: 10 m or more between turns, or between a turn and an end. It is cut into pieces where its grade,
-  over 10 m windows, changes between up (1 % or more), flat and down; pieces of 6 m or more count.
+* Turn: a part of the road that bends to one side with a curvature above a limit of 1/300 per metre. If the
+  description asks for wider turns, as on a motorway, the limit is lower. Parts that bend to the same side and
+  are less than 8 m apart are merged into one turn, except parts that turn by less than 4 degrees. The angle
+  of a turn includes its ends, up to where the curvature falls below a tenth of the limit or changes sign. A
+  bend of less than 10 degrees is not a turn.
+* Straight: a part of 10 m or more between two turns, or between a turn and an end of the road. It is divided
+  into pieces where its grade, over 10 m windows, changes between up (1 % or more), flat and down (-1 % or
+  less). Pieces shorter than 6 m are ignored.
 
-Source: the definitions of the project's referee, an outside judge of roads; ``tests/authorities`` compares.
+Source: the definitions of an independent program that checks roads; ``tests/authorities`` compares the
+measurements of the two.
 """
 
 from collections.abc import Sequence
@@ -50,7 +53,10 @@ class MeasuredFeature:
     end: float
     side: Literal["left", "right"] | None
     degrees: float
-    """Heading change. For a turn, out to where it fades; for a straight, without the 5 m at either end."""
+    """Absolute change of heading in degrees.
+
+    A turn includes its ends, where the curvature fades out; a straight excludes the 5 m at either end.
+    """
     radius: float
     """Radius in metres at the tightest place."""
     grade: float
@@ -58,10 +64,10 @@ class MeasuredFeature:
     inner_grade: float
     """Mean grade in percent over the middle half.
 
-    The ends of a short slope between others are rounded off.
+    It is close to the design grade even where vertical curves take up the ends of a short slope.
     """
     pieces: tuple["MeasuredFeature", ...] = ()
-    """For a straight: its pieces between the places where its grade changes class."""
+    """The pieces of a straight, each with one class of grade (up, flat or down); empty for a turn."""
 
     @property
     def length(self) -> float:
@@ -71,7 +77,7 @@ class MeasuredFeature:
 
 @dataclass(frozen=True, slots=True)
 class Measures:
-    """A road as measured."""
+    """The measured turns, straights, grades and lengths of a road."""
 
     features: tuple[MeasuredFeature, ...]
     """Turns and straights in driving order."""
@@ -82,17 +88,17 @@ class Measures:
     grade: float
     """Mean grade in percent, from start to end."""
     lowest_grade: float
-    """Least grade in percent over 20 m."""
+    """Lowest grade over any 20 m in percent; negative if the road falls there."""
     highest_grade: float
-    """Greatest grade in percent over 20 m."""
+    """Highest grade over any 20 m in percent; negative if the road falls everywhere."""
     steepest: float
-    """Greatest absolute grade in percent over 10 m."""
+    """Greatest absolute grade over any 10 m in percent."""
     hills: int
-    """How often the grade over 20 m changes between up and down."""
+    """Number of changes between climbing and falling, by the grade over 20 m."""
     radius: float
     """Radius in metres at the tightest place of the road."""
     turning: float
-    """Sum of all changes of heading in degrees, regardless of side."""
+    """Sum of the absolute changes of heading along the road in degrees."""
 
     @property
     def turns(self) -> tuple[MeasuredFeature, ...]:
@@ -106,7 +112,9 @@ class Measures:
 
     @property
     def gaps(self) -> tuple[tuple[MeasuredFeature, ...], ...]:
-        """The straights before the first turn, between turns, and after the last turn."""
+        """The straights before the first turn, between consecutive turns, and after the last turn.
+
+        With n turns there are n + 1 entries; an entry is empty where there is no straight."""
         out: list[tuple[MeasuredFeature, ...]] = [()]
         for feature in self.features:
             if feature.kind == "turn":
@@ -116,7 +124,7 @@ class Measures:
         return tuple(out)
 
     def count(self, side: Literal["left", "right"]) -> int:
-        """Returns the number of turns to one side."""
+        """Returns the number of turns to the left or to the right."""
         return sum(turn.side == side for turn in self.turns)
 
 
@@ -137,11 +145,11 @@ class _Bend(NamedTuple):
 
 
 def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
-    """Measures the road whose centre line these points are.
+    """Measures a road that is given by points of its centre line.
 
     Args:
         points: Points ``(n, 2)`` or ``(n, 3)`` in metres, about 1 m apart.
-        widest: Radius in metres below which a bend is a turn.
+        widest: Greatest radius of a turn in metres; wider bends are not turns.
 
     Raises:
         UsageError: There are fewer than two different points, or a number is not finite.
@@ -168,7 +176,7 @@ def measure(points: ArrayLike, widest: float = USUALLY_WIDEST) -> Measures:
 
 
 def way(grade: float) -> Literal["up", "down", "flat"]:
-    """Returns the class of a grade in percent."""
+    """Returns "up" for a grade of 1 percent or more, "down" for -1 percent or less, and "flat" otherwise."""
     if grade >= LEVEL:
         return "up"
     return "down" if grade <= -LEVEL else "flat"

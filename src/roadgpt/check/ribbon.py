@@ -1,4 +1,4 @@
-"""The surface of a road as a row of quads, and how far quads are apart, in plain numpy.
+"""Represents the surface of a road by a row of quads, and computes the distances between quads with numpy.
 
 left[0] ---- left[1] ---- left[2]        quad i is (left i, left i+1, right i+1, right i),
    |   quad 0   |   quad 1   |           clockwise where the road does not fold
@@ -16,7 +16,7 @@ from roadgpt.road import Edges, Samples
 
 Indices = NDArray[np.intp]
 Boxes = tuple[Array, Array]
-"""Least and greatest x and y of bounding boxes, ``(n, 2)`` each."""
+"""Lower and upper corners (x, y) of n bounding boxes, ``(n, 2)`` each."""
 
 BLOCK = 8  # quads per bounding box in the second comparison
 PORTION = 512  # quads per bounding box in the first comparison and per result; a multiple of BLOCK
@@ -24,17 +24,17 @@ SLIVER = 1e-6  # m^2: a corner flatter than this does not count as convex
 
 
 def sides(samples: Samples, edges: Edges) -> tuple[Array, Array]:
-    """Returns left and right edge points ``(n, 2)`` in metres of a road at its samples."""
+    """Returns the left and the right edge points of a road at its samples, ``(n, 2)`` each, in metres."""
     centre = np.stack((samples.x, samples.y), axis=1)
     across = np.stack((-np.sin(samples.heading), np.cos(samples.heading)), axis=1)
     return centre + edges.left[:, None] * across, centre + edges.right[:, None] * across
 
 
 def bulge(samples: Samples, edges: Edges) -> float:
-    """Returns how far, at most, a true edge bulges beyond the straight line between its samples, in metres.
+    """Returns the largest distance in metres between an edge of a road and the chords between its samples.
 
-    It is the rise of an arc over its chord, chord^2 times curvature / 8, on the outer edge of the tightest
-    bend.
+    The distance is the rise of an arc over its chord, chord^2 * curvature / 8, on the outer edge of the
+    tightest bend.
     """
     step, bend = samples.s[1] - samples.s[0], float(np.abs(samples.curvature).max())
     reach = float(max(np.abs(edges.left).max(), np.abs(edges.right).max()))
@@ -42,20 +42,20 @@ def bulge(samples: Samples, edges: Edges) -> float:
 
 
 def extent(samples: Samples, edges: Edges) -> tuple[Array, Array]:
-    """Returns the least and the greatest x and y of the edges of the road, ``(2,)`` each in metres."""
+    """Returns the lower and upper corner (x, y) of the bounding box of a road, ``(2,)`` each, in metres."""
     points, slack = np.concatenate(sides(samples, edges)), bulge(samples, edges)
     return points.min(axis=0) - slack, points.max(axis=0) + slack
 
 
 def quads_of(left: Array, right: Array) -> Array:
-    """Returns quads ``(n - 1, 4, 2)`` between edge points ``(n, 2)`` on the left and on the right."""
+    """Returns quads ``(n - 1, 4, 2)`` between left and right edge points ``(n, 2)``."""
     return np.stack((left[:-1], left[1:], right[1:], right[:-1]), axis=1)
 
 
 def is_convex(quads: Array) -> NDArray[np.bool_]:
-    """Returns which quads are convex, clockwise and no slivers, ``(n,)``.
+    """Returns for each quad whether it is convex, clockwise and not degenerate, ``(n,)``.
 
-    Numbers that are not finite give False.
+    The result is False for a quad with a coordinate that is not finite.
     """
     sides = np.roll(quads, -1, axis=1) - quads
     ahead = np.roll(sides, -1, axis=1)
@@ -64,11 +64,11 @@ def is_convex(quads: Array) -> NDArray[np.bool_]:
 
 
 def near_pairs(quads: Array, reach: float, apart: int = 2) -> Iterator[tuple[Indices, Indices]]:
-    """Yields pairs i < j, at least ``apart`` in the row, whose bounding boxes come within ``reach`` metres.
+    """Yields index pairs of quads whose bounding boxes are at most ``reach`` metres apart.
 
-    The pairs come in portions along the road: all pairs for ``PORTION`` consecutive quads j. Boxes of
-    portions are compared first, then boxes of blocks, so that on a long road only nearby quads are compared.
-    A caller that needs only the first contact can stop there.
+    The indices satisfy j - i >= ``apart``. Each item contains all such pairs for ``PORTION`` consecutive
+    values of j, in driving order, so a caller that needs only the first contact can stop early. To avoid
+    comparing all quads of a long road, bounding boxes of many quads are compared first.
     """
     low, high = quads.min(axis=1) - reach, quads.max(axis=1)
     blocks, portions = _boxes(low, high, BLOCK), _boxes(low, high, PORTION)
@@ -120,10 +120,11 @@ def _touch(low: Array, high: Array, other_low: Array, other_high: Array) -> Any:
 
 
 def gaps(quads: Array, i: Indices, j: Indices) -> Array:
-    """Returns how far convex quads i and j are apart in metres ``(m,)``, by separating axes.
+    """Returns the signed distances in metres ``(m,)`` between convex quads i and j, by separating axes.
 
-    A positive value means that they are disjoint and at least this far apart. A negative value means that
-    they overlap, and must move by this much to be apart. Zero means that they touch.
+    A positive value means that the two quads are at least this far apart. A negative value means that they
+    overlap; its absolute value is the distance by which one must move to separate them. Zero means that they
+    touch.
     """
     used, index = np.unique(np.concatenate((i, j)), return_inverse=True)
     quads, i, j = quads[used], index[: len(i)], index[len(i) :]

@@ -1,16 +1,16 @@
-"""The verdict of the SBFT tool competition's validator: its rules, order, messages and quirks, but fast.
+"""Reproduces the SBFT tool competition's road validator with its rules, order and messages, but faster.
 
-Source: the Cyber-Physical Systems tool competition's validator (2024). These quirks are kept on purpose:
+Source: the Cyber-Physical Systems tool competition's validator (2024). These quirks of the validator are
+reproduced on purpose:
 
-* its test for "inside the map" binds ``and`` before ``or``, so a road wholly outside can be valid;
+* the test for "inside the map" binds ``and`` before ``or``, so a road completely outside can be valid;
 * interpolation may add a node beyond the last point;
 * quads of the road that touch count as crossing, unless they are neighbours;
-* the length is measured on nodes that were interpolated once more;
-* the radius is that of the circle through nodes i, i+2, i+4, and the last such window is left out.
+* the length is measured on nodes that have been interpolated a second time;
+* the radius is that of the circle through nodes i, i+2, i+4, and the last such triple of nodes is left out.
 
-The competition's validator asks a geometry library about every pair of quads. Here numpy decides the clear
-cases, by a margin larger than any rounding error, and the library (shapely, imported only then) decides the
-rest.
+The competition's validator compares every pair of quads with the library shapely. Here numpy decides all
+pairs that are clear by more than any rounding error, and shapely, imported only if needed, decides the rest.
 """
 
 import math
@@ -49,7 +49,7 @@ def sbft_verdict(points: ArrayLike, map_size: float) -> tuple[bool, str]:
 
     Raises:
         UsageError: Two neighbouring points are the same or a number is not finite. The competition's code
-            itself stops there.
+            fails on such input too.
     """
     points = np.asarray(points, float)
     if len(points) < 2:
@@ -76,18 +76,19 @@ def _complaint(nodes: Array, map_size: float) -> str:
 
 
 def splines(points: Array) -> tuple[Array, Array]:
-    """Returns nodes ``(n, 2)`` of the spline through control points ``(n, 2)``, forwards and backwards.
+    """Returns the nodes of the spline through control points ``(n, 2)``, for driving forwards and backwards.
 
-    The two differ: nodes are placed from the first point on, and only beyond the last point may there be one
-    more.
+    The two arrays ``(m, 2)`` contain different points, because nodes are spaced from the first control point
+    in the direction of driving, and one extra node may lie beyond the last control point.
     """
     return interpolate(points), interpolate(points[::-1])
 
 
 def edges(nodes: Array, road_width: float = ROAD_WIDTH) -> tuple[Array, Array]:
-    """Returns left and right edge points ``(n, 2)``, perpendicular to the direction to the next node.
+    """Returns the left and the right edge points ``(n, 2)`` of a road with nodes ``(n, 2)``.
 
-    At the last node the direction is that from the previous node.
+    Each edge point is perpendicular to the direction from its node to the next one; the last node uses the
+    direction from the previous node.
     """
     ahead = np.diff(nodes, axis=0, append=nodes[-2:-1])
     with np.errstate(
@@ -185,15 +186,15 @@ def _is_long_enough(nodes: Array) -> bool:
 
 
 def measured_length(nodes: Array) -> float:
-    """Returns the length in metres along nodes ``(n, 2)`` that are interpolated once more."""
+    """Returns the length in metres of nodes ``(n, 2)``, interpolated a second time as in the competition."""
     return walked(interpolate(nodes))
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:
-    """Returns the least of the ``radii`` of nodes ``(n, 2)`` in metres, and the index of its middle node.
+    """Returns the smallest radius in metres among the ``radii`` of nodes ``(n, 2)``, and a node index.
 
-    The radius is infinite where no three nodes form a circle: on a straight road, or with fewer than six
-    nodes.
+    The index is that of the middle node of the smallest circle. The radius is infinite where no three nodes
+    form a circle: on a straight road, or with fewer than six nodes.
     """
     found = radii(nodes)
     if not found.size:
@@ -205,8 +206,8 @@ def smallest_radius(nodes: Array) -> tuple[float, int]:
 def radii(nodes: Array) -> Array:
     """Returns radii ``(n - 5,)`` in metres of the circles through nodes i, i+2, i+4 of ``(n, 2)``.
 
-    The last window is left out, as in the competition's code. A radius is infinite where three nodes lie on a
-    line.
+    The last such triple of nodes is left out, as in the competition's code. A radius is infinite where the
+    three nodes are collinear.
     """
     a, b, c = nodes[:-5], nodes[2:-3], nodes[4:-1]
     (ax, ay), (bx, by), (cx, cy) = a.T, b.T, c.T

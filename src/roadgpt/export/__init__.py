@@ -1,12 +1,14 @@
-"""Exports roads to files of other tools. Main function: ``save``. A format is a plug-in under ``exporters/``.
+"""Exports roads to the file formats of other tools. Main function: ``save``.
+
+Each format is a plug-in, for example:
 
     class Exporter:
         name = "opendrive"                                     # of the format
         suffix = ".xodr"                                       # of its file
         def save(self, road, path, world, poses=None) -> None
 
-An exporter writes ``path``, and may write further files with the same stem beside it. The same arguments give
-the same bytes: no clock, no random number, no path of the machine.
+An exporter writes ``path``, and may write further files with the same stem to the same folder. The same
+arguments must always give the same bytes, so files contain no dates, random numbers or absolute paths.
 """
 
 import shutil
@@ -28,18 +30,19 @@ class Exporter(Protocol):
     """Writes roads in one format."""
 
     name: str
-    """Name of the format, as it is registered."""
+    """Name under which the format is registered as a plug-in."""
     suffix: str
-    """Suffix of its file, including the dot."""
+    """Suffix of the exported file, including the dot."""
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes a road to a file. The folder of the file exists and is empty.
+        """Writes a road to a file. The caller ensures that the folder of the file exists and is empty.
 
         Args:
             road: The road to export.
-            path: The file. Other files may be written beside it if their names begin with its stem.
+            path: The file to write. Further files in the same folder must have names that begin with its
+                stem.
             world: Widths of lane and shoulder, friction, speed limit.
-            poses: A drive along the road, for formats that can hold one.
+            poses: The motion of the car in a drive along the road; formats that cannot hold it ignore it.
 
         Raises:
             ExportError: The format cannot hold this road, or something that it needs is not installed.
@@ -66,17 +69,17 @@ def save(
     name: str = "road",
     poses: Poses | None = None,
 ) -> tuple[Path, ...]:
-    """Writes a road in each of these formats. Returns the files, all of one format before those of the next.
+    """Writes a road in the given formats. Returns the paths of all files, in the order of the formats.
 
-    A file is either complete or absent. An existing file of the same name is replaced.
+    No incomplete file is left behind if writing fails. Existing files of the same names are replaced.
 
     Args:
         road: The road to export.
         folder: The folder, which is created if it does not exist.
-        formats: Names of exporters. All are looked up before any file is written.
+        formats: Names of exporters, such as "opendrive". All are looked up before any file is written.
         world: Widths of lane and shoulder, friction, speed limit.
         name: Name of the files without suffix.
-        poses: A drive along the road, for formats that can hold one.
+        poses: The motion of the car in a drive along the road, for formats that can hold it.
 
     Raises:
         PartError: A format is unknown.

@@ -1,4 +1,4 @@
-"""Lines beside the centre line as polylines, with as few stations as keep their chords close to the curve."""
+"""Converts lines parallel to the centre line to polylines with few points and a bounded chord error."""
 
 from collections.abc import Sequence
 
@@ -17,12 +17,14 @@ PINCH = 0.95  # share of the radius; an offset line closer to the centre of its 
 
 
 def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
-    """Returns increasing stations, both ends included: dense in bends and on crests, sparse on straights.
+    """Returns increasing stations for the points of a polyline along the road, both ends included.
+
+    The stations are dense in bends and on crests, and sparse on straights.
 
     Args:
         road: The road.
-        reach: Distance in metres of the farthest line beside the centre line. Outer lines need more points.
-        chord: Greatest distance in metres between the polyline and the curve.
+        reach: Largest offset in metres of a line from the centre line. Larger offsets need more points.
+        chord: Greatest allowed distance in metres between the polyline and the curve.
 
     Raises:
         ExportError: The road has a number that is not finite.
@@ -38,9 +40,9 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
 
 
 def line(road: Road, s: Array, t: ArrayLike) -> Array:
-    """Returns points ``(n, 3)`` at offset ``t``.
+    """Returns points ``(n, 3)`` at stations ``s`` and offset ``t`` to the left, in metres.
 
-    In a bend too tight for it, ``t`` is reduced so that the line never folds.
+    In a bend with a radius smaller than ``t``, the offset is reduced so that the line does not fold.
     """
     k = road.curvature(s)
     inside = k * np.asarray(t) > PINCH
@@ -49,7 +51,7 @@ def line(road: Road, s: Array, t: ArrayLike) -> Array:
 
 
 def lines(road: Road, s: Array, offsets: Sequence[ArrayLike]) -> list[Array]:
-    """Returns the lines at several offsets."""
+    """Returns for each of several offsets the points ``(n, 3)`` of ``line`` at stations ``s``."""
     return [line(road, s, t) for t in offsets]
 
 

@@ -1,6 +1,6 @@
-"""The ego vehicle of exported files: its size, where it starts, its speeds, and how a drive is converted.
+"""Defines the ego vehicle of exported files: dimensions, start, planned speeds, and positions in a drive.
 
-Its dimensions are those of BeamNG's ETK 800, a mid-size saloon, as in the simulator.
+The dimensions are those of BeamNG's ETK 800, a mid-size saloon, which the built-in simulator also uses.
 """
 
 from dataclasses import dataclass
@@ -22,21 +22,21 @@ STEP = 0.5  # m between the places for which a speed is planned
 
 @dataclass(frozen=True)
 class EgoVehicle:
-    """Dimensions of the ego vehicle in metres and kilograms. Heights are above the ground."""
+    """Dimensions of the ego vehicle in metres, its mass in kilograms, and its greatest steering angle."""
 
     length: float = 4.70
     width: float = 1.86
     height: float = 1.44
     mass: float = 1700.0
     front_axle: float = 1.36
-    """Distance ahead of the centre of gravity."""
+    """Position of the front axle in metres ahead of the centre of gravity; negative values are behind it."""
     rear_axle: float = -1.47
     middle: float = -0.10
-    """Middle of the length, ahead of the centre of gravity."""
+    """Position of the middle of the car in metres ahead of the centre of gravity."""
     gravity_height: float = 0.56
     track: float = 1.58
     wheel: float = 0.66
-    """Wheel diameter."""
+    """Wheel diameter in metres."""
     lock: float = 0.62
     """Greatest steering angle of the front wheels in radians."""
 
@@ -50,7 +50,7 @@ def start_of(road: Road) -> float:
 
 
 def goal_of(road: Road) -> float:
-    """Returns the station in metres at which a drive is over. It lies behind the start."""
+    """Returns the station in metres at which a drive ends. It is always greater than ``start_of``."""
     return max(road.length - GOAL, (start_of(road) + road.length) / 2)
 
 
@@ -62,27 +62,29 @@ class SpeedProfile(NamedTuple):
     speed: Array
     """Speeds in m/s."""
     time: Array
-    """Seconds since the start, with a constant acceleration between stations."""
+    """Times in seconds since the start; the acceleration is constant between stations."""
 
 
 def calm_speeds(road: Road, world: World, s: Array) -> Array:
-    """Returns speeds in m/s that suit a calm driver at stations ``s``: the limit, or what the bend allows."""
+    """Returns the speeds in m/s of a calm driver at stations ``s``.
+
+    Each is the speed limit, or the speed for a comfortable lateral acceleration if the bend requires less."""
     bend = np.maximum(np.abs(road.curvature(s)), 1e-9)
     sideways = min(COMFORT, GRIP * world.friction * GRAVITY)
     return np.asarray(np.minimum(world.speed_limit, np.sqrt(sideways / bend)))
 
 
 def calm_speed(road: Road, world: World) -> float:
-    """Returns the speed in m/s that a calm driver can hold everywhere on the road."""
+    """Returns the highest constant speed in m/s at which a calm driver can drive the whole road."""
     return float(calm_speeds(road, world, road.sample().s).min())
 
 
 def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
-    """Returns how a calm driver drives the middle of the right lane from rest.
+    """Returns the speeds of a calm driver who starts from rest and drives in the middle of the right lane.
 
     Args:
         road: The road.
-        world: Speed limit, friction, width of the lane.
+        world: Supplies the speed limit, the friction and the lane width.
         start: Station in metres where the drive begins.
     """
     count = max(2, int(np.ceil((road.length - start) / STEP)) + 1)
@@ -101,7 +103,7 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
 
 
 def on_the_ground(poses: Poses, ahead: float) -> Array:
-    """Returns points ``(n, 3)`` on the ground below the car, ``ahead`` metres from its centre of gravity."""
+    """Returns points ``(n, 3)`` on the ground under the car, ``ahead`` metres from its centre of gravity."""
     h, p, r = poses.heading, poses.pitch, poses.roll
     forward = np.stack([np.cos(h) * np.cos(p), np.sin(h) * np.cos(p), np.sin(p)], axis=-1)
     left = np.stack([-np.sin(h), np.cos(h), np.zeros_like(h)], axis=-1)

@@ -1,4 +1,4 @@
-"""Embankments: slopes from the edges and ends of a road down into the land around it."""
+"""Computes embankments: slopes from the edges and ends of a road down into the surrounding land."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -17,12 +17,12 @@ ACROSS = 7  # points of the edge at an end of the road
 
 
 class Embankment(NamedTuple):
-    """One slope, given by its upper edge and its foot: points ``(n, 3)`` each, in metres."""
+    """One slope, given by the points of its upper edge and of its foot, ``(n, 3)`` each, in metres."""
 
     edge: Array
     foot: Array
     is_left: bool
-    """Whether it falls to the left of the direction of its edge."""
+    """Whether the slope falls to the left of its upper edge, seen in the direction of the edge's points."""
 
 
 def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[Embankment]:
@@ -30,9 +30,9 @@ def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[
 
     Args:
         road: The road.
-        profile: Its cross-section; the slopes begin at the outer edges of the shoulders.
-        s: Stations ``(n,)`` of the points of the edges.
-        land: The land that the slopes run down into.
+        profile: The cross-section of the road; the slopes begin at the outer edges of the shoulders.
+        s: Stations ``(n,)`` in metres of the points along both edges.
+        land: The surrounding land; each slope ends in it.
     """
     heading, (left, right) = road.heading(s), profile.rims(s)
     for side, rim in ((-1.0, right), (1.0, left)):

@@ -1,4 +1,4 @@
-"""Checks that numbers can be written to a file."""
+"""Checks that numbers to be exported are finite."""
 
 import numpy as np
 
@@ -9,10 +9,10 @@ NOT_FINITE = "the road has a number that is not finite; check it before it is ex
 
 
 def finite(values: Array) -> Array:
-    """Returns these values unchanged.
+    """Returns the values unchanged if all of them are finite.
 
     Raises:
-        ExportError: A value is not finite. File formats have no such numbers.
+        ExportError: A value is infinite or not a number, which file formats cannot represent.
     """
     if not np.isfinite(values).all():
         raise ExportError(NOT_FINITE)

@@ -1,8 +1,9 @@
-"""Where on Earth a map lies, for formats that require it: corner (0, 0) at 48 N, 9 E, x to the east.
+"""Defines a geographic position of the map, for formats that require one.
 
-The map itself has no real place. 9 E is the centre of a UTM zone, so north on the map is also grid north.
-Projection: transverse Mercator on WGS 84, inverse series after Snyder, Map Projections: A Working Manual (US
-Geological Survey Professional Paper 1395), pp. 60-64; accurate to 0.1 mm within 10 km of the corner.
+The corner (0, 0) of the map is placed at 48 N, 9 E, with x to the east. The position is arbitrary. 9 E is the
+centre of a UTM zone, so north on the map is also grid north. Projection: transverse Mercator on WGS 84,
+inverse series after Snyder, Map Projections: A Working Manual (US Geological Survey Professional Paper 1395),
+pp. 60-64; accurate to 0.1 mm within 10 km of the corner.
 """
 
 import numpy as np
@@ -12,7 +13,7 @@ from roadgpt.geometry.curve import Array
 
 LATITUDE, LONGITUDE = 48.0, 9.0  # degrees, of the corner (0, 0)
 PROJECTION = f"+proj=tmerc +lat_0={LATITUDE:g} +lon_0={LONGITUDE:g} +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m"
-"""The projection as a PROJ string, without +no_defs, which some readers do not know."""
+"""The projection as a PROJ string. It omits +no_defs, which some programs do not understand."""
 
 SEMI_MAJOR = 6_378_137.0  # m, WGS 84
 FLATTENING = 1 / 298.257223563  # WGS 84
@@ -22,7 +23,7 @@ _EP2 = _E2 / (1 - _E2)
 
 
 def degrees(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-    """Returns longitudes and latitudes in degrees of points of the map in metres."""
+    """Returns longitudes and latitudes in degrees of points that are given in metres on the map."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     foot = _footpoint(y)
     sin, cos, tan = np.sin(foot), np.cos(foot), np.tan(foot)

@@ -1,4 +1,4 @@
-"""Fits cubics to a smooth function of ``s``, as few as stay within a tolerance."""
+"""Approximates a smooth function of ``s`` by cubics, within a tolerance."""
 
 from collections.abc import Callable
 
@@ -10,17 +10,19 @@ SHORTEST = 0.02  # m; the shortest cubic, at a cusp of a spline
 BETWEEN = (0.25, 0.5, 0.75)  # where a cubic is compared with the function
 
 Function = Callable[[Array], Array]
-"""Returns values ``(n, d)`` at stations ``(n,)``."""
+"""A function that returns values ``(n, d)`` at stations ``(n,)``."""
 
 
 def cubics(value: Function, slope: Function, breaks: Array, tolerance: float) -> tuple[Array, Array]:
     """Returns stations ``(n + 1,)`` and the coefficients ``(n, 4, d)`` of the cubics between them.
 
+    The cubics have the values and slopes of the function at the stations.
+
     Args:
-        value: The function.
-        slope: Its derivative with respect to s.
-        breaks: Increasing stations, ends included, at which a cubic must end. The function is smooth between
-            them.
+        value: The function to approximate.
+        slope: The derivative of ``value`` with respect to s.
+        breaks: Increasing stations at which a cubic must end, including both ends. The function must be
+            smooth between them.
         tolerance: Greatest distance between cubic and function, in the unit of the values.
     """
     stations = np.asarray(breaks, float)
@@ -39,7 +41,7 @@ def cubics(value: Function, slope: Function, breaks: Array, tolerance: float) ->
 
 
 def at(coefficients: Array, u: Array) -> Array:
-    """Returns values ``(n, d)`` of cubics ``(n, 4, d)``, each at its own distance ``u`` from its start."""
+    """Returns values ``(n, d)`` of cubics ``(n, 4, d)``, each at a distance ``u[i]`` from its start."""
     a, b, c, d = (coefficients[:, i] for i in range(4))
     u = u[:, None]
     return np.asarray(a + u * (b + u * (c + u * d)))

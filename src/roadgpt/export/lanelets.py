@@ -1,6 +1,7 @@
-"""The two lanes cut into short parts, for formats that describe roads as chains of lanelets.
+"""Divides the two lanes of a road into lanelets, for formats that describe roads as chains of lanelets.
 
-Both lanelets of a pair share the line between them, and neighbouring pairs share their end points.
+The two lanelets of a pair lie side by side and share the line between them. Consecutive pairs share their end
+points.
 """
 
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ DECIMALS = 4  # of a metre
 
 @dataclass(frozen=True, eq=False)
 class LaneletPair:
-    """Polylines ``(n, 3)`` in metres of both lanes between two stations, in the direction of the road."""
+    """The bounds of both lanes between two stations, as polylines ``(n, 3)`` in metres along the road."""
 
     start: float
     end: float
@@ -27,7 +28,7 @@ class LaneletPair:
 
 
 def lanelet_pairs(road: Road, world: World) -> list[LaneletPair]:
-    """Returns the pairs from the start of the road to its end, at least one.
+    """Returns one or more pairs of lanelets, from the start of the road to its end.
 
     Raises:
         ExportError: The road has a number that is not finite.

@@ -1,4 +1,4 @@
-"""XML as text: elements with attributes in the given order, and numbers that read back exactly."""
+"""Writes XML as text, with attributes in the given order and numbers that can be read back exactly."""
 
 import math
 from collections.abc import Mapping
@@ -17,7 +17,9 @@ Value = str | float | int
 
 
 def number(value: float) -> str:
-    """Returns the shortest decimal that reads back as the same number; whole numbers have no point.
+    """Returns the shortest decimal that can be read back as the same number.
+
+    Whole numbers are written without a decimal point.
 
     Raises:
         ExportError: The number is not finite.
@@ -29,9 +31,9 @@ def number(value: float) -> str:
 
 
 def escaped(text: str) -> str:
-    """Returns text that may stand between tags or in an attribute.
+    """Returns text with special characters escaped, for use between tags or in an attribute.
 
-    Characters that XML cannot hold are left out.
+    Characters that XML does not allow are removed.
     """
     return "".join(filter(_is_allowed, text)).translate(_ESCAPES)
 
@@ -45,27 +47,27 @@ def _is_allowed(letter: str) -> bool:
 
 @dataclass(slots=True)
 class XmlElement:
-    """One XML element. ``add`` returns the new child, so that a tree is written from the outside in."""
+    """One XML element. ``add`` returns the new child, to which further children can be added."""
 
     name: str
     attributes: Mapping[str, Value] = field(default_factory=dict)
     children: list["XmlElement"] = field(default_factory=list)
     raw: str = ""
-    """Content between the tags in place of children, already escaped."""
+    """Content between the tags, already escaped. It is used instead of children."""
 
     def add(self, name: str, attributes: Mapping[str, Value] | None = None, raw: str = "") -> "XmlElement":
-        """Adds a child with these attributes and returns it."""
+        """Adds a child with the given attributes and returns the child."""
         child = XmlElement(name, attributes or {}, raw=raw)
         self.children.append(child)
         return child
 
     def extended(self, *children: Self) -> Self:
-        """Adds children and returns this element."""
+        """Adds children and returns the element itself."""
         self.children.extend(children)
         return self
 
     def to_text(self) -> str:
-        """Returns the whole document, indented by two spaces per level."""
+        """Returns the XML document with this element as its root, indented by two spaces per level."""
         lines = [DECLARATION]
         _write(self, "", lines)
         return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""The motion of a car along a road as plain arrays, for formats that can hold a drive."""
+"""Defines the motion of a car along a road as arrays, for file formats that can hold a drive."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -13,13 +13,14 @@ from roadgpt.geometry.curve import Array
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Poses of a car. Every array has shape ``(n,)``, n >= 2, and the times increase.
+    """Poses of a car over time. Every array has shape ``(n,)`` with n >= 2, and the times increase.
 
     Positions are those of the centre of gravity in metres. Angles are in radians: heading 0 along +x and
     counter-clockwise, pitch positive nose up, roll positive left side up. Time is in s, speed in m/s.
 
     Raises:
-        UsageError: The arrays differ in length, are not finite, or the times do not increase.
+        UsageError: The arrays differ in length or contain a number that is not finite, or the times do not
+            increase.
     """
 
     time: Array
@@ -42,10 +43,12 @@ class Poses:
 
     @classmethod
     def of(cls, columns: Mapping[str, ArrayLike]) -> Self:
-        """Returns the poses in columns with these names, such as those of a Drive. Other columns are ignored.
+        """Returns the poses from a mapping with one column per field of this class, such as that of a Drive.
+
+        Other columns are ignored.
 
         Raises:
-            UsageError: A column is missing, or as for the class.
+            UsageError: A column is missing, or the columns are not valid poses.
         """
         missing = [each.name for each in fields(cls) if each.name not in columns]
         if missing:

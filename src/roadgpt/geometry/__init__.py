@@ -1,7 +1,8 @@
-"""Plane curves and elevation profiles. This room knows nothing about roads.
+"""Defines plane curves and elevation profiles, independent of lanes and other properties of roads.
 
-A plane curve answers ``at(s)``, ``heading(s)`` and ``curvature(s)`` at an exact arc length ``s``. An
-elevation profile answers ``height(s)``, ``grade(s)`` and ``vertical_curvature(s)`` at the same stations.
+A plane curve has the methods ``at(s)``, ``heading(s)`` and ``curvature(s)``, where ``s`` is the exact arc
+length. An elevation profile has the methods ``height(s)``, ``grade(s)`` and ``vertical_curvature(s)``, where
+``s`` is the arc length of the plane curve below it.
 """
 
 from roadgpt.geometry.curve import ElevationProfile, PlanCurve, wrap_angle

@@ -1,4 +1,4 @@
-"""The protocols that every plane curve and every elevation profile fulfils."""
+"""Defines the protocols that all plane curves and all elevation profiles implement."""
 
 from typing import Protocol
 
@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 
 class PlanCurve(Protocol):
-    """A curve in the plane. It is evaluated at an arc length ``s`` in metres, from 0 to ``length``."""
+    """A curve in the plane, parametrised by the arc length ``s`` in metres, from 0 to ``length``."""
 
     @property
     def length(self) -> float:
@@ -30,7 +30,7 @@ class PlanCurve(Protocol):
 
 
 class ElevationProfile(Protocol):
-    """The height of a road over the stations of its plane curve."""
+    """The height of a road as a function of the arc length ``s`` of its plane curve, in metres."""
 
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres at stations ``s``."""
@@ -46,5 +46,5 @@ class ElevationProfile(Protocol):
 
 
 def wrap_angle(angle: ArrayLike) -> Array:
-    """Returns the same angle within (-pi, pi]."""
+    """Returns an angle in radians, wrapped to (-pi, pi]."""
     return np.pi - np.mod(np.pi - np.asarray(angle, float), 2 * np.pi)

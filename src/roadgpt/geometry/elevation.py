@@ -1,4 +1,4 @@
-"""Elevation profiles: constant grades joined by parabolas, and cubics as in the files of other tools."""
+"""Defines elevation profiles of two forms: constant grades joined by parabolas, and piecewise cubics."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +11,7 @@ from roadgpt.geometry.curve import Array
 
 @dataclass(frozen=True, eq=False)
 class GradeProfile:
-    """A profile that starts at height ``z0`` and whose grade changes linearly between the stations.
+    """A profile that starts at height ``z0`` and whose grade changes linearly between given stations.
 
     Args:
         z0: Height at the first station in metres.
@@ -69,9 +69,10 @@ class CubicProfile:
     """Heights given by cubic polynomials of the distance from each station, as in OpenDRIVE's ``elevation``.
 
     Args:
-        stations: Increasing stations in metres. Each cubic applies up to the next station, the last one
-            without end.
-        coefficients: The coefficients of each cubic, constant first: a + b u + c u^2 + d u^3.
+        stations: Increasing stations in metres. Each cubic applies up to the next station, and the last
+            cubic has no end.
+        coefficients: The coefficients (a, b, c, d) of each cubic a + b u + c u^2 + d u^3, where ``u`` is the
+            distance from its station.
 
     Raises:
         ValueError: There is no station, the stations do not increase, or their number differs from the number
@@ -103,7 +104,9 @@ class CubicProfile:
         return s - start[index], np.moveaxis(table[index], -1, 0)
 
     def cubics(self, s: ArrayLike) -> Array:
-        """Returns the cubics ``(n, 4)`` in the distance from the given stations ``s`` ``(n,)``."""
+        """Returns the coefficients ``(n, 4)`` of the cubics at stations ``s`` ``(n,)``.
+
+        Each cubic is re-expressed as a function of the distance from its given station."""
         u, table = self._place(s)
         return shifted(np.moveaxis(table, 0, -1), u)
 
@@ -124,7 +127,7 @@ class CubicProfile:
 
 
 def shifted(cubics: Array, u: ArrayLike) -> Array:
-    """Returns the same cubics ``(..., 4)``, constant first, with the origin moved forward by ``u``."""
+    """Returns cubics ``(..., 4)``, constant coefficient first, with the origin moved forward by ``u``."""
     u = np.asarray(u, float)
     a, b, c, d = np.moveaxis(cubics, -1, 0)
     rows = [a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d]

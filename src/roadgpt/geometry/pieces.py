@@ -1,7 +1,7 @@
-"""Curves made of lines, arcs and clothoids joined end to end: the elements of OpenDRIVE's reference line.
+"""Defines plane curves made of lines, arcs and clothoids, as in OpenDRIVE's reference line.
 
-The curvature of a clothoid grows linearly along it, so its points are Fresnel integrals
-(scipy.special.fresnel).
+The curvature of a clothoid changes linearly with arc length, so its points are computed with Fresnel
+integrals (scipy.special.fresnel).
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A part of a curve whose curvature changes linearly from ``k0`` to ``k1`` (1/m) over ``length`` (m)."""
+    """A line, arc or clothoid: the curvature changes linearly from ``k0`` to ``k1``, in 1/m."""
 
     length: float
     k0: float = 0.0
@@ -30,7 +30,7 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class PieceCurve:
-    """A plane curve that starts at ``(x, y)`` with heading ``heading0`` in radians and follows its pieces.
+    """A plane curve of pieces, joined end to end from ``(x, y)`` with heading ``heading0`` in radians.
 
     Raises:
         ValueError: There is no piece, or a piece does not have a positive length.
@@ -91,22 +91,22 @@ class PieceCurve:
         return np.asarray(heading[i] + u * (k0[i] + u * dk[i] / 2))
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Returns curvatures in 1/m. Where the curvature jumps, it returns the value after the jump."""
+        """Returns curvatures in 1/m, positive to the left; at a jump of the curvature, the value after it."""
         u, i = self._place(s)
         _, _, _, _, k0, dk = self._table
         return np.asarray(k0[i] + u * dk[i])
 
 
 def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tuple[Array, Array]:
-    """Returns the displacement along x and y, in metres, after ``u`` metres on a line, an arc or a clothoid.
+    """Returns the displacements along x and y in metres after ``u`` metres on a line, an arc or a clothoid.
 
     Args:
         u: Distance from the start of the piece in metres, of shape (...).
         heading: Heading at the start in radians.
         k: Curvature at the start in 1/m.
-        dk: Change of curvature in 1/m^2.
-        length: Length of the whole piece in metres. Together with ``dk`` it selects the method of
-            integration.
+        dk: Change of curvature per metre in 1/m^2.
+        length: Length of the whole piece in metres. It is used, with ``dk``, only to choose a
+            numerically accurate formula.
     """
     u, heading, k, dk, length = np.broadcast_arrays(u, heading, k, dk, length)
     turn = k * u
@@ -142,7 +142,7 @@ def _quadrature(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, A
 
 
 def joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-    """Returns the same curve without empty pieces, and with neighbours of equal constant curvature merged."""
+    """Returns the pieces without empty ones, and with neighbours of equal constant curvature merged."""
     out: list[Piece] = []
     for piece in pieces:
         if piece.length <= 1e-9:

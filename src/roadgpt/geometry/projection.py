@@ -1,4 +1,4 @@
-"""Projects points of the plane onto a curve: the nearest station and the offset to the left of it."""
+"""Projects points onto a plane curve: finds the nearest station and the lateral offset of each point."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,8 +12,8 @@ ROUNDS = 8  # Newton steps; each squares the error
 def project(curve: PlanCurve, points: ArrayLike) -> tuple[Array, Array]:
     """Returns the stations ``s`` and offsets ``t`` (positive to the left) in metres of points ``(..., 2)``.
 
-    A point beyond an end of the curve is projected onto that end; its offset is its signed distance across
-    the road there.
+    A point beyond an end of the curve is projected onto that end. Its offset is then only the component of
+    its distance perpendicular to the curve.
     """
     points = np.asarray(points, float)
     flat = points.reshape(-1, 2)

@@ -1,8 +1,8 @@
-"""The cubic spline through points from which RoadGPT and the SBFT tool competition build roads.
+"""Reproduces the cubic spline with which the RoadGPT thesis and the SBFT tool competition build roads.
 
-``interpolate`` returns exactly the competition's points, quirks included. ``SplineCurve`` is the same curve
-by arc length. Source: the competition's ``road_points`` interpolation (scipy.interpolate.splprep without
-smoothing).
+``interpolate`` returns exactly the competition's points, including its quirks. ``SplineCurve`` is the same
+curve, parametrised by arc length. Source: the competition's ``road_points`` interpolation
+(scipy.interpolate.splprep without smoothing).
 """
 
 from dataclasses import dataclass
@@ -39,10 +39,10 @@ def _spline(points: Array) -> tuple[Tck, Array]:
 
 
 def walked(points: Array) -> float:
-    """Returns the length of a polyline through points ``(n, 2)``, summed as the competition's library does.
+    """Returns the length of a polyline through points ``(n, 2)``, summed as in the competition's library.
 
-    With another order of summation, or with hypot, a polyline of 30 m would round to 29.999... and lose a
-    node.
+    A different order of summation, or hypot, could give 29.999... for a length of 30 m, so that interpolation
+    would return one node fewer than the competition's.
     """
     return float(np.cumsum(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)))[-1])
 
@@ -52,12 +52,12 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
 
     Args:
         points: Control points ``(n, 2)`` or ``(n, 3)`` in metres, n >= 2.
-        fewest: The least number of points for a short road.
+        fewest: The least number of interpolated points, which applies to short roads.
         decimals: The number of decimals to round to.
 
     Returns:
         Points of shape ``(m, 2)`` or ``(m, 3)``. For some lengths the last point lies beyond the last control
-        point, as in the competition's code: ``arange`` overshoots by rounding.
+        point, as in the competition's code, because ``arange`` overshoots by a rounding error.
 
     Raises:
         UsageError: There are fewer than two points, or two neighbours are the same.
@@ -71,7 +71,7 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
 
 @dataclass(frozen=True, eq=False)
 class SplineCurve:
-    """A spline in the plane, or the plan view of a spline in space, evaluated by arc length in plan."""
+    """A cubic spline in plan, parametrised by arc length in plan; the control points may have heights."""
 
     tck: Tck
     knots: Array
@@ -110,7 +110,7 @@ class SplineCurve:
         return self._reached(self.knots)
 
     def parameter(self, s: ArrayLike) -> Array:
-        """Returns the spline parameters at stations ``s``, by Newton steps from the values of a table."""
+        """Returns the parameter values of the spline at stations ``s``."""
         s = np.asarray(s, float)
         table_u, table_s = self._arc
         u = np.interp(s, table_s, table_u)
@@ -153,7 +153,7 @@ class SplineCurve:
 
 @dataclass(frozen=True, eq=False)
 class SplineProfile:
-    """The heights of a spline in space, over its arc length in plan."""
+    """The heights of a spline in space as a function of arc length in plan."""
 
     curve: SplineCurve
 

@@ -36,21 +36,22 @@ SBFT: dict[Cause | None, str] = {
 def judge(
     road: "Road", drive: "Drive", world: "World", known: tuple[int, Cause | None] | None = None
 ) -> Verdict:
-    """Judges whether the car kept its lane, by how many metres, and where it first failed.
+    """Returns the Verdict of a drive: whether the car kept its lane, the margin, and where it first failed.
 
-    The first failure decides: if a car leaves its lane and later reaches the goal, falls or gets stuck (with
-    ``keep_driving``), the verdict is that it left its lane. Within one step the competition checks for the
-    goal first, then for motion, then for the lane: that step counts neither for the margin nor for
-    ``max_oob``.
+    Only the first failure counts: if a drive continues after the car has left its lane (``keep_driving``),
+    the verdict is that it left its lane, whatever happens later. Within one step, the competition first
+    checks whether the car is at the goal, then whether it is stuck, then whether it is in its lane. The step
+    at which the car reaches the goal or is stuck is therefore ignored for the margin and ``max_oob``.
 
     Args:
-        road: the road.
-        drive: a drive on it.
-        world: the tolerances to judge by.
-        known: step and cause of the first failure (None for a drive that did not fail), if already known.
+        road: The road.
+        drive: The drive on this road.
+        world: Supplies the tolerance and the other criteria.
+        known: The step that decides the verdict and the cause of failure (None for no failure), if they are
+            already known.
 
     Raises:
-        UsageError: the drive was ended at a smaller tolerance than ``world.oob_tolerance``.
+        UsageError: The drive was stopped at a smaller tolerance than ``world.oob_tolerance``.
     """
     step, cause = known or _first_failure(road, drive, world)
     every = margins(road, drive, world)
@@ -81,8 +82,10 @@ def judge(
 
 
 def most_beyond(road: "Road", drive: "Drive", world: "World") -> float:
-    """Returns the largest distance in metres by which the car's body reached beyond the outer edge of a
-    marking; 0 if it never did."""
+    """Returns the largest distance in metres by which the car's body extended beyond a lane marking.
+
+    The distance is measured from the outer edge of the marking; it is 0 if the car never extended beyond it.
+    """
     from roadgpt.drive.marking_monitor import MarkingMonitor
 
     body = MarkingMonitor.for_body(road, world, drive.car).along(drive, floor=0.0)

@@ -1,13 +1,12 @@
-r"""Computes the margin: the distance in metres from failing, at every step of a drive.
+r"""Computes the margin of a drive at every step: the distance to failure in metres.
 
-    margin = how much farther sideways the car, with its present pose, could be moved before it fails
+    margin = how far the car could be shifted sideways, with its heading unchanged, before it fails
 
-The car fails when more than the tolerance of its box is outside the right lane, or when its box reaches over
-the end of the ground (carriageway and shoulder; on a mesh road without a shoulder, that end comes first on
-the right). The share of a rotated box beyond a straight line is the tail of a trapezoid, so the position at
-which the share equals the tolerance is known exactly; the curvature of the lane under the box is taken into
-account to second order. If lane departures count, the car fails as soon as the outer edge of a front tyre
-passes that of a marking.
+The car fails if the share of its bounding box outside the right lane exceeds the tolerance, or if the box
+extends beyond the outer edge of carriageway and shoulder. Seen across the lane, the area of a rotated box has
+a trapezoidal density, so the position at which the share equals the tolerance is computed exactly. The
+curvature of the lane under the box is taken into account to second order. If lane departures count, the car
+also fails as soon as the outer edge of a front tyre crosses the outer edge of a lane marking.
 
                  ____________
                 /|          |\          density of the box across the lane, at an angle psi to it:
@@ -35,19 +34,21 @@ LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per met
 
 
 class LateralExtent(NamedTuple):
-    """The car's box across the lane, per step; shapes ``(n,)``."""
+    """The extent of the car's bounding box across the lane at each of the n steps of a drive."""
 
     middle: FloatArray
-    """m to the left of the centre line, middle of the box, with the curvature of the lane under it taken into
-    account."""
+    """Offset of the box's middle in metres to the left of the centre line; shape ``(n,)``.
+
+    It is corrected for the curvature of the lane under the box.
+    """
     long: FloatArray
-    """m, half the extent across the lane of the pair of sides with the larger extent."""
+    """Half the extent in metres across the lane of the pair of sides that extends farther; ``(n,)``."""
     short: FloatArray
-    """m, half the extent across the lane of the other pair."""
+    """Half the extent in metres across the lane of the other pair of sides; ``(n,)``."""
 
 
 def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
-    """Returns the extent of the car's box across its lane, at every step."""
+    """Returns the extent of the car's bounding box across its lane, at every step of a drive."""
     s, t, box = drive["s"], drive["t"], drive.car
     psi = wrap_angle(drive["heading"] - road.heading(s))
     bend = road.curvature(s)
@@ -61,8 +62,11 @@ def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
 
 
 def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
-    """Returns the distance in metres from the lane's edge to the box's middle, positive outwards, at which
-    the share outside equals the tolerance."""
+    """Returns the offset of the box's middle from the lane's edge at which the car is about to fail.
+
+    The offset is in metres, positive outwards. At this offset, the share of the box outside the lane equals
+    ``tolerance`` (0 to 1).
+    """
     tail = min(tolerance, 1 - tolerance)
     a, b = box.long, box.short
     in_slope = a + b - np.sqrt(8 * a * b * tail)
@@ -72,8 +76,9 @@ def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
 
 
 def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
-    """Returns the metres to failing at every step, shape ``(n,)``; negative exactly where the oracle says
-    outside."""
+    """Returns the margin in metres at every step of a drive, shape ``(n,)``.
+
+    It is negative exactly where the car is out of its lane or off the ground."""
     box = lateral_extent(road, drive)
     half = world.lane_width / 2
     in_lane = half + allowed_overhang(world.oob_tolerance, box) - np.abs(box.middle + half)

@@ -1,7 +1,7 @@
-"""Computes the competition's out-of-bounds record at every control step, as in the execution data of a test.
+"""Computes the SBFT competition's out-of-bounds values at every control step of a drive.
 
-Source: SBFT tool competition, self_driving/oob_monitor.py, with the right lane as its lane. If the World
-demands lane departures, the car is also out of bounds at these.
+Source: SBFT tool competition, self_driving/oob_monitor.py, applied to the right lane. If
+``World.lane_departure`` is set, the car is also out of bounds while a front tyre is beyond a lane marking.
 """
 
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,24 +17,29 @@ ROUNDING = 1e-3  # m, error of the poses in a stored drive, which are rounded
 
 
 class Oracle(NamedTuple):
-    """The record, as arrays over the steps of a drive, shapes ``(n,)``."""
+    """The out-of-bounds values of a drive, as arrays of shape ``(n,)`` with one value per step."""
 
     is_oob: NDArray[np.bool_]
-    """Whether the share outside exceeds the tolerance, or a lane departure counts. Always False at the step
-    of the goal or of being stuck, at which the competition does not check the lane any more."""
+    """Whether the car is out of its lane: too large a share is outside, or a lane departure counts.
+
+    The value is False at the step at which the car reaches the goal or is stuck, because the competition
+    does not check the lane at this step.
+    """
     oob_counter: NDArray[np.int64]
-    """How many times the car has gone outside so far."""
+    """Number of times the car has gone out of its lane so far."""
     max_oob_percentage: NDArray[np.float64]
-    """Largest share outside since the car last went outside, 0..1; 0 before the first time. As in the
-    competition's own code, the maximum of earlier times is forgotten."""
+    """Largest share of the car outside its lane, 0 to 1, since it last went out of its lane.
+
+    It is 0 before the first time, and earlier times are forgotten, as in the competition's code.
+    """
     oob_distance: NDArray[np.float64]
-    """Metres: half a lane width minus the distance of the car's centre from the middle of the right lane."""
+    """Half the lane width minus the distance of the car's centre from the lane's middle, in metres."""
     oob_percentage: NDArray[np.float64]
-    """Share of the car's box outside the right lane, 0..1."""
+    """Share of the car's bounding box outside the right lane, 0 to 1."""
 
 
 def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
-    """Returns the record of a whole drive."""
+    """Returns the out-of-bounds values of all steps of a drive."""
     share = drive["outside"]
     out = is_outside(road, drive, world)
     went = out & ~np.concatenate([[False], out[:-1]])
@@ -51,8 +56,11 @@ def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
 
 
 def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
-    """Returns for each step whether the car is out of its lane, by the competition's oracle or by a lane
-    departure that counts."""
+    """Returns for each step whether the car is out of its lane.
+
+    The car is out of its lane if the share outside exceeds the tolerance, or at a lane departure if these
+    count.
+    """
     out: NDArray[np.bool_] = drive["outside"] > world.oob_tolerance
     out |= has_departed(road, drive, world)
     out[drive.lane_steps :] = False
@@ -60,8 +68,10 @@ def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_
 
 
 def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
-    """Returns for each step whether the outer edge of a front tyre is beyond that of a marking; False
-    everywhere if the World does not demand lane departures."""
+    """Returns for each step whether the outer edge of a front tyre is beyond that of a lane marking.
+
+    All values are False if ``world.lane_departure`` is not set.
+    """
     if not world.lane_departure:
         return np.zeros(len(drive), bool)
     from roadgpt.drive.marking_monitor import MarkingMonitor

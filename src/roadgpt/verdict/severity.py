@@ -1,9 +1,8 @@
-"""Grades how far outside its lane a car was, on the one scale that pictures, pages, tables and terminals
-colour by.
+"""Grades how far outside its lane a car was: inside, partly outside or mostly outside.
 
-A tolerance says when a test has failed; it does not say that the car kept its lane. With the SBFT
-competition's tolerance of 0.95, a car may pass with nearly its whole body outside, and such a PASS must look
-different from that of a car that never left its lane.
+All pictures, pages, tables and terminal output colour results by this scale. With the SBFT competition's
+tolerance of 0.95, a car may pass a test with nearly its whole body outside its lane. The scale distinguishes
+such a PASS from that of a car that never left its lane.
 """
 
 import math
@@ -14,22 +13,24 @@ SEVERITIES: tuple[Severity, ...] = get_args(Severity)
 """All grades, from the best to the worst."""
 
 MOSTLY = 0.5
-"""Share of the car's box outside its lane above which most of the car counts as outside."""
+"""Share of the car's bounding box outside its lane above which the grade is "mostly outside"."""
 
 
 def severity(share: float) -> Severity:
-    """Returns the grade of a share of the car's box outside its lane, 0 to 1."""
+    """Returns the grade for a share (0 to 1) of the car's bounding box outside its lane."""
     if share > MOSTLY:
         return "mostly outside"
     return "partly outside" if share > 0 else "inside"
 
 
 def graded(outcome: str, share: float | None) -> str:
-    """Returns the outcome as it is shown: a PASS states how far outside the car was, if it was.
+    """Returns the outcome as displayed, for example "PASS (partly outside)".
+
+    Only a PASS is extended by the grade, and only if the share is known and not 0.
 
     Args:
         outcome: PASS, FAIL or any other outcome.
-        share: largest share of the car's box outside its lane; None if it is not known.
+        share: Largest share of the car's bounding box outside its lane, 0 to 1; None if it is not known.
     """
     if outcome != "PASS" or not share:
         return outcome
@@ -37,7 +38,9 @@ def graded(outcome: str, share: float | None) -> str:
 
 
 def percent(share: float) -> str:
-    """Returns a share in per cent; only 0 is shown as 0 %, and only 1 as 100 %."""
+    """Returns a share (0 to 1) as text in per cent.
+
+    Only exactly 0 becomes "0 %", and only exactly 1 becomes "100 %"."""
     told = f"{100 * share:.0f}"
     if told == "0" and share > 0:
         told = f"{100 * share:.1g}"

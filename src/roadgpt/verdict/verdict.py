@@ -1,4 +1,4 @@
-"""Defines the Verdict: whether the car kept its lane, by how many metres, and where it first failed."""
+"""Defines the Verdict: whether the car kept its lane, by which margin, and where it first failed."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -23,35 +23,43 @@ class Verdict:
 
     outcome: Outcome
     cause: Cause | None
-    """None if the car kept its lane to the goal."""
+    """Cause of the failure; None if the car kept its lane and reached the goal."""
     description: str
-    """One sentence."""
+    """The result of the drive in one sentence."""
     sbft_description: str
-    """The ``description`` of the SBFT tool competition, without the name of the simulation."""
+    """The text that the SBFT competition would give as ``description``, without the simulation's name."""
     max_oob: float
-    """Largest share of the car's box outside the right lane, 0..1, over the whole drive except the step at
-    which it reached the goal or was stuck."""
+    """Largest share of the car's bounding box outside the right lane during the drive, 0 to 1.
+
+    The step at which the car reached the goal or was stuck is not included.
+    """
     margin: float
-    """Metres, see `roadgpt.verdict.margin`: how much farther sideways the car could have been before failing,
-    at the step where it was closest; negative exactly if it left its lane or fell."""
+    """Smallest margin during the drive in metres, as defined in `roadgpt.verdict.margin`.
+
+    The margin is how far the car could have been shifted sideways before failing. It is negative exactly if
+    the car left its lane or fell.
+    """
     oob_counter: int
-    """How many times the share outside rose above the tolerance."""
+    """Number of times the car went out of its lane."""
     beyond: float | None = None
-    """Metres by which the car's body reached beyond the outer edge of a marking of its lane, the maximum over
-    the same steps as ``max_oob``; 0 if it never did. The centre line bounds the lane on its left, the edge
-    line on its right. None in a file of an older version without a drive beside it."""
+    """Largest distance in metres by which the car's body extended beyond a marking of its lane.
+
+    The distance is measured from the outer edge of the centre line or edge line, over the same steps as
+    ``max_oob``; it is 0 if the car never extended beyond them. It is None where the verdict was read from a
+    file of an older version and the drive is missing.
+    """
     at_s: float | None = None
-    """Metres along the road where it failed; None if it kept its lane."""
+    """Station in metres where the car failed; None if it kept its lane."""
     at_xy: tuple[float, float] | None = None
-    """Metres."""
+    """Position (x, y) in metres where the car failed; None if it kept its lane."""
     at_time: float | None = None
-    """Seconds since the start."""
+    """Time in seconds from the start to the failure; None if the car kept its lane."""
     side: Side | None = None
-    """The side on which it left its lane or fell; None for other outcomes."""
+    """The side on which the car left its lane or fell; None for other results."""
 
     @property
     def severity(self) -> Severity:
-        """How far outside its lane the car was, independent of the outcome."""
+        """The grade of how far outside its lane the car was, independent of whether it passed."""
         return severity(self.max_oob)
 
     @property
@@ -60,14 +68,14 @@ class Verdict:
         return self.outcome == "PASS"
 
     def to_json(self) -> dict[str, Any]:
-        """Returns plain data, ``kept`` included, from which ``Verdict.from_json`` restores the verdict."""
+        """Returns the fields and ``kept`` as JSON data, for ``Verdict.from_json``."""
         data = asdict(self)
         data["at_xy"] = None if self.at_xy is None else list(self.at_xy)
         return {"kept": self.kept, **data}
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """Restores the verdict that ``to_json`` returned.
+        """Returns the Verdict whose ``to_json`` gave ``data``.
 
         Raises:
             UsageError: a field is missing or unknown, or its value is invalid.

@@ -1,1 +1,1 @@
-"""The rules: one file per rule, with one function ``inspect`` and a source for its limit."""
+"""Contains the rules: each module defines one function ``inspect`` and states the source of its limit."""

@@ -9,7 +9,7 @@ ROUNDING = 1e-6  # m
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports where the road is lowest, if that is below the ground."""
+    """Reports the lowest place of the road if it is below the ground of the level."""
     s, z = lowest(road.elevation, road.length)
     if z >= world.z_floor - ROUNDING:
         return ()

@@ -1,9 +1,10 @@
-"""The whole surface of the road lies inside the map, off its border: 0 to the map's size along x and y.
+"""The whole surface of the road lies inside the map and does not touch its border.
 
-Source: RoadGPT's two checks (the furthest points are no further apart than the map is wide, no part touches
-the border) and the SBFT competition's. The latter has an operator precedence error by which a road far
-outside passes; that road fails here. Near the border the competition's own spline is checked too, in both
-driving directions, because it may run up to a metre beyond the end of the road.
+The map extends from 0 to ``map_size`` along x and y. Source: two checks of the RoadGPT thesis (the road fits
+into the map, and no part of it touches the border) and one of the SBFT competition. The competition's code
+accepts some roads far outside the map, because of an operator precedence error; this rule rejects them. Near
+the border, the competition's spline is checked as well, in both driving directions, because it may run up to
+a metre beyond the end of the road.
 """
 
 import numpy as np
@@ -17,7 +18,7 @@ from roadgpt.road import Road, World
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports where the road leaves the map, and whether it is too large for any place on it."""
+    """Reports where the road leaves the map, and whether the road is larger than the map."""
     samples, size = road.sample(), world.map_size
     offsets = world.profile.edges(samples.s)
     low, high = extent(samples, offsets)

@@ -1,11 +1,12 @@
-"""The surface of the road nowhere overlaps itself, whatever the heights: SBFT's rule against crossing.
+"""The surface of the road does not overlap itself in plan view, even at different heights.
 
-The surface is cut into quads about 1 m long. A quad that is not convex has folded: the bend is tighter than
-half the road width. Without folds, a part shorter than half a turn at that radius cannot reach itself,
-because its curve stays outside the two circles that touch it there (Schur's comparison theorem). Quads
-farther along must be apart by twice the small amount by which true edges bulge beyond the quads' straight
-ones. Where they nearly touch, the competition's own quads are checked too, in both driving directions,
-because its spline may run up to a metre beyond the last point.
+Source: the SBFT competition's rule against roads that cross themselves. The surface is divided into quads
+about 1 m long. A quad that is not convex shows that the surface folds: the bend is tighter than half the road
+width. Without folds, quads that are close together along the road cannot overlap (Schur's comparison
+theorem), so only quads farther apart along the road are compared. The distance between two of them must be at
+least twice the small distance by which a curved edge exceeds the straight edge of its quad. Where quads
+nearly touch, the competition's own quads are checked as well, in both driving directions, because its spline
+may run up to a metre beyond the last point.
 """
 
 import numpy as np

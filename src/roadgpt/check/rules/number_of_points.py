@@ -14,7 +14,7 @@ FEWEST, MOST = 2, 500  # SBFT validator
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports too few or too many control points, or two consecutive ones that coincide in plan."""
+    """Reports too few or too many control points, or the first two neighbours that coincide in plan."""
     points = road.control_points()
     if not FEWEST <= len(points) <= MOST:
         sentence = f"the road has {len(points)} points; give {FEWEST} to {MOST}"

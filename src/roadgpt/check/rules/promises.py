@@ -1,8 +1,9 @@
-"""The road fulfils its Brief: the turns in order, the straights between them, and the grades.
+"""The road meets the requirements of its Brief: turns in order, straights between them, and grades.
 
-A requirement is a range of an Outline. The road is what ``check.measures`` finds on its centre line.
-Straights that nobody asked for are allowed. Where a count was left open ("at least three right turns, then a
-hairpin"), turns are assigned to the groups so that as few as possible are wrong.
+The requirements are the ranges of an Outline. They are compared with what ``check.measures`` measures on the
+centre line of the road. Additional straights are allowed. If the description leaves a count open ("at least
+three right turns, then a hairpin"), the turns of the road are assigned to the requested groups so that as few
+turns as possible violate a requirement.
 """
 
 from collections.abc import Iterator
@@ -29,7 +30,7 @@ class _Whole(NamedTuple):
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports what was asked and what the road has, for each requirement that is not met."""
+    """Reports the requested and the measured value for each requirement that the road does not meet."""
     if brief is None:
         return ()
     asked = promises_of(brief, world)
@@ -38,7 +39,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def promises_of(brief: Brief, world: World) -> Outline:
-    """Returns the Outline that a road on this map must fulfil."""
+    """Returns the requirements of a Brief for a road on the map of ``world``, as an Outline."""
     return outline(brief, world.map_size >= ROOMY, world.map_size)
 
 

@@ -1,4 +1,4 @@
-"""The verdict of the SBFT competition's validator in its own words, quirks included: ``check/sbft.py``."""
+"""The road passes the SBFT competition's validator, as ``roadgpt.check.sbft`` reproduces it."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
@@ -8,7 +8,7 @@ from roadgpt.road import Road, World
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports the message of the competition's validator about the road's control points, if it objects."""
+    """Reports the error message of the competition's validator if it rejects the road's control points."""
     try:
         is_valid, message = sbft_verdict(road.control_points(), world.map_size)
     except UsageError as error:  # two points coincide in plan: the competition's code stops

@@ -1,11 +1,11 @@
 """No crest or dip is so abrupt that the car would be lifted or pressed down by more than 3 m/s^2.
 
-The vertical radius R is that of the parabola between two grades: 1 / (change of grade per metre). At speed v
-the vertical acceleration is v^2 / R. Where the description asks for a crest or a dip, it may reach gravity,
-at which the wheels would leave the road.
+The vertical radius R of the parabola between two grades is 1 / (change of grade per metre). At speed v, the
+vertical acceleration is v^2 / R. Where the description asks for a crest or a dip, an acceleration up to
+gravity is allowed, at which the wheels would lose contact with the road.
 
-v is the speed expected there, from a standing start and within the speed limit, reduced by bends only
-(``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0028-vertical-radii.md``.
+v is the speed expected at this place: the car starts from rest, respects the speed limit and slows down only
+for bends (``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0028-vertical-radii.md``.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
-"""The road is longer than 20 m, on the curve itself and as the SBFT competition measures its least length.
+"""The road is longer than 20 m, both along the curve and as the SBFT competition measures length.
 
-A road that ends before a car that starts on it has room to move cannot be driven at all.
+A road that is so short that the car would already be at the goal when it starts cannot be driven at all.
 """
 
 from roadgpt.brief.model import Brief
@@ -14,7 +14,7 @@ DOUBT = 1.0  # m: if the road is longer by this much, SBFT's measure agrees
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports the length of the road, if it is too short."""
+    """Reports the length of the road if it is too short."""
     length = road.length
     if length <= LEAST:
         return (_without_room(length),)

@@ -1,7 +1,8 @@
 """The grade stays within 15 %, uphill and downhill, at every place and over every 10 m.
 
-Source of the limit: RoadGPT's prompt. RoadGPT's code checked the mean of blocks of ten nodes, and only
-uphill, so that a road falling by 60 % passed. Here a window slides over the whole road, and both signs count.
+The limit is that of the prompt in the RoadGPT thesis. The code of the thesis checked only uphill grades,
+averaged over blocks of ten nodes, so it accepted a road with a downhill grade of 60 %. This rule checks every
+10 m of the road, uphill and downhill.
 """
 
 import numpy as np
@@ -16,7 +17,7 @@ ROUNDING = 1e-6  # ratio
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports where the road is steepest, if it is too steep."""
+    """Reports the steepest place of the road if its grade exceeds the limit."""
     for (s, grade), over in ((_over_a_window(road), f" over {WINDOW:.0f} m"), (steepest(road), "")):
         if abs(grade) > world.max_grade + ROUNDING:
             x, y, _ = (float(v) for v in road.at(s))

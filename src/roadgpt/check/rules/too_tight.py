@@ -1,7 +1,7 @@
 """No turn is tighter than 14.326 m (47 ft), the SBFT competition's least radius.
 
-It is measured twice: on the curve itself, and as in the competition, by circles through nodes of its own
-spline, which cuts corners between control points.
+The radius is measured twice: on the curve of the road, and as in the competition, where circles are laid
+through nodes of the competition's spline. That spline cuts corners between control points.
 """
 
 from roadgpt.brief.model import Brief
@@ -15,7 +15,7 @@ ROUNDING = 1e-9  # of the limit
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports where the road is tightest, if it is too tight."""
+    """Reports the tightest place of the road if its radius is below the limit."""
     s, bend = tightest(road)
     limit = f"tighter than {world.min_radius:.4g} m"
     if abs(bend) * world.min_radius > 1 + ROUNDING:

@@ -1,1 +1,1 @@
-"""The exporters: one format per file, each registered under the entry point ``roadgpt.exporters``."""
+"""Contains the exporters, one module per format. Their entry point group is ``roadgpt.exporters``."""

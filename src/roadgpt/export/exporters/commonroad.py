@@ -1,8 +1,8 @@
 """CommonRoad scenarios (XML 2020a): lanelets, a speed limit, and the task to drive to the end.
 
 Source: CommonRoad, Documentation of the XML Format, version 2020a. The format can hold heights, but
-CommonRoad's planners, road boundaries and pictures stop at points that have one (commonroad-io 2024.3), so
-none are written.
+CommonRoad's planners, road boundaries and plots fail if points have heights (commonroad-io 2024.3), so no
+heights are written.
 """
 
 from collections.abc import Sequence
@@ -32,12 +32,17 @@ class CommonRoad:
     suffix = ".cr.xml"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the scenario. A drive would be a solution of it, which is another format."""
+        """Writes the scenario.
+
+        ``poses`` is ignored, because CommonRoad stores drives in a separate solution format.
+        """
         path.write_bytes(document(road, world).to_text().encode())
 
 
 def document(road: Road, world: World) -> XmlElement:
-    """Returns the whole file: lanelets of the right lane from 1, then of the left lane, sign and problem.
+    """Returns the XML document: lanelets, traffic sign and planning problem.
+
+    Lanelets of the right lane are numbered from 1, and those of the left lane follow.
 
     Raises:
         ExportError: The road has a number that is not finite.

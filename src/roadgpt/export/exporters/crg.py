@@ -1,7 +1,7 @@
-"""ASAM OpenCRG 1.2, ASCII: the surface of the road along its centre line, for tyre and chassis models.
+"""Exports the road surface as ASAM OpenCRG 1.2 in ASCII form, for tyre and vehicle dynamics models.
 
-Source: ASAM OpenCRG 1.2.0, user guide and file format. The surface is smooth; its heights are those of the
-road.
+Source: ASAM OpenCRG 1.2.0, user guide and file format. The surface is smooth: it has
+the heights of the road and no roughness.
 """
 
 import math
@@ -30,12 +30,15 @@ class Crg:
     suffix = ".crg"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the surface of lanes and shoulders. OpenCRG cannot hold a drive."""
+        """Writes the surface of lanes and shoulders.
+
+        ``poses`` is ignored, because OpenCRG cannot hold a drive.
+        """
         path.write_bytes(document(road, world).encode("ascii"))
 
 
 def document(road: Road, world: World) -> str:
-    """Returns the whole file: header, then one line per cross-section with heading and two heights.
+    """Returns the text of the file: a header, then one line per cross-section with heading and two heights.
 
     Raises:
         ExportError: A bend is so tight that the lanes overlap in it, or a number is not finite.

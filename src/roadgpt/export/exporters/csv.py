@@ -1,4 +1,4 @@
-"""Comma-separated values: the road every metre, and every step of the drive, for tables and scripts."""
+"""Exports the road at every metre, and every step of the drive, as comma-separated values."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ class Csv:
     suffix = ".csv"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the road. A drive is written to NAME.drive.csv."""
+        """Writes the road to ``path`` and the drive, if there is one, to NAME.drive.csv."""
         of = road.sample(STEP)
         wide, shoulder = world.profile.width(of.s), world.profile.shoulder(of.s)
         columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, shoulder]

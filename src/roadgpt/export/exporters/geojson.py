@@ -1,4 +1,4 @@
-"""GeoJSON (RFC 7946): the road in geographic coordinates, for maps and geographic tools."""
+"""Exports roads as GeoJSON (RFC 7946) in geographic coordinates, for maps and geographic tools."""
 
 import json
 from pathlib import Path
@@ -24,7 +24,10 @@ class GeoJson:
     suffix = ".geojson"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes one feature collection. ``export.georeference`` defines where the map's corner lies."""
+        """Writes one feature collection.
+
+        ``roadgpt.export.georeference`` defines the geographic position of the map.
+        """
         s, wide = road.sample(STEP).s, world.profile.lane_width
         edges = world.profile.edges(s)
         right, middle, left = road.at(s, edges.right), road.at(s), road.at(s, edges.left)

@@ -1,7 +1,8 @@
-"""Lanelet2 maps (.osm, with heights): two chains of lanelets that share the middle line.
+"""Exports roads as Lanelet2 maps (.osm) with heights: two chains of lanelets that share the middle line.
 
 Source: Lanelet2, documentation of its primitives and tags; F. Poggenhans et al., Lanelet2: A High-Definition
-Map Framework for the Future of Automated Driving, ITSC 2018. Its usual projector, UTM, restores our metres.
+Map Framework for the Future of Automated Driving, ITSC 2018. Lanelet2's usual UTM projector converts
+the geographic coordinates back to the metres of the map.
 """
 
 from itertools import count
@@ -26,12 +27,14 @@ class Lanelet2:
     suffix = ".osm"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the map. Lanelet2 cannot hold a drive."""
+        """Writes the map. ``poses`` is ignored, because Lanelet2 cannot hold a drive."""
         path.write_bytes(document(road, world).to_text().encode())
 
 
 def document(road: Road, world: World) -> XmlElement:
-    """Returns the whole file. Readers determine which bound of a lanelet runs against the traffic.
+    """Returns the XML document of the map.
+
+    Bounds may point against the direction of traffic; programs that read Lanelet2 maps detect this.
 
     Raises:
         ExportError: The road has a number that is not finite.
@@ -59,9 +62,9 @@ class _MapBuilder:
         self._ends: dict[str, int] = {}
 
     def way(self, name: str, points: Array, kind: str) -> int:
-        """Adds a painted line and returns its number.
+        """Adds a way for a painted line and returns its id.
 
-        It begins with the last node of the previous way of this name.
+        The way starts at the last node of the previous way with the same name, so that both are connected.
         """
         known = [self._ends[name]] if name in self._ends else []
         nodes = [*known, *self._add_nodes(points[len(known) :])]
@@ -86,7 +89,7 @@ class _MapBuilder:
         return numbers
 
     def lanelet(self, left: int, right: int, limit: str) -> None:
-        """Adds the lane between two ways."""
+        """Adds the lanelet between two ways, given by their ids."""
         lanelet = XmlElement("relation", {"id": next(self._numbers), **KEEP})
         for role, way in (("left", left), ("right", right)):
             lanelet.add("member", {"type": "way", "ref": way, "role": role})

@@ -1,4 +1,4 @@
-"""ASAM OpenSCENARIO XML 1.2: a scenario that players run on the road, and the drive as a trajectory.
+"""Exports roads as ASAM OpenSCENARIO XML 1.2: a scenario on the road, and a drive as a trajectory.
 
 Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin is the middle of its rear axle
 on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855).
@@ -32,7 +32,7 @@ class OpenScenario:
     suffix = ".xosc"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the scenario and, beside it, the road. A drive is written to NAME.drive.xosc."""
+        """Writes the scenario, an OpenDRIVE file with the road, and the drive, if any, to NAME.drive.xosc."""
         stem = path.name.removesuffix(self.suffix)
         map_ = path.with_name(stem + OpenDrive.suffix)
         OpenDrive().save(road, map_, world)
@@ -43,7 +43,7 @@ class OpenScenario:
 
 
 def scenario(road: Road, world: World, map_: str) -> XmlElement:
-    """Returns the scenario: the car starts at rest, slows down for bends, and drives to the end."""
+    """Returns the scenario in which the car starts from rest, slows down for bends, and drives to the end."""
     profile = calm_profile(road, world, start_of(road))
     # stations are those of the rear axle
     start, end = max(start_of(road) + CAR.rear_axle, 0.0), goal_of(road) + CAR.rear_axle
@@ -77,7 +77,7 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
-    """Returns the scenario in which the car repeats its drive, moment by moment."""
+    """Returns the scenario in which the car repeats a drive, as a trajectory with times."""
     time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
     ground = on_the_ground(poses, CAR.rear_axle)
     exact = np.column_stack([ground, poses.heading, -poses.pitch, poses.roll])

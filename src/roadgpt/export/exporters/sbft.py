@@ -1,4 +1,4 @@
-"""The test of the SBFT tool competition: ``road_points`` for its own spline, and our points with heights."""
+"""Exports roads as tests of the SBFT tool competition, with additional points that have heights."""
 
 import json
 from pathlib import Path
@@ -20,7 +20,7 @@ class Sbft:
     suffix = ".sbft.json"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the test. The result of driving it is in the ``test.NNNN.json`` of a campaign."""
+        """Writes the test without a result. Campaigns write results to their ``test.NNNN.json`` files."""
         points = {"road_points": road.control_points(), "interpolated_points": road.centreline(STEP)}
         data = {name: (np.round(finite(each), DECIMALS) + 0.0).tolist() for name, each in points.items()}
         path.write_bytes((json.dumps(data) + "\n").encode())

@@ -1,4 +1,4 @@
-"""SUMO: nodes, edges, a trip and settings; the network itself where SUMO's netconvert is installed.
+"""Exports roads for SUMO: nodes, edges, a trip and settings, and the network if netconvert is installed.
 
 Source: SUMO user documentation, "PlainXML", "netconvert", "Definition of Vehicles".
 """
@@ -38,7 +38,7 @@ class Sumo:
     suffix = ".nod.xml"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml, .sumocfg, and .net.xml if it can be made."""
+        """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml, .sumocfg, and with netconvert .net.xml."""
         stem = path.name.removesuffix(self.suffix)
         shape = np.round(line(road, stations(road, world.profile.paved_reach), 0.0), DECIMALS) + 0.0
         limits = speed_zones(road, world)
@@ -57,7 +57,9 @@ class Sumo:
 
 
 def netconvert() -> str | None:
-    """Returns SUMO's converter from PATH, SUMO_HOME or the package eclipse-sumo, or None."""
+    """Returns the path of SUMO's netconvert; None where it is not installed.
+
+    It is looked for in PATH, SUMO_HOME and the Python package eclipse-sumo."""
     places = [Path(os.environ["SUMO_HOME"])] if os.environ.get("SUMO_HOME") else []
     package = find_spec("sumo")
     if package is not None:
@@ -76,18 +78,19 @@ def _nodes(shape: Array) -> XmlElement:
 
 
 class SpeedZone(NamedTuple):
-    """A part of the road with one speed limit."""
+    """A part of the road with one speed limit; it ends where the next part starts."""
 
     start: float
-    """Station in metres."""
+    """Station in metres where the part starts."""
     speed: float
     """Speed limit in m/s."""
 
 
 def speed_zones(road: Road, world: World) -> list[SpeedZone]:
-    """Returns parts of SHORTEST metres or more, each with the least speed that suits a calm driver there.
+    """Returns consecutive parts of the road, each with the lowest speed that a calm driver has on that part.
 
-    A car in SUMO brakes in time for the limit of the next part, so it drives bends at a suitable speed.
+    A part is at least SHORTEST metres long, unless the whole road is shorter. Cars in SUMO brake in time for
+    the speed limit of the next part, so they drive bends at a suitable speed.
     """
     count = max(1, int(road.length / SHORTEST))
     ends = np.linspace(0.0, road.length, count + 1)

@@ -1,12 +1,12 @@
-"""BeamNG: a level folder with mesh road, decal roads, materials, start and a scenario.
+"""Exports roads as BeamNG levels: mesh road, decal roads, materials, start of the car and a scenario.
 
     NAME-beamng/levels/LEVEL/info.json
                              main.materials.json
                              main/items.level.json, main/MissionGroup/...
                              scenarios/drive/drive.json, drive.prefab.json
 
-Put ``NAME-beamng`` into ``mods/unpacked`` of BeamNG's user folder, or the contents of its ``levels`` into
-``levels`` there.
+To use a level, copy ``NAME-beamng`` to ``mods/unpacked`` in BeamNG's user folder, or copy the contents of
+``NAME-beamng/levels`` to ``levels`` in that folder.
 """
 
 import json
@@ -29,7 +29,7 @@ class BeamNG:
     suffix = "-beamng"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the folder. A drive is not part of it."""
+        """Writes the level folder. ``poses`` is ignored, because a level cannot hold a drive."""
         title = path.name.removesuffix(self.suffix)
         write_level(road, path / "levels", level_name(title), world, title)
 

@@ -1,7 +1,7 @@
-"""The files of a level: one JSON object per line in ``items.level.json``, materials, ``info.json``, scenario.
+"""Creates the contents of the files of a BeamNG level: items, materials, ``info.json`` and a scenario.
 
-Source: BeamNG documentation, "Level format"; levels as the SBFT competition and BeamNGpy write them. No tool
-outside the game checks such files; ``roadgpt doctor beamng`` loads one in the game.
+Source: BeamNG documentation, "Level format"; levels written by the SBFT competition's code and by BeamNGpy.
+No tool other than the game can check such files; ``roadgpt doctor beamng`` loads a level in the game.
 """
 
 import json
@@ -29,12 +29,12 @@ DECIMALS = 4
 
 
 def ground_model(friction: float) -> str:
-    """Returns BeamNG's ground model that is closest to a friction."""
+    """Returns the name of the BeamNG ground model whose friction is closest to a friction coefficient."""
     return next(name for least, name in GROUNDS if friction >= least)
 
 
 def items(name: str, scene: LevelRoad, world: World) -> Mapping[str, Sequence[Item]]:
-    """Returns the contents of each ``items.level.json`` by its folder below ``main``."""
+    """Returns the objects of each ``items.level.json``; the keys are folders below ``main``."""
     groups = ("sky_and_ground", "roads", "player")
     return {
         "": [_object(name, "MissionGroup", "SimGroup", "", enabled="1")],
@@ -153,7 +153,7 @@ def rotation(heading: float, grade: float) -> Array:
 
 
 def materials(world: World) -> Item:
-    """Returns ``main.materials.json``: plain colours, with the ground models that tyres use."""
+    """Returns the content of ``main.materials.json``: plain colours, and ground models for friction."""
     ground = ground_model(world.friction)
     wanted = (
         (OWN.road, (0.16, 0.16, 0.17), ground),
@@ -184,7 +184,7 @@ def _material(name: str, colour: tuple[float, float, float], model: str) -> Item
 
 
 def info(name: str, title: str, world: World) -> Item:
-    """Returns ``info.json`` of the level."""
+    """Returns the content of the level's ``info.json``."""
     side = int(np.ceil(world.map_size))
     return {
         "title": title,
@@ -201,7 +201,7 @@ def info(name: str, title: str, world: World) -> Item:
 
 
 def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
-    """Returns a scenario, to drive from the start to the goal, and the group of its prefab."""
+    """Returns a scenario in which the car drives from start to goal, and the objects of its prefab file."""
     path = f"levels/{name}/scenarios/drive/drive.prefab.json"
     about = {
         "name": title,
@@ -217,7 +217,7 @@ def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
 
 
 def car(name: str, scene: LevelRoad, model: str) -> Item:
-    """Returns the car at its start as a prefab holds it."""
+    """Returns the car at the start of the road, as an object for a prefab file."""
     start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
     return _object(
         name,
@@ -234,7 +234,7 @@ def car(name: str, scene: LevelRoad, model: str) -> Item:
 
 
 def one_per_line(objects: Sequence[Item]) -> str:
-    """Returns objects in the form of ``items.level.json`` and of prefabs."""
+    """Returns objects as text with one JSON object per line, as in ``items.level.json`` and prefab files."""
     return "".join(json.dumps(each) + "\n" for each in objects)
 
 

@@ -1,12 +1,13 @@
 r"""Builds a road as BeamNG represents roads, for the files of a level and for a running simulator.
 
-    mesh road    what the wheels stand on: a strip with depth through nodes x, y, z, width, depth
-    decal road   what is drawn on it, and what BeamNG's AI follows: nodes x, y, z, width
+    mesh road    solid strip that carries the wheels: nodes x, y, z, width, depth
+    decal road   strip that is drawn on the mesh road and that BeamNG's AI follows: nodes x, y, z, width
 
-RoadGPT lays both along one line and shifts the mesh's nodes at random, so that the two do not flicker where
-they meet. Here the decal also lies a little above the mesh, and the random shifts come from the seed. The
-shoulder is a second, wider mesh just below the first. It reaches down to the ground, which lies at the lowest
-place of the road. A road without shoulder floats above a ground at ``world.z_floor``.
+As in the RoadGPT thesis, both strips follow the same line, and the nodes of the mesh are shifted at random so
+that the two surfaces do not flicker. In addition, the decal is placed a little above the mesh. The shifts
+depend only on the seed. The shoulder is a second, wider mesh just below the first one. It reaches down to the
+ground, whose height is that of the lowest place of the road. A road without shoulder floats above a ground at
+height ``world.z_floor``.
 """
 
 from dataclasses import dataclass
@@ -35,7 +36,7 @@ GOAL = "goal"
 
 
 class Materials(NamedTuple):
-    """Names of a level's materials."""
+    """Names of the materials of a level, by the surface that uses them."""
 
     road: str
     verge: str
@@ -62,11 +63,11 @@ class Strip:
     priority: int = 0
     """Drawing order of a decal: painted lines are drawn on the asphalt."""
     is_dashed: bool = False
-    """Whether the paint of a decal is broken, by DASH and GAP of our OpenDRIVE files."""
+    """Whether a painted line is dashed. Dashes and gaps are as long as in exported OpenDRIVE files."""
 
     @property
     def is_mesh(self) -> bool:
-        """Whether wheels can stand on it."""
+        """Whether the strip is a mesh road, which carries the wheels."""
         return bool(self.nodes.shape[1] == 5)
 
 
@@ -76,12 +77,12 @@ class LevelRoad:
 
     strips: tuple[Strip, ...]
     start: Array
-    """x, y, z of the road under the car's centre of gravity."""
+    """Point (x, y, z) of the road surface under the car's centre of gravity at the start, in metres."""
     heading: float
     """Heading at the start in radians."""
     grade: float
     goal: Array
-    """x, y, z at the middle of the right lane."""
+    """Point (x, y, z) of the goal in the middle of the right lane, in metres."""
     ground: float
     """Height of the level's ground in metres."""
 
@@ -89,14 +90,16 @@ class LevelRoad:
 def level_road(
     road: Road, world: World, seed: int, materials: Materials = OWN, lift: float = 0.0, prefix: str = ""
 ) -> LevelRoad:
-    """Returns the road with shoulder, markings, start and goal. The same arguments give the same numbers.
+    """Returns the strips of a road, its shoulder and its markings, with the start and the goal of the drive.
+
+    The same arguments always give the same result.
 
     Args:
         road: The road.
         world: Widths of lane and shoulder.
-        seed: Seed of the offsets against flicker.
-        materials: Materials of the level that the road is placed in.
-        lift: Metres by which everything is raised, where the level's ground is not at ``world.z_floor``.
+        seed: Seed of the random shifts of mesh nodes that prevent flicker.
+        materials: Names of materials that exist in the level.
+        lift: Metres by which everything is raised, for a level whose ground is not at ``world.z_floor``.
         prefix: Prefix of the strips' names, which must be unique in a level.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Binary glTF 2.0: the road as solid meshes for renderers, game engines and mesh tools.
+"""Exports roads as binary glTF 2.0: solid meshes for renderers, game engines and mesh tools.
 
 Source: Khronos Group, glTF 2.0 (ISO/IEC 12113:2022).
 """
@@ -18,5 +18,8 @@ class Gltf:
     suffix = ".glb"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the scene. The path is that of the drive, or else the middle of the right lane."""
+        """Writes the scene.
+
+        It shows the path of the drive, or the middle of the right lane if there is no drive.
+        """
         path.write_bytes(to_bytes(meshes(road, world, poses), road.at(0.0)))

@@ -1,4 +1,4 @@
-"""The file: meshes become accessors of one buffer, beside JSON that describes them."""
+"""Writes meshes as a binary glTF file: one buffer with all numbers, and JSON that describes its contents."""
 
 import json
 import struct
@@ -24,7 +24,7 @@ MATERIALS = {
     "paint": ((0.85, 0.85, 0.85, 1.0), 0.6),
     "path": ((0.0, 0.30, 0.75, 1.0), 0.7),
 }
-"""Base colour (linear red, green, blue, opacity) and roughness, 0..1."""
+"""Base colour (linear red, green, blue, opacity) and roughness of each material, 0 to 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,20 +38,21 @@ class TriangleMesh:
     normals: Array
     """Unit normals of shape (n, 3)."""
     texture: Array
-    """Texture coordinates of shape (n, 2), across and along in metres.
+    """Texture coordinates of shape (n, 2) in metres, across and along the surface.
 
-    Pictures of materials repeat over them.
+    The texture of the material is repeated over them.
     """
     triangles: np.ndarray
     """Indices of points, of shape (m, 3), counter-clockwise seen from outside."""
 
 
 def to_bytes(meshes: Sequence[TriangleMesh], near: Array) -> bytes:
-    """Returns the whole file.
+    """Returns the bytes of a binary glTF file with the given meshes.
 
     Args:
         meshes: The meshes of the scene, each a node of its own.
-        near: A point of the scene. Single precision is centred on it and not on the map's corner.
+        near: A point of the scene, (x, y, z) in metres. Coordinates are stored relative to it, because single
+            precision is too coarse far from the origin.
     """
     origin = np.round(near)
     used = list(dict.fromkeys(mesh.material for mesh in meshes))

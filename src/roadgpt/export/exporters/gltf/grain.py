@@ -1,4 +1,4 @@
-"""Textures of surfaces: noise that repeats without a seam, the same for every road."""
+"""Creates textures of surfaces from noise. They tile without a seam and are the same for every road."""
 
 import io
 from functools import cache
@@ -16,10 +16,10 @@ class Grain(NamedTuple):
     """A texture that makes a surface lighter and darker."""
 
     metres: float
-    """Side length in metres of the ground that the picture covers."""
+    """Side length in metres of the square area that the texture covers."""
     seed: int
     octaves: tuple[tuple[int, float], ...]
-    """Cells along a side, and strength: coarse ones are visible from far away, fine ones from close up."""
+    """Layers of noise: number of cells along a side, and amplitude as a share of the mean brightness."""
 
 
 GRAINS = {
@@ -27,7 +27,7 @@ GRAINS = {
     "gravel": Grain(4.0, 17, ((64, 0.30), (256, 0.40))),
     "grass": Grain(37.0, 23, ((24, 0.10), (64, 0.16), (256, 0.22))),
 }
-"""Textures by material. Strengths and sizes are those of the page with the replay."""
+"""Textures by material. Their sizes and amplitudes are also used by the HTML page that replays a drive."""
 
 
 @cache

@@ -1,4 +1,4 @@
-"""ASAM OpenDRIVE 1.8, using nothing that 1.7 does not define: roads for simulators.
+"""Exports roads as ASAM OpenDRIVE 1.8, with only those elements that version 1.7 also defines.
 
 Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
 """
@@ -23,12 +23,12 @@ class OpenDrive:
     suffix = ".xodr"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the file. OpenDRIVE cannot hold a drive."""
+        """Writes the file. ``poses`` is ignored, because OpenDRIVE cannot hold a drive."""
         path.write_bytes(document(road, world).to_text().encode())
 
 
 def document(road: Road, world: World) -> XmlElement:
-    """Returns the whole file.
+    """Returns the XML document.
 
     Raises:
         ExportError: The road has a number that is not finite.

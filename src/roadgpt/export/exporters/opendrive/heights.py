@@ -1,4 +1,4 @@
-"""The elevation: parabolas and cubics unchanged; fitted cubics where the road is a spline."""
+"""Writes the elevation profile: parabolas and cubics exactly, splines as fitted cubics."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ SAME = 1e-5  # m
 
 
 def elevations(road: Road) -> list[XmlElement]:
-    """Returns the ``elevation`` elements of a road in order. The first is at station 0."""
+    """Returns the ``elevation`` elements of a road in the order of their stations, beginning at station 0."""
     stations, table = _table(road)
     return [
         XmlElement("elevation", dict(zip("sabcd", row, strict=True)))

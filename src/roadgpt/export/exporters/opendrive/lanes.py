@@ -14,7 +14,7 @@ NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
 
 def lanes(world: World) -> XmlElement:
-    """Returns the element ``lanes``."""
+    """Returns the OpenDRIVE element ``lanes`` with both lanes, the shoulders and the road markings."""
     section = XmlElement("laneSection", {"s": 0})
     section.add("left").extended(*_shoulder(2, world), _driving(1, world))
     section.add("center").extended(_middle())

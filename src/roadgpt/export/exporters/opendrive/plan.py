@@ -1,4 +1,4 @@
-"""The reference line: lines, arcs and spirals unchanged, cubics for splines."""
+"""Writes the reference line: lines, arcs and spirals exactly, splines as cubics."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ SHORTEST = 1e-6  # m; a shorter piece is left out, and the next one starts in it
 
 
 def geometries(plan: PlanCurve) -> Iterator[XmlElement]:
-    """Yields the ``geometry`` elements of a plan in order."""
+    """Yields the ``geometry`` elements of a plan curve in the order of their stations."""
     if isinstance(plan, PieceCurve):
         return _pieces(plan)
     return _cubics(plan)
@@ -107,7 +107,9 @@ def _cubic(cu: float, cv: float, du: float, dv: float) -> XmlElement:
 
 
 def breaks_of(plan: PlanCurve) -> Array:
-    """Returns the stations between which a curve is smooth: the nodes of a spline, both ends included."""
+    """Returns the stations that bound the smooth parts of a curve, both ends included.
+
+    They include all nodes of a spline."""
     if isinstance(plan, SplineCurve):
         inner = plan.stations[1:-1]
         kept, last = [], 0.0
