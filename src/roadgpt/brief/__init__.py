@@ -83,10 +83,18 @@ class Reader(Protocol):
 
 @runtime_checkable
 class ReaderWithAlternatives(Protocol):
-    """A reader that can offer several readings of a description with vague words."""
+    """A reader that can return several different readings of a vague description."""
 
     def alternatives(self, words: str, number: int, temperature: float, seed: int) -> tuple[Brief, ...]:
-        """Returns up to ``number`` different readings, the likeliest first."""
+        """Returns up to ``number`` different readings, the likeliest first.
+
+        Args:
+            words: the description.
+            number: the largest number of readings.
+            temperature: how freely the readings after the first are sampled; 1 samples from the reader's own
+                distribution, lower values stay closer to the likeliest reading.
+            seed: seed of the sampling; the same seed gives the same readings.
+        """
         ...
 
 

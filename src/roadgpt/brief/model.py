@@ -86,7 +86,7 @@ def between(low: float, high: float) -> Amount:
 
 
 class Clause(Frozen):
-    """One feature along the road, or several of the same kind in a row."""
+    """One feature along the road, or a row of several features of the same kind."""
 
     kind: Kind
     count: Amount = Amount(lo=1, hi=1)
@@ -102,7 +102,7 @@ class Clause(Frozen):
     radius: Amount | None = None
     """The radius of each turn in metres."""
     length: Amount | None = None
-    """In metres: the length of each straight, or of each turn along its curve."""
+    """The length in metres of each straight, or of each turn along its curve."""
     size: Size | None = None
     """The size of a straight if the description gives a word instead of a number: "a long straight"."""
     slope: Slope | None = None

@@ -67,12 +67,14 @@ def says_motorway(words: str) -> bool:
 
 
 def has_wide_turns(brief: Brief, map_size: float) -> bool:
-    """Returns True if a motorway is asked for and a map of this size in metres can hold its wide turns."""
+    """Returns True if the Brief asks for a motorway and the map can hold its wide turns; ``map_size`` in
+    metres.
+    """
     return brief.motorway and not _is_tighter(brief) and not _lack_of_room(brief, map_size)
 
 
 def has_low_grades(brief: Brief) -> bool:
-    """Returns True if the Brief asks for a motorway and for no grade that is steeper than a motorway's."""
+    """Returns True if the Brief asks for a motorway, and for no grade steeper than a motorway may have."""
     if not brief.motorway:
         return False
     things: list[Brief | Clause] = [brief, *_clauses(brief)]

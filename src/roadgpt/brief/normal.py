@@ -114,7 +114,7 @@ def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:
 
 
 def turns_of(clause: Clause) -> tuple[float, float]:
-    """Returns the least and largest number of turns of a clause that turns; the largest may be ``inf``."""
+    """Returns the least and largest number of turns in a clause; the largest may be ``inf``."""
     own = KINDS[clause.kind].turns
     least, most = (own.lo, own.hi) if own else (1.0, 1.0)
     lo, hi = clause.count.lo or 0.0, inf if clause.count.hi is None else clause.count.hi

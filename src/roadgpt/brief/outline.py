@@ -40,7 +40,7 @@ KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "z
 
 @dataclass(frozen=True, slots=True)
 class Feature:
-    """One turn or one straight that is required; a field that is None requires nothing."""
+    """A required turn or straight; a field that is None sets no requirement."""
 
     kind: Literal["turn", "straight"]
     name: str
@@ -109,9 +109,9 @@ def outline(brief: Brief, roomy: bool = True, map_size: float = inf) -> Outline:
     """Returns the Outline of a Brief.
 
     Args:
-        brief: what was asked for.
-        roomy: True if the map can hold sweeping turns of 60 m radius; otherwise sweeping turns only have to
-            meet the 40 m of gentle ones.
+        brief: the requirements.
+        roomy: True if the map can hold sweeping turns of 60 m radius; if False, sweeping turns only need a
+            radius of 40 m, as gentle turns do.
         map_size: side of the map in metres; a motorway gets wide turns only if the map can hold them.
     """
     groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))

@@ -45,7 +45,7 @@ def overlap(one: Range | None, other: Range | None) -> Range | None:
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What a word requires; a field that is None requires nothing."""
+    """What a word requires of a road; a field that is None sets no requirement."""
 
     names: tuple[str, ...]
     """The English words with this meaning; RoadGPT's own texts use the first one."""

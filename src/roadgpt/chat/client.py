@@ -33,7 +33,7 @@ sleep = time.sleep
 
 
 class ApiClient:
-    """A client for one server with one key."""
+    """Sends requests to one server, with one API key."""
 
     def __init__(self, settings: ChatSettings, key: Key | None) -> None:
         self.place = address_of(settings.base_url)

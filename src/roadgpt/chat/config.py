@@ -61,10 +61,10 @@ class Layer(NamedTuple):
 
 
 def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> ChatSettings:
-    """Returns the current settings; an option that is None was not given.
+    """Returns the current settings from all sources, in order of precedence.
 
     Args:
-        flags: the user's options.
+        flags: the user's options by field; a value of None means that the option was not given.
         plan: the settings in a plan file, which may have been written by somebody else.
 
     Raises:
@@ -96,7 +96,7 @@ def settings_with_origin(
 
 
 def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
-    """Returns the ChatSettings with these values.
+    """Returns the ChatSettings with these values; ``found`` maps each field to its value and origin.
 
     Raises:
         UsageError: a value is not valid; the message says where it was found.

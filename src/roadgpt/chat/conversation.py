@@ -18,7 +18,7 @@ FULL = ("context_length", "context window", "too long", "maximum context")
 
 
 class Conversation:
-    """The messages of one campaign so far."""
+    """The conversation of one campaign with a model, as stored by the server or as a list of messages."""
 
     def __init__(self) -> None:
         self.name: str | None = None

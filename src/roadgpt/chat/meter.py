@@ -31,7 +31,7 @@ class Meter:
 
     @classmethod
     def of(cls, settings: ChatSettings | None) -> "Meter":
-        """Returns a Meter with the limits of the settings; without limits if there are no settings."""
+        """Returns a Meter with the limits in the settings; without limits if ``settings`` is None."""
         return cls() if settings is None else cls(settings.max_tokens, settings.max_cost)
 
     def add(self, spent: Spent) -> None:

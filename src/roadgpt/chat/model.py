@@ -1,4 +1,4 @@
-"""The values of a conversation with a language model: Message, Usage, Reply, Spent, ChatSettings."""
+"""The data types of a conversation with a language model: Message, Usage, Reply, Spent, ChatSettings."""
 
 from typing import Annotated, Any, Literal, Self
 from urllib.parse import urlsplit
@@ -51,7 +51,7 @@ class Reply(ChatValue):
     data: SerializeAsAny[Any] = None
     """A validated instance of the schema; None if no schema was given."""
     model: str
-    """The server's name of the model that answered."""
+    """The name of the model that answered, as the server reports it."""
     usage: Usage = Usage()
     seconds: float = 0.0
     cost: float | None = None
@@ -100,7 +100,7 @@ class ChatSettings(ChatValue):
     provider: str = "openai"
     """Name of an installed provider."""
     model: str | None = None
-    """The server's name of the model; None uses the only model that the server has."""
+    """The server's name of the model; None uses the server's only model."""
     base_url: str | None = None
     """Address of the server up to ``/v1``; None means OpenAI's server."""
     api: Api = "chat"

@@ -24,7 +24,7 @@ FIRST_ERROR = 400
 
 
 class ResponseLimits:
-    """A hook of the HTTP client that limits every response before it is read."""
+    """A response hook of the HTTP client: limits the size and time of every response before it is read."""
 
     def __init__(self, most: int, seconds: float, late: Callable[[], Exception]) -> None:
         self.most, self.seconds, self.late = most, seconds, late

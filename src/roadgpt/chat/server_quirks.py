@@ -14,7 +14,7 @@ UNUSABLE_IN_A_ROW = 2
 
 
 class ResponseFormat(IntEnum):
-    """A way of asking for JSON, the strictest first."""
+    """The ways of asking for JSON, from the strictest to the loosest."""
 
     SCHEMA = 0
     OBJECT = 1

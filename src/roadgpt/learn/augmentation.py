@@ -50,7 +50,7 @@ def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan with another count; None unless the count occurs once in each of them."""
+    """Returns the text and plan with another count, if that count occurs once in both; else None."""
     counts = re.findall(r"(?:\bx|turns=)(\d+)(?![\d.])", pair.plan)
     if (
         len(counts) != 1
@@ -75,7 +75,10 @@ def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
 
 
 def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan of two pairs joined as one road; None if a plan has more than clauses."""
+    """Returns the text and plan of two pairs joined to one road; None if the pairs cannot be joined.
+
+    Pairs with refusals or with requirements for the whole road cannot be joined.
+    """
     if any("|" in pair.plan or pair.plan.startswith("!") for pair in (one, other)):
         return None
     if len(one.text) + len(other.text) > LONGEST:

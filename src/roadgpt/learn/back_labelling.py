@@ -70,7 +70,9 @@ STYLES = (
 
 
 def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
-    """Yields an endless series of descriptions of measured roads with their plans; seeded by ``seed``."""
+    """Yields descriptions of measured roads with their plans, without end; the same seed gives the same
+    pairs.
+    """
     rng = np.random.default_rng([seed, 11])
     asked, place = pairs(seed, {"en": 1.0}), world or World()
     while True:

@@ -32,7 +32,7 @@ class Calibration:
 
 
 def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> Calibration:
-    """Returns the settings fitted to pairs that the network was not trained on."""
+    """Fits the settings to pairs that the network was not trained on, and returns them."""
     honest = [pair for pair in pairs if pair.plan not in REFUSALS]
     threshold = _threshold(network, honest)
     rows, rights = [], []

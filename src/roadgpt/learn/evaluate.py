@@ -133,9 +133,7 @@ def _share(rights: Iterable[bool]) -> float:
 
 
 def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]:
-    """Returns the scores of groups of readings, such as languages or families; ``key`` maps a pair to its
-    group.
-    """
+    """Returns the scores of groups of readings, such as languages; ``key`` maps a pair to its group."""
     groups: dict[str, list[Reading]] = {}
     for reading in found:
         groups.setdefault(key(reading.pair), []).append(reading)
@@ -143,11 +141,10 @@ def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]
 
 
 def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
-    """Counts, over all wrong readings, which word of the label's plan was replaced by which word; '-' is
-    none.
+    """Counts, over all wrong readings, pairs of a word of the label's plan and the word written instead.
 
     The words of a plan are compared without regard to their order, and those that differ are paired
-    alphabetically.
+    alphabetically; '-' stands for no word. A wrong refusal counts as the pair ('a road', 'refused').
     """
     table: Counter[tuple[str, str]] = Counter()
     for reading in found:

@@ -45,9 +45,10 @@ class EncoderGraph(nn.Module):
 class DecoderGraph(nn.Module):
     """One step of the decoder, which takes the last token of a plan and scores the next one.
 
-    Inputs: ``token`` (batch, 1); ``place`` (1,), its position; ``own`` (layers, 2, batch, heads, t, head
-    size), the keys and values of the plan so far; ``across``, those of the description; ``seen`` (batch, 1,
-    1, n), the mask of the description. Outputs: the scores (batch, tokens), and ``own`` with t + 1 tokens.
+    Inputs, for a plan of t tokens so far: ``token`` (batch, 1); ``place`` (1,), the position of the token;
+    ``own`` (layers, 2, batch, heads, t, head size), the keys and values of the plan so far; ``across``, the
+    keys and values of the description; ``seen`` (batch, 1, 1, n), the mask of the description. Outputs: the
+    scores (batch, tokens), and ``own`` with t + 1 tokens.
     """
 
     def __init__(self, reader: ReaderNetwork) -> None:

@@ -26,9 +26,7 @@ def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
 
 
 def design_chats(pairs: Iterable[Pair], world: World, seed: int) -> Iterator[str]:
-    """Yields one line of JSON, a chat from description to Design, for each pair for which a road can be
-    designed.
-    """
+    """Yields chats from description to Design, each as a line of JSON, if the road can be designed."""
     for number, pair in enumerate(pairs):
         if pair.plan in REFUSALS:
             continue

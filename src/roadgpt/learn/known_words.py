@@ -23,8 +23,8 @@ def joints() -> frozenset[str]:
 def known_words(pairs: Iterable[Pair]) -> list[str]:
     """Returns the learnt words in alphabetical order.
 
-    A word counts as learnt if some token of the plans occurs with it far more often than by chance.
-    'lonely' occurs with nothing in particular, so for a lonely road 'lonely' is reported as unused.
+    A word counts as learnt if some plan token occurs far more often with this word than by chance. The word
+    'lonely' has no such token, so 'lonely' is reported as unused in 'a lonely road'.
     """
     word_in: Counter[str] = Counter()
     token_in: Counter[str] = Counter()

@@ -27,7 +27,7 @@ def card(
         data: number of pairs in each part of the data.
         found: the model's readings of the test split.
         others: readings of the same split by other readers, by name of the reader.
-        shown: the model's readings of the validation split; the card shows confusions and wrong ones of them.
+        shown: the model's readings of the validation split, the source of the confusions and mistakes shown.
         training: one paragraph on the training.
     """
     return "\n".join(

@@ -1,4 +1,4 @@
-"""Finds descriptions that are nearly the same: two descriptions may share 60 % of their 5-grams at most.
+"""Finds descriptions that are nearly the same, which share more than 60 % of their 5-grams.
 
 Numbers, sides and synonyms are masked first, so that the same template with other words is also found.
 """
@@ -18,13 +18,13 @@ MOST_SHARED = 0.6
 MASKS: dict[str, str] = json.loads(
     (files("roadgpt.learn") / "words" / "masks.json").read_text(encoding="utf-8")
 )
-"""Maps a mask to the words that it replaces."""
+"""Maps each mask to the words that are replaced by the mask."""
 MASK_OF = {word: mask for mask, its in MASKS.items() for word in its.split()}
 
 
 @dataclass(frozen=True, slots=True)
 class NearDuplicate:
-    """Two descriptions that are too similar."""
+    """Two descriptions, by index, that share too many 5-grams; ``shared`` is the share, from 0 to 1."""
 
     shared: float
     first: int

@@ -1,7 +1,8 @@
 """The stages of the grammar reader, in the order in which they run.
 
-``tokens`` -> ``lexicon`` (phrases of the vocabularies get their meanings) -> ``quantities`` (numbers, bounds,
-units) -> ``context`` (words with two meanings) -> ``chunking`` (words that belong together become phrases, by
-``handlers``) -> ``brief_builder`` (phrases become features in ``driving_order``, with ``modifiers``,
-``scope`` and ``slopes``) -> ``lowering`` (the Brief, after ``reordering``)
+``tokens`` (words, numbers, marks) -> ``lexicon`` (meanings of words and phrases) -> ``quantities`` (numbers
+with bounds and units) -> ``context`` (one meaning for each ambiguous word) -> ``chunking`` (groups words that
+belong together into phrases, with ``handlers``) -> ``brief_builder`` (makes features of the phrases, with
+``driving_order``, ``modifiers``, ``scope`` and ``slopes``) -> ``lowering`` (makes the Brief, with
+``reordering``)
 """

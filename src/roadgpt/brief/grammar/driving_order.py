@@ -272,7 +272,7 @@ def plural(thing: Phrase) -> bool:
 
 
 def how_many(thing: Phrase) -> int:
-    """Returns the smallest number of features that a phrase allows, limited to MOST.
+    """Returns the smallest number of features that a phrase allows.
 
     Raises:
         BriefError: the description asks for more features than any map holds.

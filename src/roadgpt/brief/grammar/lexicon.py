@@ -26,9 +26,7 @@ Meanings = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Lexeme:
-    """A meaning and the range of tokens from which it was read, from ``start`` up to but not including
-    ``stop``.
-    """
+    """A meaning and the tokens from which it was read, from index ``start`` up to but excluding ``stop``."""
 
     name: str
     start: int
@@ -47,7 +45,9 @@ class Lexicon:
 
     @classmethod
     def of(cls, vocabularies: Iterable[dict[str, str]]) -> "Lexicon":
-        """Compiles vocabularies; an earlier one takes precedence over a later one."""
+        """Builds a Lexicon from vocabularies; if a phrase is in several, its meaning in the earliest comes
+        first.
+        """
         phrases: dict[tuple[str, ...], tuple[Meanings, ...]] = {}
         longest: dict[str, int] = {}
         for vocabulary in vocabularies:
@@ -64,9 +64,7 @@ class Lexicon:
 
 @cache
 def lexicon() -> Lexicon:
-    """Returns the combined vocabularies; words that a Brief cannot express come first, then English, then
-    others.
-    """
+    """Returns the lexicon of all vocabularies; words that a Brief cannot express come first, then English."""
     return Lexicon.of((UNSUPPORTED_WORDS, ROAD_WORDS, FUNCTION_WORDS, GERMAN, ROMANCE))
 
 
@@ -136,9 +134,7 @@ def _is_number(token: Token) -> bool:
 
 
 def similar(word: str) -> str | None:
-    """Returns the word about roads that a mistyped word resembles, such as 'turns' for 'trns'; None if none
-    does.
-    """
+    """Returns the word about roads that a mistyped word resembles: 'turns' for 'trns'; else None."""
     known = {w for listed in ROAD_WORDS.values() for w in listed.split() if len(w) > 3 and w.isalpha()}
     near = get_close_matches(word, sorted(known), n=1, cutoff=ALIKE)
     return near[0] if near else None

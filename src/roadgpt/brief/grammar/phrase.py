@@ -7,15 +7,13 @@ from roadgpt.brief.model import Amount, Kind, Sharpness, Side, Size
 from roadgpt.brief.normal import STRAIGHT
 
 ROAD_LIKE: frozenset[Kind] = frozenset({"straight", "winding", "serpentine", "zigzag", "slalom"})
-"""Kinds that can describe a whole road: 'a winding road'."""
+"""Kinds of features that can also describe a whole road: 'a winding road'."""
 WAVY: frozenset[Kind] = frozenset({"winding", "serpentine", "zigzag", "slalom"})
 
 
 @dataclass(slots=True)
 class Phrase:
-    """What a description says about one feature, slope or requirement; fields that it does not mention are
-    empty.
-    """
+    """What a description says about one feature, slope or requirement; fields without a value are empty."""
 
     joint: str = ""
     fresh: bool = False

@@ -80,9 +80,7 @@ def _targets(order: DrivingOrder, phrase: Phrase) -> list[Phrase]:
 
 
 def give(thing: Phrase, phrase: Phrase) -> None:
-    """Copies the properties in ``phrase`` to the feature ``thing``, and replaces those that ``thing`` already
-    had.
-    """
+    """Copies the properties in ``phrase`` to the feature ``thing``; they replace those of ``thing``."""
     if phrase.kind not in (None, "turn"):
         thing.kind = phrase.kind
     for name in ATTRIBUTES:
@@ -156,7 +154,7 @@ def halve(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def take_some(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Applies 'two of them to the left' or 'one of which is a hairpin'; returns False without turns."""
+    """Applies 'two of them to the left' or 'one of which is a hairpin'; False if there are no turns."""
     whole = order.last_turn
     if whole is None:
         return False

@@ -35,9 +35,7 @@ def slope_of(phrase: Phrase) -> Slope | None:
 
 
 def settle_slopes(order: DrivingOrder) -> None:
-    """Assigns each slope without a feature of its own to earlier features or to the road, or inserts a
-    straight.
-    """
+    """Assigns each slope without a feature to earlier features or to the road, or inserts a straight."""
     alone = [thing for thing in order.things if _alone(thing)]
     if alone and not _shared_out(order, alone):
         only = len({_said(thing) for thing in order.things if thing.slope}) == 1 and not _rises_and_falls(

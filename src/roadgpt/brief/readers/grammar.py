@@ -27,8 +27,8 @@ SURE = TURNING | {
     "more_right",
     "same_sides",
 }
-"""Meanings that occur in descriptions of roads and hardly anywhere else; one of them shows that a text is
-about a road."""
+"""Meanings that occur in descriptions of roads and hardly anywhere else; a text with one of them is taken for
+the description of a road, unless more than three quarters of its words are unknown."""
 LIKELY = frozenset(
     {"straight", "crest", "dip", "hill", "left", "right", "up", "down", "up~", "down~", "flat", "flat~"}
     | {"steep", "hard", "hard_road", "slope", "hills", "height", "radius", "%"}

@@ -43,7 +43,7 @@ WAYS: tuple[tuple[Callable[[Voice], Composition], float], ...] = (
 )
 SEVERAL = 2
 WITH_LIMITS = 0.4
-"""Share of descriptions to which limits for the whole road are added."""
+"""The share of descriptions, from 0 to 1, to which limits for the whole road are added."""
 SHARES = np.cumsum([share for _, share in WAYS])
 
 

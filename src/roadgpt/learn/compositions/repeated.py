@@ -39,7 +39,7 @@ def _part(voice: Voice, may_be_straight: bool) -> tuple[str, str]:
 
 
 def lettered(voice: Voice) -> Composition:
-    """Returns a description with sides as letters ('L, L, R'), one angle for all lefts and another for all
+    """Returns a description with sides as letters ('L, L, R'), one angle for the lefts and one for the
     rights.
     """
     turns = [DescribedTurn(mods={"side": voice.pick(SIDES)}) for _ in range(voice.whole(3, 7))]

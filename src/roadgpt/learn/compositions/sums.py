@@ -1,6 +1,4 @@
-"""Descriptions with counts that add up: the number of turns, how many go to each side, which come first or
-last.
-"""
+"""Descriptions with counts that add up: the number of turns, and how many go to each side or come first."""
 
 from roadgpt.learn.compositions.voice import NOUNS, OTHER, SIDES, Composition, DescribedTurn, Voice, clauses
 

@@ -38,11 +38,11 @@ class Composition(NamedTuple):
 
 @dataclass
 class DescribedTurn:
-    """One turn of a road that is being described."""
+    """One turn of a road, with the words for it in a plan."""
 
     kind: str = "turn"
     mods: dict[str, str] = field(default_factory=dict)
-    """The plan words of the turn by what they specify: side, sharpness, slope or deg."""
+    """The modifiers of the turn in a plan, by what they specify: side, sharpness, slope or deg."""
 
     @property
     def clause(self) -> str:

@@ -33,7 +33,7 @@ something that was mentioned earlier."""
 LEAST = word_set("least minimum min mindestens minimal wenigstens moins minimo minima menos meno almeno")
 MOST = word_set("most maximum max hochstens hoechstens maximal massimo maximo maxima massima")
 ALONE = word_set("min max minimum maximum mindestens wenigstens hochstens hoechstens maximal almeno")
-"""Words that are bounds without "at" before them."""
+"""Words that are bounds on their own, such as "minimum"; others need a word like "at" before them."""
 AT = word_set("at au al por lo du como come")
 NOT = word_set(
     "no not never none neither nor nowhere without t nothing cannot dont doesnt kein keine keinen",

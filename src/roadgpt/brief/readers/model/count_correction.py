@@ -1,5 +1,4 @@
-"""Corrects the counts in a plan, each of which must be a number in the text or follow from such numbers by a
-sum.
+"""Corrects the counts in a plan: each must be a number in the text, or a sum or difference of such numbers.
 
 A small network copies numbers well and calculates badly: for "seven turns, the first two uphill", it wrote
 counts of 2 and 4. If exactly one count of a plan is not in the text, and exactly one number in the text is

@@ -16,9 +16,7 @@ SHORTEST = 3  # letters; shorter words are function words in all five languages
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """The words that a reader has learnt: those that were frequent in training with some effect, and function
-    words.
-    """
+    """The words that a reader has learnt: words that affected plans in training, and function words."""
 
     known: frozenset[str]
 

@@ -1,4 +1,4 @@
-"""Decides by rules which numbers that are not written in a description its plan may contain.
+"""Decides by rules which numbers a plan may contain that are not written in the description.
 
 Words can imply a number ("right angle", "mountain road"). A plan may contain such a number only if some word
 of the description, in any of the five languages, can imply it.

@@ -12,7 +12,7 @@ PAIRED = (
     "izquierda/derecha izquierdas/derechas izquierdo/derecho sinistra/destra sinistro/destro "
     "sinistre/destre sinistri/destri "
 )
-"""The words for left and right in five languages."""
+"""Pairs of words for left and right in five languages."""
 OTHER = {a: b for pair in (words.split("/") for words in PAIRED.split()) for a, b in (pair, pair[::-1])}
 UNSAFE = re.compile(
     r"\bright(?: |-)(?:angle|away|after|now|at|in|before|on|from|there|then|up|down|into)|"

@@ -10,7 +10,7 @@ from functools import cache
 
 LANGUAGES = ("en", "de", "fr", "es", "it")
 MOST = 1500
-"""The largest number that is read from words; no road is longer than that in metres."""
+"""The largest number that is read from words; no road is longer than 1500 m."""
 
 ENGLISH = [
     "zero",

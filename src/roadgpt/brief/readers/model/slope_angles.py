@@ -1,6 +1,6 @@
-"""Converts slopes given in degrees: "a slope of 4 degrees" is 7 percent, not a turn.
+"""Converts slopes given in degrees to percent: "a slope of 4 degrees" is 7 percent, not a turn.
 
-Only numbers right next to a word for a slope are converted; "climbs 30 degrees to the left" is a turn.
+Only numbers close to a word for a slope are converted; "climbs 30 degrees to the left" remains a turn.
 """
 
 from collections.abc import Sequence

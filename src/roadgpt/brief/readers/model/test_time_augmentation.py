@@ -35,7 +35,7 @@ class ScoredPlan:
 
     tokens: tuple[str, ...]
     line: str
-    """The plan with its numbers filled in, or the name of a refusal."""
+    """The plan with the values of its slots filled in, or the name of a refusal."""
     score: float
     """Mean over the variants of the length-normalised log-probability."""
     log_chances: tuple[float, ...]
