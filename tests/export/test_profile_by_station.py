@@ -76,7 +76,7 @@ def test_a_level_lays_its_strips_as_wide_as_the_road_is_there() -> None:
     assert strips["road"][1:-1, 3] == pytest.approx(6.0 + 2 * s / LENGTH, abs=1e-3)
     assert strips["verge"][1:-1, 3] == pytest.approx(10.0 + 2 * s / LENGTH, abs=1e-3)
     s, t = offsets(strips["right"])
-    assert t == pytest.approx(0.1 - 3.0 - s / LENGTH, abs=1e-6)  # half of the painted line of 0.2 m
+    assert t == pytest.approx(0.06 - 3.0 - s / LENGTH, abs=1e-6)  # half of the painted line of 0.12 m
 
 
 def test_slabs_and_paint_of_a_gltf_scene_follow_the_edges() -> None:

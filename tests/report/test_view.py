@@ -244,7 +244,7 @@ def test_the_command_writes_one_page_of_a_file_and_a_run(
         (["road.json"] * 3, "one road or two"),
         (["none.json"], "none.json"),
         (["road.json", "--out", "campaign"], "is a folder"),
-        (["road.json", "--out", "road.json"], "ends in .html"),
+        (["road.json", "--out", "road.json"], "does not end in .html"),
         (["road.json", "--out", "road.json/page.html"], "--out"),
     ],
 )
