@@ -1,7 +1,7 @@
 """RoadGPT turns words into tested roads.
 
-The values and functions of the rooms can be imported from here. Each is loaded when it is first used, so that
-``import roadgpt`` takes almost no time::
+The public classes and functions of the sub-packages can be imported from here. Each is loaded when it is
+first used, so that ``import roadgpt`` takes almost no time::
 
     import roadgpt
 

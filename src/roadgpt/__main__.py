@@ -1,13 +1,13 @@
-"""The program ``roadgpt``, also as ``python -m roadgpt``.
+"""Starts the program ``roadgpt``, also with ``python -m roadgpt``.
 
-It handles Ctrl-C before it imports anything else.
+It installs the handling of Ctrl-C before anything else is imported.
 """
 
 from roadgpt import stopping
 
 
 def main() -> None:
-    """Runs a command and ends the process with its exit status."""
+    """Runs the command in ``sys.argv`` and ends the process with the exit status of the command."""
     stopping.install()
     try:
         from roadgpt.cli import main as command

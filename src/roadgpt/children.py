@@ -1,4 +1,7 @@
-"""Child processes. A terminal's Ctrl-C does not reach them, and they are ended with all that they started."""
+"""Starts and ends child processes.
+
+Ctrl-C in the terminal does not reach them. When a child process is ended, the processes that it started are
+ended as well."""
 
 import os
 import signal
@@ -18,14 +21,14 @@ _running: "set[subprocess.Popen[bytes]]" = set()
 
 
 def start(words: Sequence[str], **how: Any) -> "subprocess.Popen[bytes]":
-    """Starts a process in a session of its own.
+    """Starts a process in a new session, so that Ctrl-C in the terminal does not reach it.
 
     Args:
         words: The command and its arguments.
         **how: Further arguments of ``subprocess.Popen``.
 
     Raises:
-        OSError: The system refuses.
+        OSError: The operating system cannot start the process.
     """
     process: subprocess.Popen[bytes] = subprocess.Popen(words, **_APART, **how)  # noqa: S603 - our callers' words
     _running.add(process)
@@ -36,11 +39,11 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
     """Starts a Python process that runs ``main()`` of a module and communicates through its standard streams.
 
     Args:
-        entry: The module.
-        **how: Further arguments of ``subprocess.Popen``; ``env`` is added to the environment.
+        entry: The name of the module.
+        **how: Further arguments of ``subprocess.Popen``; ``env`` is added to the current environment.
 
     Raises:
-        OSError: The system refuses.
+        OSError: The operating system cannot start the process.
     """
     words = [
         sys.executable,
@@ -54,7 +57,10 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
 
 
 def kill(process: "subprocess.Popen[bytes]") -> None:
-    """Ends a process and its children without waiting. A process that has ended may be killed again."""
+    """Kills a process and its children, without waiting until they have ended.
+
+    It may be called again for a process that has already ended.
+    """
     if os.name == "posix":
         # its group may outlive it, so it is signalled even if the process has ended
         with suppress(ProcessLookupError, PermissionError):
@@ -67,10 +73,10 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
 
 
 def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
-    """Asks a process that called ``ends_its_own`` to end with all that it has started, without waiting.
+    """Asks a process that called ``ends_its_own`` to end itself and its child processes, without waiting.
 
-    What such a process starts runs in sessions of its own, out of reach of ``kill``. On Windows ``kill``
-    reaches it.
+    The child processes of such a process run in separate sessions, where ``kill`` does not reach them, except
+    on Windows.
     """
     if os.name == "posix" and process.poll() is None:
         with suppress(OSError):
@@ -88,7 +94,7 @@ def _end_all(number: int, frame: object) -> None:
 
 
 def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
-    """Ends a process and its children. Returns its exit status; None where it has not ended in time."""
+    """Ends a process and its children. Returns its exit status; None if it has not ended in time."""
     kill(process)
     with suppress(subprocess.TimeoutExpired):
         process.wait(patience)
@@ -97,23 +103,23 @@ def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int |
 
 
 def kill_all() -> None:
-    """Ends every process that was started here and has not been waited for."""
+    """Ends all processes that were started with this module and have not been waited for."""
     for process in [*_running]:
         kill(process)
 
 
 def ending(status: int | None) -> str:
-    """Returns how a process ended, in words that follow its name: 'was ended by signal 9'."""
+    """Returns how a process ended as words that can follow its name, such as 'was ended by signal 9'."""
     if status is not None and status < 0:
         return f"was ended by signal {-status}"
     return f"ended with status {status}"
 
 
 def private_streams() -> tuple[IO[bytes], IO[bytes]]:
-    """Returns this process's standard input and output, unbuffered and for the caller alone.
+    """Returns the standard input and output of this process, unbuffered and for the caller's exclusive use.
 
-    From then on, anything else that reads standard input finds nothing, and anything else that prints writes
-    to standard error.
+    Afterwards, other code that reads standard input gets no data, and other code that prints writes to
+    standard error.
     """
     heard, said = os.dup(0), os.dup(1)
     nothing = os.open(os.devnull, os.O_RDONLY)

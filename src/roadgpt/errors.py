@@ -1,14 +1,14 @@
-"""The errors that a user can meet. Every message says what is wrong and what to do."""
+"""Defines the errors that users can cause. Every message states what is wrong and what to do."""
 
 
 class RoadGPTError(Exception):
-    """Base class of all errors that a user can cause or remedy. Its text is one clear sentence."""
+    """Base class of all errors that a user can cause or resolve. The message is one clear sentence."""
 
     exit_status = 1
 
 
 class UsageError(RoadGPTError):
-    """Something that the user typed, or a file that they gave, cannot be used."""
+    """An input or a file that the user gave cannot be used."""
 
     exit_status = 2
 
@@ -71,11 +71,11 @@ class ChatError(RoadGPTError):
 
 
 class BudgetError(ChatError):
-    """The next question would exceed the campaign's limit of tokens or money."""
+    """The next request to a language model would exceed the limit of tokens or cost."""
 
 
 class ReplyError(ChatError):
-    """The server answered, but not with what was asked for. This costs one road, not the campaign."""
+    """The server answered, but not with what was asked for. Only one road fails, and a campaign continues."""
 
     def __init__(self, sentence: str, text: str = "") -> None:
         super().__init__(sentence)

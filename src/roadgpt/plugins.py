@@ -1,7 +1,7 @@
 """Finds plug-ins by name: providers, readers, designers, rules, exporters, simulators, drivers and so on.
 
-A plug-in registers under the entry point group ``roadgpt.<kind>``. Those of this package use the same
-mechanism as a user's.
+Plug-ins are registered as entry points of the group ``roadgpt.<kind>``. The built-in plug-ins use the same
+mechanism as those of users.
 """
 
 from functools import cache
@@ -38,7 +38,8 @@ def names(kind: str) -> list[str]:
     """Returns the sorted names of the plug-ins of a kind.
 
     Raises:
-        PartError: There are none. For example, no road passes for lack of rules.
+        PartError: There are no plug-ins of this kind. (An empty list of rules, for example, would accept
+            every road.)
     """
     found = sorted(_registered(kind))
     if not found:
@@ -47,7 +48,7 @@ def names(kind: str) -> list[str]:
 
 
 def find(kind: str, name: str) -> Any:
-    """Returns the object that a plug-in registered. It is imported now.
+    """Imports a plug-in and returns the object that it registered.
 
     Raises:
         PartError: There is no plug-in of this name or more than one, or it cannot be loaded.
@@ -71,11 +72,14 @@ def find(kind: str, name: str) -> Any:
 
 
 def module_of(kind: str, name: str) -> str:
-    """Returns the name of a plug-in's module without importing it; empty where there is no such plug-in."""
+    """Returns the name of a plug-in's module without importing it; an empty string if there is none."""
     return next((part.module for part in _registered(kind).get(name, ())), "")
 
 
 def origin(kind: str, name: str) -> str:
-    """Returns the distribution that a plug-in comes from, as 'name version'; all, if there are several."""
+    """Returns the distribution that provides a plug-in, as 'name version'.
+
+    If several distributions provide it, all are returned in one string.
+    """
     parts = _registered(kind)[name]
     return ", ".join(f"{part.dist.name} {part.dist.version}" if part.dist else "unknown" for part in parts)

@@ -1,40 +1,43 @@
-"""Records where names come from. Code and servers that are named only by a file are not trusted.
+"""Records whether drivers and servers were named by the user or by a file. Only the former are trusted.
 
-A run, a campaign, a plan or a folder may have been made by somebody else. Code that reads one records which
-drivers and servers it names (``add_from_file``), and code that takes an option from the user records that too
-(``add_from_user``). Before a driver's file is run, or a key is sent to a server, ``untrusted_file`` returns
-the file that names it where the user has not. Names that are given in a Python program came with no file, and
-are trusted.
+A run, a campaign, a plan or a folder may have been made by somebody else. Code that reads such a
+file records the drivers and servers that the file names (``add_from_file``). Code that reads the user's
+options records those that the user names (``add_from_user``). Before the code of a driver is run, or a key is
+sent to a server, ``untrusted_file`` tells whether only a file names it. Names in the user's own Python
+programs are trusted, because no file is recorded for them.
 """
 
 from collections.abc import Callable
 
 
 class NameOrigins:
-    """Names of one kind in one process: those that the user gave, and those that came with files."""
+    """Names of drivers or of servers that were recorded in this process, from the user and from files."""
 
     def __init__(self) -> None:
         self._named: dict[str, str] = {}
         self._files: dict[str, str] = {}
 
     def add_from_user(self, key: str, name: str = "") -> None:
-        """Records that the user gave this key; ``name`` is the user's wording, if it differs from the key."""
+        """Records that the user named a driver or server.
+
+        ``key`` identifies it; ``name`` is the user's spelling, if it differs from ``key``.
+        """
         self._named[key] = name or key
 
     def given_as(self, key: str) -> str | None:
-        """Returns the user's wording for this key; None where the user did not give it."""
+        """Returns the user's spelling of a key; None if the user did not name it."""
         return self._named.get(key)
 
     def add_from_file(self, key: str, file: object) -> None:
-        """Records that a file names this key. Only the first file is kept."""
+        """Records that a file names a key. If several files name it, only the first is recorded."""
         self._files.setdefault(key, str(file))
 
     def untrusted_file(self, key: str) -> str | None:
-        """Returns the file that names this key, where the user did not give it; else None."""
+        """Returns the file that names a key, if the user did not name it; None otherwise."""
         return None if key in self._named else self._files.get(key)
 
     def join(self, others: "NameOrigins") -> None:
-        """Adds the names that another process has recorded."""
+        """Adds the names that another process has recorded to those of this one."""
         self._named.update(others._named)
         self._files.update(others._files)
 
@@ -56,18 +59,18 @@ class Confirmation:
 
 
 CODE = NameOrigins()
-"""Drivers in files, by the absolute path of the file and the name of the class."""
+"""Drivers defined in Python files; keys are the absolute path of the file and the name of the class."""
 SERVERS = NameOrigins()
-"""Servers of language models, by scheme, host and port."""
+"""Servers of language models; keys are scheme, host and port."""
 USER = Confirmation()
 
 
 def known() -> tuple[NameOrigins, NameOrigins]:
-    """Returns all names that this process has recorded, to be handed to a process that works for it."""
+    """Returns all names that this process has recorded, so that they can be passed to a worker process."""
     return CODE, SERVERS
 
 
 def join(names: tuple[NameOrigins, NameOrigins]) -> None:
-    """Adds the names that were recorded by the process that this one works for."""
+    """Adds the names that the parent process recorded to those of this worker process."""
     for ours, theirs in zip((CODE, SERVERS), names, strict=True):
         ours.join(theirs)

@@ -1,8 +1,7 @@
-"""Reads files that may come from somebody else: only regular files, whole, and up to a size limit.
+"""Reads files from untrusted sources: only regular files, and only up to a size limit.
 
-Reading from a pipe without a writer would wait for ever, and a device has no end. Both are refused, and so is
-a file that is too large, before it fills the memory. Files that a campaign or a run wrote are read in the
-same way.
+Pipes and devices are refused, because reading them could wait for ever or never end. Files that are too large
+are refused before they fill the memory. Files written by campaigns and runs are read in the same way.
 """
 
 import json
@@ -32,8 +31,8 @@ def opened(path: Path, most: int = LARGEST, what: str = ANY, called: str = "") -
     Args:
         path: The file, or a link to one.
         most: Greatest size in bytes.
-        what: What the file should be, for the message that it is too large.
-        called: What messages call the file, if not by its path.
+        what: What the file should be, for the error message if it is too large.
+        called: Name of the file in error messages; empty to use its path.
 
     Raises:
         OSError: The file does not exist or may not be read.
@@ -57,7 +56,12 @@ def opened(path: Path, most: int = LARGEST, what: str = ANY, called: str = "") -
 
 
 def read_bytes(path: Path, most: int = LARGEST, what: str = ANY) -> bytes:
-    """Returns the content of a regular file of at most ``most`` bytes. Raises the errors of ``opened``."""
+    """Returns the content of a regular file of at most ``most`` bytes.
+
+    Raises:
+        OSError: The file does not exist or may not be read.
+        UsageError: The path is not a regular file, or the file is too large.
+    """
     with opened(path, most, what) as file:
         content = file.read(most + 1)
     if len(content) > most:  # it is growing, or its file system reports no size
@@ -66,7 +70,13 @@ def read_bytes(path: Path, most: int = LARGEST, what: str = ANY) -> bytes:
 
 
 def read_text(path: Path, most: int = LARGEST, what: str = ANY, encoding: str = "utf-8") -> str:
-    """Returns the content as text with unified line ends. Raises UnicodeDecodeError where it is not text."""
+    """Returns the content of a regular file as text, with all line ends as "\\n".
+
+    Raises:
+        OSError: The file does not exist or may not be read.
+        UsageError: The path is not a regular file, or the file is too large.
+        UnicodeDecodeError: The content is not text in this encoding.
+    """
     return read_bytes(path, most, what).decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -74,8 +84,8 @@ def read_json(path: Path, most: int = LARGEST, what: str = ANY) -> Any:
     """Returns the data in a JSON file.
 
     Raises:
-        OSError: As for ``opened``.
-        UsageError: As for ``opened``.
+        OSError: The file does not exist or may not be read.
+        UsageError: The path is not a regular file, or the file is too large.
         ValueError: The file is not JSON, is nested too deeply, or holds a number too large for a machine
             number.
     """
@@ -83,10 +93,10 @@ def read_json(path: Path, most: int = LARGEST, what: str = ANY) -> Any:
 
 
 def json_of(text: str) -> Any:
-    """Returns the data in JSON text. Whole numbers are limited to the range of floating-point numbers.
+    """Returns the data in JSON text. Whole numbers beyond the range of floating-point numbers are refused.
 
     Raises:
-        ValueError: As for ``read_json``.
+        ValueError: The text is not JSON, is nested too deeply, or holds a number that is too large.
     """
     if text.count("[") + text.count("{") > MOST_OPENED or text.count(",") > MOST_COMMAS:
         raise ValueError("it has more parts than would fit into memory")
@@ -97,13 +107,17 @@ def json_of(text: str) -> Any:
 
 
 def check_unpacked(entries: Iterable[zipfile.ZipInfo], most: int) -> None:
-    """Raises ValueError if a zip archive would unpack to more than ``most`` bytes."""
+    """Checks the unpacked size of a zip archive.
+
+    Raises:
+        ValueError: The archive would unpack to more than ``most`` bytes.
+    """
     if sum(entry.file_size for entry in entries) > most:
         raise ValueError(f"it unpacks to more than {most / 1e6:g} MB")
 
 
 def strictly(kind: type[T], data: Any) -> T:
-    """Returns data from a file as a value of a dataclass whose fields all have their declared types.
+    """Converts data from a file to an instance of a dataclass, without converting the types of fields.
 
     Raises:
         ValueError: A field is missing, has another type, or is a number that is not finite.

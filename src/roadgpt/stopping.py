@@ -1,9 +1,9 @@
-"""How the program stops. One Ctrl-C is enough, SIGTERM is handled alike, and a second signal ends it at once.
+"""Stops the program at Ctrl-C or SIGTERM. A second signal ends the program at once.
 
-A signal raises KeyboardInterrupt, so that waiting ends, files are closed and finished work is kept. But
-Python drops an exception that is raised while it runs the callback of a weak reference or a ``__del__``. The
-signal is therefore also recorded: long work checks between its steps (``look``), and where Python reports
-that it dropped the exception, it is raised again.
+A signal raises KeyboardInterrupt, so that waiting ends, files are closed and finished work is kept. However,
+Python drops exceptions that are raised in a ``__del__`` method or in the callback of a weak reference. The
+signal is therefore recorded as well: long computations call ``look`` between their steps, and if Python
+reports a dropped KeyboardInterrupt, it is raised again.
 """
 
 import _thread
@@ -44,7 +44,7 @@ class _State:
 
 
 def install() -> None:
-    """Handles signals from now on, except those that the parent process had set to be ignored."""
+    """Installs handlers for Ctrl-C and SIGTERM, except where the parent process set them to be ignored."""
     for number in SIGNALS:
         if signal.getsignal(number) in USUAL:
             signal.signal(number, _heard)
@@ -52,10 +52,10 @@ def install() -> None:
 
 
 def look() -> None:
-    """Raises KeyboardInterrupt between two steps of long work, if the program is to stop.
+    """Checks whether the program should stop; long computations call it between their steps.
 
     Raises:
-        KeyboardInterrupt: A signal came, and no caller has been interrupted yet.
+        KeyboardInterrupt: A signal was received, and no caller has been interrupted yet.
     """
     if _State.number and not _State.is_raised and threading.current_thread() is threading.main_thread():
         _State.is_raised = True
@@ -63,13 +63,19 @@ def look() -> None:
 
 
 def status() -> int:
-    """Returns the exit status that shells use for a program stopped by a signal; 0 if no signal came."""
+    """Returns the exit status that shells use for a program that was stopped by the received signal.
+
+    It is 0 if no signal was received.
+    """
     return 128 + _State.number if _State.number else 0
 
 
 @contextmanager
 def shielded() -> Iterator[None]:
-    """Keeps a terminal's Ctrl-C from processes that are started meanwhile. This process ends them instead."""
+    """Returns a context manager; processes started in the context do not receive Ctrl-C from the terminal.
+
+    This process must end them instead.
+    """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -81,20 +87,20 @@ def shielded() -> Iterator[None]:
 
 
 def forget() -> None:
-    """Forgets the signal: the work was stopped, and the program continues."""
+    """Forgets a received signal, after the interrupted work has been stopped and the program continues."""
     _State.number, _State.is_raised = 0, False
 
 
 def finish() -> None:
-    """Marks all work as done: a signal that comes later ends the program at once and silently."""
+    """Marks all work as done. A signal after this call ends the program at once, without a message."""
     _State.is_over = True
 
 
 def leave() -> None:
-    """Ends the process with the status of the signal, if one came, without waiting for threads.
+    """Ends the process at once with the exit status of the received signal, without waiting for threads.
 
-    Otherwise Python would end it by SIGINT, whatever the status is, if a library in C has seen the
-    KeyboardInterrupt.
+    It does nothing if no signal was received. The call is needed because Python would end the process by
+    SIGINT, whatever its exit status, if a C library has seen the KeyboardInterrupt.
     """
     if not status():
         return

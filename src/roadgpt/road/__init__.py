@@ -1,7 +1,8 @@
-"""Roads: the World, the Design and the Road that is built from it. Main function: ``build``.
+"""Defines the World, the Design and the Road that is built from a Design. Main function: ``build``.
 
-A Design is the blueprint that a designer writes and a person can read. A Road is 3-D geometry, evaluated with
-``road.at(s, t)``: stations ``s`` run along the centre line, offsets ``t`` to its left, heights upwards.
+A Design is a human-readable list of segments, written by a designer plug-in. A Road is 3-D geometry. Its
+method ``road.at(s, t)`` returns the point at station ``s``, the distance along the centre line, and offset
+``t``, the distance to the left of the centre line.
 """
 
 from roadgpt.road.builder import Geometry, build

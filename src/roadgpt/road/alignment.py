@@ -1,14 +1,15 @@
-r"""The horizontal alignment of a Design: how each segment becomes lines, arcs and clothoids.
+r"""Computes the horizontal alignment of a Design: converts each segment to lines, arcs and clothoids.
 
-A turning segment goes from the curvature at its entry over its own curvature to the curvature at its exit:
+The curvature of a turning segment changes from an entry value to its own value, and then to an exit value:
 
     curvature   own   ____arc____
                      /           \
-           entry ___/             \___ exit        entry and exit are 0 next to a straight or a turn to
-                clothoid      clothoid             the other side; between turns to one side, the gentler's
+           entry ___/             \___ exit
+                clothoid      clothoid
 
-Consecutive segments that turn to the same side are therefore one longer turn, as RoadGPT's prompt asks for
-turns beyond 70 degrees.
+Entry and exit are 0 next to a straight or a turn to the other side. Between two segments that turn to the
+same side, they are the smaller curvature of the two. Such segments therefore form one longer turn; the prompt
+in the RoadGPT thesis asks for this where a turn exceeds 70 degrees.
 """
 
 import math
@@ -50,10 +51,10 @@ class _TurnLayout(NamedTuple):
 
 
 def pieces_of(segments: Sequence[Segment]) -> list[Piece]:
-    """Returns the pieces of all segments in order. Every segment keeps its distance and its turn exactly.
+    """Returns the lines, arcs and clothoids of all segments in order.
 
-    A radius is kept where it fits into the distance and where the turn does not continue into others on both
-    sides.
+    Every segment keeps its length and its change of heading exactly. It also keeps its radius if the turn
+    fits into the length and does not continue into neighbouring turns at both ends.
     """
     bends = [_bend(segment) for segment in segments]
     joints = _settled_joints(bends)

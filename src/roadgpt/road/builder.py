@@ -1,4 +1,4 @@
-"""Builds a Road from a Design: lines, arcs and clothoids over parabolic grades, or RoadGPT's spline."""
+"""Builds a Road from a Design, either from lines, arcs, clothoids and parabolas, or from a spline."""
 
 import math
 from typing import Literal
@@ -18,12 +18,12 @@ def build(design: Design, geometry: Geometry = "arcs") -> Road:
     """Returns the Road that a Design describes.
 
     Args:
-        design: The blueprint.
-        geometry: "arcs" keeps every distance, angle and radius. "spline" is RoadGPT's method: nodes at the
-            ends of the segments, and a cubic spline through them.
+        design: The segments of the road.
+        geometry: "arcs" keeps the lengths, angles and radii of the design. "spline" is the method of the
+            RoadGPT thesis: a cubic spline through nodes at the ends of the segments.
 
     Raises:
-        UsageError: Nodes of the spline coincide, or the road would be longer than 50 km.
+        UsageError: Two neighbouring nodes of the spline coincide, or the road would be longer than 50 km.
     """
     if geometry == "spline":
         return Road.through(nodes_of(design))

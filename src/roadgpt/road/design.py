@@ -1,11 +1,11 @@
-"""The blueprint of a road in RoadGPT's own JSON format, read and written exactly.
+"""Defines the Design of a road, and reads and writes it in the JSON format of the RoadGPT thesis:
 
     {"starting_point": [x, y, z], "theta": degrees,
      "road_segment1": {"distance", "direction", "incline", "turn_degrees"}, "road_segment2": ...}
 
-A ``theta`` of 0 points along +x and grows counter-clockwise, as in RoadGPT's code (its prompt says +y).
-``distance`` is the length along the plan curve. ``radius``, ``transition`` and ``vertical_radius`` are
-optional additions of this project.
+``theta`` is the heading at the start, counter-clockwise from +x, as in the code of the thesis (the prompt in
+the thesis states +y). ``distance`` is the length along the plan curve. A segment may also contain ``radius``,
+``transition`` and ``vertical_radius``, which are not part of the format in the thesis.
 """
 
 import math
@@ -35,7 +35,7 @@ class _Frozen(BaseModel):
 
 
 class Segment(_Frozen):
-    """One segment of a road: how long it is, which way and how far it turns, and how steep it is."""
+    """One segment of a road: its length, the side and angle of its turn, and its grade."""
 
     distance: Length
     """Length along the plan curve in metres."""
@@ -45,7 +45,7 @@ class Segment(_Frozen):
     turn_degrees: Annotated[float, Field(ge=-360, le=360)] = 0.0
     """Change of heading in degrees, positive to the left."""
     radius: Length | None = None
-    """Radius of the arc in metres. The part of the distance that the turn does not need stays straight."""
+    """Radius of the arc in metres. If the turn is shorter than ``distance``, the rest is straight."""
     transition: Length | None = None
     """Length in metres of the transition curve (clothoid) at either end of a turn."""
     vertical_radius: Length | None = None
@@ -67,7 +67,10 @@ class Design(_Frozen):
         return f"Design({about}, from {self.starting_point} at {self.theta:g} degrees)"
 
     def to_json(self) -> dict[str, Any]:
-        """Returns RoadGPT's dictionary. Whole numbers are written as integers, as its models write them."""
+        """Returns the design as a dictionary in the JSON format of the RoadGPT thesis.
+
+        Whole numbers become integers, as in the answers of the language models in the thesis.
+        """
         out: dict[str, Any] = {
             "starting_point": [_plain(v) for v in self.starting_point],
             "theta": _plain(self.theta),
@@ -84,10 +87,12 @@ def _plain(value: Any) -> Any:
 
 
 def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
-    """Returns a Design read from RoadGPT's dictionary, and a sentence for each thing that had to be settled.
+    """Returns the Design in a dictionary in the format of the RoadGPT thesis, and remarks about it.
 
-    Where ``direction`` and the sign of ``turn_degrees`` disagree, as in the thesis' own example, the
-    direction wins. A turn beyond 70 degrees or an incline beyond 15 % is kept and remarked on.
+    Each remark is a sentence about a contradiction in the data or an unusual value.
+
+    If ``direction`` contradicts the sign of ``turn_degrees``, as in an example in the thesis, ``direction``
+    is used. A turn of more than 70 degrees or an incline of more than 15 % is kept, with a remark.
 
     Raises:
         UsageError: A field is missing, misnamed, of the wrong type or out of range.

@@ -1,4 +1,7 @@
-"""The vertical alignment of a Design: each segment's grade, joined by parabolas centred on the joints."""
+"""Computes the vertical alignment of a Design: the grades of its segments, joined by parabolas.
+
+Each parabola is centred on the point where two segments meet.
+"""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -15,20 +18,20 @@ MOST_OF_SLOPE = 0.98  # share of a slope, over all its segments, that parabolas 
 
 
 class VerticalCurve(NamedTuple):
-    """The parabola that joins the grades of two segments, at the start of the second one."""
+    """The parabola that joins the grades of two segments. Its middle is where the two segments meet."""
 
     number: int
-    """Index of the segment that it leads into, from 0."""
+    """Index of the second of the two segments, from 0."""
     s: float
-    """Station of its middle in metres."""
+    """Station in metres of the middle of the parabola."""
     half: float
-    """Half of its length in metres."""
+    """Half of the length of the parabola in metres."""
     change: float
     """Change of grade as a ratio, positive in a dip."""
 
     @property
     def radius(self) -> float:
-        """The vertical radius in metres."""
+        """The vertical radius of the parabola in metres."""
         return 2 * self.half / abs(self.change)
 
 
@@ -37,13 +40,13 @@ def vertical_curves(
 ) -> list[VerticalCurve]:
     """Returns the vertical curves where grades change, in order.
 
-    A curve whose radius is given has the length that this radius requires. Where it does not fit between its
-    neighbours, it and they are shortened in proportion.
+    A curve whose radius is given has the length that this radius requires. Where neighbouring curves would
+    overlap, those with a given radius are shortened.
 
     Args:
         distances: Lengths of the segments in metres.
         grades: Grades of the segments as ratios.
-        radii: Radius in metres of the curve at the start of each segment; None where it may be chosen.
+        radii: Radius in metres of the vertical curve at the start of each segment; None for a default radius.
     """
     joints: list[tuple[int, float, float]] = []
     wants: list[float] = []
@@ -82,7 +85,7 @@ def _share(wants: Sequence[float], own: Sequence[bool], room: float, n: int, oth
 
 
 def vertical_curves_of(segments: "Sequence[Segment]") -> list[VerticalCurve]:
-    """Returns the vertical curves between segments."""
+    """Returns the vertical curves between the segments of a Design, in order."""
     return vertical_curves(
         [segment.distance for segment in segments],
         [segment.incline / 100 for segment in segments],
@@ -91,9 +94,9 @@ def vertical_curves_of(segments: "Sequence[Segment]") -> list[VerticalCurve]:
 
 
 def elevation_of(segments: "Sequence[Segment]", z0: float) -> GradeProfile:
-    """Returns the elevation profile over the stations of the segments.
+    """Returns the elevation profile of the segments of a Design, starting at height ``z0`` in metres.
 
-    A vertical curve does not change the height at the neighbouring joints.
+    Outside the vertical curves, heights are the same as if the grades changed abruptly.
     """
     grades = [segment.incline / 100 for segment in segments]
     stations, values = [0.0], [grades[0]]

@@ -1,6 +1,6 @@
-"""Where a drive begins and ends on a road.
+"""Defines where a drive begins and ends on a road.
 
-Source: RoadGPT and the SBFT competition, whose simulations start and stop at these distances.
+Source: the simulations of the RoadGPT thesis and of the SBFT competition, which use the same distances.
 """
 
 START = 2.5  # m along the road: station of the car's centre of gravity at the start

@@ -1,4 +1,4 @@
-"""The land around a road. It follows the road and never covers it; farther away there are gentle hills."""
+"""Creates the land around a road: it stays below the road near it, and has gentle hills farther away."""
 
 from dataclasses import dataclass
 
@@ -19,9 +19,10 @@ LONGEST_STEP = 2.0  # m along the road
 
 @dataclass(frozen=True, eq=False)
 class Land:
-    """Heights on a grid of columns ``x`` and rows ``y``.
+    """Heights of the land on a rectangular grid with columns at ``x`` and rows at ``y``, in metres.
 
-    The spacing is ``cell``, except for the far rows and columns.
+    Rows and columns are ``cell`` metres apart, except near the border of the grid, where they are farther
+    apart.
     """
 
     x: Array
@@ -29,12 +30,12 @@ class Land:
     heights: Array
     """Heights in metres, of shape (rows, columns)."""
     away: Array
-    """Distance in metres from the area where the road determines the height, of shape (rows, columns)."""
+    """Distance in metres from the area in which the land follows the road, of shape (rows, columns)."""
     cell: float
 
     @classmethod
     def around(cls, road: Road, world: World) -> "Land":
-        """Returns the land around a road. It is flat where the road has no shoulder."""
+        """Returns the land around a road. The land is flat if roads of this World have no shoulder."""
         line = road.centreline(LONGEST_STEP)
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
@@ -49,11 +50,11 @@ class Land:
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:
-        """Returns heights in metres at points ``(n,)``, interpolated between rows and columns."""
+        """Returns interpolated heights in metres at n points ``x``, ``y``."""
         return self.between(self.heights, x, y)
 
     def between(self, values: Array, x: Array, y: Array) -> Array:
-        """Returns values given on the grid, ``(rows, columns)``, interpolated at points ``(n,)``."""
+        """Returns ``values`` ``(rows, columns)`` of the grid, interpolated at n points ``x``, ``y``."""
         i = np.clip(np.searchsorted(self.x, x) - 1, 0, len(self.x) - 2)
         j = np.clip(np.searchsorted(self.y, y) - 1, 0, len(self.y) - 2)
         u = np.clip((x - self.x[i]) / (self.x[i + 1] - self.x[i]), 0.0, 1.0)

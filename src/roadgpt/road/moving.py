@@ -11,7 +11,8 @@ from roadgpt.road.road import Road
 def moved(road: Road, x: float, y: float, z: float = 0.0) -> Road:
     """Returns a road shifted by the given distances in metres along each axis.
 
-    The road consists of pieces or goes through nodes. Nodes of two numbers have no height that could change.
+    The road must consist of lines, arcs and clothoids, or be a spline through nodes. If the nodes have no
+    heights, ``z`` is ignored.
     """
     shift = np.array([x, y])
     if road.nodes is not None:

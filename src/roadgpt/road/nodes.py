@@ -1,6 +1,7 @@
-"""RoadGPT's translation of a Design to nodes: straight lines between them, which a spline then rounds off.
+"""Converts a Design to nodes for a spline, as in the RoadGPT thesis.
 
-Source: the thesis, section 5.3.2. Its program also shifts every road by (5, 5) m, which is not done here.
+The nodes are joined by straight lines, and the spline through them is smooth. Source: the thesis, section
+5.3.2. Unlike the program of the thesis, this module does not shift roads by (5, 5) m.
 """
 
 import math
@@ -14,7 +15,10 @@ STUB = 5.0  # m, level, before the first segment, so that the car starts on leve
 
 
 def nodes_of(design: Design) -> Array:
-    """Returns nodes ``(n, 3)`` in metres: the start, the end of the stub, and the end of every segment."""
+    """Returns nodes ``(n, 3)`` in metres.
+
+    They are the start, the end of a level stub of 5 m, and the end of every segment.
+    """
     nodes = [design.starting_point]
     heading = math.radians(design.theta)
     hops = [(STUB, 0.0, 0.0)] + [(s.distance, s.turn_degrees, s.incline) for s in design.segments]

@@ -1,4 +1,4 @@
-"""Reads road points in the formats in which other tools store them.
+"""Reads the points of roads from file formats of other tools.
 
     SBFT tests             {"road_points": [[x, y], ...]}
     SDC-Scissor's tests    the same, or with [x, y, z, width], or "interpolated_road_points"
@@ -6,8 +6,9 @@
     AsFault and DeepJanus  [[x, y, z, width], ...], alone or as "nodes", "sample_nodes" or "control_nodes"
     tables                 .csv and .tsv, with a header that names x and y, or without one
 
-All values are in metres. A width is ignored, because lane widths belong to the World. A height that is the
-same for all points is ignored too where a width follows it: it is the height of a level.
+All values are in metres. Widths are ignored, because lane widths are defined by the World. If points have a
+height and a width, and all heights are equal, the heights are ignored as well: such files use them for the
+height of the simulator's level.
 """
 
 import csv
@@ -38,7 +39,7 @@ MOST_ROWS = 200_000  # of a table
 
 
 def points_in(data: Any) -> list[Any] | None:
-    """Returns the first list of points in parsed JSON; None where there is none.
+    """Returns the first list of road points in parsed JSON; None if there is none.
 
     Raises:
         UsageError: The data hold more than one road.
@@ -61,9 +62,9 @@ def _is_test(value: Any) -> bool:
 
 
 def plain(points: list[Any]) -> list[Any]:
-    """Returns the same points as lists of two or three numbers.
+    """Returns points of any supported format as lists [x, y] or [x, y, z].
 
-    Points of an unknown format stay as they are.
+    Points of an unknown format are returned unchanged.
     """
     if all(isinstance(point, dict) and {"x", "y"} <= point.keys() for point in points):
         points = sorted(points, key=_number)
@@ -81,7 +82,7 @@ def _number(point: dict[str, Any]) -> float:
 
 
 def points_of_table(text: str) -> list[list[float]]:
-    """Returns the points of a table: [x, y] or [x, y, z] for each row.
+    """Returns the points in the text of a .csv or .tsv table: [x, y] or [x, y, z] for each row.
 
     Raises:
         UsageError: The table has no columns for x and y, or a cell is not a number.

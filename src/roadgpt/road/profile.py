@@ -1,4 +1,4 @@
-"""The cross-section of a road by station: where its lanes and shoulders have their edges."""
+"""Defines the cross-section of a road: the edges of its lanes and shoulders at each station."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,7 +10,10 @@ from roadgpt.geometry.curve import Array
 
 
 class Edges(NamedTuple):
-    """The offsets of two edges in metres to the left of the centre line, of the shape of the stations."""
+    """The offsets of a left and a right edge, in metres to the left of the centre line.
+
+    Both arrays have the shape of the stations for which they were computed.
+    """
 
     left: Array
     right: Array
@@ -18,10 +21,10 @@ class Edges(NamedTuple):
 
 @dataclass(frozen=True)
 class Profile:
-    """A cross-section of one lane in each direction, the right one driven, with a shoulder on both sides.
+    """The cross-section of a road with one lane in each direction and a shoulder on both sides.
 
-    Its methods take stations ``s`` of shape ``(...)`` in metres and return values of this shape in metres.
-    Offsets are positive to the left of the centre line.
+    The right lane is the driven one. Methods take stations ``s`` in metres, of any shape, and return values
+    in metres, of the same shape. Offsets are positive to the left of the centre line.
     """
 
     lane_width: float
@@ -29,12 +32,12 @@ class Profile:
 
     @property
     def paved_reach(self) -> float:
-        """The greatest distance of an edge of the carriageway from the centre line in metres."""
+        """The largest distance in metres between the centre line and an edge of the carriageway."""
         return self.lane_width
 
     @property
     def reach(self) -> float:
-        """The greatest distance of the outer edge of a shoulder from the centre line in metres."""
+        """The largest distance in metres between the centre line and the outer edge of a shoulder."""
         return self.lane_width + self.shoulder_width
 
     def width(self, s: ArrayLike) -> Array:

@@ -1,4 +1,4 @@
-"""The Road: 3-D geometry, evaluated with ``road.at(s, t)``."""
+"""Defines the Road: 3-D geometry that is evaluated at stations and offsets."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -34,9 +34,10 @@ MOST_POINTS = 200_000  # of a road that goes through points
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """A road measured at stations ``s``.
+    """Points, headings, curvatures and grades of a road at stations ``s``.
 
-    Every array has shape ``(n,)``, in metres, radians, 1/m and ratios.
+    Every array has shape ``(n,)``. Lengths are in metres, headings in radians, curvatures in 1/m, and grades
+    are ratios.
     """
 
     s: Array
@@ -55,21 +56,23 @@ class Samples:
 
 @dataclass(frozen=True, eq=False)
 class Road:
-    """A plane curve as the centre line, and the elevation over it.
+    """A road: a plane curve as its centre line in plan, and an elevation profile.
 
-    ``nodes`` are the control points ``(n, 2)`` or ``(n, 3)`` of a road that was built from points.
+    ``nodes`` are the control points ``(n, 2)`` or ``(n, 3)`` in metres if the road was built from points;
+    None otherwise.
     """
 
     plan: PlanCurve
     elevation: ElevationProfile
     nodes: Array | None = None
     road_points: Array | None = None
-    """Control points ``(n, 2)`` of the SBFT test that was read, if they differ from the nodes."""
+    """Control points ``(n, 2)`` of the SBFT test from which the road was read, if they differ from ``nodes``.
+    """
     _sampled: dict[float, Samples] = field(default_factory=dict, repr=False)
 
     @classmethod
     def through(cls, points: ArrayLike, road_points: ArrayLike | None = None) -> Self:
-        """Returns the road whose centre line is SBFT's spline through the given points.
+        """Returns the road whose centre line is the SBFT competition's spline through the given points.
 
         Args:
             points: The points ``(n, 2)`` or ``(n, 3)`` in metres that the spline passes through.
@@ -77,8 +80,8 @@ class Road:
                 ``points``.
 
         Raises:
-            UsageError: The points are not of this form, are fewer than two or not finite, two neighbours are
-                the same, or the road is too long or too steep.
+            UsageError: The array does not have this shape, there are fewer than two points, a number is not
+                finite, two neighbouring points are the same, or the road is too long or too steep.
         """
         nodes = _checked(points)
         control = None if road_points is None else _checked(road_points)[:, :2]
@@ -105,9 +108,9 @@ class Road:
         return self.plan.length
 
     def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
-        """Returns points ``(..., 3)`` in metres at stations ``s`` and offsets ``t``.
+        """Returns points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left, in metres.
 
-        Roads have no superelevation.
+        Roads have no superelevation, so the height does not depend on ``t``.
         """
         s, t = np.broadcast_arrays(np.asarray(s, float), np.asarray(t, float))
         heading = self.plan.heading(s)
@@ -116,9 +119,9 @@ class Road:
         return np.stack([x, y, self.elevation.height(s)], axis=-1)
 
     def locate(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-        """Returns stations ``s`` and offsets ``t`` in metres of points in plan.
+        """Returns the stations and the offsets to the left, in metres, of points given in plan.
 
-        Of several places it takes the nearest.
+        Each point is projected onto the nearest point of the centre line.
         """
         return project(
             self.plan, np.stack(np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float)), -1)
@@ -141,9 +144,9 @@ class Road:
         return self.elevation.vertical_curvature(s)
 
     def sample(self, step: float = 1.0) -> Samples:
-        """Returns the road sampled about every ``step`` metres, both ends included.
+        """Returns samples of the road about every ``step`` metres, both ends included.
 
-        The result is computed once and kept.
+        The result is cached.
         """
         if step not in self._sampled:
             s = np.linspace(0.0, self.length, max(2, round(self.length / step) + 1))
@@ -164,9 +167,10 @@ class Road:
         return self.sample(step).points
 
     def control_points(self) -> Array:
-        """Returns SBFT's ``road_points`` ``(n, 2)``.
+        """Returns the road's control points ``(n, 2)`` in metres for the spline of the SBFT competition.
 
-        These are the nodes, or points so dense that a spline keeps the radii.
+        For a road that was not built from points, these are points of the centre line that are dense enough
+        for the spline to keep its radii.
         """
         if self.road_points is not None:
             return self.road_points
@@ -176,7 +180,7 @@ class Road:
         return self.plan.at(np.linspace(0.0, self.length, count))
 
     def to_json(self) -> dict[str, Any]:
-        """Returns the exact geometry as data. ``Road.from_json`` restores the road."""
+        """Returns the exact geometry as JSON data, from which ``Road.from_json`` restores the road."""
         if self.nodes is not None:
             out = {"nodes": self.nodes.tolist()}
             return out if self.road_points is None else {**out, "road_points": self.road_points.tolist()}
@@ -198,7 +202,7 @@ class Road:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """Returns the road that ``to_json`` wrote.
+        """Returns the road whose ``to_json`` gave ``data``.
 
         Raises:
             UsageError: A field is missing, is not a number or is not finite, or the road is too long or too
@@ -248,10 +252,10 @@ def check_length(length: float) -> None:
 
 
 def check_grade(profile: ElevationProfile, length: float) -> None:
-    """Checks that a road is nowhere steeper than ten metres for each metre forward.
+    """Checks that a road nowhere climbs or falls by more than ten metres per metre in plan.
 
     Raises:
-        UsageError: The road climbs or falls by more than that.
+        UsageError: The road is steeper at some place.
     """
     with np.errstate(all="ignore"):
         steepest = float(np.abs(profile.grade(np.linspace(0.0, length, LOOKED_AT))).max())

@@ -1,4 +1,4 @@
-"""Redraws a design in short straight segments, so that RoadGPT's spline keeps its bends."""
+"""Replaces the segments of a design by short straight ones, so that a spline keeps its bends."""
 
 import math
 
@@ -14,11 +14,11 @@ HOP = 2.0  # m; a spline through points this dense keeps a radius of 14.8 m abov
 
 
 def in_short_segments(design: Design) -> Design:
-    """Returns the design whose spline follows the lines, arcs and clothoids of the given one.
+    """Returns a design of short straight segments that approximates the given design.
 
-    RoadGPT's translation begins with a level stub. Behind it the grade grows over a few segments, because a
-    spline would swing below the road before a kink. The climb that is lost there is left out, so everything
-    after it is higher or lower by that amount.
+    With the geometry "spline", the new design follows the lines, arcs and clothoids of the given one. That
+    geometry adds a level stub at the start. To avoid overshoot of the spline after it, the grade is built up
+    over a few segments, so the heights of the rest of the road are shifted by a constant.
     """
     road = build(design)
     first = min(STUB, road.length / 2)

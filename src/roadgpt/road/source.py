@@ -1,4 +1,4 @@
-"""Reads roads from files: our own, RoadGPT designs, tests and points of other tools, tables, or OpenDRIVE."""
+"""Reads roads from files: RoadGPT's road files and designs, tests of other tools, tables, OpenDRIVE."""
 
 import math
 from pathlib import Path
@@ -27,11 +27,11 @@ SHAPES = (
 
 
 def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
-    """Returns the road in a road file, or in the folder of a run.
+    """Returns the road in a road file or in the folder of a run.
 
     Args:
         path: The file, or a folder that holds ``road.json``.
-        geometry: How a RoadGPT design becomes a road.
+        geometry: How a design becomes a road: "arcs" or "spline", as for ``roadgpt.build``.
 
     Raises:
         UsageError: The file cannot be read, is not valid, or holds no road.
@@ -41,10 +41,12 @@ def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
 
 
 def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
-    """Returns the Design or the Road that a file holds, and a sentence for each thing that had to be settled.
+    """Returns the Design or the Road in a file, and remarks.
+
+    Each remark is a sentence about something in the file that was changed, ignored or unusual.
 
     Raises:
-        UsageError: As for ``read_road``.
+        UsageError: The file cannot be read, is not valid, or holds no road.
     """
     path = Path(path)
     if path.is_dir():

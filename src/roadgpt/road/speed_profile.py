@@ -1,10 +1,10 @@
-r"""Plans a driver's speed at every station of its path: the friction circle, swept in both directions.
+r"""Plans a driver's speed along its path, limited by the friction circle, in two sweeps over all stations.
 
     limit    ____________                    ______________
                          \                  /                 backward sweep: brake in time
     corner                \______arc_______/                  forward sweep: no faster than the engine allows
 
-Source: the usual quasi-steady sweep, e.g. Kapania, Subosits, Gerdes (2016),
+Source: the usual quasi-steady method, for example Kapania, Subosits, Gerdes (2016),
 https://doi.org/10.1115/1.4033311.
 """
 
@@ -27,19 +27,19 @@ LEAST_STRETCH = 0.2  # m of lane per m of road, on the inside of a bend
 
 
 class PathGeometry(Protocol):
-    """The geometry of a driven path. Every list has one number for each station."""
+    """The geometry of a driven path. Every sequence has one value per station."""
 
     @property
     def step(self) -> float:
-        """Distance between stations in metres, along the road."""
+        """Distance between consecutive stations in metres, measured along the road."""
 
     @property
     def stretch(self) -> Sequence[float]:
-        """Metres of path per metre of road."""
+        """Length of path per length of road at each station; below 1 on the inside of a bend."""
 
     @property
     def curvature(self) -> Sequence[float]:
-        """Curvature of the path itself in 1/m."""
+        """Curvature of the path in 1/m, which differs from that of the road."""
 
     @property
     def grade(self) -> Sequence[float]:
@@ -52,18 +52,18 @@ class PathGeometry(Protocol):
 
 @dataclass(frozen=True)
 class DrivingLimits:
-    """What a driver uses at most: accelerations as shares of the wheel load, speed and engine power."""
+    """The limits that a driver respects: accelerations in multiples of g, speed, and engine power."""
 
     lateral: float
-    """Lateral acceleration in a steady bend in g."""
+    """Largest lateral acceleration in a steady bend, in g."""
     braking: float
-    """Braking deceleration on a straight in g."""
+    """Largest deceleration when braking on a straight, in g."""
     traction: float
-    """Driving acceleration on a straight in g."""
+    """Largest acceleration when speeding up on a straight, in g."""
     speed: float
     """Speed limit in m/s."""
     power: float = 100.0
-    """Engine power in W per kg: above some speed the engine allows less than the tyres do."""
+    """Engine power per mass of the car in W/kg, which limits the acceleration at higher speeds."""
 
 
 class _LanePath(NamedTuple):
@@ -79,8 +79,8 @@ class _LanePath(NamedTuple):
 def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: World) -> Array:
     """Returns the speeds in m/s at which a car is expected to drive along a road from a standing start.
 
-    It applies to dry asphalt, respects the speed limit, and uses the default driver's share of gravity; see
-    ``lane_speed``.
+    The car drives on dry asphalt in the middle of the right lane, within the speed limit and the default
+    driver's limits of acceleration. Arguments are as for ``lane_speed``.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
     offset = world.profile.middle(step * np.arange(np.size(curvature)))
@@ -92,15 +92,15 @@ def lane_speed(
 ) -> Array:
     """Returns the speeds in m/s, from a standing start, of a car in the middle of the right lane.
 
-    The car slows down for bends but not for crests, as the default driver does. A crest can therefore not
-    make itself look gentler than it is.
+    The car slows down for bends but not for crests. Otherwise a more abrupt crest would have a lower planned
+    speed, and would appear gentler than it is.
 
     Args:
         curvature: Curvature of the centre line in 1/m, ``(n,)``.
         grade: Grade as a ratio, ``(n,)`` or one value for all stations.
         step: Distance between stations in metres.
         offset: Offset of the middle of the lane in metres to the left of the centre line, ``(n,)``.
-        limits: What the driver asks of car and road.
+        limits: The limits of acceleration, speed and power that the driver respects.
     """
     bend = np.asarray(curvature, float)
     along = np.maximum(1 - bend * offset, LEAST_STRETCH)
@@ -113,7 +113,8 @@ def lane_speed(
 def plan_speed(line: PathGeometry, limits: DrivingLimits) -> list[float]:
     """Returns the speed in m/s at every station of the path.
 
-    The load on the wheels is that of the slope and of the crest or dip: ``g cos + v^2 * vertical curvature``.
+    The wheel load per mass includes the slope and the crest or dip:
+    ``g cos(slope angle) + v^2 * vertical curvature``.
     """
     top = [_corner_speed(line, i, limits) for i in range(len(line.grade))]
     _sweep(line, top, limits.lateral, limits.braking, math.inf, forward=False)

@@ -1,12 +1,12 @@
 """Reads roads from ASAM OpenDRIVE files, 1.1 to 1.8, of any tool. Main function: ``read_opendrive``.
 
-tree        the XML, with bounds and without entities; one road of the file
-geometries  lines, arcs, spirals, poly3, paramPoly3
-lanes       which lane is driven, and where its inner edge runs: the centre line of our Road
-line        the plan: unchanged where possible, otherwise clothoids through poses one metre apart
-joins       places where elements do not meet exactly, and how they are bridged
-heights     the elevation, unchanged
-left_out    what our roads cannot hold
+tree        reads the XML with limits on its size and without entities; selects one road of the file
+geometries  evaluates lines, arcs, spirals, poly3 and paramPoly3
+lanes       selects the driven lane; its inner edge becomes the centre line of the Road
+line        computes the plan: unchanged where possible, otherwise clothoids through poses one metre apart
+joins       finds places where elements do not meet exactly, and bridges them
+heights     reads the elevation without changing it
+left_out    lists the contents of the file that a Road cannot represent
 """
 
 import math
@@ -44,7 +44,7 @@ PLACES = 1_000  # at which the spline is compared with the line
 
 @dataclass(frozen=True)
 class ImportedRoad:
-    """A road read from an OpenDRIVE file, and what the file says about its lanes."""
+    """A road that was read from an OpenDRIVE file, with the properties of its lanes in the file."""
 
     road: Road
     id: str
@@ -52,22 +52,25 @@ class ImportedRoad:
     lane_width: float
     """Width of the driven lane in metres."""
     shoulder: float
-    """Width of the shoulder beside it in metres."""
+    """Width in metres of the shoulder beside the driven lane."""
     speed_limit: float | None
     """Speed limit in m/s; None where the file gives none."""
     friction: float | None
     remarks: tuple[str, ...]
-    """One sentence for each thing that had to be settled."""
+    """Sentences about contents of the file that were changed, replaced or left out."""
 
     def world(self, base: World) -> World:
-        """Returns a World with these lanes. What the file does not state is taken from ``base``."""
+        """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road.
+
+        A speed limit or friction that the file does not state is kept from ``base``.
+        """
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         known = {name: value for name, value in told.items() if value is not None}
         return base.model_copy(update={"lane_width": self.lane_width, "verge": self.shoulder, **known})
 
 
 def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
-    """Returns a road of an OpenDRIVE file. Its centre line is the inner edge of the driven lane.
+    """Returns one road of an OpenDRIVE file. Its centre line is the inner edge of the driven lane.
 
     Args:
         path: The file.
@@ -76,7 +79,7 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
 
     Raises:
         UsageError: The file cannot be read or is too large, there is no such road, or an element is unknown
-            or invalid; the sentence names it.
+            or invalid; the message names the element.
     """
     try:
         choice = read_tree(Path(path), road)

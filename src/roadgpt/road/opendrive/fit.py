@@ -1,6 +1,6 @@
-"""Fits clothoids between poses: each leaves one point in its direction and reaches the next in its own.
+"""Fits a clothoid between each two consecutive poses, so that position and heading are met at both ends.
 
-One unknown remains, the change of curvature, and Newton's method finds it. Source: Bertolazzi and Frego, G1
+The only unknown, the change of curvature, is found with Newton's method. Source: Bertolazzi and Frego, G1
 fitting with clothoids, Mathematical Methods in the Applied Sciences 38 (2015).
 """
 
@@ -18,12 +18,12 @@ BLOCK = 20_000  # pieces at a time, to spare memory
 
 
 def clothoids(poses: Array) -> list[Piece] | None:
-    """Returns the pieces between poses; None where a piece does not exist.
+    """Returns one clothoid between each two consecutive poses; None if one of them does not exist.
 
-    Every piece ends at its pose to rounding, so that errors do not add up along the road.
+    Every clothoid ends at its pose up to rounding, so that errors do not add up along the road.
 
     Args:
-        poses: Rows x, y, heading ``(n + 1, 3)``.
+        poses: One row (x, y, heading) per pose, ``(n + 1, 3)``, in metres and radians.
     """
     found: list[Piece] = []
     for first in range(0, len(poses) - 1, BLOCK):

@@ -1,4 +1,4 @@
-"""The geometry elements of a reference line. Each gives its position and heading at a distance along it."""
+"""Evaluates the geometry elements of an OpenDRIVE reference line: position and heading along each element."""
 
 import math
 from collections.abc import Iterator
@@ -28,27 +28,27 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 
 class Shape(Protocol):
-    """The shape of an element in its own frame: it starts at the origin and heads along +x."""
+    """The shape of a geometry element in local coordinates: it starts at the origin along +x."""
 
     def poses(self, share: Array) -> Array:
-        """Returns rows x, y and heading ``(n, 3)`` at these fractions of the length, 0 to 1."""
+        """Returns one row (x, y, heading) per fraction of the length, 0 to 1, of shape ``(n, 3)``."""
         ...
 
 
 @dataclass(frozen=True)
 class GeometryElement:
-    """One geometry element of the reference line: its start and its shape."""
+    """One geometry element of the reference line, with the station and pose of its start, and its shape."""
 
     s: float
     x: float
     y: float
     heading: float
     length: float
-    """Length in metres as stated in the file."""
+    """Length in metres that the file states."""
     shape: Shape
 
     def poses(self, share: Array) -> Array:
-        """Returns rows x, y and heading ``(n, 3)`` at these fractions of the length, 0 to 1."""
+        """Returns one row (x, y, heading) per fraction of the length, 0 to 1, of shape ``(n, 3)``."""
         u, v, turned = self.shape.poses(share).T
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return np.stack([self.x + u * cos - v * sin, self.y + u * sin + v * cos, self.heading + turned], -1)
@@ -61,7 +61,7 @@ class PieceShape:
     piece: Piece
 
     def poses(self, share: Array) -> Array:
-        """Returns rows x, y and heading ``(n, 3)`` at these fractions of the length, 0 to 1."""
+        """Returns one row (x, y, heading) per fraction of the length, 0 to 1, of shape ``(n, 3)``."""
         curve = PieceCurve(0.0, 0.0, 0.0, (self.piece,))
         s = share * self.piece.length
         return np.column_stack([curve.at(s), curve.heading(s)])
@@ -69,7 +69,7 @@ class PieceShape:
 
 @dataclass(frozen=True)
 class Polynomial:
-    """A curve (u(p), v(p)) of two cubics for p from 0 to ``end``. Fractions refer to its true length."""
+    """A curve (u(p), v(p)), where u and v are cubic polynomials of p, from 0 to ``end``."""
 
     u: Cubic
     v: Cubic
@@ -89,11 +89,11 @@ class Polynomial:
 
     @property
     def length(self) -> float:
-        """The length in metres."""
+        """The arc length of the curve in metres."""
         return float(self._walked[1][-1])
 
     def up_to(self, length: float) -> "Polynomial":
-        """Returns the same curve, cut off at a length in metres."""
+        """Returns the first part of the curve, up to an arc length in metres."""
         p, walked = self._walked
         return Polynomial(self.u, self.v, float(np.interp(length, walked, p)))
 
@@ -104,7 +104,7 @@ class Polynomial:
         return np.stack([b + p * (2 * c + 3 * p * d) for _, b, c, d in (self.u, self.v)])
 
     def poses(self, share: Array) -> Array:
-        """Returns rows x, y and heading ``(n, 3)`` at these fractions of the length, 0 to 1."""
+        """Returns one row (x, y, heading) per fraction of the length, 0 to 1, of shape ``(n, 3)``."""
         p_table, walked = self._walked
         p = np.interp(share * walked[-1], walked, p_table)
         x, y = self._at(p)
@@ -117,7 +117,7 @@ def reference_line(road: Node) -> list[GeometryElement]:
     """Returns the geometry elements of a road's reference line in order.
 
     Raises:
-        UsageError: There are none, or an element is unknown or invalid.
+        UsageError: There are no elements, or an element is unknown or invalid.
     """
     nodes = road.all("planView", "geometry")
     if len(nodes) > MOST:

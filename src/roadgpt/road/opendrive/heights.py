@@ -1,4 +1,4 @@
-"""Elevation: the file's cubics over the stations of the Road."""
+"""Reads the elevation of an OpenDRIVE file, and converts it to the stations of the Road."""
 
 from itertools import pairwise
 
@@ -15,13 +15,16 @@ STEP = 0.05  # m; a remark is made about a larger step
 
 
 def elevation(road: Node) -> CubicProfile:
-    """Returns the heights over the stations of the file; level at 0 where the file gives none."""
+    """Returns the elevation profile over the stations of the file; height 0 if the file has no elevation."""
     found = cubics(road.all("elevationProfile", "elevation"), "s")
     return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
 
 
 def plain(profile: CubicProfile, length: float) -> ElevationProfile:
-    """Returns the same heights as grades and parabolas, where they are of that form and have no steps."""
+    """Returns an equal profile of constant grades and parabolas, if there is one.
+
+    A profile with steps, kinks or cubic terms is returned unchanged.
+    """
     stations = [s for s in profile.stations if s < length - SAME]
     stations = [0.0, *(s for s in stations if s > SAME)]
     table = profile.cubics(np.array(stations))
@@ -38,7 +41,7 @@ def plain(profile: CubicProfile, length: float) -> ElevationProfile:
 
 
 def jumps(profile: CubicProfile, length: float) -> str | None:
-    """Returns a sentence about the largest step in height; None where no step is larger than 5 cm."""
+    """Returns a sentence about the largest step in height; None if no step is larger than 5 cm."""
     worst, where = 0.0, 0.0
     for s, end in pairwise(profile.stations):
         if end < length:
@@ -48,14 +51,15 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
 
 
 def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
-    """Returns the heights over other stations, as cubics between them.
+    """Returns the elevation profile of the file as cubics over the stations of the Road.
 
-    The cubics are the file's where they lie inside one of its own.
+    Stations of file and Road differ where the driven lane is longer or shorter than the reference line. They
+    are interpolated linearly between the given stations.
 
     Args:
-        profile: Heights over the stations of the file.
-        s: Increasing stations of the file, ``(n,)``.
-        stations: Stations of the Road at the same places, ``(n,)``.
+        profile: The elevation profile over the stations of the file.
+        s: Increasing stations of the file in metres, ``(n,)``.
+        stations: Stations of the Road in metres that correspond to ``s``, ``(n,)``.
     """
     cuts = np.array(profile.stations)
     behind = np.clip(np.searchsorted(s, cuts), 1, len(s) - 1)

@@ -1,9 +1,8 @@
-"""Joins: places where the elements of a line, or the edges of its lanes, do not meet exactly.
+"""Bridges places of an OpenDRIVE road where elements, or the edges of lanes, do not meet exactly.
 
-Files round their numbers, and tools leave elements that are shorter than their rounding errors. A curve
-through every pose would oscillate there: an error of 1 cm within one metre is a bend of 33 m radius. The line
-is therefore left out shortly before such a join and resumed shortly after it; the worse the join, the longer
-the gap.
+Files contain rounded numbers, and some elements are shorter than the rounding errors. A curve through every
+pose would oscillate there: an error of 1 cm within one metre causes a bend with a radius of 33 m. Poses close
+to such a place are therefore left out, the more of them the larger the error.
 """
 
 import math
@@ -33,24 +32,28 @@ class SampledLine:
     s: Array
     """Station of each pose in the file, ``(n,)``."""
     poses: Array
-    """Rows x, y, heading ``(n, 3)``."""
+    """One row (x, y, heading) per pose, ``(n, 3)``, in metres and radians."""
     gaps: Array
-    """Distance in metres between the two ends that meet at each pose, ``(n,)``."""
+    """Distance in metres between the ends of the two elements that meet at each pose, ``(n,)``; otherwise 0.
+    """
     kinks: Array
-    """Jump of the heading at each pose in radians, ``(n,)``."""
+    """Jump of the heading in radians at each pose, ``(n,)``; 0 where no elements meet."""
     ends: Array
-    """Points ``(m, 2)`` where the elements of the file end and begin.
+    """Points ``(m, 2)`` in metres where the elements of the file begin and end.
 
-    A pose between two elements lies halfway between them.
+    The pose at which two elements meet is halfway between their ends.
     """
 
     def only(self, kept: Array) -> "SampledLine":
-        """Returns the line with only some of its poses."""
+        """Returns the line with only the poses that ``kept`` selects, by a mask or indices."""
         return SampledLine(self.s[kept], self.poses[kept], self.gaps[kept], self.kinks[kept], self.ends)
 
 
 def bridged(line: SampledLine) -> SampledLine | None:
-    """Returns the line without the poses beside its joins; None where too few poses are left to follow."""
+    """Returns the line without the poses close to places where elements do not meet exactly.
+
+    Returns None if the remaining poses are too far apart to be joined by clothoids.
+    """
     kept = _thinned(line.s, _away_from_joins(line))
     if np.diff(line.s[kept]).max() > WIDEST:
         return None
@@ -62,7 +65,10 @@ def bridged(line: SampledLine) -> SampledLine | None:
 
 
 def turns_back(line: SampledLine) -> tuple[float, float] | None:
-    """Returns station and angle (rad) of a kink behind which the line runs back; None without one."""
+    """Returns the station (m) and the angle (rad) of a kink after which the line runs backwards.
+
+    Returns None if there is no such kink.
+    """
     kept = bridged(line)
     for i in np.flatnonzero(np.abs(line.kinks) > BACK):
         turned = line.kinks[i]
@@ -105,7 +111,10 @@ def _thinned(s: Array, kept: Array) -> Array:
 
 
 def misses(line: SampledLine) -> str:
-    """Returns a text with the number of noticeable joins and the worst of them; empty where there is none."""
+    """Returns a text with the numbers of noticeable kinks and gaps, and the largest of each.
+
+    The text is empty if there are none.
+    """
     kinks, gaps = np.abs(line.kinks), line.gaps
     parts = []
     for errors, least, name, unit in (

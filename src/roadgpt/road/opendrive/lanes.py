@@ -1,7 +1,7 @@
-"""Lanes: which one is driven, where its inner edge runs, its width, speed limit and friction.
+"""Selects the driven lane of an OpenDRIVE road, and reads its inner edge, width, speed limit and friction.
 
-The centre line of our roads is the inner edge of the driven lane. That is the innermost driving lane on the
-right, or on the left where there is none on the right.
+The driven lane is the innermost driving lane on the right, or on the left if there is none on the right. Its
+inner edge becomes the centre line of the Road.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -22,12 +22,12 @@ PLACES = 64  # per lane section, at which widths are sampled
 MOST_SECTIONS = 5_000
 
 Which = Callable[["LaneSection"], tuple[int, int]]
-"""Returns the first and the last lane of a section, by index."""
+"""A function that returns the indices of the first and the last lane of a group of lanes in a section."""
 
 
 @dataclass(frozen=True)
 class Lane:
-    """One lane of a lane section. By station, it has a width, or a border that gives its outer edge."""
+    """One lane of a lane section. Either ``width`` or ``border``, the offset of its outer edge, is given."""
 
     node: Node
     kind: str
@@ -37,17 +37,17 @@ class Lane:
 
 @dataclass(frozen=True)
 class LaneSection:
-    """One lane section, with the lanes of the driven side from the inside out."""
+    """One lane section, with the lanes on the side of the driven lane, ordered from the inside out."""
 
     s: float
     lanes: tuple[Lane, ...]
     driven: int
-    """Index of the driven lane; equal to the number of lanes where no lane is driven."""
+    """Index of the driven lane in ``lanes``; the number of lanes if this section has no driven lane."""
 
 
 @dataclass(frozen=True)
 class Lanes:
-    """The lane sections of the driven side of a road."""
+    """The lane sections of a road, with the lanes on the side of the driven lane."""
 
     side: int
     """-1 where the driven lane is to the right of the reference line, 1 where it is to the left."""
@@ -56,8 +56,9 @@ class Lanes:
     length: float
 
     def edge(self, s: Array) -> tuple[Array, Array]:
-        """Returns the offset of the driven lane's inner edge, metres left of the reference line, and its
-        slope.
+        """Returns the offset of the driven lane's inner edge at stations ``s``, and the slope of the offset.
+
+        The offset is in metres to the left of the reference line; the slope is its change per metre.
         """
         t, slope = _both(self.offset, s)
         starts = np.array([section.s for section in self.sections])
@@ -82,7 +83,7 @@ class Lanes:
         return across, lean
 
     def joints(self) -> list[float]:
-        """Returns the stations at which an edge may bend."""
+        """Returns the stations at which the inner edge of the driven lane may have a kink."""
         found = [section.s for section in self.sections]
         found += self.offset.stations if self.offset else ()
         for section in self.sections:
@@ -96,7 +97,7 @@ class Lanes:
         return self._spread(lambda section: (section.driven, section.driven))
 
     def shoulder_widths(self) -> Array:
-        """Returns widths in metres of the shoulder beside the driven lanes, sampled along the road."""
+        """Returns widths in metres of the shoulder outside the driving lanes, sampled along the road."""
 
         def beside(section: LaneSection) -> tuple[int, int]:
             kinds = [lane.kind for lane in section.lanes]
@@ -123,7 +124,7 @@ class Lanes:
         return np.concatenate(found)
 
     def spans(self) -> list[tuple[float, float]]:
-        """Returns the first and the last station in metres of every part that has a driving lane."""
+        """Returns the first and the last station in metres of every part with a driving lane."""
         ends = [section.s for section in self.sections[1:]] + [self.length]
         found: list[tuple[float, float]] = []
         for section, end in zip(self.sections, ends, strict=True):
@@ -187,12 +188,18 @@ def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
 
 
 def speed_limit(road: Node, lanes: Lanes) -> float | None:
-    """Returns the first speed limit in m/s of the driven lane, else of the road, else None."""
+    """Returns the first speed limit of the driven lane in m/s.
+
+    If the lane has none, that of the road is returned; None if the road has none.
+    """
     return next(iter(speed_limits(road, lanes)), None)
 
 
 def speed_limits(road: Node, lanes: Lanes) -> list[float]:
-    """Returns all speed limits in m/s, in order: of the driven lane, else of the road."""
+    """Returns all speed limits of the driven lane in m/s, in driving order.
+
+    If the lane has none, those of the road are returned.
+    """
     of_lane = [node for lane in lanes.driven() for node in lane.all("speed")]
     return _speeds(of_lane) or _speeds(road.all("type", "speed"))
 
@@ -206,6 +213,6 @@ def _speeds(nodes: Sequence[Node]) -> list[float]:
 
 
 def friction(lanes: Lanes) -> float | None:
-    """Returns the friction that the driven lane states; None where it states none."""
+    """Returns the friction of the driven lane in the file; None where the file gives none."""
     said = [node for lane in lanes.driven() for node in lane.all("material") if "friction" in node.attributes]
     return number(said[0], "friction") if said else None

@@ -1,4 +1,4 @@
-"""Says in one sentence what of a road in the file our Road cannot hold."""
+"""Lists the contents of an OpenDRIVE road that a Road cannot represent, as one sentence."""
 
 import math
 from collections import Counter
@@ -16,7 +16,7 @@ LEVEL = 1e-4  # rad, of superelevation
 
 
 def left_out(choice: Choice, lanes: Lanes) -> str | None:
-    """Returns the sentence; None where nothing is left out."""
+    """Returns a sentence that lists the contents of the file that are left out; None without any."""
     parts = [*_parts(choice, lanes)]
     return f"left out: {', '.join(parts)}" if parts else None
 

@@ -1,8 +1,8 @@
 """Turns a file's reference line and the edge of its lane into the plan of a Road.
 
-exact      lines, arcs and spirals that meet, where the reference line is the edge: they are used unchanged
-fitted     anything else: clothoids through poses one metre apart, except beside joins that do not meet
-rounded    where the joins are too close to each other for that: a spline
+exact      used if the edge is the reference line, made of lines, arcs and spirals that meet: kept unchanged
+fitted     used otherwise: clothoids through poses one metre apart, except near elements that do not meet
+rounded    used if too many elements do not meet for clothoids to be fitted: a spline
 """
 
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ LEFT_OVER = 0.05  # m of lane edge that must remain per m of line in a bend
 
 
 def exact(line: list[GeometryElement]) -> PieceCurve | None:
-    """Returns the plan as the file has it; None where it is not made of lines, arcs and spirals that meet."""
+    """Returns the reference line unchanged; None if it is not made of lines, arcs and spirals that meet."""
     shapes = [each.shape for each in line]
     pieces = [shape.piece for shape in shapes if isinstance(shape, PieceShape)]
     if len(pieces) < len(shapes):
@@ -47,7 +47,7 @@ def exact(line: list[GeometryElement]) -> PieceCurve | None:
 
 
 def lies_on_the_line(lanes: Lanes, length: float) -> bool:
-    """Returns whether the driven edge is the reference line itself."""
+    """Returns whether the inner edge of the driven lane is the reference line itself."""
     s = np.linspace(0.0, length, max(FEWEST, int(length / STEP) + 1))
     s = np.unique(np.r_[s, [each for each in lanes.joints() if 0 <= each <= length]])
     t, slope = lanes.edge(s)
@@ -55,11 +55,13 @@ def lies_on_the_line(lanes: Lanes, length: float) -> bool:
 
 
 def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
-    """Returns poses along the edge of the lane, about one metre apart and wherever something changes.
+    """Returns poses along the inner edge of the driven lane.
+
+    They are at most about one metre apart, with one wherever an element or a lane width begins.
 
     Args:
         line: The reference line.
-        lanes: The lanes whose edge is followed; None for the reference line itself.
+        lanes: The lanes of the road; None to return poses along the reference line.
 
     Raises:
         UsageError: The line has a gap, the edge jumps, or the edge folds in a bend.
@@ -140,9 +142,10 @@ def _strays(element: GeometryElement, count: int) -> bool:
 
 
 def fitted(line: SampledLine) -> tuple[PieceCurve, Array, Array] | None:
-    """Returns the plan through the poses away from joins, with their stations in the file and on the plan.
+    """Returns a plan of clothoids through the poses, except those near elements that do not meet.
 
-    It returns None where clothoids cannot follow the line.
+    Also returns the stations of these poses in the file and on the plan, in metres. Returns None if clothoids
+    cannot follow the line.
     """
     kept = bridged(line)
     pieces = clothoids(kept.poses) if kept is not None else None

@@ -1,4 +1,4 @@
-"""Reads the numbers of an OpenDRIVE file, and its cubics of the distance from a station."""
+"""Reads numbers and cubic polynomials from the attributes of OpenDRIVE elements."""
 
 import math
 import re
@@ -15,12 +15,12 @@ Cubic = tuple[float, float, float, float]
 
 
 def number(node: Node, name: str, missing: float | None = None) -> float:
-    """Returns an attribute as a finite number.
+    """Returns an attribute of an element as a finite number.
 
     Args:
         node: The element that has the attribute.
         name: Name of the attribute.
-        missing: Value where the file gives none; None where the attribute is required.
+        missing: Value to return if the attribute is missing; None if the attribute is required.
 
     Raises:
         UsageError: The attribute is missing, not a number, or not finite.
@@ -39,19 +39,19 @@ def number(node: Node, name: str, missing: float | None = None) -> float:
 
 
 def cubic(node: Node) -> Cubic:
-    """Returns the attributes a, b, c and d; b, c and d may be missing."""
+    """Returns the attributes a, b, c and d as a cubic polynomial; b, c and d are 0 if they are missing."""
     return (number(node, "a"), number(node, "b", 0.0), number(node, "c", 0.0), number(node, "d", 0.0))
 
 
 def cubics(nodes: Iterable[Node], station: str, start: float = 0.0) -> CubicProfile | None:
-    """Returns cubics, each valid from its station on; None where there are none.
+    """Returns the cubic polynomials of elements, each valid from its station to the next; None without any.
 
-    Before the first cubic, its first value applies.
+    Before the first station, the value is constant.
 
     Args:
-        nodes: Elements with a, b, c, d.
+        nodes: Elements with the attributes a, b, c and d.
         station: Name of the attribute with the station at which a cubic begins.
-        start: Station that is added to it.
+        start: Number that is added to each station, in metres.
     """
     rows = sorted(
         ((start + number(node, station, 0.0), cubic(node)) for node in nodes), key=lambda row: row[0]

@@ -9,7 +9,10 @@ from roadgpt.road.road import Road
 
 
 def reversed_road(road: Road) -> Road:
-    """Returns a road of pieces, or through nodes, driven from its end to its start."""
+    """Returns a road that leads from the end of the given road to its start.
+
+    The given road must consist of lines, arcs and clothoids, or be a spline through nodes.
+    """
     if road.nodes is not None:
         return Road.through(road.nodes[::-1])
     assert isinstance(road.plan, PieceCurve)

@@ -1,7 +1,7 @@
-"""Reads the XML of an OpenDRIVE file without trusting it. One road is kept; everything else is skipped.
+"""Reads one road from the XML of an OpenDRIVE file, which may be malicious, and skips everything else.
 
-A DOCTYPE is not allowed, so no entity can be declared, fetched or expanded. Size, number of elements, depth
-and the length of one tag are bounded, and with them time and memory.
+A file with a DOCTYPE is refused, so that no XML entities can be declared, fetched or expanded. Limits on file
+size, number of elements, depth and tag length bound the time and memory that reading takes.
 """
 
 import math
@@ -49,7 +49,7 @@ class Node:
     children: list["Node"] = field(default_factory=list)
 
     def all(self, *path: str) -> list["Node"]:
-        """Returns the elements below it that are reached by these tags."""
+        """Returns all elements below this one that are reached by a path of tags."""
         found = [self]
         for tag in path:
             found = [child for node in found for child in node.children if child.tag == tag]
@@ -58,15 +58,15 @@ class Node:
 
 @dataclass(frozen=True)
 class Choice:
-    """The road that was selected, and what else the file holds."""
+    """The road that was selected from a file, and information about the other contents of the file."""
 
     road: Node
     others: tuple[str, ...]
     """Ids of all roads in the file."""
     passed: Mapping[str, int]
-    """How many of each kind in COUNTED the road has."""
+    """Numbers of objects, signals and other skipped elements of the road, by kind."""
     header: frozenset[str]
-    """Which of IN_HEADER the file has."""
+    """Names of those skipped elements of the header (``geoReference``, ``offset``) that the file contains."""
 
 
 def is_driven(lane: Node) -> bool:
@@ -75,7 +75,9 @@ def is_driven(lane: Node) -> bool:
 
 
 def read_tree(path: Path, wanted: str | None) -> Choice:
-    """Returns the road with this id, or else the longest with a driving lane that is not part of a junction.
+    """Returns the road with the id ``wanted``.
+
+    If ``wanted`` is None, returns the longest road with a driving lane that is not part of a junction.
 
     Raises:
         UsageError: The file cannot be read, is not OpenDRIVE, is too large, or has no such road.
