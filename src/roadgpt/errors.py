@@ -88,4 +88,4 @@ class RefusedError(ReplyError):
 
 
 class UnparsableError(ReplyError):
-    """No reply fits the requested schema, whichever way it was requested."""
+    """None of the model's replies matches the requested schema, in whichever way it was requested."""

@@ -93,10 +93,11 @@ def read_json(path: Path, most: int = LARGEST, what: str = ANY) -> Any:
 
 
 def json_of(text: str) -> Any:
-    """Returns the data in JSON text. Whole numbers beyond the range of floating-point numbers are refused.
+    """Returns the data in JSON text. Whole numbers of more than 300 digits are refused.
 
     Raises:
-        ValueError: The text is not JSON, is nested too deeply, or holds a number that is too large.
+        ValueError: The text is not JSON, has too many elements, is nested too deeply, or holds a number with
+            too many digits.
     """
     if text.count("[") + text.count("{") > MOST_OPENED or text.count(",") > MOST_COMMAS:
         raise ValueError("it has more parts than would fit into memory")

@@ -31,14 +31,14 @@ class _State:
     """The state of this process."""
 
     number = 0
-    """Number of the signal that came; 0 for none."""
+    """Number of the signal that was received; 0 for none."""
     since = 0.0
     is_raised = False
     """Whether a caller of ``look`` has been interrupted."""
     is_again = False
-    """Whether the next signal is one that this process sends itself."""
+    """Whether the next signal will be one that this process sent to itself."""
     drops = 0
-    """How often Python dropped the exception."""
+    """Number of times that Python dropped the KeyboardInterrupt."""
     is_over = False
     """Whether all work is done, so that nothing can be lost."""
 

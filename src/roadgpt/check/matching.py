@@ -67,8 +67,8 @@ def turn_complaints(
 
     Args:
         number: Number of the turn, from 1.
-        turn: The turn as measured.
-        feature: The turn as asked for.
+        turn: The measured turn.
+        feature: The requested turn.
         side: "left" or "right" where turns must alternate; None to use the side of ``feature``.
     """
     if side is None and fits(turn, feature):

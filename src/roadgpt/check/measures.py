@@ -49,7 +49,7 @@ class MeasuredFeature:
 
     kind: Literal["turn", "straight"]
     start: float
-    """Station in plan in metres."""
+    """Station in metres where the feature starts, measured in plan."""
     end: float
     side: Literal["left", "right"] | None
     degrees: float
@@ -71,7 +71,7 @@ class MeasuredFeature:
 
     @property
     def length(self) -> float:
-        """The length in metres."""
+        """The length of the feature in plan, in metres."""
         return self.end - self.start
 
 

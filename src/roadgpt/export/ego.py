@@ -68,7 +68,7 @@ class SpeedProfile(NamedTuple):
 def calm_speeds(road: Road, world: World, s: Array) -> Array:
     """Returns the speeds in m/s of a calm driver at stations ``s``.
 
-    Each is the speed limit, or the speed for a comfortable lateral acceleration if the bend requires less."""
+    The speed is the speed limit, or lower where the lateral acceleration in a bend would be uncomfortable."""
     bend = np.maximum(np.abs(road.curvature(s)), 1e-9)
     sideways = min(COMFORT, GRIP * world.friction * GRAVITY)
     return np.asarray(np.minimum(world.speed_limit, np.sqrt(sideways / bend)))

@@ -13,7 +13,7 @@ LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, 
 
 
 class World(BaseModel):
-    """Map, lanes, shoulders, friction and limits. The defaults are RoadGPT's."""
+    """Map, lanes, shoulders, friction and limits. Most defaults are those of the RoadGPT thesis."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

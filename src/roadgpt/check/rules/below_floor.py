@@ -1,4 +1,4 @@
-"""The road stays on or above the level's ground: z >= -28 m on BeamNG's flat SBFT level."""
+"""Requires the road to stay on or above the level's ground: z >= -28 m on BeamNG's flat SBFT level."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.extremes import lowest

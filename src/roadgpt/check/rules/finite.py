@@ -1,4 +1,4 @@
-"""All numbers of the road are finite."""
+"""Requires all coordinates, headings, curvatures and grades of the road to be finite."""
 
 import numpy as np
 

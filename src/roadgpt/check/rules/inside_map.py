@@ -1,4 +1,4 @@
-"""The whole surface of the road lies inside the map and does not touch its border.
+"""Requires the whole surface of the road to lie inside the map, without touching its border.
 
 The map extends from 0 to ``map_size`` along x and y. Source: two checks of the RoadGPT thesis (the road fits
 into the map, and no part of it touches the border) and one of the SBFT competition. The competition's code

@@ -1,4 +1,4 @@
-"""The surface of the road does not overlap itself in plan view, even at different heights.
+"""Requires that the surface of the road does not overlap itself in plan view, even at different heights.
 
 Source: the SBFT competition's rule against roads that cross themselves. The surface is divided into quads
 about 1 m long. A quad that is not convex shows that the surface folds: the bend is tighter than half the road

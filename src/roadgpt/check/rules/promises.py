@@ -1,4 +1,4 @@
-"""The road meets the requirements of its Brief: turns in order, straights between them, and grades.
+"""Requires the road to meet its Brief: the turns in order, the straights between them, and the grades.
 
 The requirements are the ranges of an Outline. They are compared with what ``check.measures`` measures on the
 centre line of the road. Additional straights are allowed. If the description leaves a count open ("at least
@@ -44,7 +44,7 @@ def promises_of(brief: Brief, world: World) -> Outline:
 
 
 def complaints(found: Measures, asked: Outline) -> list[Complaint]:
-    """Returns a Complaint for each requirement that a measured road does not meet."""
+    """Returns one Complaint for each requirement of an Outline that a measured road does not meet."""
     out = list(_counts(found, asked))
     if len(found.turns) in asked.turns:
         out += sequence_complaints(found, asked)

@@ -1,4 +1,4 @@
-"""The road passes the SBFT competition's validator, as ``roadgpt.check.sbft`` reproduces it."""
+"""Requires the road to pass the SBFT competition's validator, which ``roadgpt.check.sbft`` reproduces."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding

@@ -1,4 +1,4 @@
-"""No crest or dip is so abrupt that the car would be lifted or pressed down by more than 3 m/s^2.
+"""Requires crests and dips to cause a vertical acceleration of the car of at most 3 m/s^2.
 
 The vertical radius R of the parabola between two grades is 1 / (change of grade per metre). At speed v, the
 vertical acceleration is v^2 / R. Where the description asks for a crest or a dip, an acceleration up to
@@ -24,7 +24,7 @@ ROUNDING = 1e-3  # of the limit
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-    """Reports where a crest or a dip is most abrupt, if it is too abrupt."""
+    """Reports the crest or dip that exceeds its limit by the largest factor, if there is one."""
     begin, end, bend = vertical_bends(road)
     suspects = np.flatnonzero(np.abs(bend) * world.speed_limit**2 > MOST * (1 + ROUNDING))
     if not suspects.size:

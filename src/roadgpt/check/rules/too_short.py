@@ -1,4 +1,4 @@
-"""The road is longer than 20 m, both along the curve and as the SBFT competition measures length.
+"""Requires a length of more than 20 m, both along the curve and as the SBFT competition measures it.
 
 A road that is so short that the car would already be at the goal when it starts cannot be driven at all.
 """

@@ -1,4 +1,4 @@
-"""The grade stays within 15 %, uphill and downhill, at every place and over every 10 m.
+"""Requires grades of at most 15 %, uphill and downhill, at every place and over every 10 m.
 
 The limit is that of the prompt in the RoadGPT thesis. The code of the thesis checked only uphill grades,
 averaged over blocks of ten nodes, so it accepted a road with a downhill grade of 60 %. This rule checks every

@@ -140,7 +140,7 @@ class Lanes:
 
 
 def read_lanes(road: Node, length: float) -> Lanes:
-    """Returns the lanes of a road.
+    """Returns the lane sections of a road that is ``length`` metres long.
 
     Raises:
         UsageError: The road has no lanes, or no driving lane.

@@ -1,4 +1,4 @@
-"""Turns a file's reference line and the edge of its lane into the plan of a Road.
+"""Computes the plan curve of a Road from the reference line and the driven lane of an OpenDRIVE file.
 
 exact      used if the edge is the reference line, made of lines, arcs and spirals that meet: kept unchanged
 fitted     used otherwise: clothoids through poses one metre apart, except near elements that do not meet

@@ -124,7 +124,7 @@ class _RoadSelector:
         self.stack: list[Node] = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
-        """Handles the start of an element."""
+        """Handles the start tag of an XML element."""
         self.elements += 1
         self.depth += 1
         if self.elements > MOST_ELEMENTS or self.depth > DEEPEST:
@@ -158,7 +158,7 @@ class _RoadSelector:
             self.header.add(OURS)
 
     def end(self, tag: str) -> None:
-        """Handles the end of an element. A complete road is compared with the best one so far."""
+        """Handles the end tag of an XML element. A complete road is compared with the best one so far."""
         self.depth -= 1
         if self.hidden:
             self.hidden -= 1
@@ -182,7 +182,7 @@ class _RoadSelector:
             self.best = (rank, road, self.passed)
 
     def choice(self) -> Choice:
-        """Returns what was found, after the end of the file."""
+        """Returns the selected road, after the whole file has been parsed."""
         if self.best is None:
             if not self.ids:
                 raise UsageError("there is no road in it")

@@ -61,7 +61,7 @@ class Strip:
     """Shape (n, 5) for a mesh: x, y, z, width, depth; shape (n, 4) for a decal: x, y, z, width."""
     drivability: int = NOT_DRIVABLE
     priority: int = 0
-    """Drawing order of a decal: painted lines are drawn on the asphalt."""
+    """Drawing order of a decal, so that painted lines are drawn on top of the asphalt."""
     is_dashed: bool = False
     """Whether a painted line is dashed. Dashes and gaps are as long as in exported OpenDRIVE files."""
 

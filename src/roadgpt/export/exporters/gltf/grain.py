@@ -19,7 +19,7 @@ class Grain(NamedTuple):
     """Side length in metres of the square area that the texture covers."""
     seed: int
     octaves: tuple[tuple[int, float], ...]
-    """Layers of noise: number of cells along a side, and amplitude as a share of the mean brightness."""
+    """Layers of noise: number of cells along a side, and strength relative to the mean brightness."""
 
 
 GRAINS = {

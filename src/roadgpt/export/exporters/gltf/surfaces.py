@@ -1,4 +1,4 @@
-r"""The meshes of a road: closed slabs, thin strips on top of them, and the ground around.
+r"""Creates the meshes of a road: closed slabs, thin strips on top of them, and the surrounding ground.
 
 shoulder ______|____________:____________|______ shoulder   the slabs of road and shoulders touch;
         |______|_________________________|______|           lines and path lie a little above them

@@ -1,4 +1,4 @@
-r"""Two lanes and their shoulders, with the constant widths of the World.
+r"""Writes two lanes and their shoulders, with the constant widths of the World.
 
 id      2      |    1    |    -1    |   -2
      shoulder  | against |  driven  | shoulder     the markings: solid, broken in the middle, solid
