@@ -1,4 +1,4 @@
-"""CommonRoad scenarios (XML 2020a): lanelets, a speed limit, and the task to drive to the end.
+"""Exports roads as CommonRoad scenarios (XML 2020a): lanelets, speed limit, and the task to reach the end.
 
 Source: CommonRoad, Documentation of the XML Format, version 2020a. The format can hold heights, but
 CommonRoad's planners, road boundaries and plots fail if points have heights (commonroad-io 2024.3), so no

@@ -1,4 +1,4 @@
-"""Bridges places of an OpenDRIVE road where elements, or the edges of lanes, do not meet exactly.
+"""Bridges those places of an OpenDRIVE road where elements, or the edges of lanes, do not meet exactly.
 
 Files contain rounded numbers, and some elements are shorter than the rounding errors. A curve through every
 pose would oscillate there: an error of 1 cm within one metre causes a bend with a radius of 33 m. Poses close

@@ -45,6 +45,15 @@ def write_level(
 ) -> Path:
     """Writes a level into a folder of levels, and returns the level's own folder.
 
+    Args:
+        road: The road.
+        levels: The folder of levels; the level becomes a sub-folder.
+        name: Name of the level and of its folder, as returned by ``level_name``.
+        world: Widths of lane and shoulder, friction.
+        title: Title of the level in the game; empty to use ``name``.
+        seed: Seed of the random shifts of mesh nodes that prevent flicker.
+        model: Name of BeamNG's vehicle model.
+
     Raises:
         ExportError: The road has a number that is not finite.
         OSError: The folder cannot be written.
