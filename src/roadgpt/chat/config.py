@@ -1,5 +1,4 @@
-"""Looks up settings in options, the environment, .env and TOML files, in this order, and remembers their
-origin.
+"""Looks up settings in options, the environment, .env and TOML files, in this order, with their origin.
 
     option        --model gpt-5-mini
     environment   ROADGPT_MODEL=gpt-5-mini       also OPENAI_BASE_URL and OPENAI_API_KEY
@@ -7,9 +6,10 @@ origin.
     TOML          roadgpt.toml in the working folder, then the user's config.toml: model under [chat]
 
 The plan file of a campaign (its table [chat]) comes between the options and the environment. An API key is
-not a setting: it has no option, is not part of ChatSettings, and is only shown masked. It is sent only to
-servers that the user names by an option, the environment or the user's own file, because somebody else may
-have written the other files.
+not a setting: it has no option, is not part of ChatSettings, and is only shown masked. The user's key is sent
+to OpenAI and to servers that the user names by an option, the environment or the user's own file. It is not
+sent to other servers that are named in other files, because somebody else may have written these files.
+``key_for`` has the exact rules.
 """
 
 import os
@@ -135,8 +135,9 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 def key_for(base_url: str | None) -> Key | None:
     """Returns the API key for a server; None if there is none.
 
-    A server that is named only by a file in the working folder gets a key only from such a file. A server
-    that is named only by a plan, a campaign or a run gets no key. Somebody else may have written these files.
+    A server that is named only by a file in the working folder gets a key only from such a file, unless the
+    server runs on this computer. A server that is named only by a plan, a campaign or a run gets no key.
+    Somebody else may have written these files.
 
     Raises:
         UsageError: a settings file cannot be read.
@@ -183,7 +184,10 @@ def trust_server(base_url: str, wanted: str | None, place: object) -> None:
 
 
 def untrusted_source(base_url: str | None) -> str:
-    """Returns the file that names this server; empty if the user names it, too, or if no file does."""
+    """Returns the file that names this server, if the user does not name the server; else an empty text.
+
+    The text is also empty for OpenAI's server, and if no file names the server.
+    """
     if not base_url:
         return ""
     wanted = origin_of(base_url)
@@ -200,7 +204,8 @@ def untrusted_source(base_url: str | None) -> str:
 
 
 def layers() -> list[Layer]:
-    """Returns all sources of settings, in order of precedence, highest first; options are not included.
+    """Returns all sources of settings other than options and plan files, in order of precedence, highest
+    first.
 
     Raises:
         UsageError: A file of settings cannot be read, or its table ``[chat]`` has an unknown key.

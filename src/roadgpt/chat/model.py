@@ -81,7 +81,7 @@ class Spent(ChatValue):
         )
 
     def since(self, before: "Spent") -> "Spent":
-        """Returns the difference between these costs and ``before``, an earlier state of them."""
+        """Returns the costs that were added since ``before``, an earlier state of the same costs."""
         cost = None if self.cost is None or before.cost is None else round(self.cost - before.cost, DECIMALS)
         return Spent(
             calls=self.calls - before.calls,
@@ -121,7 +121,7 @@ class ChatSettings(ChatValue):
     price: str | None = None
     """USD per million tokens of prompt and completion, as "0.15/0.60"; None uses the built-in table."""
     record: str | None = Field(default=None, exclude=True)
-    """Folder in which every exchange is stored; never written to files, so that a replay writes the same
+    """Folder in which every exchange is stored; left out of saved files, so that a replay writes the same
     files."""
     replay: str | None = Field(default=None, exclude=True)
     """Folder of recorded exchanges, from which every answer is taken instead of asking a server."""

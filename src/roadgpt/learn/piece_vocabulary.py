@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 MARKS = 25
-"""The entries [unused1] to [unused24] (one less than this number) of the vocabulary stand for slots and
+"""One more than the number of unused vocabulary entries, [unused1] to [unused24], that stand for slots and
 marks."""
 LATIN = re.compile(r"(##)?[a-zß0-9]+|[!-/:-@\[-`{-~°º€]")
 SPECIAL = ("[UNK]", "[CLS]", "[SEP]")

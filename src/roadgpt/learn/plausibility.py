@@ -82,7 +82,7 @@ def _least(clause: Clause) -> float:
 
 
 def impossibility(brief: Brief) -> bool:
-    """Returns True if the road does not fit on a map of 250 m, or breaks a rule that holds for every road."""
+    """Returns True if the Brief asks for more than a map of 250 m holds, or breaks a rule for every road."""
     turns = sum(_least(clause) for clause in brief.clauses if clause.kind not in STRAIGHT_KINDS)
     if max(turns, brief.turns.lo or 0 if brief.turns else 0) > MOST_TURNS:
         return True

@@ -51,7 +51,7 @@ class TotalTurning(NamedTuple):
 
 
 def total_turning(words: str) -> TotalTurning | None:
-    """Returns the sum of all turning angles that a description asks for; None if it asks for none."""
+    """Returns the required sum of all turning angles and the other words; None if no such sum is required."""
     text = slotted(words)
     line = " ".join(word.text for word in text.words)
     found = next((match for way in WAYS if (match := way.search(line))), None)

@@ -37,7 +37,7 @@ TIMES = frozenset(
 
 
 def plain_unit(text: str) -> str:
-    """Returns a unit without accents."""
+    """Returns the text of a unit without accents."""
     return text.translate(str.maketrans("èéí", "eei"))
 
 

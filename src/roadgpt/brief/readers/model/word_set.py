@@ -1,6 +1,6 @@
-"""Writes sets of words as strings with spaces between the words."""
+"""Makes sets of words from strings in which spaces separate the words."""
 
 
 def word_set(*lines: str) -> frozenset[str]:
-    """Returns the set of the words in some strings, which are split at spaces."""
+    """Returns the set of the words in some strings; the words are separated by spaces."""
     return frozenset(word for line in lines for word in line.split())

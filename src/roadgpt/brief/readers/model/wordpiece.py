@@ -10,7 +10,7 @@ WINDOW = 126
 
 
 class WordPieces:
-    """Splits words into pieces of a vocabulary; the index of a piece in the list is its number."""
+    """Splits words into the pieces of a vocabulary; the number of a piece is its index in the vocabulary."""
 
     def __init__(self, pieces: Sequence[str]) -> None:
         self.number = {piece: index for index, piece in enumerate(pieces)}
