@@ -1,12 +1,13 @@
-"""The room of campaigns: thousands of tests, made by test generators, run by workers, and never lost.
+"""Campaigns: thousands of tests that test generators propose and parallel workers run.
 
     Plan --cells--> Cell --ask--> Proposals --workers--> Results --tell--> the cell's generator
                                                             |
                                                         Store (one file)
 
 It has two kinds of plug-ins: ``generators/`` propose tests, and ``executors/`` provide the workers that run
-them. ``begin`` makes a campaign's folder, and ``work`` runs what is left to do, as often as it is called.
-``status_of`` counts what is done; ``read_trace``, ``kept_run`` and ``run_again`` return one test.
+them. ``begin`` makes a campaign's folder; ``work`` runs the tests that have not ended, also after an
+interruption. ``status_of`` returns the progress; ``read_trace``, ``kept_run`` and ``run_again`` return one
+test.
 """
 
 import sys

@@ -1,8 +1,10 @@
-"""The choice of candidates to drive: each goal values them by what the surrogate's trees predict.
+"""Chooses which candidate roads to drive, from the margins and map cells that a surrogate model predicts.
 
-failures   a predicted failure counts, the first ones of a cell most
-coverage   a test counts less, the more tests its cell has
-hardest    the smallest margin that is still likely counts most
+The search's goal decides how valuable a candidate is:
+
+failures   its predicted probability of failing, weighted higher in cells with few failures so far
+coverage   the fewer tests its predicted cell has, the more valuable
+hardest    the smaller its predicted margin, minus the spread of the predictions, the more valuable
 """
 
 from collections import Counter
@@ -21,12 +23,12 @@ ANYWHERE = 0.05  # of a first failure in a cell: what one in a cell with many co
 
 
 class Predictions(NamedTuple):
-    """The predictions of each tree for candidates; both arrays are ``(trees, n)``."""
+    """The surrogate's predictions for candidates, one row per tree; both arrays are ``(trees, n)``."""
 
     margins: Array
-    """Metres."""
+    """Predicted margins, in metres; negative for a predicted failure."""
     cells: NDArray[np.intp]
-    """Cells of the map."""
+    """Predicted cells of the feature map."""
 
 
 def select(
@@ -37,15 +39,15 @@ def select(
     counts: Counter[int],
     least: float,
 ) -> list[Candidate]:
-    """Returns the candidates to be driven, the most valuable first, with no two alike.
+    """Returns the candidates to drive, the most valuable first; no two of them are similar roads.
 
     Args:
         goal: what the search looks for.
-        n: number of candidates, at most.
-        candidates: to choose from.
-        expected: the predictions for them.
-        counts: failures by cell so far; for the goal "coverage", tests by cell.
-        least: metres RMS that the chosen roads keep from each other.
+        n: largest number of candidates to return.
+        candidates: the roads to choose from.
+        expected: the surrogate's predictions for the candidates.
+        counts: number of failures so far in each cell; for the goal "coverage", number of tests.
+        least: smallest distance between two chosen roads, metres RMS.
     """
     used, index = np.unique(expected.cells, return_inverse=True)
     cells = index.reshape(expected.cells.shape)
@@ -68,14 +70,16 @@ def select(
 
 
 def far_from(candidates: Sequence[Candidate], shape: PlanShape, least: float) -> NDArray[np.bool_]:
-    """Returns which candidates ``(n,)`` are at least so many metres RMS from a shape."""
+    """Returns a mask ``(n,)`` of the candidates whose distance to a shape is at least ``least`` metres
+    RMS.
+    """
     if not least or not candidates:
         return np.ones(len(candidates), bool)
     return np.asarray(apart(shape, stacked([one.shape for one in candidates])) >= least)
 
 
 def dissimilar(candidates: Sequence[Candidate], known: Sequence[PlanShape], least: float) -> list[Candidate]:
-    """Returns the candidates that are at least so many metres RMS from every known road."""
+    """Returns the candidates whose distance to every known road is at least ``least`` metres RMS."""
     if not known or not least:
         return list(candidates)
     others = stacked(known)
@@ -83,17 +87,17 @@ def dissimilar(candidates: Sequence[Candidate], known: Sequence[PlanShape], leas
 
 
 def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
-    """Combines shapes into one PlanShape whose arrays have a first axis more."""
+    """Stacks shapes into one PlanShape whose arrays have the shapes along a new first axis."""
     return PlanShape._make(np.stack(columns) for columns in zip(*shapes, strict=True))
 
 
 def spread_out(candidates: Sequence[Candidate], n: int, hazard: Array) -> list[Candidate]:
-    """Chooses candidates before anything is known: far apart in their features, among those that look hard.
+    """Chooses candidates without predictions: diverse in their features, from the half that looks hardest.
 
     Args:
-        candidates: to choose from.
-        n: number of candidates.
-        hazard: of each candidate; the larger, the harder the road looks.
+        candidates: the roads to choose from.
+        n: number of candidates to choose.
+        hazard: one number per candidate; the larger, the harder the road looks.
     """
     order = np.argsort(-hazard, kind="stable")[: max(n, (len(candidates) + 1) // 2)]
     signs = np.array([candidates[i].surrogate_features for i in order])

@@ -1,9 +1,9 @@
-"""The archive of a search: a map of what roads can be like, with the best road so far in every cell.
+"""The archive of a search: a map of road features that holds the best test so far in each of its cells.
 
-The best road is the one that came nearest to failing. The cells are a grid along the chosen features
+The best test is the one whose car came nearest to failing. The cells are a grid along the chosen features
 (MAP-Elites, Mouret and Clune 2015) or, where a grid over many features would be mostly empty, the
 neighbourhoods of evenly spread centroids (CVT-MAP-Elites, Vassiliades, Chatzilygeroudis and Mouret 2018).
-Cells and centroids are those of pyribs' GridArchive and CVTArchive, which the tests hold them against.
+Cells and centroids equal those of pyribs' GridArchive and CVTArchive; the tests compare them.
 """
 
 import math
@@ -32,7 +32,7 @@ class _Map(Protocol):
 
 
 class Archive:
-    """The best test of every cell, and how many tests and failures fell into each."""
+    """A map of features that keeps the best test of every cell, and counts tests and failures per cell."""
 
     def __init__(self, axes: Sequence[str], cells: int, kind: Literal["grid", "cvt"] = "grid") -> None:
         """Makes an empty archive.
@@ -53,9 +53,9 @@ class Archive:
         """Adds a test, unless it lacks a feature of the map.
 
         Args:
-            number: of the test.
-            features: of its road and drive, by name.
-            quality: the larger the better; of equally good tests the first is kept.
+            number: number of the test.
+            features: the features of the road and its drive, by name.
+            quality: how good the test is, the larger the better; of equally good tests the first is kept.
             failed: whether the car left its lane.
         """
         place = np.array([features.get(axis, math.nan) for axis in self.axes])
@@ -68,16 +68,16 @@ class Archive:
             self._best[cell] = (quality, number)
 
     def cells(self, places: Array) -> Cells:
-        """Returns the cells ``(n,)`` of places ``(n, axes)``."""
+        """Returns the cell numbers ``(n,)`` of points ``(n, axes)`` in feature space."""
         return self._map.cells(places)
 
     def elites(self) -> list[int]:
-        """Returns the numbers of the best tests of all cells, in order of cell."""
+        """Returns the number of the best test of each cell, in order of the cells."""
         return [self._best[cell][1] for cell in sorted(self._best)]
 
 
 class Grid:
-    """Equally wide cells along each axis; what lies beyond the map is in the outermost cell."""
+    """A map with equally wide cells along each axis; values beyond an end belong to the outermost cell."""
 
     def __init__(self, bounds: Array, cells: int) -> None:
         """Takes the ends ``(axes, 2)`` of the map, and the number of cells along each axis."""
@@ -85,14 +85,16 @@ class Grid:
         self._along = cells
 
     def cells(self, places: Array) -> Cells:
-        """Returns the cells ``(n,)`` of places ``(n, axes)``, numbered along the last axis first."""
+        """Returns the cell numbers ``(n,)`` of points ``(n, axes)``; the index along the last axis varies
+        fastest.
+        """
         steps = (self._along * (places - self._low) + EDGE) / self._width
         each = np.clip(steps, 0, self._along - 1).astype(np.intp)
         return np.asarray(each @ self._along ** np.arange(each.shape[1])[::-1], np.intp)
 
 
 class Niches:
-    """The neighbourhoods of centroids that are spread evenly over the map."""
+    """A map whose cells are the neighbourhoods of evenly spread centroids."""
 
     def __init__(self, bounds: Array, cells: int) -> None:
         """Takes the ends ``(axes, 2)`` of the map, and the number of centroids."""
@@ -103,15 +105,15 @@ class Niches:
         self._tree = KDTree(self.centroids)
 
     def cells(self, places: Array) -> Cells:
-        """Returns the number ``(n,)`` of the centroid that is nearest to each of the places ``(n, axes)``."""
+        """Returns the index ``(n,)`` of the nearest centroid for each of the points ``(n, axes)``."""
         return np.asarray(self._tree.query(places)[1], np.intp)
 
 
 def centroids_of(samples: Array, count: int) -> Array:
-    """Returns the centroids ``(count, axes)`` of samples ``(n, axes)``, by k-means (Lloyd).
+    """Returns ``count`` centroids ``(count, axes)`` of samples ``(n, axes)``, by Lloyd's k-means.
 
-    Draws, begins and ends as scikit-learn's ``k_means`` does with ``init="random"``, which pyribs uses, so
-    that a map has the same niches as the maps of earlier versions of RoadGPT.
+    Initialisation and stopping rule are those of scikit-learn's ``k_means`` with ``init="random"``, which
+    pyribs uses, so that a map has the same cells as in earlier versions of RoadGPT.
     """
     middle = samples.mean(axis=0)
     points = samples - middle

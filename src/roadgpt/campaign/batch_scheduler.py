@@ -1,4 +1,6 @@
-"""The batches of one cell: which is asked for next, and which results the cell's generator knows by then."""
+"""Schedules the batches of one cell: when the next batch is requested from the cell's generator, and which
+results the generator has received before.
+"""
 
 from bisect import bisect
 from collections.abc import Iterable
@@ -16,9 +18,10 @@ LAG = 2  # batches: number k knows results up to k - 2
 
 
 class BatchScheduler:
-    """Asks the generator of one cell for its batches.
+    """Requests batches of tests from the generator of one cell.
 
-    Batch k is asked for when all tests of batch k - 2 have ended, and the generator knows no later result.
+    Batch k is requested once all tests of batch k - 2 have ended. The generator has then received the results
+    of batches 0 to k - 2, and no later ones.
     """
 
     def __init__(self, cell: Cell, store: Store) -> None:
@@ -34,51 +37,50 @@ class BatchScheduler:
 
     @property
     def asked(self) -> int:
-        """Number of tests that were asked for so far."""
+        """Number of tests that the generator has been asked for so far."""
         return sum(batch.n for batch in self.batches[-1:]) + (
             self.batches[-1].first - 1 if self.batches else 0
         )
 
     @property
     def is_closed(self) -> bool:
-        """True if nothing more will be asked for."""
+        """True if the generator will not be asked for further tests."""
         return self.closed is not None or self.asked >= self.cell.budget.most
 
     @property
     def is_done(self) -> bool:
-        """True if all tests have ended and there will be no more."""
+        """True if all tests of the cell have ended and no further ones will be requested."""
         return self.is_closed and not any(batch.left for batch in self.batches[-LAG:])
 
     @property
     def may_ask(self) -> bool:
-        """True if the next batch may be asked for now."""
+        """True if the next batch may be requested now."""
         return not self.is_closed and not any(batch.left for batch in self.batches[: 1 - LAG][-1:])
 
     @property
     def is_late(self) -> bool:
-        """True if the cell's time limit is reached."""
+        """True if the cell's time limit has been reached."""
         limit = self.cell.budget.seconds
         return limit is not None and self.seconds >= limit
 
     def ended(self, batch: int) -> None:
-        """Counts a test of a batch as ended."""
+        """Counts one more test of a batch as ended."""
         self.batches[batch].left -= 1
 
     def close(self, why: str) -> None:
-        """Ends the cell for a reason: nothing more is asked for."""
+        """Closes the cell for a reason, which is stored: no further batch is requested."""
         self._store.close_cell(self.cell.name, why)
         self.closed = why
 
     def ask(self, pool: Pool) -> list[tuple[int, Proposal]]:
-        """Asks for the next batch and stores it; returns its tests with their numbers.
+        """Requests the next batch, stores it, and returns its tests with their numbers.
 
-        Returns an empty list, and closes the cell, where the generator has nothing left to propose or no road
-        can
-        be designed.
+        If the generator has nothing left to propose, or no road could be designed, closes the cell and
+        returns an empty list.
 
         Raises:
-            RoadGPTError: the generator proposes more tests than it was asked for, or drafts without a
-                description.
+            RoadGPTError: the generator proposes more tests than were requested, or asks for a draft in a cell
+                without a description.
         """
         batch, first = len(self.batches), self.asked + 1
         generator = self._taught(batch - LAG)
@@ -122,7 +124,7 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the batches whose designs a draft of this batch has to differ from."""
+        """Returns the numbers of the batches whose designs a draft of this batch has to differ from."""
         last = batch - LAG
         if last < 0:
             return range(0)
@@ -137,5 +139,5 @@ class BatchScheduler:
 
 
 def designs_of(results: Iterable[Result]) -> list[Design]:
-    """Returns the designs of those results that have one."""
+    """Returns the designs of those results that have a design."""
     return [result.design for result in results if result.design is not None]

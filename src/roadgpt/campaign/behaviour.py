@@ -1,13 +1,18 @@
-"""Features of a test: the axes of the map on which a search looks for roads of every kind.
+"""Features of a road that can be axes of the map on which a search looks for diverse roads.
 
-The field's own five features are in ``run.features``: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP. This module
-adds features of the road's geometry, all but the first from ``check.measures``:
+``run.features`` has the five features of the SBFT competition: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP.
+This module adds features of the road's geometry; all but the first come from ``check.measures``:
 
-    DIR_COV_360   share of 36 directions that occur, all round: what DIR_COV is meant to be
-    RADIUS        m, at the tightest place; TURNED degrees altogether; TURNS how many; LEFT share of them
-    GRADE         percent, at the steepest place; CLIMB m from start to end; LENGTH m
+    DIR_COV_360   share of 36 directions, 10 degrees each, in which the road runs at some point
+    RADIUS        smallest radius, m
+    TURNED        sum of the angles of all turns, degrees
+    TURNS         number of turns
+    LEFT          share of the turns that turn left, 0 to 1
+    GRADE         steepest grade, percent
+    CLIMB         height of the end above the start, m
+    LENGTH        length, m
 
-Where a description says how many turns there are, each of them has features of its own, in order: RADIUS_1,
+If a description states the number of turns, each turn has features of its own, in driving order: RADIUS_1,
 DEGREES_1, RADIUS_2, ...
 """
 
@@ -41,7 +46,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "CLIMB": (-40.0, 40.0),  # m
     "LENGTH": (20.0, 620.0),  # m
 }
-"""The ends of the map along each axis; values beyond them belong to the outermost cell."""
+"""The range of the map along each axis; values beyond it belong to the outermost cell."""
 
 DEGREES = (0.0, 180.0)
 
@@ -51,7 +56,7 @@ def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
 
     Args:
         road: the road.
-        brief: what was asked for; None: nothing was.
+        brief: the requirements of the road's description; None: there is no description.
     """
     samples = road.sample()
     widest = outline(brief or Brief()).widest
@@ -59,7 +64,9 @@ def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
 
 
 def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) -> dict[str, float]:
-    """Returns the same features of a road that was measured; ``heading`` is in radians at equal stations."""
+    """Returns the features of a road's geometry from its measures; ``heading`` holds headings in radians
+    at equally spaced stations.
+    """
     turns = found.turns
     out = {
         "DIR_COV_360": directions(heading),
@@ -78,20 +85,23 @@ def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) 
 
 
 def turns_asked(brief: Brief | None) -> int:
-    """Returns how many turns of a Brief have features of their own: all, where their number was given; else
-    0."""
+    """Returns how many turns have features of their own: all turns if the Brief states their number, else
+    0.
+    """
     asked = outline(brief).turns if brief else None
     return int(asked.lo) if asked and 0 < asked.lo == asked.hi <= MOST_TURNS else 0
 
 
 def directions(heading: Array) -> float:
-    """Returns the share of the 36 directions, 10 degrees each, that occur among headings in radians."""
+    """Returns the share, 0 to 1, of the 36 sectors of 10 degrees that contain at least one of the headings
+    (radians).
+    """
     number = np.floor(np.degrees(heading) % 360 / (360 / DIRECTIONS)).astype(int) % DIRECTIONS
     return len(np.unique(number)) / DIRECTIONS
 
 
 def bounds_of(axis: str) -> tuple[float, float]:
-    """Returns the ends of the map along an axis.
+    """Returns the lower and the upper end of the map along the axis of a feature.
 
     Raises:
         KeyError: there is no feature of that name.
@@ -103,7 +113,9 @@ def bounds_of(axis: str) -> tuple[float, float]:
 
 
 def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> tuple[int, ...] | None:
-    """Returns the cell of a map with ``cells`` cells along each axis; None where a feature is missing."""
+    """Returns the cell of a test on a map with ``cells`` cells along each axis; None if the test lacks a
+    feature.
+    """
     if any(axis not in features for axis in axes):
         return None
     place = []

@@ -1,7 +1,7 @@
-"""Pairs at the boundary: two similar roads, of which the car kept its lane on one and failed on the other.
+"""Pairs of similar roads at the boundary: on one the car kept its lane, on the other it failed.
 
-Two roads correspond where they have the same sequence of left turns, right turns and straights. Then each
-number of one can be moved towards that of the other, and a road half-way between them can be driven next.
+Two roads correspond if they have the same sequence of left turns, right turns and straights. Then each number
+of one road can be moved towards that of the other, and a road half-way between them can be driven next.
 """
 
 from collections.abc import Sequence
@@ -16,13 +16,13 @@ from roadgpt.design.elements import elements_of
 
 
 class Measure(NamedTuple):
-    """A number of an element, by which two elements are compared."""
+    """A numeric property of a turn or a straight, such as a radius, used to compare two of them."""
 
     field: str
     called: str
     unit: str
     scale: float
-    """The difference that counts as 1."""
+    """The difference in this property that counts as a distance of 1."""
 
 
 GRADE = Measure("incline", "grade", " %", 1.0)
@@ -43,13 +43,16 @@ class BoundaryPair:
     """Number of the test that passed."""
     lost: int
     distance: float
-    """Root of the sum of squared differences of all turns and straights, where 10 m of a straight, 2 m of a
-    radius
-    or a clothoid, 10 degrees of a turn and 1 % of a slope count as 1."""
+    """Distance between the two roads: the square root of the sum of squared differences over all turns and
+    straights, where 10 m of a straight, 2 m of a radius or a clothoid, 10 degrees of a turn and 1 % of a
+    slope count as 1.
+    """
 
 
 def distance(one: Elements, other: Elements) -> float:
-    """Returns the distance between corresponding roads; infinite where they do not correspond."""
+    """Returns the distance between two corresponding roads, as in ``BoundaryPair.distance``; infinite if
+    they do not correspond.
+    """
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return np.inf
     total = 0.0
@@ -60,8 +63,9 @@ def distance(one: Elements, other: Elements) -> float:
 
 
 def weightiest(kept: Elements, lost: Elements) -> str:
-    """Names the largest difference between corresponding roads: 'turn 2: radius 15.4 m, then 14.9 m'; or
-    nothing."""
+    """Returns the largest difference between corresponding roads as text, such as 'turn 2: radius 15.4 m,
+    then 14.9 m'; empty if there is none.
+    """
     most, found = 0.0, ""
     turns = straights = 0
     for a, b in zip(kept, lost, strict=True):
@@ -87,9 +91,9 @@ def _figure(element: Element, measure: Measure) -> str:
 
 
 def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
-    """Returns the pairs among the results of one cell, the nearest first.
+    """Returns the pairs among the results of one cell, the closest pair first.
 
-    Every failure is paired with its nearest relative that passed; each test is in one pair at most.
+    Every failure is paired with the nearest corresponding road that passed; each test is in at most one pair.
     """
     roads = {
         r.number: elements_of(r.design.segments)
@@ -102,7 +106,7 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
 
 def paired(roads: dict[int, Elements], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """Returns the same pairs, for roads by the numbers of their tests."""
+    """Returns the pairs as ``pairs_of`` does, from roads by the number of their test."""
     rows: dict[tuple[float, ...], list[int]] = {}
     for number in kept:
         rows.setdefault(_row(roads[number]), []).append(number)

@@ -5,7 +5,9 @@ from roadgpt.chat import ChatSettings, Spent
 
 
 class BudgetAllocator:
-    """Gives each test no more than what is left if all others spend their whole allowance."""
+    """Divides a limit of tokens and money among running tests, so that they stay within it even if each
+    spends its whole allowance.
+    """
 
     def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
         """Takes the limits, and the tokens and USD that were spent before."""
@@ -15,13 +17,13 @@ class BudgetAllocator:
 
     @property
     def is_bounded(self) -> bool:
-        """True if there is any limit."""
+        """True if tokens or money are limited."""
         return self._limits != Allowance()
 
     def share(self, tests: int) -> Allowance:
-        """Returns the allowance of each of some more tests.
+        """Returns the allowance of each of ``tests`` further tests.
 
-        Together they get half of what is left, so that more tests can follow.
+        Together the tests get half of what is left, so that more tests can follow.
         """
         tokens, cost = self._left()
         return Allowance(
@@ -30,17 +32,17 @@ class BudgetAllocator:
         )
 
     def all(self) -> Allowance:
-        """Returns everything that is left."""
+        """Returns an allowance of all tokens and money that are left."""
         tokens, cost = self._left()
         return Allowance(None if tokens is None else int(tokens), cost)
 
     def give(self, key: int, allowance: Allowance) -> None:
-        """Reserves the allowance of a test that begins."""
+        """Reserves the allowance of a test that begins; ``key`` identifies the test."""
         if self.is_bounded:
             self._given[key] = allowance
 
     def back(self, key: int, spent: Spent | None) -> None:
-        """Releases the allowance of a test that has ended, and counts what it spent."""
+        """Releases the allowance of a test that has ended, and subtracts what the test spent."""
         self._given.pop(key, None)
         if spent is not None:
             self._spent[0] += spent.usage.total
@@ -55,7 +57,7 @@ class BudgetAllocator:
         return None if tokens is None else max(tokens, 0), None if cost is None else max(cost, 0.0)
 
     def sentence(self, folder: object) -> str:
-        """Says why nothing more can be asked, and how to continue."""
+        """Returns a message that says which limit was reached and how to continue the campaign."""
         tokens, cost = self._limits
         limit = f"{cost:g} USD" if tokens is None or (cost and self._left()[1] == 0) else f"{tokens:,} tokens"
         so_far = f"{self._spent[0]:,.0f} tokens and {self._spent[1]:.4f} USD are spent"

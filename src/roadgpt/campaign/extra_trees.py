@@ -1,9 +1,9 @@
 """Extremely randomised trees for regression (Geurts, Ernst and Wehenkel 2006), on numpy alone.
 
-Every tree sees all samples. A node draws one threshold per feature, evenly between the least and the largest
-value that its samples have, and splits at the threshold that leaves the least sum of squared errors. All
-nodes of one depth, of all trees, are split together. The rules are those of scikit-learn's
-``ExtraTreesRegressor``, whose regression the tests hold this one against.
+Every tree learns from all samples. Each node draws one threshold per feature, uniformly between the smallest
+and the largest value in its samples, and splits at the threshold that gives the smallest sum of squared
+errors. All nodes of one depth, of all trees, are split together. The algorithm is that of scikit-learn's
+``ExtraTreesRegressor``; the tests compare the two.
 """
 
 from typing import NamedTuple
@@ -18,20 +18,22 @@ CONSTANT = 1e-7  # a feature that varies by less within a node splits nothing
 
 
 class Forest(NamedTuple):
-    """Trees, as the rows of all their nodes; the roots come first."""
+    """Regression trees, stored as arrays with one row per node; the rows of the roots come first."""
 
     feature: NDArray[np.intp]
-    """The feature ``(nodes,)`` that a node splits at; -1 for a leaf."""
+    """The feature ``(nodes,)`` at which each node splits; -1 for a leaf."""
     threshold: Array
-    """The largest value ``(nodes,)`` of that feature that goes to the left child."""
+    """The threshold ``(nodes,)`` of each node: samples up to this value of the feature go to the left
+    child.
+    """
     left: NDArray[np.intp]
-    """The row ``(nodes,)`` of the left child; the right one has the next row."""
+    """The row ``(nodes,)`` of each node's left child; the right child is in the next row."""
     value: Array
-    """The mean ``(nodes, k)`` of the targets of a node's samples."""
+    """The mean target ``(nodes, k)`` of the samples in each node."""
     trees: int
 
     def predict(self, samples: Array) -> Array:
-        """Returns what each tree expects ``(trees, n, k)`` of samples ``(n, features)``."""
+        """Returns the prediction of each tree, ``(trees, n, k)``, for samples ``(n, features)``."""
         at = np.tile(np.arange(self.trees)[:, None], len(samples))
         every = np.arange(len(samples))
         while (inner := self.feature[at] >= 0).any():
@@ -41,14 +43,14 @@ class Forest(NamedTuple):
 
 
 def grow(samples: Array, targets: Array, trees: int, least: int, seed: int) -> Forest:
-    """Returns a forest that has learnt the targets; the same arguments give the same forest.
+    """Returns a forest trained on samples and targets; the same arguments give the same forest.
 
     Args:
-        samples: features of known cases, ``(n, features)``, finite.
-        targets: what is to be predicted of each, ``(n, k)``, best scaled to unit variance.
+        samples: features ``(n, features)`` of the training samples, finite.
+        targets: values ``(n, k)`` to predict for each sample, preferably scaled to unit variance.
         trees: number of trees.
         least: smallest number of samples in a leaf.
-        seed: of the thresholds.
+        seed: seed of the random thresholds.
     """
     rng = np.random.default_rng(seed)
     rows = np.tile(np.arange(len(samples)), trees)  # samples of the nodes at this depth, node after node

@@ -41,12 +41,12 @@ USER_NAMES = {
 
 
 def begin(plan: Plan, folder: Path) -> bool:
-    """Prepares the folder of a campaign: a new one, or one that holds the same campaign already.
+    """Prepares a campaign's folder: makes it, or checks that it already holds the same campaign.
 
-    Reads the descriptions of a new campaign.
+    The descriptions of a new campaign are interpreted here.
 
     Returns:
-        True if the campaign was there before.
+        True if the folder held the campaign already.
 
     Raises:
         UsageError: the plan cannot be carried out, or the folder holds something else.
@@ -163,21 +163,21 @@ def _lone(folder: Path) -> Iterator[None]:
 def work(
     folder: Path, workers: int = 1, executor: str = "processes", address: str = "", plan: Plan | None = None
 ) -> Iterator[Progress]:
-    """Runs the tests that the campaign in a folder lacks; iterate over it to make it work.
+    """Runs the tests of a campaign that have not ended; the work happens while the caller iterates.
 
     Args:
-        folder: made by ``begin``.
-        workers: how many.
+        folder: the campaign's folder, made by ``begin``.
+        workers: number of workers.
         executor: name of an installed executor.
-        address: of the workers, for executors that connect to other machines.
-        plan: the plan with other limits than those in the store; None: the stored plan.
+        address: address of the workers, for executors that connect to other machines.
+        plan: the campaign's plan with changed limits; None: the stored plan.
 
     Yields:
         The progress, after every group of results.
 
     Raises:
-        UsageError: there is no campaign, or another process is at work on it, or a plug-in is not installed.
-        ChatError: a language model could not be asked, or a limit is reached; what is done is stored.
+        UsageError: there is no campaign, or another process is working on it, or a plug-in is not installed.
+        ChatError: a language model could not be asked, or a limit is reached; finished tests are stored.
         RoadGPTError: the system refuses to write, or there are no workers.
     """
     kind: type[Executor] = plugins.find("executors", executor)

@@ -1,4 +1,6 @@
-"""The values of a campaign: what is asked for, the results of tests, and what the tests of a cell share."""
+"""Data types of campaigns: budgets, cells, proposed tests and their results, and the interfaces of
+generators and workers.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -22,11 +24,11 @@ U = TypeVar("U")
 
 
 class Budget(Frozen):
-    """The limits of a cell, which is done when it reaches the first of them."""
+    """The limits of a cell; the cell is done when it reaches either of them."""
 
     tests: Annotated[int, Field(ge=1, le=MOST_TESTS)] | None = None
     seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
-    """Seconds on the clock, over all sessions; once they have passed, no further batch is begun."""
+    """Wall-clock seconds over all sessions, after which no further batch is begun; None: no limit."""
 
     @property
     def most(self) -> int:
@@ -42,11 +44,11 @@ class Proposal:
     """A test that a generator asks for."""
 
     design: Design | None
-    """The road; None: a worker drafts it from the cell's Brief, as road ``number`` of a campaign with this
-    seed, and
-    so that it differs from the designs of the batches that the generator was told of."""
+    """The road's design. None: a worker drafts the road from the cell's Brief, as road ``number`` with
+    this seed, different from the designs in the batches that the generator has received.
+    """
     seed: int
-    """The seed of the draft; where a design is given, the driver's own seed."""
+    """Seed of the draft; if a design is given, seed of the driver."""
     origin: str
     """Where the road comes from, as tables show it: 'draft', 'vary 17', 'cross 3+9', 'walk'."""
 
@@ -55,7 +57,7 @@ class Proposal:
 class Result:
     """The result of one test.
 
-    It holds only what does not depend on the day, the load of the machine or the number of workers.
+    It holds only values that do not depend on the time, the load of the machine or the number of workers.
     """
 
     number: int
@@ -65,41 +67,46 @@ class Result:
     proposal: Proposal
     outcome: Outcome
     description: str
-    """The outcome in a sentence."""
+    """One sentence that describes the outcome."""
     design: Design | None = None
     """The road that was driven; None where no road could be designed."""
     length: float = 0.0
-    """Length of the road in plan, metres; 0 where there is no road."""
+    """Length of the road seen from above, metres; 0 if there is no road."""
     margin: float | None = None
-    """Metres, see ``roadgpt.verdict.margin``; None where the road was not driven."""
+    """Margin to out of bounds, metres, see ``roadgpt.verdict.margin``; None if the road was not driven."""
     max_oob: float | None = None
     """Largest share of the car outside its lane, 0 to 1."""
     beyond: float | None = None
-    """Largest distance of the car's body beyond the marking, metres; None also in stores of earlier versions.
+    """Largest distance of the car's body beyond the lane marking, metres; None if not driven or not
+    recorded by an earlier version.
     """
     at_s: float | None = None
-    """Station of the failure, metres along the road."""
+    """Station of the failure, metres along the road; None if the car did not fail."""
     side: Side | None = None
     cause: Cause | None = None
     features: Mapping[str, float] = field(default_factory=dict)
-    """Features of road and drive: ``run.features.features_of`` and ``campaign.behaviour.behaviour_of``."""
+    """Features of road and drive by name, see ``run.features.features_of`` and
+    ``campaign.behaviour.behaviour_of``.
+    """
 
     @property
     def failed(self) -> bool:
-        """True if the car failed on a road that the rules allow."""
+        """True if the car failed on a valid road."""
         return self.outcome == "FAIL"
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One combination of a plan, and what all its tests share."""
+    """One combination of a plan's prompts, designers, drivers and so on, with everything that its tests
+    share.
+    """
 
     name: str
     """'c01', 'c02', ..., in the order of the plan."""
     request: Request
     """Description, seed, world and setup, as for ``roadgpt run``."""
     brief: Brief | None
-    """The requirements that were read from the description, once; None where there is no description."""
+    """The requirements read from the description; None if there is no description."""
     generator: str
     goal: Goal | None
     settings: Mapping[str, Any] = field(default_factory=dict)
@@ -108,46 +115,45 @@ class Cell:
 
 
 class Pool(Protocol):
-    """The workers of a campaign, for the pure work of a generator: candidates, features, predictions."""
+    """The workers of a campaign, on which a generator can run functions without side effects."""
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns ``function`` of every item, in the order of the items.
+        """Returns the results of ``function`` for all items, in the order of the items.
 
-        The function has to stand at the top level of a module. An error that it raises is raised here again.
+        The function must be defined at the top level of a module. An error that it raises is raised here
+        again.
         """
         ...
 
 
 class Generator(Protocol):
-    """Proposes tests, batch by batch; it is made with a Cell.
+    """Proposes tests, batch by batch; a generator is constructed with a Cell.
 
-    Before it is asked for batch k, it has been told all results of batches 0 to k - 2, in order of their
-    numbers,
-    and no others. Its state may depend only on its cell and on these results, and its random numbers in a
-    batch
-    come from ``np.random.default_rng([cell.request.seed, k])``. Therefore a campaign has the same table for
-    any
-    number of workers, and however often it is interrupted.
+    Before batch k is requested, the generator has received the results of batches 0 to k - 2, in order of the
+    test numbers, and no later results. Its state may depend only on its cell and on these results, and its
+    random numbers in a batch come from ``np.random.default_rng([cell.request.seed, k])``. Therefore a
+    campaign's results depend neither on the number of workers nor on interruptions.
 
-    A generator that searches names in ``goals`` what it can search for. One without ``goals`` does not
-    search,
-    and its cells have no goal.
+    The attribute ``goals`` of a generator that searches lists the goals that it supports. A generator without
+    ``goals`` does not search, and its cells have no goal.
     """
 
     batch_size: int
-    """Tests in one batch, about 10 to 20; up to two batches are running at a time."""
+    """Number of tests in one batch, about 10 to 20; up to two batches run at the same time."""
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Returns the next n tests, or fewer where there is nothing left to propose.
+        """Returns the next n tests, or fewer if there is nothing left to propose.
 
         Args:
             batch: number of the batch, from 0.
             first: number of its first test, from 1.
-            n: number of tests, at most ``batch_size``.
-            pool: the workers of the campaign, for work that takes long.
+            n: number of tests to return, at most ``batch_size``.
+            pool: the workers of the campaign, for long computations.
         """
         ...
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Receives the results of one batch, in order of their numbers; takes less than 1 ms for each."""
+        """Receives the results of one batch, in order of the test numbers; must take less than 1 ms per
+        result.
+        """
         ...

@@ -1,6 +1,6 @@
 """Mutations of a road's elements: each is a pure function that draws from a given random generator.
 
-A mutation does not look at what was asked for: ``variation`` checks every road afterwards.
+A mutation may violate the road's requirements; ``variation`` checks every mutated road afterwards.
 """
 
 from collections.abc import Callable
@@ -34,17 +34,17 @@ class Mutation(NamedTuple):
     make: Callable[[Elements, Rng, World], Elements]
     weight: float
     is_numeric: bool
-    """True if it keeps the sequence of turns and straights and changes numbers only."""
+    """True if the mutation keeps the sequence of turns and straights and changes only numbers."""
 
 
 def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) -> Elements:
-    """Applies one to three mutations, one after the other.
+    """Returns the elements after one to three random mutations, applied one after the other.
 
     Args:
-        elements: of a road.
+        elements: the turns and straights of a road.
         rng: the random generator.
-        world: gives the limits of radii and grades.
-        numeric: probability that only lengths, angles, radii and slopes change.
+        world: determines the limits of radii and grades.
+        numeric: probability, 0 to 1, that only lengths, angles, radii and slopes change.
     """
     names = [name for name, change in MUTATIONS.items() if change.is_numeric]
     if rng.random() >= numeric:
@@ -62,12 +62,12 @@ def crossed_over(one: Elements, other: Elements, rng: Rng) -> Elements:
 
 
 def interpolated(one: Elements, other: Elements, share: float) -> Elements | None:
-    """Returns the road between two whose turns and straights correspond; None where they do not.
+    """Returns a road between two roads; None unless their sequences of turns and straights correspond.
 
     Args:
-        one: the road at share 0.
-        other: the road at share 1.
-        share: 0 to 1.
+        one: the road that is returned for share 0.
+        other: the road that is returned for share 1.
+        share: position between the two roads, 0 to 1.
     """
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return None
@@ -89,7 +89,7 @@ def interpolated(one: Elements, other: Elements, share: float) -> Elements | Non
 
 
 def mirrored(elements: Elements, rng: Rng, world: World) -> Elements:
-    """Turns every left turn into a right one, and every right one into a left one."""
+    """Returns the road with every left turn replaced by a right turn, and every right turn by a left turn."""
     del rng, world
     return tuple(element._replace(turn=-element.turn) if element.turn else element for element in elements)
 

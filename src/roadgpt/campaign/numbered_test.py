@@ -1,14 +1,18 @@
-"""The name of one test: ``c01/17`` in a campaign, ``17`` in a folder of runs."""
+"""The name of a test: cell and number, such as ``c01/17``, in a campaign; the number alone in a folder of
+runs.
+"""
 
 from typing import NamedTuple
 
 
 class NumberedTest(NamedTuple):
-    """Cell and number of a test; as text, what a command takes behind the folder: ``roadgpt view
-    hard/c01/17``."""
+    """Cell and number of a test.
+
+    As text it is the part after the folder's name in a command: ``c01/17`` in ``roadgpt view hard/c01/17``.
+    """
 
     cell: str
-    """Name of the cell; empty in a folder of runs."""
+    """Name of the test's cell; empty for a run in a folder of runs."""
     number: int
 
     def __str__(self) -> str:

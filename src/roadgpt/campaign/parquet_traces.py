@@ -1,7 +1,7 @@
-"""Traces of stores that earlier versions of RoadGPT wrote: Apache Parquet files, which pyarrow reads.
+"""Reads drives that earlier versions of RoadGPT stored as Apache Parquet files; this needs pyarrow.
 
-A row is one step of a drive, in whole steps as in ``traces``; ``cell`` and ``number`` say whose it is, and
-the metadata under ``roadgpt`` holds the drives' headers.
+A row is one time step of a drive, as integers in the units of ``traces``. The columns ``cell`` and ``number``
+identify the test, and the metadata under ``roadgpt`` holds the headers of the drives.
 """
 
 import json
@@ -16,7 +16,7 @@ from roadgpt.errors import UsageError
 
 
 def read_parquet(path: Path, cell: str, number: int) -> tuple[dict[str, Any], dict[str, NDArray[np.int32]]]:
-    """Returns the header of one drive, and its columns in whole steps.
+    """Returns the header of one drive, and its columns as integers in the units of ``traces``.
 
     Raises:
         UsageError: pyarrow is not installed.

@@ -1,4 +1,4 @@
-"""Plans as TOML files. A mistake is reported with its key and with advice."""
+"""Reads plans of campaigns from TOML files; an error names the key and says how to correct it."""
 
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -35,7 +35,7 @@ ADVICE = {
     "model_type": "give a table",
     "dict_type": "give a table",
 }
-"""Advice on mistakes, by pydantic's names for them."""
+"""Advice to the user on each kind of mistake, by pydantic's name for it."""
 
 
 def _listed(value: Any) -> Any:
@@ -53,7 +53,7 @@ class _Strict(BaseModel):
 
 
 class WorldTable(_Strict):
-    """The table ``[world]``, in the units that people use."""
+    """The table ``[world]`` of a plan file, in the units of the command line."""
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     lane_width: Annotated[float, Field(ge=2, le=10)] = 4.0

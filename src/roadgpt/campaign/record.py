@@ -1,4 +1,4 @@
-"""Reads a campaign's store, also while another process works on the campaign."""
+"""Reads a campaign's store, even while another process is working on the campaign."""
 
 import sqlite3
 from collections.abc import Iterator, Sequence
@@ -61,7 +61,7 @@ def no_campaign(folder: Path) -> UsageError:
 
 @dataclass
 class Batch:
-    """One batch of a cell, and how many of its tests have not ended."""
+    """One batch of a cell, and the number of its tests that have not ended."""
 
     number: int
     first: int
@@ -83,7 +83,7 @@ class Record:
         """Opens the record of the campaign in a folder.
 
         Raises:
-            UsageError: there is none, or it is damaged or of another version.
+            UsageError: there is no store, or it is damaged or of another version.
         """
         return cls._opened(folder, "ro")
 
@@ -122,7 +122,7 @@ class Record:
         return self.path.parent
 
     def close(self) -> None:
-        """Closes the file; everything that was committed is in it."""
+        """Closes the file; all committed transactions are in it."""
         self._db.close()
 
     def __enter__(self) -> Self:
@@ -132,7 +132,7 @@ class Record:
         self.close()
 
     def query(self, sql: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
-        """Returns all rows of a SELECT; for counts and groups, not for a million rows."""
+        """Returns all rows of a SELECT as a list; use ``stream`` for large results."""
         with reading_store(self.path):
             return self._db.execute(sql, values).fetchall()
 
@@ -148,7 +148,7 @@ class Record:
             yield row
 
     def meta(self, name: str) -> str:
-        """Returns the value of ``plan``, ``versions`` or ``finished``."""
+        """Returns the value that the table ``meta`` has for ``plan``, ``versions`` or ``finished``."""
         return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
 
     def cells(self) -> list[Cell]:
@@ -167,7 +167,7 @@ class Record:
         """Returns one cell.
 
         Raises:
-            UsageError: there is none of that name.
+            UsageError: there is no cell of that name.
         """
         found = self.query("SELECT cell FROM cells WHERE name = ?", (name,))
         if not found:
@@ -191,7 +191,9 @@ class Record:
     def results_by_cell(
         self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
     ) -> Iterator[tuple[str, Result]]:
-        """Yields the same results, each with the name of its cell."""
+        """Yields the name of the cell and the result of each test that ``results`` yields for the same
+        arguments.
+        """
         chosen, names = ("tests.cell = ? AND", [cell]) if cell is not None else ("", [])
         sql = (
             f"SELECT {RESULT} FROM tests JOIN details USING (cell, number) "  # noqa: S608 - our own words
@@ -203,7 +205,7 @@ class Record:
             yield found
 
     def result(self, cell: str, number: int) -> Result:
-        """Returns one result.
+        """Returns the result of one test.
 
         Raises:
             UsageError: there is no such test, or it has not ended.
@@ -213,12 +215,12 @@ class Record:
         raise UsageError(f"{self.path.parent} holds no result of test {number} of {cell}")
 
     def batches(self, cell: str) -> list[Batch]:
-        """Returns the batches of a cell that were asked for, in order."""
+        """Returns the batches of a cell that have been requested, in order."""
         rows = self.query("SELECT batch, first, n, left FROM batches WHERE cell = ? ORDER BY batch", (cell,))
         return [Batch(*row) for row in rows]
 
     def waiting(self, cell: str) -> list[tuple[int, int, Proposal]]:
-        """Returns number, batch and proposal of the tests of a cell that have not ended."""
+        """Returns number, batch and proposal of each test of a cell that has not ended."""
         rows = self.query(
             "SELECT tests.number, batch, seed, origin, design FROM tests JOIN details USING (cell, number) "
             "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",
@@ -231,18 +233,18 @@ class Record:
             ]
 
     def spent(self) -> tuple[int, float]:
-        """Returns the tokens and USD that language models have cost so far."""
+        """Returns the tokens and the USD spent on language models so far."""
         sql = "SELECT coalesce(sum(tokens), 0), coalesce(sum(cost), 0) FROM "
         tests, other = (self.query(sql + table)[0] for table in ("tests", "sittings"))
         return tests[0] + other[0], tests[1] + other[1]
 
     def trace_file(self, cell: str, number: int) -> str | None:
-        """Returns the name of the file that holds the drive of a test; None where it was not driven."""
+        """Returns the name of the file with the drive of a test; None if the test was not driven."""
         rows = self.query(
             "SELECT file FROM tests JOIN traces USING (trace) WHERE cell = ? AND number = ?", (cell, number)
         )
         return str(rows[0][0]) if rows else None
 
     def feature_names(self) -> list[str]:
-        """Returns the names of all features that any result has, sorted."""
+        """Returns the names of all features that occur in the results, sorted."""
         return [name for (name,) in self.query("SELECT name FROM features ORDER BY name")]

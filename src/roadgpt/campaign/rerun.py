@@ -1,4 +1,4 @@
-"""One test of a campaign: its drive and its Run as the store keeps them, or driven again."""
+"""Returns the drive and the Run of one test of a campaign, from the store or by driving it again."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +21,7 @@ from roadgpt.verdict import Verdict, judge
 
 
 def read_trace(folder: Path, cell: str, number: int) -> Drive:
-    """Returns the drive of a test as the store keeps it: every column at 50 Hz, to half a millimetre.
+    """Returns the stored drive of a test: every column at 50 Hz, positions exact to half a millimetre.
 
     Raises:
         UsageError: there is no campaign or no such test, or it was not driven.
@@ -35,17 +35,16 @@ def read_trace(folder: Path, cell: str, number: int) -> Drive:
 
 
 def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Run:
-    """Returns the Run of a test as the store keeps it; nothing is driven, and no driver's file is read.
+    """Returns the stored Run of a test; nothing is driven, and no driver's file is loaded.
 
-    The road is built from the stored design. The drive is the stored one, to half a millimetre; outcome,
-    margin
-    and place are those of the campaign.
+    The road is built from the stored design. The drive is the stored one, with positions exact to half a
+    millimetre; outcome, margin and the place of a failure are those recorded in the campaign.
 
     Args:
-        folder: of the campaign.
+        folder: the campaign's folder.
         cell: name of the test's cell.
-        number: of the test.
-        has_drive: False leaves out drive and verdict.
+        number: number of the test.
+        has_drive: whether to include drive and verdict.
 
     Raises:
         UsageError: there is no campaign or no such test, it has no road, or its drive cannot be read.
@@ -55,7 +54,7 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 
 
 def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) -> Run:
-    """Returns the Run of a result that was read from an open record; see ``kept_run``."""
+    """Returns the Run of a result that was read from an open Record, as ``kept_run`` does."""
     request, brief = cell.request, cell.brief
     road = build(_design_of(record.folder, cell.name, result), request.setup.geometry)
     drive = _kept_drive(record, cell.name, result.number) if has_drive else None
@@ -126,5 +125,5 @@ def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
 
 
 def is_same(run: Run, result: Result) -> bool:
-    """Checks that a Run has the outcome and the very margin of a stored Result."""
+    """Returns whether a Run has the same outcome and exactly the same margin as a stored Result."""
     return run.outcome == result.outcome and (run.verdict and run.verdict.margin) == result.margin

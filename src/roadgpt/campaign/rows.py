@@ -1,4 +1,4 @@
-"""Converts results and cells to rows of the store and back, without any loss."""
+"""Converts results and cells to rows of the store and back, without loss."""
 
 import json
 import math
@@ -18,7 +18,7 @@ RESULT = (
     "beyond, at_s, "
     "origin, design, description, features"
 )
-"""The columns of a result, of the tables ``tests`` and ``details`` joined."""
+"""The columns of a result in the joined tables ``tests`` and ``details``."""
 
 
 def design_text(design: Design | None) -> str | None:
@@ -34,7 +34,7 @@ def design_of(text: str | None) -> Design | None:
 def proposal_rows(
     cell: str, batch: int, number: int, proposal: Proposal
 ) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """Returns the rows of a test that was asked for, for ``tests`` and for ``details``."""
+    """Returns the rows of a proposed test for the tables ``tests`` and ``details``."""
     given = proposal.design is not None
     return (
         (cell, number, batch, proposal.seed, given),
@@ -43,13 +43,13 @@ def proposal_rows(
 
 
 def result_values(result: Result) -> tuple[Any, ...]:
-    """Returns the values that are set in ``tests`` when a test has ended."""
+    """Returns the values that are written to the table ``tests`` when a test has ended."""
     numbers = (result.length, result.margin, result.max_oob, result.beyond, result.at_s)
     return (result.outcome, result.cause, result.side, *map(_number, numbers))
 
 
 def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
-    """Returns the values that are set in ``details`` when a test has ended."""
+    """Returns the values that are written to the table ``details`` when a test has ended."""
     result = ended.result
     features = {name: float(value) for name, value in sorted(result.features.items()) if math.isfinite(value)}
     texts = (_plain(result.description), json.dumps(features), _plain(ended.error) or None)
@@ -67,7 +67,7 @@ def _number(value: float | None) -> float | None:
 
 
 def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
-    """Returns cell and result of a row with the columns ``RESULT``."""
+    """Returns the name of the cell and the result in a row with the columns ``RESULT``."""
     cell, number, batch, seed, given, outcome, cause, side, length, margin, max_oob, beyond, at_s = row[:13]
     origin, text, description, features = row[13:]
     values = _features_of(features)

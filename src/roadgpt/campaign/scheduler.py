@@ -1,5 +1,6 @@
-"""Schedules the tests of a campaign: hands them to workers, stores their results in groups, and asks for
-more."""
+"""Schedules a campaign's tests: sends them to workers, stores their results in groups, and requests
+further tests.
+"""
 
 import time
 from collections import Counter
@@ -29,7 +30,7 @@ class Progress:
     """The progress of a campaign."""
 
     total: int | None
-    """Number of tests; None where only time limits them."""
+    """Number of tests; None if only time limits it."""
     outcomes: Counter[str] = field(default_factory=Counter)
     cells: int = 0
     """Number of cells that are done."""
@@ -51,7 +52,7 @@ class _Out:
 
 
 class Scheduler:
-    """One session of a campaign: the process that writes the store, and its workers."""
+    """Runs one session of a campaign in the process that writes the store, with its workers."""
 
     def __init__(self, plan: Plan, store: Store, staff: WorkerConfig, kind: type[Executor]) -> None:
         self._store = store
@@ -77,7 +78,7 @@ class Scheduler:
         self.executor = kind(staff)
 
     def run(self) -> Iterator[Progress]:
-        """Works until nothing is left to do; yields the progress after every group of results."""
+        """Runs tests until none is left; yields the progress after every group of results."""
         self._store.begin_session(self._staff.workers)
         while self._error is None:
             look()
@@ -96,7 +97,7 @@ class Scheduler:
         yield self.progress
 
     def leave(self) -> None:
-        """Stores what is done when the work ends early."""
+        """Stores the results so far when the session ends early."""
         self.executor.stop()
         if self._may_write and self._error is None:
             try:

@@ -1,4 +1,6 @@
-"""Shared by the generators that search: settings, candidates, and the proposals that are made of them."""
+"""Code that the searching generators share: their settings, candidate roads, and proposals made from
+candidates.
+"""
 
 from collections.abc import Sequence
 from typing import Annotated, Literal
@@ -21,22 +23,24 @@ DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")
 class SearchSettings(Frozen):
     """Settings of the generators that search.
 
-    A plan has one table of settings for all its generators, so each of them knows all names and ignores those
-    that it does not use: ``batch`` is for all, the others are for ``quality_diversity``.
+    A plan has one table of settings for all its generators, so each generator accepts all names and ignores
+    those that it does not use: all generators use ``batch``, only ``quality_diversity`` uses the others.
     """
 
     batch: Annotated[int, Field(ge=1, le=1000)] = 10
-    """Tests in a batch."""
+    """Number of tests in a batch."""
     axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = ("MAX_CURV", "STD_SA")
-    """Features that span the map."""
+    """Names of the features that are the axes of the map."""
     archive: Literal["grid", "cvt"] = "grid"
-    """"grid": cells of a grid; "cvt": niches around evenly spread centroids."""
+    """Kind of map: "grid" has the cells of a grid, "cvt" the neighbourhoods of evenly spread centroids."""
     cells: Annotated[int, Field(ge=2, le=10_000)] = 25
-    """Number of cells along each axis of a grid, or number of niches."""
+    """Number of cells along each axis of a grid, or number of centroids."""
     candidates: Annotated[int, Field(ge=1, le=100)] = 8
-    """Number of candidates for each road that is driven."""
+    """Number of candidate roads that are predicted for each road that is driven."""
     apart: Annotated[float, Field(ge=0, le=1000)] = 5.5
-    """Smallest distance to every tested road: metres RMS after the best shift, rotation and reflection."""
+    """Smallest allowed distance to every tested road, metres RMS after the best shift, rotation and
+    reflection.
+    """
 
     @field_validator("axes")
     @classmethod
@@ -74,24 +78,25 @@ def settings_of(cell: Cell) -> SearchSettings:
 
 
 def context_of(cell: Cell) -> VariationContext:
-    """Returns what the candidates of a cell share."""
+    """Returns the requirements, world and rules that all candidates of a cell share."""
     return VariationContext(cell.brief, cell.request.world, cell.request.setup.rules)
 
 
 def batch_rng(cell: Cell, batch: int) -> np.random.Generator:
-    """Returns the random generator of one batch."""
+    """Returns the random number generator of a batch."""
     return np.random.default_rng([cell.request.seed, batch])
 
 
 def make_candidates(tasks: Sequence[VariationTask], pool: Pool) -> list[Candidate]:
-    """Makes candidates on the workers; returns those that could be made."""
+    """Makes candidate roads on the workers, and returns those that satisfy all rules and requirements."""
     return [candidate for candidate in pool.map(make_candidate, tasks) if candidate is not None]
 
 
 def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]) -> list[Proposal]:
-    """Returns proposals of candidates.
+    """Returns n proposals made from candidates.
 
-    Where there are fewer candidates than n, the workers draft the rest, if there is a description.
+    If there are fewer than n candidates and the cell has a description, the workers draft the remaining
+    roads.
     """
     seed = cell.request.seed
     found = [
@@ -105,6 +110,6 @@ def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]
 
 
 def is_usable(result: Result) -> bool:
-    """Checks that a road was driven, so that a search can learn from the result."""
+    """Returns whether the road of a result was driven, so that a search can learn from it."""
     is_judged = result.margin is not None and np.isfinite(result.margin)
     return result.design is not None and is_judged and bool(result.features)

@@ -1,4 +1,4 @@
-"""The tests that an argument of a command selects in a folder: all of them, those of a cell, or one.
+"""Finds the tests that a command's argument selects in a folder: all tests, those of one cell, or one test.
 
 hard            all tests of the campaign in the folder ``hard``, or all runs of a folder of runs
 hard/c01        the tests of a cell
@@ -20,8 +20,9 @@ from roadgpt.run import Run, read_run
 from roadgpt.run.folder import RUNS, is_run, run_folder
 
 Choice = Literal["failures", "faults", "worst"]
-"""All failures; a typical failure of each distinct fault; or the failure with the least margin, else the road
-nearest to one."""
+"""Which of the selected tests: "failures", all failures; "faults", a typical failure of each distinct
+fault; "worst", the failure with the smallest margin, or if no test failed, the test nearest to a failure.
+"""
 LONGEST = 255  # bytes of one name, in every file system of today
 DIGITS = 18  # of a number that a store can look for
 WORST = "outcome != 'FAIL', margin IS NULL, margin, max_oob DESC,"  # first
@@ -30,7 +31,7 @@ MOST_NEAR = 3  # names that are offered for a wrong one
 
 @dataclass(frozen=True)
 class Selection:
-    """The tests that a text selects."""
+    """The tests that the text of a command's argument selects."""
 
     said: str
     folder: Path
@@ -45,20 +46,20 @@ class Selection:
         return (self.folder / STORE).is_file()
 
     def of(self, name: NumberedTest) -> "Selection":
-        """Returns the selection of one of its tests, with the text that selects it."""
+        """Returns the selection of a single test of this selection, with the text that selects it."""
         return Selection(f"{self.folder}/{name}", self.folder, name.cell, name.number)
 
     @property
     def stem(self) -> str:
-        """The beginning of the names of files that are made of one test: 'hard-c01-0017'."""
+        """The first part of the names of files made from one selected test, such as 'hard-c01-0017'."""
         parts = (self.folder.resolve().name, self.cell, f"{self.number or 0:04d}")
         return "-".join(part for part in parts if part)
 
     def run(self) -> Run:
-        """Returns the Run of the one selected test as it is stored; nothing is driven.
+        """Returns the stored Run of the selected test; nothing is driven.
 
         Raises:
-            UsageError: it cannot be read, or it has no road.
+            UsageError: the Run cannot be read, or it has no road.
         """
         assert self.number is not None
         if self.is_campaign:
@@ -67,10 +68,11 @@ class Selection:
 
 
 def selection_of(text: str) -> Selection | None:
-    """Returns what a text selects; None where it names a single run, the file of a road, or anything else.
+    """Returns the selection that a text means; None if the text names a single run, a road file, or anything
+    else.
 
     Raises:
-        UsageError: it names a test or a cell that does not exist.
+        UsageError: the text names a test or a cell that does not exist.
     """
     path = Path(text)
     if any(len(part.encode()) > LONGEST for part in path.parts):
@@ -152,11 +154,11 @@ def _runs(folder: Path) -> list[int]:
 
 
 def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
-    """Returns the selected tests, one by one and in order.
+    """Returns the selected tests as selections of one test each, in order.
 
     Args:
-        place: what was selected.
-        choice: which of the selected tests; None: all that have a road.
+        place: the selection.
+        choice: which of its tests to return; None: all tests that have a road.
 
     Raises:
         UsageError: a file cannot be read.
@@ -200,7 +202,7 @@ def _of_runs(place: Selection, choice: Choice | None) -> list[NumberedTest]:
 
 
 def near(text: str) -> Sequence[str]:
-    """Returns paths that exist and resemble one that does not, as they can be typed."""
+    """Returns existing paths that resemble a path that does not exist, in a form that can be typed."""
     path = Path(text)
     while path.parent != path and not path.parent.exists():
         path = path.parent

@@ -20,7 +20,7 @@ CONCERNS_ALL = (PartError, UsageError, ChatError)  # what one test cannot be bla
 
 
 class Allowance(NamedTuple):
-    """The limits of one test for asking a language model; None: no limit."""
+    """The tokens and money that one test may spend on a language model; None: no limit."""
 
     tokens: int | None = None
     cost: float | None = None
@@ -32,7 +32,7 @@ NO_TIME = Seconds()
 
 @dataclass(frozen=True)
 class Task:
-    """A test to be run."""
+    """A test that a worker is to run."""
 
     number: int
     batch: int
@@ -42,28 +42,30 @@ class Task:
 
 @dataclass(frozen=True)
 class FinishedTest:
-    """A test that has ended: its result, and what may differ when it is run again."""
+    """A test that has ended: its result, and data that may differ if it is run again, such as times."""
 
     result: Result
     trace: Trace | None = None
     seconds: Seconds = NO_TIME
     spent: Spent | None = None
     error: str = ""
-    """The traceback of a test that failed."""
+    """The traceback if the test raised an error; else empty."""
     is_lost: bool = False
-    """True if the simulator itself failed."""
+    """True if the simulator itself failed, so that the test says nothing about the road."""
 
 
 @dataclass(frozen=True)
 class OutOfAllowance:
-    """A test whose allowance was too small; it has to be run again."""
+    """A test that did not finish because its allowance was too small; it has to be run again."""
 
     spent: Spent
     sentence: str
 
 
 class WorkerSetup:
-    """Prepares a worker for setups: imports and compiles what they need."""
+    """Prepares a worker process: imports and compiles what the drivers and simulators of the campaign
+    need.
+    """
 
     def __init__(self, setups: tuple[Setup, ...]) -> None:
         self.setups = setups
@@ -84,9 +86,9 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
     """Runs one test.
 
     Args:
-        task: the test.
-        cell: what it shares with others.
-        earlier: designs that a draft has to differ from, block by block.
+        task: the test to run.
+        cell: the test's cell.
+        earlier: designs that a drafted road has to differ from, one tuple per block.
 
     Raises:
         PartError, UsageError, ChatError: an error that every other test would meet as well.
@@ -119,7 +121,7 @@ def run_of(
     earlier: tuple[tuple[Design, ...], ...] = (),
     meter: Meter | None = None,
 ) -> Run:
-    """Returns the Run of a test; raises what ``run.perform`` and ``run.prove`` raise."""
+    """Returns the Run of a test; raises the errors that ``run.perform`` and ``run.prove`` raise."""
     request = cell.request
     if proposal.design is not None:
         return prove(proposal.design, proposal.seed, request.world, request.setup, number, cell.brief)
@@ -129,12 +131,14 @@ def run_of(
 
 
 def seed_of_driver(number: int, proposal: Proposal) -> int:
-    """Returns the seed with which test ``number`` is driven, and drafted if it is a draft."""
+    """Returns the seed with which test ``number`` is driven; if the test is a draft, the road is drafted
+    with it as well.
+    """
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
 
 
 def result_of(run: Run, cell: Cell, task: Task) -> Result:
-    """Returns what a campaign stores of a Run."""
+    """Returns the part of a Run that a campaign stores as the test's result."""
     verdict = run.verdict
     features: dict[str, float] = {}
     if run.is_valid and run.road is not None:

@@ -1,4 +1,4 @@
-"""The state of a campaign, also while a process works on it; SQLite counts, so rows are never loaded."""
+"""Returns the state of a campaign, even while a process is working on it; SQLite counts the tests."""
 
 import time
 from collections import Counter
@@ -30,15 +30,17 @@ class CellStatus:
     asked: int
     outcomes: Mapping[str, int]
     least_margin: float | None
-    """Metres, over drives that kept their lane; a drive that leaves it ends within centimetres of 0."""
+    """Smallest margin of the passed tests, metres; failed drives are left out, since they all end near 0."""
     partly_outside: int
     """Number of passed tests in which up to half of the car was outside its lane."""
     mostly_outside: int
     """Number of passed tests in which more than half of the car was outside its lane."""
     max_oob: float | None
-    """Largest share of the car outside its lane, over passed tests."""
+    """Largest share, 0 to 1, of the car that was outside its lane in any passed test."""
     beyond: float | None
-    """Largest distance beyond the marking, metres, over passed tests; None in stores of earlier versions."""
+    """Largest distance beyond the lane marking in any passed test, metres; None in stores of earlier
+    versions.
+    """
     goal: Goal | None
     closed: str | None
     """Why the cell ended before its number of tests was reached; None otherwise."""
@@ -50,7 +52,7 @@ class CellStatus:
 
     @property
     def remark(self) -> str:
-        """A warning about the result: a search for the boundary that found one side only; else empty."""
+        """A warning if a search for the boundary found only passing or only failing roads; else empty."""
         kept, failed = self.outcomes.get("PASS", 0), self.outcomes.get("FAIL", 0)
         driven = kept + failed
         if self.goal != "boundary" or not self.done or (driven and min(kept, failed) >= ONE_SIDED * driven):
@@ -66,7 +68,7 @@ class CellStatus:
 
 @dataclass(frozen=True)
 class Lease:
-    """A test that is running, and its worker."""
+    """A running test, and the worker that runs it."""
 
     cell: str
     number: int
@@ -81,12 +83,12 @@ class Status:
     is_finished: bool
     is_running: bool
     total: int | None
-    """Number of tests; None where only time limits them."""
+    """Number of tests; None if only time limits it."""
     outcomes: Mapping[str, int]
     seconds: float
-    """Seconds that the campaign was worked on."""
+    """Seconds for which the campaign has been worked on, over all sessions."""
     rate: float
-    """Tests per second: over the last minute while the campaign is worked on, else on average."""
+    """Tests per second: over the last minute while the campaign is running, else the average."""
     tokens: int
     cost_usd: float
     cells: tuple[CellStatus, ...]
@@ -99,7 +101,7 @@ class Status:
 
     @property
     def seconds_left(self) -> float | None:
-        """Seconds left at this rate; None where it cannot be known."""
+        """Estimated seconds until the campaign ends; None if that cannot be estimated."""
         if self.is_finished:
             return 0.0
         if self.total is None or self.rate <= 0:
@@ -107,7 +109,7 @@ class Status:
         return (self.total - self.done) / self.rate
 
     def to_json(self) -> dict[str, Any]:
-        """Returns the status as plain data."""
+        """Returns the status as a dictionary that can be written as JSON."""
         return {
             **asdict(self),
             "remarks": [cell.remark for cell in self.cells if cell.remark],
@@ -120,7 +122,7 @@ def status_of(folder: Path) -> Status:
     """Returns the state of the campaign in a folder.
 
     Raises:
-        UsageError: there is none.
+        UsageError: the folder holds no campaign.
     """
     with Record.opened(folder) as record:
         cells = _cells(record)

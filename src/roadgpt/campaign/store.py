@@ -81,14 +81,14 @@ class Store(Record):
         """Makes a store with a plan and its cells, without tests.
 
         Args:
-            folder: of the campaign.
-            plan: as JSON.
-            cells: of the plan.
-            versions: of RoadGPT and the libraries that it works with.
-            spent: what language models cost for reading the descriptions.
+            folder: the campaign's folder.
+            plan: the campaign's plan as JSON.
+            cells: the cells of the plan.
+            versions: versions of RoadGPT and of the libraries that it uses.
+            spent: tokens and money spent on reading the descriptions with a language model.
 
         Raises:
-            RoadGPTError: it cannot be written.
+            RoadGPTError: the file cannot be written.
         """
         path = folder / STORE
         draft = path.with_name(f"{path.name}.part")
@@ -118,7 +118,7 @@ class Store(Record):
         """Opens the store in a folder for writing.
 
         Raises:
-            UsageError: there is none, or it is damaged or of another version.
+            UsageError: there is no store, or it is damaged or of another version.
         """
         refuse_links(folder / STORE)
         store = cls._opened(folder, "rw")
@@ -147,14 +147,14 @@ class Store(Record):
                 raise
 
     def close(self) -> None:
-        """Closes the file; the file of a finished campaign may then be copied and made read-only."""
+        """Closes the file; once the campaign is finished, the file may be copied and made read-only."""
         with suppress(sqlite3.Error):  # somebody reads it at this moment
             if self.meta("finished"):
                 self._db.execute("PRAGMA journal_mode = DELETE")
         super().close()
 
     def begin_session(self, workers: int) -> None:
-        """Begins a session; leases of earlier sessions end."""
+        """Begins a session, and deletes the leases of earlier sessions."""
         now = time.time()
         with self._whole() as db:
             db.execute("DELETE FROM leases")
@@ -184,7 +184,7 @@ class Store(Record):
             )
 
     def reopen(self, cell: str, number: int, batch: int) -> None:
-        """Makes a test that ended without a drive one that has not ended."""
+        """Marks a test that ended without a drive as not ended, so that it is run again."""
         with self._whole() as db:
             db.execute(
                 "UPDATE tests SET outcome = NULL, cause = NULL, side = NULL, length = NULL, margin = NULL, "
@@ -201,7 +201,7 @@ class Store(Record):
             db.execute("UPDATE batches SET left = left + 1 WHERE cell = ? AND batch = ?", (cell, batch))
 
     def close_cell(self, cell: str, why: str) -> None:
-        """Records that no further batch of a cell will be asked for, and why."""
+        """Records that no further batch of a cell will be requested, and the reason."""
         with self._whole() as db:
             db.execute("UPDATE cells SET closed = ? WHERE name = ?", (why, cell))
 
@@ -211,12 +211,12 @@ class Store(Record):
             db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
 
     def set_plan(self, plan: str) -> None:
-        """Replaces the plan by one that differs in limits only."""
+        """Replaces the plan by one that differs only in its limits."""
         with self._whole() as db:
             db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))
 
     def spend(self, spent: Spent) -> None:
-        """Counts what a language model cost outside of tests."""
+        """Adds tokens and money that a language model cost outside of tests."""
         with self._whole() as db:
             db.execute(
                 "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?",
@@ -224,7 +224,7 @@ class Store(Record):
             )
 
     def next_trace(self) -> int:
-        """Returns the number of the next file of drives."""
+        """Returns the number of the next file of drives to write."""
         return int(self.query("SELECT coalesce(max(trace), 0) + 1 FROM traces")[0][0])
 
     def keep(
@@ -237,10 +237,10 @@ class Store(Record):
         """Stores a group of results in one transaction.
 
         Args:
-            ended: names of cells, and their tests that have ended.
-            trace: number and name of the file that holds their drives.
-            leases: cell and number of tests that are running, who runs them, and until when at most.
-            seconds: that cells have taken since the last group.
+            ended: finished tests, each with the name of its cell.
+            trace: number and name of the file with the drives of these tests.
+            leases: running tests: cell, number, worker, and the latest time at which each must have ended.
+            seconds: seconds that each cell has taken since the last group.
         """
         now = time.time()
         left = Counter((cell, one.result.batch) for cell, one in ended)
@@ -287,7 +287,7 @@ def _refusals(folder: Path) -> Iterator[None]:
 
 
 def refused(folder: Path, error: sqlite3.Error | OSError) -> RoadGPTError:
-    """Returns the error for a system that does not accept what is written."""
+    """Returns the error to raise if the operating system refuses to write a file."""
     reason = (error.strerror if isinstance(error, OSError) else None) or error
     return RoadGPTError(
         f"cannot write into {folder}: {reason}; make room there, then say: roadgpt resume {folder}"

@@ -25,7 +25,7 @@ OUTCOME = "{0} IN ('PASS', 'FAIL', 'INVALID', 'ERROR', 'VALID')"
 SIDE = "{0} IN ('left', 'right')"
 
 LATER = ("beyond",)
-"""Columns of ``tests`` that stores of earlier versions lack; their values are not known there."""
+"""Columns of ``tests`` that stores of earlier versions lack."""
 NUMBERS = (
     "length",
     "margin",
@@ -59,20 +59,21 @@ TABLES: dict[str, dict[str, str]] = {
     "sittings": dict.fromkeys(("begun", "seen", "workers", "is_over", "tokens", "cost"), NUMBER),
     "features": {"name": TEXT},
 }
-"""The condition, in SQL, on the values of each column; an empty one: the column is checked when it is read.
+"""The SQL condition that the values of each column must satisfy; empty for columns that are checked when
+they are read.
 """
 META = ("finished", "plan", "versions")
 BUSY = {
     sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
     sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_PERM, sqlite3.SQLITE_INTERRUPT,
 }  # fmt: skip
-"""Errors of the moment, which say nothing about the content of the store."""
+"""SQLite's temporary errors, which do not mean that the store is damaged."""
 
 _checked: set[tuple[str, int]] = set()
 
 
 def damaged(path: Path, why: object) -> UsageError:
-    """Returns the error for a store that is not as RoadGPT wrote it."""
+    """Returns the error to raise for a store with content that RoadGPT never writes."""
     reason = " ".join(str(why).split())[:160]
     return UsageError(
         f"{path} is damaged, or not as roadgpt wrote it ({reason}); "
@@ -82,7 +83,7 @@ def damaged(path: Path, why: object) -> UsageError:
 
 @contextmanager
 def reading_store(path: Path) -> Iterator[None]:
-    """Turns the errors of code that uses the content of a store into one clear sentence."""
+    """Turns errors raised by code that uses a store's content into one clear message."""
     try:
         yield
     except sqlite3.Error as error:
@@ -97,7 +98,7 @@ def check_store(path: Path, db: sqlite3.Connection) -> None:
     """Checks a store's tables, once per process.
 
     Raises:
-        UsageError: a table is missing, or holds what RoadGPT never writes.
+        UsageError: a table is missing, or holds values that RoadGPT never writes.
     """
     key = (str(path.absolute()), path.stat().st_ino)
     if key in _checked:

@@ -1,8 +1,9 @@
-"""A surrogate of the simulator: predicts how a drive on a road will end, and shows how sure it is.
+"""A surrogate model of the simulator: predicts how a drive on a road will end, and how uncertain that is.
 
-It is a forest of extremely randomised trees that learns from the tests so far (``extra_trees``). Where the
-trees disagree, little is known. On drives of our own it told failures after 50 tests (AUC 0.99), where ridge
-regression on the same features and their squares needed several hundred; see docs/explanation/search.md.
+It is a forest of extremely randomised trees (``extra_trees``) that learns from the tests so far. The spread
+of the trees' predictions shows the uncertainty. On our drives it separated failures from passes after 50
+tests (AUC 0.99); ridge regression on the same features and their squares needed several hundred; see
+docs/explanation/search.md.
 """
 
 from collections.abc import Sequence
@@ -22,7 +23,7 @@ MOST = 1500  # roads that are learnt from: the last ones
 
 
 class Surrogate:
-    """Predicts the outcomes of drives on roads that have not been driven."""
+    """Predicts the outcomes of drives on roads that have not been driven yet."""
 
     def __init__(self, features: Sequence[Array], outcomes: Sequence[Sequence[float]]) -> None:
         """Learns from the last ``MOST`` roads.
@@ -39,10 +40,14 @@ class Surrogate:
         self._forest = grow(np.asarray(features[-MOST:], float), targets, TREES, LEAF, seed=0)
 
     def opinions(self, features: Sequence[Array]) -> Array:
-        """Returns what every tree expects of roads, ``(TREES, n, k)``, in the units of the outcomes."""
+        """Returns the predictions of every tree for roads, ``(TREES, n, k)``, in the units of the
+        outcomes.
+        """
         return np.asarray(self._forest.predict(np.asarray(features, float)) * self._scale + self._mean)
 
 
 def target_of(margin: float, failed: bool) -> float:
-    """Returns the margin in metres that the surrogate learns for a drive."""
+    """Returns the margin, in metres, that the surrogate is trained on for a drive; all failures get the
+    same one.
+    """
     return FAILED if failed else margin

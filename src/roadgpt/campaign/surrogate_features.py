@@ -1,4 +1,4 @@
-"""Features of a road that predict how near a car will come to leaving its lane, before anyone drives.
+"""Features of a road that predict, without a drive, how close a car will come to leaving its lane.
 
 The best predictor of recorded outcomes is the curvature of the right lane's middle, k / (1 + 2k), averaged
 over some metres, outside the first 25 m and the last 8 m: the car starts from rest, and the test ends 8 m
@@ -40,7 +40,7 @@ NAMES = (
 
 
 def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
-    """Returns the features of a road, ``(len(NAMES),)``, each scaled to about 1."""
+    """Returns the features of a road, ``(len(NAMES),)``, each scaled to a magnitude of about 1."""
     samples = road.sample()
     kept = (samples.s >= STARTING) & (samples.s <= road.length - ENDING)
     if np.count_nonzero(kept) < 2:
@@ -71,7 +71,9 @@ def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
-    """Returns how hard roads look before anything is learnt: the largest lane curvature over 13 m."""
+    """Returns how hard roads look before any test: their largest curvature of the lane, averaged over 13
+    m.
+    """
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]
     return np.asarray(table[:, columns].max(axis=1))

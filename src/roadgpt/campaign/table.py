@@ -1,9 +1,9 @@
-"""The tables of a campaign: the same bytes for any number of workers, and however often it was interrupted.
+"""Writes the tables of a campaign; their bytes depend neither on the number of workers nor on interruptions.
 
-results.csv    one row per test: what was asked for, its outcome, its features
-cells.csv      one row per cell: what its tests share, their numbers by outcome, in how many cells of the map
-               there are failures (over the features of its search, or the usual ones), and how far outside
-               its lane the car was where it passed
+results.csv    one row per test: its proposal, its outcome, and its features
+cells.csv      one row per cell: the values that its tests share, the number of tests with each outcome, the
+               number of cells of the feature map with failures (on the axes of its search, else the default
+               axes), and how far the car was outside its lane in passed tests
 """
 
 import csv

@@ -1,11 +1,11 @@
-"""Traces: the drives of a campaign, every column at 50 Hz, as whole numbers of small steps.
+"""Stores the drives of a campaign compactly: every column at 50 Hz, as integer multiples of small steps.
 
 The drives of a group of tests are one file under ``traces/``, in the format of ``numpy.savez``. Its entry
-``header`` is a line of JSON: the ``columns`` in their order, their ``steps``, and whose ``drives`` the file
-holds. The drive of test 17 of cell c02 is the entry ``c02/17``, whole numbers ``(columns, n)``: the second
-differences of each column in steps, which are near 0 for a car's motion and take little room (12 kB for a
-drive of 28 s). Summed up twice along the rows and multiplied by its step, a row is the column of
-``roadgpt.drive.COLUMNS``, in its unit.
+``header`` is a line of JSON: the ``columns`` in their order, the ``steps`` in which they are measured, and
+the tests whose ``drives`` the file holds. The drive of test 17 of cell c02 is the entry ``c02/17``, integers
+``(columns, n)``: the second differences of each column, in steps, which are near 0 for a car's motion and
+compress well (12 kB for a drive of 28 s). The cumulative sum of a row, taken twice and multiplied by its
+step, is the column of ``roadgpt.drive.COLUMNS`` in its unit.
 
 Stores of earlier versions hold Apache Parquet files instead (``parquet_traces``).
 """
@@ -42,15 +42,15 @@ Whole = NDArray[np.int32]
 
 
 class Trace(NamedTuple):
-    """A Drive in whole steps, as a file holds it."""
+    """A Drive whose values are integer multiples of small steps, as stored in a file."""
 
     header: dict[str, Any]
-    """Driver, simulator, seed, how the drive ended, and the car's sizes."""
+    """Driver, simulator, seed, how the drive ended, and the dimensions of the car."""
     columns: dict[str, Whole]
 
 
 def trace_of(drive: Drive) -> Trace:
-    """Returns a Drive in whole steps."""
+    """Returns a Drive as a Trace: every value rounded to an integer multiple of its step."""
     header = {
         "driver": drive.driver,
         "simulator": drive.simulator,
@@ -62,7 +62,7 @@ def trace_of(drive: Drive) -> Trace:
 
 
 def drive_of(trace: Trace) -> Drive:
-    """Returns the Drive again, to half a step."""
+    """Returns the Drive of a Trace; its values differ from the original by at most half a step."""
     header = dict(trace.header)
     columns = Columns({name: _number(trace.columns[name], STEPS[name]) for name in COLUMNS})
     return Drive(columns=columns, **{**header, "car": Box(**header["car"])})
@@ -82,12 +82,12 @@ def _number(steps: Whole, step: float) -> NDArray[np.float64]:
 def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Trace]]) -> str:
     """Writes a group of drives as one file, and returns the file's name; the same drives give the same bytes.
 
-    The file is whole and on the disk, not in a buffer of the system, when this returns.
+    When this returns, the complete file is on the disk and not only in a buffer.
 
     Args:
-        folder: of the campaign.
-        number: of the file.
-        drives: cell, number of the test, and drive.
+        folder: the campaign's folder.
+        number: number of the file.
+        drives: tuples of cell, number of the test, and drive.
     """
     header = {
         "format": FORMAT,

@@ -1,10 +1,10 @@
-"""Variations: new roads made of tested ones, each checked before it is driven.
+"""Makes new roads by varying tested roads, and checks each before it is driven.
 
     VariationTask --mutate elements--> place on the map --> fast checks --> build --> every rule --> Candidate
 
-A VariationTask holds all that a worker needs, so ``pool.map(make_candidate, tasks)`` runs anywhere. A
-mutation may break what was asked for, or leave the map: then another is drawn. A Candidate keeps every
-requirement of the Brief and every rule, by ``check.inspect`` on the road that will be driven.
+A VariationTask holds all that a worker needs, so ``pool.map(make_candidate, tasks)`` runs anywhere. If a
+mutated road violates a requirement or leaves the map, another mutation is drawn. Every Candidate satisfies
+all requirements of the Brief and all rules: ``check.inspect`` checks the road that will be driven.
 """
 
 from collections.abc import Sequence
@@ -44,35 +44,39 @@ class VariationContext(NamedTuple):
     brief: Brief | None
     world: World
     rules: Literal["strict", "sbft"] = "strict"
-    """"sbft": the road has to pass the validator of the competition as well."""
+    """With "sbft", a road must also pass the validator of the competition."""
 
 
 class VariationTask(NamedTuple):
-    """One candidate that is to be made."""
+    """Describes one candidate to make, so that any worker can make it."""
 
     kind: Kind
     parents: tuple[Design, ...]
-    """None of a draft, one of a variation, two of a crossover, two of a road between them."""
+    """The parents: none for a draft, one for a variation, two for a crossover or for a road between two
+    roads.
+    """
     origin: str
     seed: tuple[int, ...]
     setting: VariationContext
     share: float = 0.5
-    """Position of a road between its parents, 0 to 1."""
+    """Position of a road between its two parents: 0 is the first parent, 1 the second."""
 
 
 class Candidate(NamedTuple):
-    """A road that keeps all that was asked for, and its features."""
+    """A road that satisfies all requirements and rules, and its features."""
 
     design: Design
     origin: str
     features: dict[str, float]
-    """Features of the road, which need no drive."""
+    """Features of the road that are known without a drive, by name."""
     surrogate_features: Array
     shape: PlanShape
 
 
 def make_candidate(task: VariationTask) -> Candidate | None:
-    """Returns the candidate of a task; None where no road was found that keeps the Brief and every rule."""
+    """Returns the candidate that a task describes; None if no road was found that satisfies the Brief and
+    all rules.
+    """
     rng = np.random.default_rng(task.seed)
     setting = task.setting
     if task.kind == "between":
@@ -123,7 +127,9 @@ def _between(task: VariationTask) -> tuple[Design, Road] | None:
 def placed(
     elements: Elements, setting: VariationContext, rng: np.random.Generator
 ) -> tuple[Design, Road] | None:
-    """Returns the road of elements at a random place; None where it breaks a requirement or a rule."""
+    """Returns the design and the road with these elements at a random pose on the map; None if it violates
+    a requirement or a rule.
+    """
     line = walk([as_written(element) for element in elements])
     where = place(line, setting.world, rng)
     if where is None or not keeps_clear(line, setting.world, with_shoulders=False):
@@ -132,7 +138,7 @@ def placed(
 
 
 def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:
-    """Returns a design and its road if no rule objects; else None."""
+    """Returns a design and its road if the road satisfies all requirements and rules; else None."""
     try:
         road = build(design)
         if check.inspect(road, setting.brief, setting.world):
@@ -148,7 +154,7 @@ def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] 
 
 
 def described(design: Design, road: Road, origin: str, setting: VariationContext) -> Candidate:
-    """Returns the candidate of a road that passed, with its features."""
+    """Returns a road that satisfies all rules as a Candidate, with its features."""
     samples = road.sample()
     features = features_of(samples.points) | behaviour_of(road, setting.brief)
     shape = shape_of(samples.s, samples.x + 1j * samples.y)
@@ -156,7 +162,7 @@ def described(design: Design, road: Road, origin: str, setting: VariationContext
 
 
 def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
-    """Returns the features of a road that was driven before, as a candidate."""
+    """Returns a road that has been driven as a Candidate, with its features."""
     design, setting = known
     return described(design, build(design), "", setting)
 

@@ -34,14 +34,14 @@ MOST_DEATHS = 3  # of workers, over one job; then it is the job that kills them
 
 @dataclass(frozen=True)
 class WorkerConfig:
-    """The workers that a campaign asks an executor for."""
+    """Describes the workers that a campaign requests from an executor."""
 
     workers: int
     prepare: Callable[[], object]
     patience: float
-    """Seconds for one job; a worker that takes longer is taken to hang."""
+    """Longest time for one job, seconds; a worker that takes longer is treated as hanging."""
     log: Path
-    """The file that receives what workers print."""
+    """The file to which the output of workers is written."""
     address: str = ""
     """The address of the workers, for executors that connect to other machines."""
 
@@ -60,14 +60,15 @@ class Job:
 
 @dataclass(frozen=True)
 class FinishedJob:
-    """The end of a job: the value that its function returned, the error that it raised, or why it was given
-    up."""
+    """The end of a job: the value that its function returned, the error that it raised, or why it was
+    given up.
+    """
 
     key: int
     value: Any = None
     error: Exception | None = None
     lost: str = ""
-    """Why the job was given up; empty for a job that ended."""
+    """Why the job was given up; empty if it ended by itself."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ class Executor(Protocol):
         ...
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns ``function`` of every item, in the order of the items."""
+        """Returns the results of ``function`` for all items, in the order of the items."""
         ...
 
     def stop(self) -> None:

@@ -42,7 +42,7 @@ class _Worker:
     has: set[str] = field(default_factory=set)
     node: str = ""
     fault: str = ""
-    """Why it was ended; empty for one that ended by itself."""
+    """Why the worker was ended; empty if it ended by itself."""
 
 
 class Ray(JobQueue):
@@ -75,7 +75,7 @@ class Ray(JobQueue):
         self._thread.start()
 
     def under_way(self) -> list[RunningJob]:
-        """Returns the jobs that were sent to workers; the seconds are those of the whole message."""
+        """Returns the jobs that were sent to workers; the time of each is that of its whole message."""
         now = time.monotonic()
         with self._changed:
             return [
@@ -86,7 +86,7 @@ class Ray(JobQueue):
             ]
 
     def stop(self) -> None:
-        """Ends every worker, and a cluster that was started for them."""
+        """Ends every worker, and the cluster if it was started for them."""
         if self._stops.is_set():
             return
         self._stops.set()

@@ -1,4 +1,6 @@
-"""Failures grouped by fault: which are alike, why they happen, how stable each is, and the simplest road."""
+"""Groups failures by fault, and analyses each fault: why it occurs, how often it recurs, and the simplest
+road that shows it.
+"""
 
 from roadgpt.campaign.faults.change import Difference, SmallestChange, smallest_change
 from roadgpt.campaign.faults.distinct import Surroundings, faults_of, surroundings

@@ -1,7 +1,7 @@
-"""The smallest change of a road that passed which makes it fail.
+"""Finds the smallest change that turns a road that passed into one that fails.
 
-First the fewest fields of the fewest segments are found by delta debugging (see ``minimise``), then the
-smallest share of what is left of the change, by halving.
+Delta debugging first finds the fewest fields of the fewest segments that have to change (see ``minimise``).
+Halving then finds the smallest fraction of that change that still makes the car fail.
 """
 
 from collections.abc import Sequence
@@ -39,7 +39,7 @@ class Difference:
 
     @property
     def sentence(self) -> str:
-        """The difference as text for people."""
+        """The difference as text for users."""
         unit = UNITS.get(self.field, "")
         before, after = (_value_text(value, unit) for value in (self.kept, self.failing))
         return f"segment {self.segment + 1}: {NAMES.get(self.field, self.field)} {before} -> {after}"
@@ -53,7 +53,7 @@ def _value_text(value: Any, unit: str) -> str:
 
 @dataclass(frozen=True)
 class SmallestChange:
-    """The change, and the failing road that it makes of the one that passed."""
+    """The smallest change found, and the failing road that it produces from the road that passed."""
 
     run: Run
     differences: tuple[Difference, ...]
@@ -69,7 +69,7 @@ def smallest_change(
         kept: a Run that passed.
         failure: a Run that failed.
         brief: requirements that the roads between them must keep; None: none.
-        most: largest number of drives.
+        most: maximum number of drives.
 
     Raises:
         UsageError: the designs do not correspond, or the second Run did not fail.

@@ -1,4 +1,4 @@
-"""Distinct faults: clusters of failures by the 60 m of road around the departure.
+"""Groups failures into distinct faults by the similarity of the 60 m of road around each lane departure.
 
 Two failures are alike if their lanes have similar curvature and grade from 30 m before the departure to 30 m
 after it, aligned at the departure to within 8 m. Clusters grow by complete linkage, so any two failures of
@@ -32,18 +32,22 @@ MOST = 1000  # failures that are compared each with each at a time: a second, an
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """The lane around a departure, every metre; all columns have the same length."""
+    """The lane around a departure, sampled every metre; all columns have the same length."""
 
     bends: Array
-    """Curvature, 1/m, smoothed, with ``SHIFT`` more values at each end; NaN beyond the road."""
+    """Smoothed curvature, 1/m, with ``SHIFT`` additional values at each end; NaN beyond the ends of the
+    road.
+    """
     grades: Array
-    """Ratios, likewise."""
+    """Smoothed grade as a ratio, at the same stations; NaN beyond the ends of the road."""
     kind: str
-    """Side and cause; failures of different kinds are different faults."""
+    """Side and cause of the failure; failures of different kinds are never the same fault."""
 
 
 def surroundings(road: Road, world: World, station: float, kind: str) -> Surroundings:
-    """Returns the surroundings of a departure at a station, in metres; ``kind`` names side and cause."""
+    """Returns the surroundings of a departure at a station in metres; ``kind`` states side and cause of
+    the failure.
+    """
     reach = COUNT + SHIFT + SMOOTHING
     s = station + STEP * np.arange(-reach, reach + 1)
     on = (s >= 0) & (s <= road.length)
@@ -61,17 +65,19 @@ def _smoothed(values: Array) -> Array:
 
 
 def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
-    """Returns the distances ``(n,)`` of a failure to others; 1 is a difference of ``BEND`` or ``GRADE`` all
+    """Returns the distances ``(n,)`` of one failure to others; 1 is a difference of ``BEND`` or ``GRADE`` all
     along.
 
-    Where only one of two roads exists, the other counts as straight and level. The distance of failures of
-    different kinds is infinite. It is symmetric.
+    Beyond the end of one of two roads, that road counts as straight and level. The distance between failures
+    of different kinds is infinite. Distances are symmetric.
     """
     return np.asarray(between([one], others)[0])
 
 
 def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Array:
-    """Returns the distances of each to each, ``(len(some), len(others))``; see ``distances``."""
+    """Returns the distances between all pairs of two lists, ``(len(some), len(others))``; see
+    ``distances``.
+    """
     least = np.full((len(some), len(others)), np.inf)
     if not least.size:
         return least
@@ -103,7 +109,7 @@ class _Stacked(NamedTuple):
         return cls(np.nan_to_num(bends), np.nan_to_num(grades), np.isnan(bends).astype(float), kinds)
 
     def moved(self, steps: int) -> Self:
-        """Returns the rows with the departure moved by so many steps."""
+        """Returns the rows with the departure moved by ``steps`` steps."""
         part = slice(SHIFT + steps, self.bends.shape[1] - SHIFT + steps)
         return self._replace(
             bends=self.bends[:, part], grades=self.grades[:, part], beyond=self.beyond[:, part]
@@ -111,14 +117,15 @@ class _Stacked(NamedTuple):
 
 
 def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int = MOST) -> list[int]:
-    """Returns the fault of each failure, from 0, numbered in order of their first failures.
+    """Returns for each failure the number of its fault; faults are numbered from 0 in order of their first
+    failure.
 
     Args:
-        failures: all of them.
-        alike: distance up to which two failures are one fault.
-        most: number of failures that are compared each with each. Of those beyond it, a failure joins the
-            fault
-            whose most typical failure is nearest and near enough; the others are compared with each other.
+        failures: all failures to group.
+        alike: largest distance between two failures of the same fault.
+        most: number of failures of which all pairs are compared at a time. Each later failure joins the fault
+            with the nearest typical failure, if that is within ``alike``; the remaining failures are then
+            grouped in the same way.
     """
     found, left, count = np.full(len(failures), -1), np.arange(len(failures)), 0
     while len(left):
@@ -153,7 +160,9 @@ def _grown(some: Sequence[Surroundings], alike: float) -> NDArray[np.intp]:
 
 
 def typical(members: Sequence[Surroundings]) -> list[int]:
-    """Returns the indices of the failures of a fault, first the one that is nearest to all others."""
+    """Returns the indices of the failures of one fault, starting with the failure that is nearest to all
+    others.
+    """
     some = members[:MOST]
     squares = between(some, some) ** 2
     return [int(i) for i in np.argsort(np.round(squares.sum(axis=1), 9), kind="stable")]

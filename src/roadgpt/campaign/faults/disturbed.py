@@ -1,6 +1,8 @@
-"""Small disturbances of one drive: the road's friction, where the car starts, and the delay of its sensors.
+"""Small random disturbances of a drive: the friction, the start position, and the delay of the driver's
+perception.
 
-A failure that only one exact drive shows is chance; one that survives these disturbances belongs to the road.
+A failure that disappears under these disturbances is due to chance; a failure that persists is due to the
+road.
 """
 
 from collections import deque
@@ -22,18 +24,18 @@ MOST = 3.0  # standard deviations; what is drawn beyond is drawn again
 
 @dataclass(frozen=True)
 class Disturbance:
-    """One draw."""
+    """One random disturbance of a drive."""
 
     friction: float
-    """Factor on the world's friction."""
+    """Factor by which the world's friction is multiplied."""
     offset: float
-    """Metres to the left of the lane's middle at the start."""
+    """Lateral offset of the start position from the middle of the lane, metres, positive to the left."""
     delay: float
-    """Seconds by which what the driver sees is old."""
+    """Delay of the driver's perception, seconds."""
 
 
 def disturbance_of(seed: int, number: int) -> Disturbance:
-    """Returns the disturbance of repetition ``number`` (from 1) of a drive with this seed."""
+    """Returns the disturbance of repetition ``number`` (from 1) of a drive that has this seed."""
     rng = np.random.default_rng([seed, number, 0xD157])
     return Disturbance(1 + GRIP * _normal(rng), START * _normal(rng), float(rng.uniform(0.0, DELAY)))
 
@@ -45,12 +47,12 @@ def _normal(rng: np.random.Generator) -> float:
 
 
 class LateDriver:
-    """A driver that sees the past.
+    """A driver whose perception is delayed.
 
     Args:
-        driver: the driver that steers.
-        delay: seconds; rounded to whole control steps.
-        world: the world that the driver is told of, whatever the friction really is.
+        driver: the driver that is given delayed views.
+        delay: delay in seconds, rounded to whole control steps.
+        world: the undisturbed world, which the driver is given whatever the real friction is.
     """
 
     def __init__(self, driver: Any, delay: float, world: "World") -> None:
@@ -61,14 +63,16 @@ class LateDriver:
         self._seen: deque[View] = deque()
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Passes on the world that the driver believes in."""
+        """Starts the driver with the undisturbed world."""
         del world
         self._seen.clear()
         if hasattr(self._driver, "start"):
             self._driver.start(road, self._world, seed)
 
     def steer(self, view: View) -> Command:
-        """Returns the driver's answer to what it saw ``delay`` ago; at the start, to the first view."""
+        """Returns the driver's answer to the view of ``delay`` seconds ago; at the start, to the first
+        view.
+        """
         self._seen.append(view._replace(world=self._world))
         if len(self._seen) > round(self._delay / view.dt) + 1:
             self._seen.popleft()

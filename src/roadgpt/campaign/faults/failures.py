@@ -1,4 +1,4 @@
-"""The failures of a campaign or a folder of runs: the place of each, and its Run. Nothing is driven."""
+"""Finds the failures of a campaign or a folder of runs, with their places and Runs; nothing is driven."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -25,38 +25,38 @@ AT_ONCE = 500  # tests that a store is asked for
 
 @dataclass(frozen=True, eq=False)
 class LocatedFailure:
-    """One failure, and where it happened."""
+    """A failure, and the place where it happened."""
 
     name: NumberedTest
     around: Surroundings
     manner: Manner
     station: float
-    """Metres along the road."""
+    """Station of the failure, metres along the road."""
     outside: float | None
     """Largest share of the car outside its lane, 0 to 1."""
     beyond: float | None
-    """Largest distance of the car's body beyond the marking, metres."""
+    """Largest distance of the car's body beyond the lane marking, metres."""
 
 
 @dataclass(frozen=True)
 class Failures:
-    """The failures of a folder, all or an even sample."""
+    """The failures in a folder: all of them, or an evenly spread sample."""
 
     known: tuple[LocatedFailure, ...]
     every: int
-    """Number of all failures, also those outside the sample and those whose road is not known."""
+    """Number of all failures, including those outside the sample and those whose road is unknown."""
 
 
 def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failures:
     """Returns the failures of a run, of a folder of runs, or of a campaign, cell by cell.
 
     Args:
-        folder: of any of these.
-        most: where there are more, so many of them, evenly spread; None: all.
+        folder: the folder of the run, the runs or the campaign.
+        most: maximum number of failures to return, evenly spread over all; None: no limit.
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
-        UsageError: nothing of the kind is there, or a file cannot be read.
+        UsageError: the folder is none of these, or a file cannot be read.
     """
     if (folder / STORE).is_file():
         with Record.opened(folder) as record:
@@ -75,10 +75,10 @@ def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failur
 
 
 def drivers_of(folder: Path) -> set[str]:
-    """Returns the drivers of a run, a folder of runs or a campaign.
+    """Returns the names of the drivers of a run, a folder of runs or a campaign.
 
     Raises:
-        UsageError: nothing of the kind is there, or a file cannot be read.
+        UsageError: the folder is none of these, or a file cannot be read.
     """
     if is_run(folder):
         return {read_run(folder).request.setup.driver}
@@ -136,7 +136,9 @@ def _of_result(cell: Cell, its: Result, system: str) -> LocatedFailure | None:
 
 
 def system_of(world: World, setup: Setup) -> str:
-    """Returns a text that is the same for cells that share their faults: same driver, simulator and world."""
+    """Returns a text that is equal for cells with the same driver, simulator and world, which share their
+    faults.
+    """
     return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
 
 
@@ -150,8 +152,7 @@ def _site_of(
 
 
 def failed_run(folder: Path, name: NumberedTest, has_drive: bool = True) -> Run:
-    """Returns the Run of a failure as it is stored; that of a campaign without its drive, if that is not
-    wanted.
+    """Returns the stored Run of a failure; for a campaign, its drive can be left out.
 
     Raises:
         UsageError: a file cannot be read.

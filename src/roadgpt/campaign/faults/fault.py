@@ -1,4 +1,4 @@
-"""The distinct faults of a folder: groups of failures that are alike. Nothing is driven."""
+"""Finds the distinct faults in a folder: groups of similar failures; nothing is driven."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -26,14 +26,14 @@ WAYS: dict[Way, str] = {
 
 @dataclass(frozen=True, eq=False)
 class Fault:
-    """Failures that are alike."""
+    """A group of similar failures."""
 
     number: int
-    """Number from 1; the fault with most failures comes first."""
+    """Number of the fault, from 1; the fault with the most failures comes first."""
     members: tuple[LocatedFailure, ...]
-    """All its failures, in the order of their tests."""
+    """All failures of the fault, in the order of their tests."""
     typical: tuple[LocatedFailure, ...]
-    """A few of its failures, first the one that is nearest to all others."""
+    """A few typical failures of the fault, starting with the one that is nearest to all others."""
 
     @property
     def names(self) -> tuple[NumberedTest, ...]:
@@ -43,17 +43,19 @@ class Fault:
 
 @dataclass(frozen=True, eq=False)
 class Faults:
-    """The faults of a folder."""
+    """The distinct faults of a folder."""
 
     them: tuple[Fault, ...]
     failures: int
-    """Number of all failures of the folder."""
+    """Number of all failures in the folder."""
     compared: int
-    """Number of failures that were compared; the others are not in any fault."""
+    """Number of failures that were compared; the remaining failures are in no fault."""
 
     @property
     def headline(self) -> str:
-        """How many, and how the car failed: '3 distinct faults in 9 failures: the car ran wide of ...'."""
+        """The number of faults and how the car failed: '3 distinct faults in 9 failures: the car ran wide
+        of ...'.
+        """
         ways = "; it ".join(self.ways[:MOST_WAYS])
         more = len(self.ways) - MOST_WAYS
         also = f"; and in {more} other way{'s' * (more > 1)}" if more > 0 else ""
@@ -61,7 +63,7 @@ class Faults:
 
     @property
     def sentence(self) -> str:
-        """'17 distinct faults in 170 failures'."""
+        """The number of faults and failures as text: '17 distinct faults in 170 failures'."""
         count = len(self.them)
         if not self.failures:
             return "no road failed"
@@ -100,12 +102,12 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
     """Returns the distinct faults of a run, of a folder of runs, or of a campaign.
 
     Args:
-        folder: of any of these.
-        most: largest number of failures to compare, evenly spread; None: all.
+        folder: the folder of the run, the runs or the campaign.
+        most: maximum number of failures to compare, evenly spread over all; None: all failures.
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
-        UsageError: nothing of the kind is there, or a file cannot be read.
+        UsageError: the folder is none of these, or a file cannot be read.
     """
     failures = failures_of(folder, most, cell)
     return Faults(tuple(_grouped(failures.known)), failures.every, len(failures.known))

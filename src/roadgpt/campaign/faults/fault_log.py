@@ -1,10 +1,11 @@
-"""The results of analysing the faults of a folder: the typical failure of each, repeated and simplified.
+"""Analyses the faults of a folder, and stores the results: for each fault a typical failure, driven again and
+simplified.
 
 DIR/faults/
-  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; if it exists, that is
-  done
+  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; if it
+                   exists, the fault is not analysed again
   c01/0017.png     what happened, from above
-  simplest/c01/    a folder of runs: the simplest roads that fail alike, under the numbers of the failures
+  simplest/c01/    a folder of runs: the simplest roads that fail in the same way, named after the failures
   faults.csv       one line per fault, the fault with most failures first
   failures.csv     one line per failure, and the fault that it belongs to
 
@@ -42,7 +43,7 @@ HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "ma
 
 
 class FailureDrawing(Protocol):
-    """Draws a failure; ``report.fault.draw_fault`` is one."""
+    """A function that draws a failure into a file, such as ``report.fault.draw_fault``."""
 
     def __call__(self, run: Run, reason: FailureReason, more: str, path: Path) -> object:
         """Writes a picture."""
@@ -50,15 +51,15 @@ class FailureDrawing(Protocol):
 
 
 class AnalysisTask(NamedTuple):
-    """One fault that is to be analysed; it can be sent to another process."""
+    """One fault to analyse; the task can be sent to another process."""
 
     folder: Path
     fault: int
     """Number of the fault."""
     names: tuple[NumberedTest, ...]
-    """Its typical failures, the most typical first."""
+    """Names of the fault's typical failures, the most typical first."""
     times: int
-    """Number of disturbed drives."""
+    """Number of disturbed drives for each failure."""
     minimise: bool = False
     draw: FailureDrawing | None = None
     formats: tuple[str, ...] = ("png",)
@@ -73,16 +74,16 @@ class FailureAnalysis:
     reason: FailureReason
     stability: Stability
     simplest: str = ""
-    """The simplest road that fails alike, in a sentence; empty where it was not looked for."""
+    """A sentence about the simplest road that fails in the same way; empty if it was not searched for."""
 
 
 def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
-    """Analyses a fault: why its failure happens, how often it fails again, and the simplest road.
+    """Analyses a fault: why its typical failure happens, how often it happens again, and the simplest road
+    that shows it.
 
-    The failure is the most typical one that fails in at least half of the disturbed drives; if none of
-    ``task.names`` does, the one that fails most often. An analysis that is stored already, with as many
-    drives of
-    the same road, is read and not repeated.
+    The failure analysed is the most typical one of ``task.names`` that fails again in at least half of the
+    disturbed drives; if there is none, the one that fails most often. A stored analysis with the same number
+    of drives of the same road is read instead of being repeated.
 
     Returns:
         The number of the fault, and the analysis.
@@ -130,10 +131,12 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
 
 
 def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
-    """Returns the stored analysis of a fault, chosen as ``analyse`` does; None: there is none.
+    """Returns the stored analysis of a fault; None if there is none.
+
+    If several of its failures have one, the choice is that of ``analyse``.
 
     Raises:
-        UsageError: it cannot be read.
+        UsageError: a stored analysis cannot be read.
     """
     pages = [name for name in fault.names if _page(folder, name).is_file()]
     runs = [(name, failed_run(folder, name, has_drive=False)) for name in pages]
@@ -143,7 +146,7 @@ def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
 
 
 def simplest_of(folder: Path, name: NumberedTest) -> Path:
-    """Returns the folder of the simplest road that fails as this failure does."""
+    """Returns the folder with the run of the simplest road that fails in the same way as a failure."""
     return run_folder(folder / FOLDER / SIMPLEST / name.cell, name.number)
 
 
@@ -164,9 +167,9 @@ def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis],
     """Writes ``faults.csv`` and ``failures.csv``; the same failures give the same bytes.
 
     Args:
-        faults: of the folder.
-        looked: their analyses, by number of the fault.
-        folder: of the campaign, or of runs.
+        faults: the faults of the folder.
+        looked: the analyses, by number of the fault.
+        folder: the folder of the campaign or of the runs.
 
     Returns:
         The path of ``faults.csv``.

@@ -1,6 +1,6 @@
-"""The simplest road that still fails alike.
+"""Finds the simplest road that still fails in the same way.
 
-It is found by delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing
+The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing
 Input, IEEE Transactions on Software Engineering 28 (2002). The road is 1-minimal: after any single further
 simplification the failure disappears.
 """
@@ -23,16 +23,16 @@ class Simplest:
     """A failing road after simplification."""
 
     run: Run
-    """A Run that fails for the same cause and to the same side."""
+    """The Run of the simplified road, which fails for the same cause and to the same side."""
     segments_before: int
     drives: int
-    """Number of drives that this took."""
+    """Number of drives that the search took."""
     is_minimal: bool
-    """False if the drives were used up before every simplification had been tried."""
+    """False if the maximum number of drives was reached before every simplification had been tried."""
 
     @property
     def sentence(self) -> str:
-        """The result as text for people."""
+        """The result as text for users."""
         assert self.run.design is not None
         left = len(self.run.design.segments)
         what = f"{self.segments_before} segments" if self.segments_before != 1 else "1 segment"
@@ -43,7 +43,7 @@ class Simplest:
 
 
 class Trial:
-    """Drives candidates of one failure, each once, and counts the drives."""
+    """Drives simplified roads of one failure, each at most once, and counts the drives."""
 
     def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
         if failure.verdict is None or failure.verdict.kept or failure.design is None:
@@ -59,7 +59,7 @@ class Trial:
         self._known: dict[Design, Run | None] = {}
 
     def fails(self, design: Design | None) -> Run | None:
-        """Returns the Run of a valid road that fails as the original does; None for any other road."""
+        """Returns the Run of a road if it is valid and fails as the original does; else None."""
         if design is None:
             return None
         if design not in self._known:
@@ -101,8 +101,8 @@ def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) 
 
     Args:
         failure: a failing Run with a Design.
-        brief: requirements that the road must keep; None: it need not be what was asked for.
-        most: largest number of drives.
+        brief: requirements that the simplified road must satisfy; None: no requirements.
+        most: maximum number of drives.
 
     Raises:
         UsageError: the Run did not fail, or has no Design.

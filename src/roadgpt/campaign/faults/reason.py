@@ -1,4 +1,4 @@
-"""The reason why a car left its lane: the bend, the speed and the slope at the place, in one sentence.
+"""Explains in one sentence why a car left its lane: the bend, the speed and the slope where it happened.
 
 The friction that a bend requires is v^2 k over the share of gravity that presses the car onto the road there,
 g cos(grade) + v^2 c, with c the vertical curvature (negative on a crest). R. Rajamani, Vehicle Dynamics and
@@ -33,41 +33,44 @@ SLOPE = 0.03  # of grade, likewise
 
 
 class Manner(NamedTuple):
-    """In which way a car failed, in brief."""
+    """In which way a car failed, and at which bend."""
 
     way: Way
     side: Literal["left", "right"] | None
-    """Side to which the road bends; None on a straight."""
+    """The side to which the road bends; None if the road is straight there."""
     radius: float | None
-    """Metres, of the centre line where it is tightest."""
+    """Smallest radius of the bend's centre line, metres; None if the road is straight there."""
 
 
 @dataclass(frozen=True)
 class FailureReason:
-    """The reason of a failure; lengths in metres, speeds in m/s, angles in radians."""
+    """The reason for a failure; lengths in metres, speeds in m/s."""
 
     way: Way
     sentence: str
     station: float
     radius: float | None
-    """Radius of the centre line where it is tightest; None on a straight."""
+    """Smallest radius of the bend's centre line, metres; None if the road is straight there."""
     side: Literal["left", "right"] | None
-    """Side to which the road bends."""
+    """The side to which the road bends; None if the road is straight there."""
     entered: float
-    """Speed where the bend begins, or where the car left its lane if that was earlier."""
+    """Speed, m/s, where the bend begins, or where the car left its lane if that was earlier."""
     needed: float
-    """Largest friction that the lane's middle requires at the speeds driven; 0.93 is 0.93 g on level ground.
+    """Largest friction coefficient that the lane's middle requires at the speeds driven; on level ground,
+    0.93 means a lateral acceleration of 0.93 g.
     """
     friction: float
-    """Friction of the road."""
+    """Friction coefficient of the road."""
     grade: float
-    """Ratio, at the place."""
+    """Grade of the road at the bend, as a ratio."""
     hill: float
-    """Share of gravity that a crest takes (negative) or a dip adds there, at the speed driven."""
+    """Vertical acceleration from a crest (negative) or a dip (positive) at the speed driven, as a share of
+    gravity.
+    """
 
 
 def reason_of(run: Run) -> FailureReason:
-    """Returns the reason of a failed Run.
+    """Returns the reason why a Run failed.
 
     Raises:
         UsageError: the Run did not fail, or was not driven.
@@ -81,7 +84,9 @@ def reason_of(run: Run) -> FailureReason:
 
 
 def lane_curvature(road: Road, world: World, stations: Array) -> Array:
-    """Returns the curvature, 1/m, of the right lane's middle beside these stations, in their shape."""
+    """Returns the curvature, 1/m, of the middle of the right lane at stations of the centre line, in their
+    shape.
+    """
     bend = road.curvature(stations)
     return np.asarray(bend / np.maximum(1 + bend * world.lane_width / 2, 0.2))
 
@@ -97,13 +102,13 @@ def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, fl
 def manner_of(
     road: Road, world: World, station: float, cause: Cause | None, left_to: Literal["left", "right"] | None
 ) -> Manner:
-    """Returns in which way a car failed, from the road and the place alone; no drive is needed.
+    """Returns in which way a car failed, from the road and the place of the failure; no drive is needed.
 
     Args:
         road: the road.
-        world: gives the width of the lane.
-        station: of the departure, metres.
-        cause: of the failure.
+        world: determines the width of the lane.
+        station: station of the departure, metres along the road.
+        cause: cause of the failure.
         left_to: the side to which the car left its lane.
     """
     if cause in ("stuck", "timeout"):

@@ -1,6 +1,6 @@
-"""Simplifications of a Design: fewer segments, level, straighter, rounder numbers.
+"""Simplifications of a Design: fewer segments, level ground, straighter segments, rounder numbers.
 
-Each kind gives a list of single simplifications; ``minimise`` tries how many of them can be made together.
+Each kind of simplification is a list of single ones; ``minimise`` finds how many of them can be combined.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,7 +13,7 @@ ROUND = {
     "turn_degrees": (30.0, 10.0, 5.0, 1.0),
     "radius": (10.0, 5.0, 1.0),
 }
-"""For each field the units to which it is rounded, the coarsest first; metres and degrees."""
+"""The units to which each field is rounded, the coarsest first; in metres or degrees."""
 NAMES = {"distance": "length", "turn_degrees": "turn", "radius": "radius"}
 
 
@@ -24,7 +24,7 @@ class Simplification:
     segment: int
     """Index of the segment, from 0, in the Design that is simplified."""
     change: Callable[[Segment], Segment | None]
-    """Returns the new segment; None: the segment is removed."""
+    """A function that returns the simplified segment, or None to remove the segment."""
     told: str
 
 
@@ -32,7 +32,7 @@ Simplifier = Callable[[Design], list[Simplification]]
 
 
 def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None:
-    """Returns the Design after all these simplifications; None where no segment would be left."""
+    """Returns the Design after all these simplifications; None if no segment would be left."""
     segments: list[Segment | None] = list(design.segments)
     for step in steps:
         segment = segments[step.segment]
@@ -43,7 +43,7 @@ def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None
 
 
 def simplifications() -> list[Simplifier]:
-    """Returns all kinds, those that remove most first."""
+    """Returns the simplifications of a Design by kind; the kinds that remove most come first."""
     rounding = [
         _rounding(field, unit)
         for unit in (50.0, 30.0, 10.0, 5.0, 1.0)

@@ -1,4 +1,4 @@
-"""The share of drives that fail again under small disturbances, which separates a fault from chance."""
+"""Measures the share of slightly disturbed drives that fail again, which separates faults from chance."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -22,40 +22,40 @@ STABLE = 0.5  # share of drives that fail, from which a failure counts as stable
 
 @dataclass(frozen=True)
 class Repeated:
-    """One further drive of the same road."""
+    """The result of one disturbed drive of a road."""
 
     number: int
     disturbance: Disturbance
     failed: bool
     margin: float
-    """Metres."""
+    """Margin to out of bounds, metres."""
     at_s: float | None
 
 
 @dataclass(frozen=True)
 class Stability:
-    """All further drives of one road."""
+    """The results of all disturbed drives of one road."""
 
     drives: tuple[Repeated, ...]
 
     @property
     def failed(self) -> int:
-        """Number of drives that failed."""
+        """Number of disturbed drives that failed."""
         return sum(drive.failed for drive in self.drives)
 
     @property
     def share(self) -> float:
-        """Share of drives that failed; 1: all."""
+        """Share of the disturbed drives that failed, 0 to 1."""
         return self.failed / len(self.drives)
 
     @property
     def is_stable(self) -> bool:
-        """True if at least half of the drives failed."""
+        """True if at least half of the disturbed drives failed."""
         return self.share >= STABLE
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Confidence interval of the share, 95 %: Clopper and Pearson (Biometrika 26, 1934)."""
+        """95 % confidence interval of the share, after Clopper and Pearson (Biometrika 26, 1934)."""
         n, k = len(self.drives), self.failed
         low = float(beta.ppf((1 - SURE) / 2, k, n - k + 1)) if k else 0.0
         high = float(beta.ppf((1 + SURE) / 2, k + 1, n - k)) if k < n else 1.0
@@ -63,7 +63,7 @@ class Stability:
 
     @property
     def sentence(self) -> str:
-        """The result as text for people."""
+        """The result as text for users."""
         if self.failed == len(self.drives):
             return f"fails every time ({len(self.drives)} of {len(self.drives)} disturbed drives)"
         share = f"{self.failed} of {len(self.drives)}"
@@ -71,10 +71,11 @@ class Stability:
 
 
 def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = map) -> Stability:
-    """Drives the Run's road again, each time disturbed; the same Run gives the same drives.
+    """Drives the Run's road several times, each time with another disturbance; the same Run gives the same
+    drives.
 
     Args:
-        run: of a valid road, whatever its outcome.
+        run: the Run of a valid road, with any outcome.
         times: number of drives, 1 or more.
         spread: applies a function to all of its items, as ``map`` does, or a pool's ``map``.
 
@@ -86,9 +87,9 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
 
 
 def once(task: tuple[Run, int]) -> Repeated:
-    """Drives a Run's road once, disturbed; a driver that breaks down has failed.
+    """Drives a Run's road once with a disturbance; a driver that raises an error has failed.
 
-    Where the simulator breaks down, the drive is repeated, since that shows nothing of the road.
+    If the simulator fails, the drive is repeated, since that says nothing about the road.
 
     Raises:
         GivenUpError: the simulator failed three times in a row.
@@ -112,7 +113,7 @@ def once(task: tuple[Run, int]) -> Repeated:
 
 
 def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
-    """Returns the verdict on the Run's road with its driver, disturbed.
+    """Drives a Run's road once with its driver and a disturbance, and returns the verdict.
 
     Raises:
         DriverError, SimulationError: as ``roadgpt.drive.simulate``.

@@ -1,1 +1,3 @@
-"""Generators: what thinks out the tests of a cell, one per file; see ``campaign.model.Generator``."""
+"""Test generators, one plug-in per file, which propose the tests of a cell; see
+``campaign.model.Generator``.
+"""

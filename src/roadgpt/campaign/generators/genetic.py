@@ -41,13 +41,13 @@ class Genetic:
         self._fittest: list[tuple[float, int, Design]] = []
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Proposes children of the fittest roads; drafts while there are none."""
+        """Proposes children of the fittest roads, or drafts as long as no road has been driven."""
         rng = batch_rng(self._cell, batch)
         tasks = [self._task(rng) for _ in range(n)]
         return proposals_of(self._cell, first, n, make_candidates(tasks, pool))
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Adds results to the population, and keeps the fittest."""
+        """Adds results to the population, and keeps only the fittest."""
         for result in results:
             if is_usable(result):
                 assert result.margin is not None

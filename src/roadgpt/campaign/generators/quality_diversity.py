@@ -63,7 +63,7 @@ class QualityDiversity:
         self._elites: list[int] = []
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Adds results to the map; all other work waits for ``ask``."""
+        """Adds results to the map; everything else is computed in ``ask``."""
         for result in results:
             if is_usable(result):
                 assert result.margin is not None
@@ -71,7 +71,7 @@ class QualityDiversity:
                 self._archive.add(result.number, result.features, -result.margin, result.failed)
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Proposes the candidates that are worth most for the goal."""
+        """Proposes the candidates that are most valuable for the goal."""
         rng = batch_rng(self._cell, batch)
         self._look(pool)
         self._elites = self._archive.elites() or list(self._results)

@@ -18,4 +18,4 @@ class Words:
         return [Proposal(None, self._seed, "draft")] * n
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Ignores the results: drafts receive the earlier designs in another way."""
+        """Ignores the results; the scheduler passes earlier designs to the drafting workers."""

@@ -1,1 +1,1 @@
-"""Shared by executors: the queue of jobs, the main loop of a worker, and the messages between them."""
+"""Code that executors share: the queue of jobs, the main loop of a worker, and the messages between them."""

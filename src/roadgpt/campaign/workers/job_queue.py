@@ -1,4 +1,4 @@
-"""The queue of an executor: jobs that wait, jobs that have ended, and the error that stopped all workers.
+"""The job queue of an executor: waiting jobs, finished jobs, and the error that stopped all workers, if any.
 
 An executor inherits from JobQueue and defines how a waiting job gets to a worker (``_hand_out``). Its threads
 hold ``_changed`` while they access the queue, and notify it when a job has ended.
@@ -29,13 +29,13 @@ class QueuedJob:
     call: bytes
     needs: tuple[str, ...]
     key: int | None
-    """None for a part of a ``map``."""
+    """Identifies the job; None for a part of a ``map``."""
     deaths: int = 0
     end: FinishedJob | None = None
 
 
 class JobQueue(ABC):
-    """The jobs of an executor."""
+    """The waiting and finished jobs of an executor."""
 
     def __init__(self, workers: int) -> None:
         """Makes an empty queue for so many workers."""
@@ -68,7 +68,7 @@ class JobQueue(ABC):
         """Returns the jobs that have ended since the last call, after at most ``seconds``.
 
         Raises:
-            RoadGPTError: no worker could be made ready; or another error, whatever prevented that.
+            RoadGPTError: no worker could be made ready; or the error that prevented it.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._ended or self._lost or self._broken, seconds)
@@ -80,11 +80,11 @@ class JobQueue(ABC):
         return [_finished_job(work, kind, what) for work, kind, what in ended] + lost
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns ``function`` of every item, in the order of the items; an error that it raises is raised
+        """Returns the results of ``function`` for all items, in order; an error that it raises is raised
         here.
 
         Raises:
-            RoadGPTError: three workers died over it.
+            RoadGPTError: three workers died while running the same part of the items.
         """
         size = max(1, -(-len(items) // (CHUNKS * self._size)))
         parts = [items[first : first + size] for first in range(0, len(items), size)]

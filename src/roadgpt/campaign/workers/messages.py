@@ -1,4 +1,4 @@
-"""Messages between a campaign and its own worker processes: pickles with their length in front.
+"""Messages between a campaign and its own worker processes: pickled values, each preceded by its length.
 
 Both ends are our own processes on one machine; no message from elsewhere is ever read here.
 """
@@ -16,7 +16,7 @@ def pickled(value: Any) -> bytes:
 
 
 def unpickled(data: bytes) -> Any:
-    """Returns the value of these bytes."""
+    """Returns the value that was pickled into these bytes."""
     return pickle.loads(data)  # noqa: S301 - from our own process
 
 
@@ -24,7 +24,7 @@ def send(stream: IO[bytes], message: Any) -> None:
     """Sends a message.
 
     Raises:
-        OSError: the other end is gone.
+        OSError: the other process has ended.
     """
     body = pickled(message)
     stream.write(HEAD.pack(len(body)) + body)
@@ -35,7 +35,7 @@ def receive(stream: IO[bytes]) -> Any:
     """Returns the next message.
 
     Raises:
-        EOFError: the other end is gone.
+        EOFError: the other process has ended.
     """
     (length,) = HEAD.unpack(_exactly(stream, HEAD.size))
     return unpickled(_exactly(stream, length))

@@ -30,7 +30,7 @@ class JobMessage(NamedTuple):
 
 
 def apply_each(work: tuple[Callable[[Any], Any], Sequence[Any]]) -> list[Any]:
-    """Returns a function of each of some items."""
+    """Returns the results of a function for each of the items, as a list."""
     function, items = work
     return [function(item) for item in items]
 
@@ -56,7 +56,7 @@ class _Sender:
 
 
 def main() -> None:
-    """Works until the parent ends."""
+    """Runs the jobs that the parent process sends, until the parent ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears of Ctrl-C, and ends us
     ends_its_own()
     received, sent = private_streams()
@@ -78,7 +78,7 @@ def main() -> None:
 
 
 def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
-    """Runs a job; returns the kind of its end and the pickled value or error. Updates the shared values."""
+    """Runs a job, and returns how it ended with its pickled value or error; updates the shared values."""
     try:
         for name in order.old:
             shared.pop(name, None)
@@ -91,7 +91,7 @@ def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
 
 
 def portable(error: Exception) -> bytes:
-    """Returns the pickled error; one that cannot be pickled is replaced by one with the same text."""
+    """Returns an error as bytes; an error that cannot be pickled is replaced by one with the same text."""
     try:
         data = pickled(error)
         unpickled(data)

@@ -1,4 +1,4 @@
-"""A worker on a Ray cluster: it is prepared once, and then runs the jobs of one message after another."""
+"""A worker on a Ray cluster: prepared once, it then runs the jobs of one message after another."""
 
 import faulthandler
 import os
@@ -21,7 +21,7 @@ class RayActor:
         self._shared: dict[str, Any] = {}
 
     def begin(self, version: str, prepare: bytes) -> tuple[int, bytes]:
-        """Prepares the worker; returns its node and place, or the error that prevents it."""
+        """Prepares the worker; returns its node and its location, or the error that prevented it."""
         import ray
 
         from roadgpt import __version__
@@ -40,9 +40,9 @@ class RayActor:
         return READY, pickled((ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}"))
 
     def work(self, orders: Sequence[JobMessage]) -> list[tuple[int, bytes]]:
-        """Runs jobs one after another, and returns their ends.
+        """Runs jobs one after another, and returns how each ended.
 
-        A job that comes alone is timed by the sender, who then knows which job hangs.
+        If a job is sent alone, the sender measures its time, and so knows which job hangs.
         """
         if len(orders) == 1:
             return [answer(orders[0], self._shared)]

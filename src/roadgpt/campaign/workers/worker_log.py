@@ -1,4 +1,4 @@
-"""The file of what workers print; it does not grow without limit."""
+"""Limits the size of the log file with the output of workers."""
 
 import os
 from contextlib import suppress
@@ -10,9 +10,9 @@ NOTE = b"[what was printed before is left out]\n"
 
 
 def shorten(log: Path) -> None:
-    """Keeps only the end of a log that has become too long; workers may go on appending to it.
+    """Keeps only the end of a log that has become too long; workers can continue to append to it.
 
-    A file that cannot be shortened stays as it is: no campaign stops because of what its drivers print.
+    If the file cannot be shortened, it stays unchanged: what drivers print never stops a campaign.
     """
     with suppress(OSError):
         if log.stat().st_size <= MOST:

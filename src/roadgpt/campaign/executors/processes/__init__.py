@@ -46,7 +46,7 @@ class Processes(JobQueue):
         threading.Thread(target=self._watch, name="roadgpt-watch", daemon=True).start()
 
     def under_way(self) -> list[RunningJob]:
-        """Returns the jobs that are running, and the worker of each."""
+        """Returns the running jobs, and the worker of each."""
         now = time.monotonic()
         with self._changed:
             return [

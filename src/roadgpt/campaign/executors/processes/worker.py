@@ -1,4 +1,4 @@
-"""The parent's side of one worker process: starts it, sends it jobs, receives its messages, ends it."""
+"""Controls one worker process from its parent: starts it, sends it jobs, receives its messages, ends it."""
 
 import os
 import sys
@@ -54,17 +54,17 @@ class Worker:
 
     @property
     def pid(self) -> int:
-        """Number of the process."""
+        """Process id."""
         return self._process.pid
 
     def begin(self, prepare: bytes) -> None:
-        """Sends what it needs to become ready, and receives its messages from now on."""
+        """Sends the worker what it needs to become ready, and starts receiving its messages."""
         self._thread.start()
         self._say([*sys.path])
         self._say(prepare)
 
     def give(self, order: JobMessage) -> None:
-        """Sends it a job."""
+        """Sends the worker a job."""
         self._say(order)
 
     def _say(self, message: Any) -> None:
@@ -81,7 +81,9 @@ class Worker:
         self._hear(self, None, b"")
 
     def ask_to_end(self) -> None:
-        """Asks it to end with everything that it has started, such as a simulator, and does not wait."""
+        """Asks the worker to end with all processes that it has started, such as a simulator; does not
+        wait.
+        """
         if self.is_ready and self.job is None:
             with suppress(OSError, ValueError):
                 self._down.close()  # it reads that there are no more jobs, and leaves its simulator politely
@@ -90,7 +92,9 @@ class Worker:
         self._asked = time.monotonic()
 
     def kill(self, fault: str = "") -> None:
-        """Ends the process and what it has started: on its own within a second, otherwise by force."""
+        """Ends the process and all processes that it has started; uses force if it does not end within a
+        second.
+        """
         self.fault = self.fault or fault
         children.ask_to_end(self._process)
         self._asked = self._asked or time.monotonic()
@@ -98,7 +102,9 @@ class Worker:
         children.kill(self._process)
 
     def bury(self) -> str:
-        """Cleans up after the process has ended, and says how it ended; its own thread calls this last."""
+        """Cleans up after the process has ended, and returns how it ended; the worker's thread calls this
+        last.
+        """
         status = children.end(self._process)
         for stream in (self._down, self._process.stdout):
             with suppress(OSError):
@@ -107,5 +113,5 @@ class Worker:
         return self.fault or children.ending(status)
 
     def join(self, patience: float = FAREWELL) -> None:
-        """Waits until its end was noticed, for so many seconds at most."""
+        """Waits until the end of the process has been noticed, for at most ``seconds`` seconds."""
         self._thread.join(patience)
