@@ -1,7 +1,7 @@
-"""The command line: reads options, calls the other rooms, and prints what they return.
+"""The command line: reads options, calls the other packages, and prints what they return.
 
-Verb: ``main``. Commands are imported when they are called, and import the rooms they need inside their
-functions, so that ``roadgpt --help`` answers at once.
+``main`` is the entry point. Commands are imported when they are called, and import other packages inside
+their functions, so that ``roadgpt --help`` answers at once.
 """
 
 from roadgpt import stopping

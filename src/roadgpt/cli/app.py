@@ -1,4 +1,6 @@
-"""The group of commands: finds a command when it is called, and turns errors into sentences."""
+"""The top-level command group ``roadgpt``: imports commands when they are called, and reports errors as
+one sentence.
+"""
 
 import errno
 import sys
@@ -25,26 +27,32 @@ OF_FILES = {
     errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EPERM, errno.ENOTDIR, errno.EISDIR, errno.ENOSPC,
     errno.EROFS, errno.EDQUOT if hasattr(errno, "EDQUOT") else errno.ENOSPC,
 }  # fmt: skip
-"""Errors of the file system that are no bug of RoadGPT, by their number."""
+"""``errno`` values of file system errors that the user can fix, such as a full disk; other errors are
+reported as crashes.
+"""
 INTERNAL = 70  # EX_SOFTWARE of sysexits.h
 
 
 class Commands(click.Group):
-    """A group whose commands are imported when they are called, and whose errors are sentences."""
+    """A command group that imports its commands lazily and reports errors as sentences instead of
+    tracebacks.
+    """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Returns the names of all commands, in the order of the help."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Returns the command of that name, imported now; None if there is none."""
+        """Imports and returns the command of that name; None if there is none."""
         if name not in COMMANDS:
             return None
         command: click.Command = import_module(f"roadgpt.cli.commands.{_module(name)}").command
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Writes the lines of help under their headings, without importing a command."""
+        """Writes all commands with their one-line descriptions under headings, without importing a
+        command.
+        """
         wide = max(map(len, COMMANDS))
         for heading, commands in HEADINGS.items():
             with formatter.section(heading):
@@ -53,10 +61,10 @@ class Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Returns the command that the words name, under its present or its earlier name.
+        """Returns the command that the first arguments name, by its present or an earlier name.
 
         Raises:
-            click.UsageError: There is no such command; the sentence says what to type instead.
+            click.UsageError: There is no such command; the message says what to type instead.
         """
         args, told = renamed(args)
         if told and not ctx.resilient_parsing:
@@ -77,10 +85,10 @@ class Commands(click.Group):
         return super().resolve_command(ctx, args)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Reads the words after ``roadgpt``.
+        """Parses the arguments after ``roadgpt``.
 
         Raises:
-            click.UsageError: An option is unknown or misplaced; the sentence says what to type.
+            click.UsageError: An option is unknown or misplaced; the message says what to type.
         """
         try:
             with dash_advice(ctx, args):
@@ -100,7 +108,9 @@ class Commands(click.Group):
         standalone_mode: bool = True,
         **extra: Any,
     ) -> Any:
-        """Runs a command; in standalone mode, turns errors into sentences and ends the process."""
+        """Runs a command; in standalone mode, reports errors as sentences and ends the process with an
+        exit status.
+        """
         USER.ask = _confirm
         if not standalone_mode:
             return super().main(args, prog_name, complete_var, standalone_mode=False, **extra)

@@ -1,4 +1,4 @@
-"""Options of BeamNG. They set variables of the environment, which the simulator and its workers read."""
+"""The options of BeamNG; they set environment variables that the simulator and its workers read."""
 
 import os
 from collections.abc import Callable
@@ -39,7 +39,9 @@ def _option(flag: str, name: str, help_: str, kind: Any = None, guard: Guard | N
 
 
 def folder(value: str) -> Path:
-    """Converts the value of an option to the absolute path of a folder, since workers may run elsewhere."""
+    """Converts the value of an option to the absolute path of a folder, since workers may run in another
+    folder.
+    """
     return options.folder(value).expanduser().absolute()
 
 

@@ -1,4 +1,4 @@
-"""``roadgpt doctor beamng``: whether an installed BeamNG does what RoadGPT expects of it."""
+"""``roadgpt doctor beamng``: tests whether an installed BeamNG behaves as RoadGPT expects."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Shows campaigns: their progress while they run, and their results."""
+"""Prints the progress of a running campaign, and its results."""
 
 import sys
 from collections.abc import Iterator, Mapping
@@ -52,7 +52,7 @@ screen_options: Decorator = under(
 
 
 def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool) -> None:
-    """Runs a campaign, shows its progress, and prints its results; after Ctrl-C says how to resume it."""
+    """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
     try:
         if quiet or not sys.stderr.isatty():
             for _ in steps:
@@ -82,7 +82,9 @@ def sum_up(folder: Path, as_json: bool, quiet: bool) -> None:
 
 
 def faults_of(status: "Status") -> "Faults | None":
-    """Returns the distinct faults among at most ``COMPARED`` failures; None if no test was driven."""
+    """Returns the distinct faults of a campaign, comparing at most ``COMPARED`` failures; None if no test
+    was driven.
+    """
     from roadgpt.campaign.faults import faults_in
 
     if not status.outcomes.get("PASS") and not status.outcomes.get("FAIL"):
@@ -108,12 +110,14 @@ def _with_bar(steps: "Iterator[Progress]") -> None:
 
 
 def outcomes_line(outcomes: Mapping[str, int]) -> str:
-    """Returns counts of outcomes as text: '120 PASS, 31 FAIL'."""
+    """Returns the number of tests with each outcome as text, such as '120 PASS, 31 FAIL'."""
     return ", ".join(f"{outcomes[name]:,} {name}" for name in COLOURS if outcomes.get(name)) or "nothing yet"
 
 
 def told(status: "Status", found: "Faults | None") -> Iterator[str]:
-    """Yields a status in lines to read, its distinct faults first."""
+    """Yields a campaign's status as lines of text: progress, distinct faults, outcomes, and what to do
+    next.
+    """
     state = "finished" if status.is_finished else "at work" if status.is_running else "interrupted"
     of = "" if status.total is None else f" of {status.total:,}"
     yield f"{status.folder}: {state}, {status.done:,}{of} tests in {duration(status.seconds)}" + _pace(status)
@@ -138,7 +142,7 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
 
 
 def outside_lines(status: "Status") -> Iterator[str]:
-    """Yields a line on tests that passed with the car partly outside its lane, if there are any."""
+    """Yields a line on passed tests in which the car was partly outside its lane, if there are any."""
     passed = status.outcomes.get("PASS", 0)
     partly = sum(cell.partly_outside for cell in status.cells)
     mostly = sum(cell.mostly_outside for cell in status.cells)
@@ -164,7 +168,7 @@ def _pace(status: "Status") -> str:
 
 
 def cell_columns(cell: "CellStatus") -> tuple[str, ...]:
-    """Returns the texts of one cell's row, in the order of ``HEAD``."""
+    """Returns the columns of one cell's row in the table of results, in the order of ``HEAD``."""
     passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
     margin = "-" if cell.least_margin is None else metres(cell.least_margin)
     words = one_line(cell.words, LONGEST) or "any road"

@@ -1,4 +1,6 @@
-"""The commands under their headings, and the earlier names of commands and options that still work."""
+"""Lists the commands under the headings of the help, and earlier names of commands and options that still
+work.
+"""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -43,12 +45,12 @@ COMMANDS = {name: line for commands in HEADINGS.values() for name, line in comma
 
 
 class Earlier(NamedTuple):
-    """The present name of an earlier command."""
+    """The present name of a command that was renamed."""
 
     words: tuple[str, ...]
-    """The words that replace the earlier ones on the command line."""
+    """The words that replace the earlier name on the command line."""
     shown: str
-    """How the new command is shown to the user."""
+    """The present command as it is shown to the user."""
 
 
 EARLIER = {
@@ -63,7 +65,7 @@ EARLIER = {
     ("sdc", "serve"): Earlier(("compete", "sdc"), "compete sdc"),
     ("sdc",): Earlier(("compete", "sdc", "--help"), "compete sdc"),
 }
-"""The present names of earlier commands, by their words."""
+"""The present name of each command that was renamed, by the words of its earlier name."""
 
 EARLIER_OPTIONS = {"--verge": "--shoulder"}
 EARLIER_VALUES = {"--view bonnet": "--view hood"}
@@ -83,14 +85,15 @@ MISSING = {
     "CAMPAIGN": "Name the folder of a campaign, as 'roadgpt campaign' printed it.",
     "OUT": "Name the folder to write into.",
 }
-"""What to say if an argument is missing, by its name in the help."""
+"""The advice for each missing argument, by the argument's name in the help."""
 
 
 def renamed(args: Sequence[str]) -> tuple[list[str], str]:
-    """Returns the words with the present name of their command, and a sentence if they had an earlier one.
+    """Returns the arguments with the command's present name, and a sentence for the user if they had an
+    earlier name.
 
     Args:
-        args: The words after ``roadgpt``.
+        args: The arguments after ``roadgpt``.
     """
     for words, earlier in EARLIER.items():
         if tuple(args[: len(words)]) == words:
@@ -100,10 +103,11 @@ def renamed(args: Sequence[str]) -> tuple[list[str], str]:
 
 
 def renamed_options(args: Sequence[str], known: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Returns the words with the present names of options, and a sentence for each that had an earlier one.
+    """Returns the arguments with the options' present names, and a sentence for the user for each earlier
+    name.
 
     Args:
-        args: The words after a command.
+        args: The arguments after a command.
         known: The options of the command.
     """
     new: list[str] = []

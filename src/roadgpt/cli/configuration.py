@@ -1,11 +1,13 @@
-"""Options that a file of settings or the environment can set; ``roadgpt config show`` lists them.
+"""Options that can also be set in a configuration file or the environment; ``roadgpt config show`` lists
+them.
 
-The places and their order are those of ``roadgpt.chat.config``: the command line, the environment
-(``ROADGPT_FRICTION``), ``.env`` and ``roadgpt.toml`` in the working folder, the user's ``config.toml``. The
-tables are ``[run]``, ``[world]`` and ``[beamng]``, beside ``[chat]`` for language models.
+Sources and precedence are those of ``roadgpt.chat.config``: the command line first, then the environment
+(``ROADGPT_FRICTION``), then ``.env`` and ``roadgpt.toml`` in the working folder, then the user's
+``config.toml``. The tables are ``[run]``, ``[world]`` and ``[beamng]``; ``[chat]`` is for language models.
 
-A working folder may be somebody else's. Its files can therefore not name a driver's file, a program, a server
-or a plug-in that asks a language model: such a value is refused, and the user has to give it as an option.
+A working folder may come from somebody else. Therefore its files cannot name a driver's file, a program, a
+server or a plug-in that asks a language model: such a value is refused, and the user has to give it as an
+option.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -25,23 +27,25 @@ if TYPE_CHECKING:
 TABLES = ("run", "world", "beamng")
 CHAT_TABLE = "chat"
 EARLIER_KEYS = {"verge": "shoulder"}
-"""Keys of plans of campaigns that have another name here."""
+"""Keys of campaign plans whose name in configuration files differs, with that name."""
 LAYERS, FROM_FILES = "roadgpt.layers", "roadgpt.from_files"  # keys of click's Context.meta
 
 OF_FOLDER, OF_USER, OF_ENVIRONMENT = "folder", "user", "environment"
 YOURSELF = "a file of this folder cannot decide that; say it yourself with the option"
 WHOLE_PATH = "give the whole path, from the root of the disk"
 Guard = Callable[[str, str], str]
-"""Takes a value and its kind of place, such as ``OF_FOLDER``; returns why it is refused, or an empty text."""
+"""A function of a value and its kind of source, such as ``OF_FOLDER``, that returns why the value is
+refused; empty if it is accepted.
+"""
 
 
 class SettableOption(click.Option):
-    """An option that a file of settings or the environment can set as well.
+    """An option that can also be set in a configuration file or the environment.
 
     Args:
-        table: The table of the file that holds it.
-        key: Its name there; in the environment, in capitals behind ``ROADGPT_``.
-        guard: Refuses values that a file must not give.
+        table: The option's table in configuration files.
+        key: The option's key in that table; the environment variable is ``ROADGPT_`` and the key in capitals.
+        guard: Refuses values that a configuration file must not set.
     """
 
     def __init__(self, *args: Any, table: str, key: str, guard: Guard | None = None, **rest: Any) -> None:
@@ -50,17 +54,17 @@ class SettableOption(click.Option):
 
     @property
     def variable(self) -> str:
-        """The name of its variable in the environment."""
+        """The name of the option's environment variable."""
         middle = "BEAMNG_" if self.table == "beamng" else ""
         return f"ROADGPT_{middle}{self.key.upper()}"
 
     @property
     def setting_name(self) -> str:
-        """Its name where settings of all tables are listed together."""
+        """The option's name in a list of the settings of all tables."""
         return f"beamng_{self.key}" if self.table == "beamng" else self.key
 
     def consume_value(self, ctx: click.Context, opts: Any) -> tuple[Any, ParameterSource]:
-        """Returns the value before it is converted, and where it is from; the command line comes first."""
+        """Returns the unconverted value and its source; a value on the command line takes precedence."""
         value, source = super().consume_value(ctx, opts)
         if source is not ParameterSource.DEFAULT:
             return value, source
@@ -74,7 +78,7 @@ class SettableOption(click.Option):
         """Returns the converted value.
 
         Raises:
-            UsageError: A value from a file or the environment cannot be used; the sentence says where it is.
+            UsageError: A value from a file or the environment cannot be used; the message says where it is.
         """
         own, setting = ctx.meta.get(FROM_FILES, {}).get(self.name, (None, None))
         if own is not self:
@@ -83,10 +87,10 @@ class SettableOption(click.Option):
             return super().process_value(ctx, value)
 
     def converted(self, ctx: click.Context, setting: "Setting") -> Any:
-        """Returns the value of a setting as the command gets it.
+        """Returns the value of a setting, converted to the option's type.
 
         Raises:
-            UsageError: It cannot be used.
+            UsageError: The value cannot be used.
         """
         with self._as_setting(setting):
             return self.type_cast_value(ctx, setting.value)
@@ -102,10 +106,11 @@ class SettableOption(click.Option):
             ) from None
 
     def found(self, layers: "Sequence[Layer]") -> "Setting | None":
-        """Returns the first value that the environment or a file has, with its origin; None if there is none.
+        """Returns the value from the environment or a file with the highest precedence; None if there is
+        none.
 
         Raises:
-            UsageError: The value must not come from there.
+            UsageError: The value must not come from that source.
         """
         from roadgpt.chat.config import Setting
 
@@ -148,10 +153,10 @@ class SettableOption(click.Option):
 
 
 def layers_of(ctx: click.Context | None = None) -> "Sequence[Layer]":
-    """Returns the places of settings, the first to count first; read once for each command.
+    """Returns all sources of settings, highest precedence first; they are read once per command.
 
     Raises:
-        UsageError: A file cannot be read, or has a table or a key that is unknown.
+        UsageError: A file cannot be read, or has an unknown table or key.
     """
     from roadgpt.chat.config import layers
 
@@ -164,7 +169,7 @@ def layers_of(ctx: click.Context | None = None) -> "Sequence[Layer]":
 
 
 def settable_options() -> list[SettableOption]:
-    """Returns every option that a file can set, in the order of ``roadgpt run``."""
+    """Returns every option that a configuration file can set, in the order of ``roadgpt run``."""
     from roadgpt.cli.commands import run
 
     return [each for each in run.command.params if isinstance(each, SettableOption)]
@@ -174,14 +179,16 @@ def keys_set() -> set[str]:
     """Returns the keys of all options that the environment or a file sets.
 
     Raises:
-        UsageError: A file of settings cannot be used.
+        UsageError: A configuration file cannot be used.
     """
     layers = layers_of()
     return {each.key for each in settable_options() if each.found(layers) is not None}
 
 
 def tell_settings(ctx: click.Context) -> None:
-    """Says in one line on standard error what the command takes from files and the environment."""
+    """Prints a line on standard error that lists the options set by configuration files or the
+    environment.
+    """
     found: dict[str, tuple[SettableOption, Setting]] = ctx.meta.get(FROM_FILES, {})
     if not found or ctx.params.get("quiet"):
         return
@@ -222,7 +229,7 @@ def _known(layers: "Sequence[Layer]") -> "Sequence[Layer]":
 
 
 def driver_guard(value: str, place: str) -> str:
-    """Refuses a driver's file that the working folder names, or whose path depends on that folder."""
+    """Refuses a driver's file if the working folder names it, or if its path depends on that folder."""
     if ".py" not in value:
         return ""
     if place == OF_FOLDER:
@@ -232,25 +239,25 @@ def driver_guard(value: str, place: str) -> str:
 
 
 def place_guard(value: str, place: str) -> str:
-    """Refuses what only the user may name, such as a host, where the working folder names it."""
+    """Refuses a value that only the user may set, such as a host, if a file of the working folder sets it."""
     del value
     return YOURSELF if place == OF_FOLDER else ""
 
 
 def path_guard(value: str, place: str) -> str:
-    """Refuses paths as ``place_guard`` does, and those in a file that depend on the working folder."""
+    """Refuses paths as ``place_guard`` does, and relative paths in the user's own configuration file."""
     if place == OF_USER and not Path(value).expanduser().is_absolute():
         return WHOLE_PATH
     return place_guard(value, place)
 
 
 def reader_guard(value: str, place: str) -> str:
-    """Refuses a reader with a path, or one that asks a language model, where the working folder names it."""
+    """Refuses a reader that has a path or asks a language model if a file of the working folder names it."""
     return _plugin_refusal("readers", value, place)
 
 
 def designer_guard(value: str, place: str) -> str:
-    """Refuses a designer that asks a language model where the working folder names it."""
+    """Refuses a designer that asks a language model if a file of the working folder names it."""
     return _plugin_refusal("designers", value, place)
 
 

@@ -1,4 +1,4 @@
-"""Reports unexpected errors: writes the traceback to a file, and a sentence for the user."""
+"""Reports unexpected errors: writes the traceback to a file, and returns a sentence for the user."""
 
 import platform
 import sys
@@ -13,7 +13,7 @@ _folder: list[Path] = []
 
 
 def crashes_go_to(folder: Path) -> None:
-    """Sets the folder for tracebacks."""
+    """Sets the folder into which tracebacks are written."""
     _folder[:] = [folder]
 
 

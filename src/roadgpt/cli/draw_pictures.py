@@ -29,18 +29,18 @@ def draw_pictures(
     geometry: "Geometry",
     quiet: bool,
 ) -> int:
-    """Draws each road into a new folder of its name and prints the names of the pictures.
+    """Draws pictures of each road into a new folder named after the road, and prints their paths.
 
     Args:
         files, choice: As for ``roads_named``.
-        out: Folder for the new folders.
-        axes: Axes of the pictures.
+        out: Folder in which the new folders are made.
+        axes: "equal" for axes to scale, "thesis" for the fixed ranges of RoadGPT's thesis.
         formats: Formats of the pictures: png, svg or pdf.
-        world, geometry: Used for road files, which hold none.
+        world, geometry: World and geometry for road files, which do not contain them.
         quiet: Whether to print errors only.
 
     Returns:
-        The exit status: 2 if a name could not be used, which does not stop the others.
+        The exit status: 2 if a name could not be used (the other roads are still drawn), else 0.
     """
     from roadgpt.report import draw
 

@@ -1,4 +1,4 @@
-"""``roadgpt drive --again``: drives tests of a campaign again, into folders of runs."""
+"""``roadgpt drive --again``: drives tests of a campaign again, and writes them as runs."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -24,14 +24,15 @@ def drive_again(
     axes: "Scale",
     formats: "tuple[Format, ...]",
 ) -> None:
-    """Drives tests of a campaign again, writes their runs, and says which ended differently before.
+    """Drives tests of a campaign again, writes their runs, and prints which results differ from the stored
+    ones.
 
     Args:
         names: A campaign and numbers of its tests, or tests with the folders of their campaigns.
-        choice: Which tests of a campaign.
+        choice: Which tests to drive if a name means a whole campaign.
         out: Folder for the runs; None: ``again`` in the campaign's folder.
-        driver: The campaign's driver, if the user named it again.
-        axes: Axes of the pictures.
+        driver: The campaign's driver as given with ``--driver``; None if it was not given.
+        axes: "equal" for axes to scale, "thesis" for the fixed ranges of RoadGPT's thesis.
         formats: Formats of the pictures; none are drawn if empty.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Carries out one change request, for ``roadgpt edit`` and for the conversation."""
+"""Carries out one change request, for ``roadgpt edit`` and for the interactive conversation."""
 
 import json
 import sys
@@ -29,20 +29,21 @@ class EditJob:
     out: Path | None
     designer: str
     world: "World"
-    """Used for a design that belongs to no run."""
+    """The World for a design that belongs to no run."""
     chat: "ChatSettings | None" = None
     driver: str | None = None
-    """The driver of the run, if the user named it again."""
+    """The run's driver as given with ``--driver``; None if it was not given."""
     drives: bool = True
     pictures: "tuple[Format, ...]" = ("png",)
     """Formats of the pictures; none are drawn if empty."""
 
 
 def edit_road(job: EditJob, screen: Screen) -> Path:
-    """Reads, changes, checks and drives a road, writes and shows its run, and returns its folder.
+    """Changes a road as requested, checks and drives it, writes and prints its run, and returns the run's
+    folder.
 
     Raises:
-        RoadGPTError: The words or the road cannot be used; nothing is written then.
+        RoadGPTError: The request or the road cannot be used; nothing is written.
     """
     from roadgpt.drive.permission import check_named_driver, require_permission
     from roadgpt.run import Setup, prove

@@ -44,14 +44,14 @@ class AnalysisOptions(NamedTuple):
     minimise: bool = False
     workers: int = 1
     formats: tuple[str, ...] = ("png",)
-    """Formats of the pictures; none are drawn if empty."""
+    """Formats of the pictures; empty: no pictures are drawn."""
     is_quiet: bool = False
     is_apart: bool = False
-    """Whether standard output is reserved for something else."""
+    """Whether text is printed on standard error, because standard output is reserved for JSON."""
 
     @property
     def words(self) -> list[str]:
-        """The options of ``roadgpt faults`` that ask for the same analysis."""
+        """The options of ``roadgpt faults`` that request the same analysis."""
         asked = [] if self.repeat == REPEAT else ["--repeat", str(self.repeat)]
         asked += ["--minimise"] if self.minimise else []
         asked += ["-j", str(self.workers)] if self.workers > 1 else []
@@ -60,7 +60,7 @@ class AnalysisOptions(NamedTuple):
         return asked
 
     def say(self, text: str, is_news: bool = False) -> None:
-        """Prints a text unless quiet; news about the progress goes to standard error."""
+        """Prints a text unless ``is_quiet``; news about the progress goes to standard error."""
         if not self.is_quiet:
             click.echo(text, err=is_news or self.is_apart)
 
@@ -68,7 +68,7 @@ class AnalysisOptions(NamedTuple):
 def analysis_options(
     faults: bool, minimise: bool, repeat: int | None, workers: int, is_quiet: bool, is_apart: bool
 ) -> AnalysisOptions | None:
-    """Returns what the ``fault_options`` of a campaign ask for; None if they ask for no analysis."""
+    """Returns the analysis that the ``fault_options`` of a campaign request; None if they request none."""
     if not faults and not minimise and repeat is None:
         return None
     # the campaign's workers may be on other machines

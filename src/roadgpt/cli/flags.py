@@ -1,4 +1,6 @@
-"""The options that set fields of a World, a Setup or ChatSettings, and the words that repeat them."""
+"""The options that set fields of a World, a Setup or ChatSettings, and the reverse: the options that
+repeat such values.
+"""
 
 import math
 from collections.abc import Callable
@@ -15,8 +17,8 @@ def measure(low: float, high: float, unit: str = "", above: bool = False) -> Cal
     """Returns the type of an option that takes a finite number within bounds.
 
     Args:
-        low, high: The bounds, included.
-        unit: Of the number, for messages.
+        low, high: The bounds, inclusive.
+        unit: Unit of the number, for messages.
         above: Whether the lower bound is excluded.
     """
     bounds = f"above {low:g}, up to {high:g}" if above else f"from {low:g} to {high:g}"
@@ -51,7 +53,7 @@ def whole(low: int, high: int, what: str) -> Callable[[str], int]:
 
 
 def driver(value: str) -> str:
-    """Converts the value of --driver; the code of a driver that the user types may be run."""
+    """Returns the value of --driver; if it names a file, permits the file's code to be run."""
     if ".py" in value:
         from roadgpt.drive.permission import permit
 
@@ -60,7 +62,9 @@ def driver(value: str) -> str:
 
 
 def driver_again(value: str) -> str:
-    """Converts the value of --driver to an absolute path, to compare it with the driver of a folder."""
+    """Returns the value of --driver with an absolute path, so that it can be compared with a folder's
+    driver.
+    """
     from pathlib import Path
 
     from roadgpt.drive.loading import absolute_spec
@@ -73,29 +77,33 @@ DESIGN, SITE, DRIVE, MODEL = "Design and check", "World", "Drive and verdict", "
 
 @dataclass(frozen=True)
 class Flag:
-    """One option for one field of a World, a Setup or ChatSettings; a default of False makes a switch."""
+    """An option that sets one field of a World, a Setup or ChatSettings; a default of False makes it a
+    switch.
+    """
 
     flag: str
     field: str
     default: Any
     help: str
     kind: Any = str
-    """The type that click converts its value with."""
+    """The type with which click converts the option's value."""
     unit: float | None = None
-    """How many of the option's unit one unit of the field is; None where it is no number."""
+    """Factor from the field's unit to the option's unit, such as 3.6 for m/s to km/h; None if the value is
+    not a number.
+    """
     heading: str = MODEL
-    """Where the help lists it."""
+    """The heading under which the help lists the option."""
     table: str = ""
-    """The table of a file of settings that can set it; empty for the settings of language models."""
+    """The option's table in configuration files; empty for the settings of language models."""
     key: str = ""
-    """Its name in that table, if that is not the option's own."""
+    """The option's key in that table, if it differs from the option's name."""
     is_rare: bool = False
-    """Rare options are listed by --help-all only, where a command has many options."""
+    """Whether only --help-all lists the option if a command has many options."""
     guard: Guard | None = None
-    """Refuses values that a file must not give."""
+    """Refuses values that a configuration file must not set."""
 
     def option(self) -> Decorator:
-        """Returns the option as a decorator of a command's function."""
+        """Returns a decorator that adds the option to a command's function."""
         names = [self.flag, self.field]
         rest: dict[str, Any] = {"type": self.kind, "default": self.default, "show_default": True}
         if self.default is False:
@@ -107,20 +115,22 @@ class Flag:
 
     @property
     def name(self) -> str:
-        """Its name in a file of settings."""
+        """The option's key in configuration files."""
         return self.key or self.flag[2:].replace("-", "_")
 
     def read(self, given: Any) -> Any:
-        """Returns the field's value for what the option was given."""
+        """Returns the field's value for an option's value, converted to the field's unit."""
         return given if self.unit is None or given is None else given / self.unit
 
     def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
-        """Returns the words of the command line that set the field; none where it has its default.
+        """Returns the command-line arguments that set the field to a value; empty if the value is the
+        default.
 
         Args:
             value: The field's value.
             usual: The field's default, if that is not the option's.
-            is_set: Whether a file of settings sets the option, so that its default has to be written out.
+            is_set: Whether a configuration file sets the option, so that even the default has to be written
+                out.
         """
         default = self.read(self.default) if usual is None else usual
         if value is None or (value == default and not is_set):

@@ -44,7 +44,7 @@ Here all options have their defaults, or what your settings say. 'roadgpt run' t
 
 
 def converse() -> None:
-    """Asks for descriptions, makes their roads and changes them, until the user leaves."""
+    """Asks the user for descriptions, makes their roads and changes them, until the user leaves."""
     from roadgpt.brief import read
     from roadgpt.cli.commands.run import usual_job
 

@@ -50,11 +50,11 @@ class Junit:
 
     @classmethod
     def of(cls, path: Path | None, request: "Request") -> "Junit | None":
-        """Returns the file for the tests of one request; None if no path is given."""
+        """Returns the JUnit file for the tests of one request; None if no path is given."""
         return None if path is None else cls(path, _named(request.words), common(request))
 
     def write(self, rows: Sequence[Row]) -> None:
-        """Writes the rows.
+        """Writes one test case for each row.
 
         Raises:
             RoadGPTError: The file cannot be written.
@@ -65,7 +65,7 @@ class Junit:
 
 
 def write_folder(path: Path, folder: Path) -> None:
-    """Writes the tests of a folder of runs, a campaign or a study.
+    """Writes the tests of a folder of runs, a campaign or a study as a JUnit file.
 
     Raises:
         UsageError: The folder is none of these, or one of its files cannot be read.

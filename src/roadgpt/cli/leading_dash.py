@@ -39,9 +39,9 @@ def _description(args: Sequence[str]) -> str | None:
 
 
 class DescribedCommand(GroupedCommand):
-    """A command that takes a description."""
+    """A command with a description as argument; gives advice if the description begins with a dash."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Reads the words after the command."""
+        """Parses the arguments after the command."""
         with dash_advice(ctx, args):
             return super().parse_args(ctx, args)

@@ -1,4 +1,4 @@
-"""Suggests commands that make the tests harder, if a driver failed on no road."""
+"""Suggests commands that make tests harder, for results in which the driver failed on no road."""
 
 import shlex
 from collections.abc import Iterator
@@ -23,23 +23,25 @@ HEAD = "No road failed. What may find one that does:"
 
 @dataclass(frozen=True)
 class WithoutFailure:
-    """The results of tests of which none failed."""
+    """The results of a set of tests in which no test failed."""
 
     request: "Request"
     tests: int
     passed: int
     mostly: int = 0
-    """How many passed with more than half of the car outside its lane."""
+    """Number of passed tests in which more than half of the car was outside its lane."""
     outside: int = 0
-    """How many passed with any part of the car outside its lane."""
+    """Number of passed tests in which any part of the car was outside its lane."""
     goal: str | None = None
-    """The goal of the search; None if nothing was searched for."""
+    """The goal of the campaign's search; None if it did not search."""
     is_search: bool = False
-    """Whether roadgpt campaign made them."""
+    """Whether the tests are those of a campaign."""
 
     @property
     def is_worth_it(self) -> bool:
-        """Whether enough tests were driven, and options can express the whole request."""
+        """Whether enough tests were driven for suggestions, and command-line options can express the whole
+        request.
+        """
         named = {flag.field for flag in WORLD}
         usual = type(self.request.world)().model_dump(exclude=named)
         is_usual = self.request.world.model_dump(exclude=named) == usual
@@ -47,12 +49,12 @@ class WithoutFailure:
 
 
 def next_steps(quiet: WithoutFailure) -> list[tuple[str, str]]:
-    """Returns suggestions, each with the command that carries it out; empty if too little was driven."""
+    """Returns suggestions, each with the command that carries it out; empty if too few tests were driven."""
     return [*_steps(quiet)] if quiet.is_worth_it else []
 
 
 def lines(quiet: WithoutFailure) -> Iterator[str]:
-    """Yields the suggestions as lines for the screen."""
+    """Yields the suggestions as lines of text, below a heading."""
     found = next_steps(quiet)
     if found:
         yield HEAD
@@ -99,7 +101,7 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
-    """Returns the results of a campaign; None if it is running or a road failed."""
+    """Returns the results of a campaign for suggestions; None if it is running or a test failed."""
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None
     from roadgpt.campaign.record import Record
@@ -114,7 +116,7 @@ def of_status(status: "Status") -> WithoutFailure | None:
 
 
 def of_runs(folder: Path) -> WithoutFailure | None:
-    """Returns the results of a folder of runs; None if a road failed."""
+    """Returns the results of a folder of runs for suggestions; None if a road failed."""
     from roadgpt.cli.result_row import row_of
     from roadgpt.run import read_run
     from roadgpt.run.campaign_runs import finished
@@ -127,7 +129,7 @@ def of_runs(folder: Path) -> WithoutFailure | None:
 
 
 def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
-    """Returns the results in rows; None if a road failed."""
+    """Returns the results in rows for suggestions; None if a road failed."""
     from roadgpt.verdict.severity import MOSTLY
 
     if any(row.test_outcome == "FAIL" for row in rows):

@@ -1,4 +1,4 @@
-"""Help in named groups of options: ``--help`` lists what is used often, ``--help-all`` lists every option."""
+"""Help with options in named groups: ``--help`` lists common options, ``--help-all`` lists every option."""
 
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
@@ -21,23 +21,23 @@ ALL = "roadgpt.help_all"  # key of click's Context.meta while --help-all is answ
 
 
 class Listing(NamedTuple):
-    """Where the help of a command lists an option."""
+    """The heading under which the help lists an option, and whether the option is rare."""
 
     heading: str = FIRST
     is_rare: bool = False
-    """Rare options are left out of ``--help`` where a command has many."""
+    """Whether ``--help`` leaves the option out if the command has many options."""
 
 
 _LISTINGS: "WeakKeyDictionary[click.Parameter, Listing]" = WeakKeyDictionary()
 
 
 def under(heading: str, *decorators: Decorator, rare: bool = False) -> Decorator:
-    """Returns one decorator for several options, which the help lists under a heading.
+    """Returns one decorator that adds several options, which the help lists under a heading.
 
     Args:
         heading: One of ``ORDER``.
         decorators: Each adds one or more options to a function, as ``click.option`` does.
-        rare: Whether only ``--help-all`` lists them where a command has many options.
+        rare: Whether only ``--help-all`` lists the options if a command has many options.
     """
 
     def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -61,7 +61,7 @@ def _help_all(ctx: click.Context, parameter: click.Parameter, is_asked: bool) ->
 
 
 class GroupedCommand(click.Command):
-    """A command whose help lists its options in groups, and that says which settings a file made."""
+    """A command whose help lists its options in groups, and that prints which settings come from files."""
 
     def __init__(self, *args: Any, **rest: Any) -> None:
         super().__init__(*args, **rest)
@@ -73,7 +73,7 @@ class GroupedCommand(click.Command):
         self.params.append(flag)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Reads the words; an earlier name of an option is taken, and its present one is said."""
+        """Parses the arguments; an earlier name of an option is accepted, and the present name is printed."""
         known = [name for parameter in self.params for name in parameter.opts]
         words, told = renamed_options(args, known)
         for sentence in () if ctx.resilient_parsing else told:
@@ -90,7 +90,7 @@ class GroupedCommand(click.Command):
                     formatter.write_dl(records)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Runs the command; what it takes from files of settings is said first, on standard error."""
+        """Prints on standard error which options are set by configuration files, then runs the command."""
         tell_settings(ctx)
         return super().invoke(ctx)
 
@@ -130,7 +130,7 @@ class CommandGroup(click.Group):
     command_class = GroupedCommand
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Writes the sub-commands with their first sentences, which are not cut."""
+        """Writes the sub-commands with the whole first sentence of their help."""
         with formatter.section("Commands"):
             formatter.write_dl(
                 [(name, command.get_short_help_str(limit=200)) for name, command in self.commands.items()]

@@ -1,4 +1,4 @@
-"""Options that commands share, and the types of their values."""
+"""Options that several commands share, and the functions that convert their values."""
 
 from functools import reduce
 from pathlib import Path
@@ -21,7 +21,7 @@ FILES, OUTPUT = "Files", LAST  # headings of help
 
 
 def folder(value: str) -> Path:
-    """Converts the value of an option to the path of a folder that exists or can be made."""
+    """Converts the value of an option to the path of a folder that exists or can be created."""
     if not str(value).strip():
         raise click.BadParameter("a folder without a name; give its name, or '.' for this one")
     path = Path(value)
@@ -38,24 +38,28 @@ SEED = whole(0, 2**63 - 1, "a seed")
 
 
 def together(*decorators: Decorator) -> Decorator:
-    """Returns one decorator for several options, which the help lists in this order."""
+    """Returns one decorator that adds several options, which the help lists in this order."""
     return lambda function: reduce(lambda made, decorate: decorate(made), reversed(decorators), function)
 
 
 def world_options(*fields: str) -> Decorator:
-    """Returns the options that set these fields of the World, or all of them if none is named."""
+    """Returns a decorator that adds the options for these fields of the World; without names, for all
+    fields.
+    """
     return together(*(flag.option() for flag in WORLD if not fields or flag.field in fields))
 
 
 def world_of(values: dict[str, Any]) -> "World":
-    """Returns the World that the options describe, and removes them from ``values``."""
+    """Returns the World that option values describe, and removes these options from ``values``."""
     from roadgpt.road import World
 
     return World(**{f.field: f.read(values.pop(f.field)) for f in WORLD if f.field in values})
 
 
 def competition_options(oob_tolerance: float, speed_limit_kmh: float) -> Decorator:
-    """Returns the two options that all competitions have, with a competition's own defaults."""
+    """Returns a decorator that adds the options --oob-tolerance and --speed-limit with a competition's own
+    defaults.
+    """
     return under(
         DRIVE,
         click.option(
@@ -76,7 +80,7 @@ def competition_options(oob_tolerance: float, speed_limit_kmh: float) -> Decorat
 
 
 def setup_options(*fields: str) -> Decorator:
-    """Returns the options that set these fields of the Setup, in this order."""
+    """Returns a decorator that adds the options for these fields of the Setup, in this order."""
     known = {flag.field: flag for flag in SETUP}
     return together(*(known[field].option() for field in fields))
 
@@ -96,7 +100,7 @@ driver_again_option = under(
 
 
 def chat_options_but(*fields: str) -> Decorator:
-    """Returns the options that set ChatSettings, without those of fields that the command does not use."""
+    """Returns a decorator that adds all options of language models except those for the given fields."""
     return together(*(flag.option() for flag in CHAT if flag.field not in fields))
 
 
@@ -106,10 +110,11 @@ chat_options = chat_options_but()
 def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":
     """Returns the settings of the language model, and removes their options from ``values``.
 
-    Returns None if neither the reader nor the designer asks a language model.
+    Returns None if neither the reader nor the designer uses a language model.
 
     Raises:
-        UsageError: An option of language models is given but none is asked, or a setting cannot be used.
+        UsageError: An option of language models is given but no language model is used, or a setting is
+            invalid.
     """
     given = {flag: flag.read(values.pop(flag.field, None)) for flag in CHAT}
     told = {flag.field: value for flag, value in given.items() if value is not None}
@@ -129,7 +134,7 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
 
 
 def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
-    """Converts names of formats, separated by commas."""
+    """Converts comma-separated names of formats to a tuple of names."""
     if isinstance(value, tuple):
         return value
     names = tuple(name.strip() for name in value.split(",") if name.strip())
@@ -139,7 +144,9 @@ def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
 
 
 def formats_option(flag: str, required: bool = False, is_settable: bool = False) -> Decorator:
-    """Returns an option for formats of road files, separated by commas or given as several options."""
+    """Returns a decorator that adds an option for formats of road files, which can be comma-separated or
+    repeated.
+    """
     settable: dict[str, Any] = {"cls": SettableOption, "table": "run", "key": flag[2:]} if is_settable else {}
     return under(
         FILES if is_settable else FIRST,
@@ -163,7 +170,7 @@ PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load
 
 
 def picture_formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
-    """Converts names of formats of pictures, separated by commas."""
+    """Converts comma-separated names of picture formats to a tuple of names."""
     names = value if isinstance(value, tuple) else tuple(name.strip().lower() for name in value.split(","))
     for name in names:
         if name not in PICTURES:

@@ -12,17 +12,18 @@ U = TypeVar("U")
 
 
 def shared(function: Callable[[T], U], items: Iterable[T], workers: int) -> Iterator[U]:
-    """Yields ``function`` of every item as it is done; one worker works in this process.
+    """Yields the result of ``function`` for every item as soon as it is ready; a single worker runs in this
+    process.
 
     The workers end when the iteration is stopped, by Ctrl-C or otherwise.
 
     Args:
         function: A function at the top level of a module.
-        items: Its arguments; they and its results must be picklable if there are several workers.
+        items: The arguments of ``function``; with several workers, items and results must be picklable.
         workers: The number of processes.
 
     Raises:
-        What ``function`` raises.
+        Exception: Any error that ``function`` raises.
     """
     if workers == 1:
         for item in items:

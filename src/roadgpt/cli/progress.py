@@ -1,4 +1,4 @@
-"""Shows progress: a bar on a terminal, otherwise a line now and then, with the remaining time."""
+"""Shows progress with the remaining time: as a bar on a terminal, otherwise as occasional lines."""
 
 import sys
 import time
@@ -15,12 +15,12 @@ EVERY = 10.0  # s between two lines where there is no terminal
 
 
 def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
-    """Yields the steps, and shows on standard error how many are done and the remaining time.
+    """Yields the steps, and shows on standard error how many are done and how long the rest will take.
 
     Args:
-        steps: Each is yielded when it is done.
-        total: How many there are.
-        what: What they are, in the plural, such as 'faults'.
+        steps: The steps; each is done when it is yielded.
+        total: Number of steps.
+        what: Name of the steps in the plural, such as 'faults'.
         quiet: Whether to show nothing.
     """
     if quiet:

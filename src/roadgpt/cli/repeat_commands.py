@@ -1,4 +1,6 @@
-"""The commands that repeat a Run: one makes the road from its words, one drives the road."""
+"""Returns the commands that repeat a Run: one makes its road from the description, one drives its road
+file.
+"""
 
 import shlex
 from collections.abc import Sequence
@@ -13,7 +15,7 @@ OF_DRIVES = tuple(flag for flag in SETUP if flag.field in ("driver", "simulator"
 
 
 def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
-    """Returns the commands that repeat this Run: from its words, as the last road, and from its road file."""
+    """Returns lines with the commands that repeat a Run: from its description, and from its road file."""
     lines = []
     request = run.request
     if run.words:
@@ -25,7 +27,7 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
 
 
 def request_words(request: Request, roads: int) -> list[str]:
-    """Returns the words after ``roadgpt run`` that make this many roads of a request."""
+    """Returns the arguments after ``roadgpt run`` that make this many roads of a request."""
     rest = ["-n", str(roads), "--seed", str(request.seed), *_written(request, SETUP), *_asked(request)]
     if not request.setup.drives:
         rest.append("--no-drive")

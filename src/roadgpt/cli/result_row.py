@@ -1,4 +1,4 @@
-"""A Row: what a command prints about one road, as a line to read or as JSON."""
+"""The Row of a road: its result as a command prints it, as a line of text or as JSON."""
 
 import json
 import math
@@ -36,29 +36,31 @@ def colour_of(outcome: str) -> str:
 
 @dataclass(frozen=True)
 class Row:
-    """The result of one road. The outcome VALID means that it was checked and not driven."""
+    """The result of one road; the outcome VALID means that the road was checked but not driven."""
 
     file: str
     test_outcome: Outcome
     description: str
-    """One sentence: what the verdict, the rule or the error says."""
+    """One sentence on the result: the verdict, the broken rule or the error."""
     is_valid: bool = True
     validation_message: str = ""
     findings: tuple[str, ...] = ()
-    """The sentences of all broken rules; the first is ``validation_message`` as well."""
+    """One sentence for each broken rule; the first is also ``validation_message``."""
     cause: str | None = None
-    """Of a FAIL: out of lane, fell, stuck or timeout. Of an ERROR: unreadable, if the file cannot be read."""
+    """Cause of a FAIL: out of lane, fell, stuck or timeout. For an ERROR: unreadable, if the file cannot
+    be read.
+    """
     max_oob: float | None = None
-    """Largest share of the car outside its lane, 0 to 1."""
+    """Largest share of the car that was outside its lane, 0 to 1."""
     beyond_m: float | None = None
-    """The furthest that the car's body was beyond the lane marking, m."""
+    """Largest distance of the car's body beyond the lane marking, m."""
     margin_m: float | None = None
     length_m: float | None = None
     seconds: float = 0.0
     name: str = ""
-    """A shorter name for lines, if the path of the file is too long."""
+    """A shorter name to print if the path of the file is too long."""
     spent: "Spent | None" = None
-    """Tokens, seconds and cost of the language models that were asked for it."""
+    """Tokens, seconds and cost of the language models used for the road."""
     words: str = ""
     seed: int | None = None
     """The seed of this road."""
@@ -67,7 +69,7 @@ class Row:
 
     @property
     def outcome(self) -> str:
-        """The outcome with its cause or grade: 'FAIL (out of lane)', 'PASS (mostly outside)'."""
+        """The outcome with its cause or grade, such as 'FAIL (out of lane)' or 'PASS (mostly outside)'."""
         if self.cause:
             return f"{self.test_outcome} ({self.cause})"
         from roadgpt.verdict import graded
@@ -76,7 +78,9 @@ class Row:
 
     @property
     def told(self) -> str:
-        """The outcome as lines show it: a PASS with the share of the car that was outside, and how far."""
+        """The outcome as lines show it; a PASS with the share of the car that was outside, and the
+        distance.
+        """
         if self.test_outcome != "PASS" or not self.max_oob:
             return self.outcome
         return f"PASS ({outside(self.max_oob, self.beyond_m)})"
@@ -111,7 +115,7 @@ class Row:
         )
 
     def to_line(self) -> str:
-        """Returns outcome, length, margin, file, and the sentence if something is wrong."""
+        """Returns a line with outcome, length, margin and file, and the sentence if something is wrong."""
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
@@ -128,7 +132,9 @@ class Row:
 
 
 def outside(share: float | None, beyond: float | None) -> str:
-    """Returns how far a car was outside its lane: '62 % out, 1.13 m'; empty if nobody drove."""
+    """Returns how far a car was outside its lane as text, such as '62 % out, 1.13 m'; empty if the road
+    was not driven.
+    """
     if share is None:
         return ""
     if not share:
@@ -139,13 +145,13 @@ def outside(share: float | None, beyond: float | None) -> str:
 
 
 def metres(margin: float) -> str:
-    """Returns a margin as text, to the millimetre, since the deciding margins are small."""
+    """Formats a margin to the millimetre, because the margins that decide a verdict are small."""
     told = f"{margin:+.3f} m"
     return "below 0 m" if told.startswith("-0.000") else told
 
 
 def spending(spent: "Spent") -> str:
-    """Returns answers, tokens, seconds and cost of language models as text."""
+    """Returns number of answers, tokens, seconds and cost of language models as text."""
     money = "price unknown" if spent.cost is None else f"{spent.cost:.4f} USD"
     answers = f"{spent.calls:,} answer{'s' * (spent.calls != 1)}"
     return f"{answers}, {spent.usage.total:,} tokens, {spent.seconds:.1f} s, {money}"
@@ -157,7 +163,9 @@ def _rounded(number: float | None) -> float | None:
 
 
 def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
-    """Returns for each outcome: its name, number of roads, share, smallest margin, and furthest outside."""
+    """Returns a tuple for each outcome: its name, number of roads, share, smallest margin, and furthest
+    outside.
+    """
     counted = Counter(row.outcome for row in rows)
     table = []
     for outcome, count in sorted(counted.items(), key=lambda item: (_rank(item[0]), item[0])):
@@ -180,8 +188,8 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
 
     Args:
         run: The Run.
-        file: Its road file.
-        name: A shorter name for lines.
+        file: The road file that the row names.
+        name: A shorter name to print in lines.
     """
     verdict = run.verdict
     return Row(
@@ -206,5 +214,5 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
 
 
 def unreadable(file: str, error: Exception) -> Row:
-    """Returns the row of a file that holds no road."""
+    """Returns the row of a file from which no road could be read."""
     return Row(file, "ERROR", str(error), is_valid=False, validation_message=str(error), cause="unreadable")

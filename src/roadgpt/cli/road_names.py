@@ -33,7 +33,7 @@ choice_options: Decorator = together(
 
 
 def choice_of(values: dict[str, bool]) -> "Choice | None":
-    """Returns the choice of the ``choice_options``, and removes them from ``values``.
+    """Returns which of --failures, --faults and --worst was given, or None, and removes them from ``values``.
 
     Raises:
         UsageError: More than one choice is given.
@@ -50,13 +50,13 @@ class NamedRoad:
     """A road that the user named."""
 
     said: str
-    """Its name as it can be typed again."""
+    """The road's name in a form that can be typed again."""
     stem: str
-    """The start of the names of files that are made from it."""
+    """The first part of the names of files that are made from the road."""
     key: object
-    """Equal for two names of the same road."""
+    """A value that is equal for two names of the same road."""
     run: "Callable[[], Run] | None"
-    """Reads its Run; None for a road file, which each command reads in its own way."""
+    """A function that reads the road's Run; None for a road file, which each command reads in its own way."""
 
 
 def roads_named(
@@ -65,16 +65,16 @@ def roads_named(
     takes_all: bool = False,
     complain: "Callable[[UsageError], None] | None" = None,
 ) -> Iterator[NamedRoad]:
-    """Yields the roads that the names mean, each once.
+    """Yields the roads that the names refer to, each road once.
 
     Args:
         files: The names, as the user typed them.
-        choice: Which roads of a folder.
+        choice: Which roads of a folder to yield; None: no choice.
         takes_all: Whether a folder without a choice means all its roads; otherwise it must hold one road.
         complain: Called with the error of a wrong name, which is then skipped. If None, the error is raised.
 
     Raises:
-        UsageError: A name is wrong, or the folder has no road of that choice.
+        UsageError: A name is wrong, or the folder has no road that matches the choice.
     """
     seen = set()
     for file in files:

@@ -1,4 +1,4 @@
-"""Reads roads from files; a file that cannot be read does not stop the others."""
+"""Reads roads from files; a file that cannot be read does not stop the reading of others."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
-    """Returns the Design or the Road in a file, and remarks on what had to be assumed.
+    """Returns the Design or the Road in a file, and remarks on assumptions made in reading it.
 
     Raises:
         UsageError: The file holds no road, or it is a folder that is no run.
@@ -45,12 +45,12 @@ def shown_runs(
     most: int,
     what: str,
 ) -> "list[Run]":
-    """Returns the Runs that are named, to be shown together; a road file becomes a Run without a drive.
+    """Returns the named Runs, to show them together; a road file becomes a Run without a drive.
 
     Args:
         files, choice: As for ``roads_named``.
-        world, geometry: Used for road files.
-        most: How many can be shown.
+        world, geometry: World and geometry for road files.
+        most: Maximum number of Runs that can be shown together.
         what: What shows them, such as 'a page'.
 
     Raises:
@@ -70,7 +70,7 @@ def shown_runs(
 
 
 def shown_run(file: str, world: "World", geometry: "Geometry") -> "Run":
-    """Returns the one Run that is named; see ``shown_runs``."""
+    """Returns the Run that a single name refers to, as ``shown_runs`` does."""
     return shown_runs([file], None, world, geometry, 1, "it")[0]
 
 
@@ -92,10 +92,10 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
 
 
 def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) -> None:
-    """Calls ``look`` for every file, and shows the rows and their table.
+    """Calls ``look`` for every file, and prints the resulting rows and a table of them.
 
     Raises:
-        UsageError: There is only one file, and it cannot be used.
+        UsageError: The only file given cannot be used.
     """
     with screen:
         for file in files:

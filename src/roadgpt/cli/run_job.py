@@ -1,4 +1,4 @@
-"""Makes the roads of one description, for ``roadgpt run`` and for the conversation."""
+"""Makes the roads of one description, for ``roadgpt run`` and for the interactive conversation."""
 
 import secrets
 import shlex
@@ -31,7 +31,7 @@ SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be
 
 @dataclass(frozen=True)
 class RunJob:
-    """One description with its options."""
+    """A description from which to make roads, with all options."""
 
     words: str
     roads: int
@@ -41,19 +41,19 @@ class RunJob:
     out: Path | None = None
     axes: "Scale" = "equal"
     pictures: "tuple[Format, ...]" = ("png",)
-    """Formats of the pictures of each run; none are drawn if empty."""
+    """Formats of the pictures of each run; empty: no pictures are drawn."""
     formats: tuple[str, ...] = ()
     """Formats of the road files that are written into each run."""
     junit: Path | None = None
-    """The JUnit file, if one is wanted."""
+    """The JUnit file to write; None: none is written."""
 
 
 def carry_out(job: RunJob, screen: Screen) -> None:
-    """Reads the description, makes its roads, and shows each as it ends.
+    """Interprets the description, makes its roads, and prints each road when it is finished.
 
     Raises:
-        RoadGPTError: The words, a plug-in or the folder cannot be used, or nothing could be designed.
-        KeyboardInterrupt: The user stopped it; finished roads are complete.
+        RoadGPTError: The description, a plug-in or the folder cannot be used, or nothing could be designed.
+        KeyboardInterrupt: The user pressed Ctrl-C; finished roads are saved in full.
     """
     from roadgpt.chat import Meter
     from roadgpt.run import brief_of, campaign
@@ -87,7 +87,9 @@ def _seed(job: RunJob) -> int:
 
 
 def understood(brief: "Brief", map_size: float = inf) -> str:
-    """Returns how the words are read, a warning if that is unsure, and what does not fit on the map."""
+    """Returns the interpretation of a description as text, with a warning if it is uncertain, and remarks
+    on what does not fit on the map.
+    """
     from roadgpt.brief import remarks
 
     told = f"I read this as: {reading(brief)}"
@@ -97,7 +99,7 @@ def understood(brief: "Brief", map_size: float = inf) -> str:
 
 
 def reading(brief: "Brief") -> str:
-    """Returns how the words are read, and which of them were not understood."""
+    """Returns the interpretation of a description as text, and which of its words were not understood."""
     from roadgpt.brief import sentence
 
     said = sentence(brief).removesuffix(".")

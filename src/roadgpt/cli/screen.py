@@ -1,4 +1,6 @@
-"""What a command prints while it works: a bar on a terminal, plain lines in a pipe, JSON, or nothing."""
+"""Prints the output of a command while it works: a bar on a terminal, plain lines in a pipe, JSON, or
+nothing.
+"""
 
 import logging
 import sys
@@ -18,10 +20,10 @@ if TYPE_CHECKING:
 
 
 class Screen:
-    """Prints each road as it ends, and at the end a table of outcomes.
+    """Prints each road when it is finished, and at the end a table of outcomes.
 
-    Roads go to standard output, and so does other text unless the roads are JSON. The bar goes to standard
-    error, if that is a terminal. A total of 0 means that the number of roads is unknown.
+    Rows of roads and other text go to standard output; if the rows are JSON, other text does not. The bar
+    goes to standard error if that is a terminal. A total of 0 means that the number of roads is unknown.
     """
 
     def __init__(
@@ -64,17 +66,17 @@ class Screen:
         return time.perf_counter() - self._begun
 
     def say(self, sentence: str) -> None:
-        """Prints a sentence unless quiet."""
+        """Prints a sentence unless output is quiet."""
         if not self.quiet:
             _show(sentence, on_stderr=self.as_json)
 
     def detail(self, sentence: str) -> None:
-        """Prints a sentence if verbose."""
+        """Prints a sentence if output is verbose."""
         if self.verbose:
             self.say(sentence)
 
     def row(self, row: Row) -> None:
-        """Prints a road that has ended."""
+        """Prints the result of a finished road."""
         self.rows.append(row)
         if self.as_json:
             _show(row.to_json())
@@ -87,7 +89,7 @@ class Screen:
             self._bar.update(self._task, completed=len(self.rows), rate=rate)
 
     def close(self) -> None:
-        """Prints the table of outcomes, and writes the JUnit file if one is wanted."""
+        """Prints the table of outcomes, and writes the JUnit file if one was requested."""
         if self.junit is not None:
             self.junit.write(self.rows)
         if self.quiet or self.as_json or not self.rows:

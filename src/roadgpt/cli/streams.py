@@ -1,4 +1,4 @@
-"""Standard output: its errors become sentences, and what drivers print is kept out of it."""
+"""Handles errors of standard output, and keeps the output of users' drivers out of it."""
 
 import io
 import os
@@ -12,7 +12,9 @@ LETTERS = "backslashreplace"  # letters that the other end has not are written a
 
 
 class OutputError(Exception):
-    """Standard output cannot be written to. Not an OSError, which click would handle itself."""
+    """Raised if standard output cannot be written to; not an OSError, since click would handle that
+    itself.
+    """
 
     def __init__(self, cause: OSError) -> None:
         self.is_reader_gone = isinstance(cause, BrokenPipeError)
@@ -38,7 +40,7 @@ class _Output(io.TextIOWrapper):
 
 
 def make_ready() -> None:
-    """Makes both outputs accept every character, and standard output raise OutputError on failure.
+    """Makes standard output and standard error accept every character, and standard output raise OutputError.
 
     An output that was closed before the program began is replaced by the null device.
     """
@@ -65,7 +67,9 @@ def _nothing(number: int, mode: int) -> int:
 
 
 def drop_output() -> None:
-    """Redirects standard output to the null device, since Python flushes it once more at its end."""
+    """Redirects standard output to the null device, because Python flushes standard output once more at
+    exit.
+    """
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, sys.stdout.fileno())
     os.close(nothing)
@@ -77,8 +81,9 @@ def is_coloured() -> bool:
 
 
 def apart(steps: Iterable[Step]) -> Iterator[Step]:
-    """Yields the steps; what is printed while one is made, for example by a user's driver, goes to standard
-    error, so that standard output holds rows only."""
+    """Yields the steps of an iterable; text printed while a step is computed, such as by a user's driver,
+    goes to standard error, so that standard output holds only result rows.
+    """
     made = iter(steps)
     while True:
         with redirect_stdout(sys.stderr):

@@ -1,4 +1,4 @@
-"""``roadgpt study thesis`` and ``alignment``: evaluate many roads of many descriptions."""
+"""``roadgpt study thesis`` and ``roadgpt study alignment``: evaluate many roads of many descriptions."""
 
 import shlex
 import sys

@@ -27,23 +27,24 @@ MOST_TESTS = 40  # of a cell, one by one
 
 
 def show(path: Path | str, choice: Choice | None = None) -> str:
-    """Returns a Run's summary with the commands that repeat it, or a table of a folder, a campaign or a cell.
+    """Returns the summary of a Run with the commands that repeat it, or a table of a folder, a campaign or a
+    cell.
 
     Args:
         path: A run, its ``test.NNNN.json``, a folder of runs, a campaign, a cell or a test.
-        choice: Which roads of a folder; one is summarised, several are listed.
+        choice: Which roads of a folder to show; a single road is summarised, several are listed.
 
     Raises:
-        UsageError: There is nothing of that name.
+        UsageError: No run, folder, campaign, cell or test has that name.
     """
     return "\n".join(_lines(path, choice))
 
 
 def progress_lines(campaign: Path, as_json: bool = False) -> Iterator[str]:
-    """Yields how far a campaign is, in lines to read or as one JSON object.
+    """Yields the progress of a campaign as lines of text, or as one JSON object.
 
     Raises:
-        UsageError: There is no campaign.
+        UsageError: The folder holds no campaign.
     """
     status = status_of(campaign)
     found = faults_of(status)
@@ -51,10 +52,10 @@ def progress_lines(campaign: Path, as_json: bool = False) -> Iterator[str]:
 
 
 def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
-    """Yields one JSON object about a whole campaign, or one for each road that is named.
+    """Yields one JSON object for a whole campaign, or one for each named road.
 
     Raises:
-        UsageError: There is nothing of that name.
+        UsageError: No run, folder, campaign, cell or test has that name.
     """
     place = selection_of(str(path))
     if place is not None and place.is_campaign and not place.cell and choice is None:

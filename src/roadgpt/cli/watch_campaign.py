@@ -18,10 +18,11 @@ LEAST = 12  # letters of a description, below which it is left out
 
 
 def watch_campaign(campaign: Path, once: bool = False) -> None:
-    """Shows a campaign that another command works on, until it ends or Ctrl-C; once if there is no terminal.
+    """Shows the progress of a campaign until it ends or the user presses Ctrl-C; without a terminal, shows it
+    once.
 
     Raises:
-        UsageError: There is no campaign.
+        UsageError: The folder holds no campaign.
     """
     from rich.console import Console
     from rich.live import Live

@@ -1,4 +1,4 @@
-"""``roadgpt check``: checks roads of files against the rules."""
+"""``roadgpt check``: checks roads from files against the rules."""
 
 import time
 from typing import Any

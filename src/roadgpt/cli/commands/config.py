@@ -1,4 +1,4 @@
-"""``roadgpt config``: lists settings with their origin, and plug-ins."""
+"""``roadgpt config``: lists all settings with their origin, and all plug-ins."""
 
 import json
 from collections.abc import Sequence

@@ -24,7 +24,7 @@ TEST_ROAD = [[40.0, 100.0], [60.0, 100.0], [80.0, 100.0]]  # m; a straight, driv
 
 @dataclass(frozen=True)
 class CheckResult:
-    """The result of one check."""
+    """The result of one check of the installation."""
 
     about: str
     is_fine: bool
@@ -32,7 +32,7 @@ class CheckResult:
 
 
 def examined() -> Iterator[CheckResult]:
-    """Yields the result of each check; none raises."""
+    """Yields the result of each check in turn; a check that fails raises no exception."""
     yield CheckResult("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
     fits = sys.version_info >= (3, 11)
     yield CheckResult("Python", fits, f"{platform.python_version()} on {platform.platform()}")

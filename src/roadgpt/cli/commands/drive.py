@@ -1,4 +1,4 @@
-"""``roadgpt drive``: drives roads of files, and tests of campaigns again."""
+"""``roadgpt drive``: drives roads from files, or tests of a campaign again."""
 
 import sys
 from contextlib import redirect_stdout

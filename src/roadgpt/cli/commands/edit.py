@@ -1,4 +1,4 @@
-"""``roadgpt edit``: changes a road by words."""
+"""``roadgpt edit``: changes a road as a request in words says."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""``roadgpt film``: films of drives, from behind the car, from its hood, or of two roads side by side."""
+"""``roadgpt film``: films drives from behind the car, from its hood, or of two roads side by side."""
 
 import sys
 from collections.abc import Iterator

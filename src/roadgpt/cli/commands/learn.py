@@ -1,4 +1,6 @@
-"""``roadgpt learn``: makes pairs of descriptions and plans; trains, evaluates and exports readers."""
+"""``roadgpt learn``: makes training pairs of descriptions and requirements; trains, evaluates and exports
+readers.
+"""
 
 import json
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""``roadgpt read``: shows how a description is read, without making a road."""
+"""``roadgpt read``: shows how a description is interpreted, without making a road."""
 
 import json
 from collections.abc import Iterator, Sequence

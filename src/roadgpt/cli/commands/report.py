@@ -1,4 +1,4 @@
-"""``roadgpt report``: writes a page on a folder of runs, a campaign or a study."""
+"""``roadgpt report``: writes a report on a folder of runs, a campaign or a study."""
 
 import shlex
 import webbrowser
@@ -61,7 +61,9 @@ def _written(folder: Path) -> Path:
 
 
 def command_of_many(folder: Path) -> str:
-    """Returns the command that makes a campaign again, or that resumes it if it is made from a file."""
+    """Returns the command that makes a campaign again; for a campaign from a plan file, the command that
+    resumes it.
+    """
     from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL
     from roadgpt.campaign.record import Record
     from roadgpt.cli.repeat_commands import request_words

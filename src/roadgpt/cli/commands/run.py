@@ -77,7 +77,7 @@ def job_of(
     junit: Path | None,
     **rest: Any,
 ) -> RunJob:
-    """Returns what the values of the options ask for.
+    """Returns the job that the values of the options describe.
 
     Raises:
         UsageError: The options contradict each other, or a setting cannot be used.
@@ -92,7 +92,8 @@ def job_of(
 
 
 def usual_job(words: str, roads: int) -> RunJob:
-    """Returns what ``roadgpt run`` would be asked for without an option: defaults and settings of files.
+    """Returns the job of ``roadgpt run`` without options: with the defaults and the settings of configuration
+    files.
 
     Raises:
         UsageError: A setting cannot be used.

@@ -1,4 +1,4 @@
-"""``roadgpt view``: a page with the road in 3-D and its drive as a replay, or pictures."""
+"""``roadgpt view``: writes a page with the road in 3-D and a replay of its drive, or pictures."""
 
 import webbrowser
 from pathlib import Path

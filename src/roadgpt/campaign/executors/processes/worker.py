@@ -113,5 +113,5 @@ class Worker:
         return self.fault or children.ending(status)
 
     def join(self, patience: float = FAREWELL) -> None:
-        """Waits until the end of the process has been noticed, for at most ``seconds`` seconds."""
+        """Waits until the end of the process has been noticed, for at most ``patience`` seconds."""
         self._thread.join(patience)
