@@ -1,7 +1,7 @@
-"""Begins campaigns and works on them: one process schedules and writes, and workers run the tests.
+"""Begins and runs campaigns: one process schedules tests and writes the store, and workers run the tests.
 
 begin     makes a folder with a store in it: the plan, and its cells with their Briefs
-work      runs the tests that the store lacks; however often it is interrupted, the tables are the same
+work      runs the tests that have not ended; interruptions do not change the resulting tables
 """
 
 import sqlite3
@@ -37,7 +37,7 @@ USER_NAMES = {
     "budget": "number of tests or seconds",
     "drives": "choice whether to drive",
 }
-"""Names that users know for fields of a Plan."""
+"""The names under which users know fields of a Plan."""
 
 
 def begin(plan: Plan, folder: Path) -> bool:

@@ -1,6 +1,6 @@
 """The Plan of a campaign: every combination of prompts, designers, drivers, simulators, generators and seeds.
 
-Each combination is a cell with a budget of its own; everything else is the same for all cells.
+Each combination is a cell with a budget of its own; all other values of the plan are the same for all cells.
 """
 
 import math

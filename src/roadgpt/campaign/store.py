@@ -9,9 +9,9 @@ it.
         ended
     details   the long columns of the same tests: designs, sentences, features
     traces    the files of drives
-    leases    which worker runs which test now; they end with the session, since only one process may work
-    sittings  the sessions: when somebody worked on it; what language models cost outside of tests
-    features  names of all features there are
+    leases    which worker runs which test now; deleted at the start of the next session
+    sittings  the sessions: when each began and was last active; what language models cost outside tests
+    features  names of all features that occur
 
 The tables of results are made of the deterministic columns of tests and details; ``ended`` and all columns
 after it depend on the clock.

@@ -1,8 +1,9 @@
 """The executor ``ray``: workers that are actors on a Ray cluster, each on one core of any of its machines.
 
-A worker is sent several short jobs with one message, since messages cross a network. When a worker dies, all
-jobs of its message are run again one by one, to find the one that is to blame and give up no other. A machine
-that dies costs no job an attempt. Results come back to this process, the only one that writes.
+Several short jobs are sent to a worker in one message, since messages cross a network. If a worker dies, all
+jobs of its message are run again one by one, to find the job that caused it and give up only that job. If a
+whole machine dies, this does not count as an attempt of its jobs. Results return to this process, the only
+one that writes the store.
 
 Ray's own retries are off: Ray cannot tell a job that kills its workers from a machine that was switched off.
 """

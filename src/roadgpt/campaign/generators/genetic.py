@@ -1,7 +1,8 @@
-"""The test generator ``genetic``: the usual search of the field, kept inside the Brief.
+"""The test generator ``genetic``: a plain genetic algorithm whose roads all satisfy the Brief.
 
 The fittest roads so far, those that came nearest to failing, are crossed and mutated; the parents are the
-winners of small tournaments. It has no map and no surrogate: ``quality_diversity`` is compared with it.
+winners of small tournaments. It has no feature map and no surrogate, and serves as a baseline for
+``quality_diversity``.
 """
 
 from collections.abc import Sequence

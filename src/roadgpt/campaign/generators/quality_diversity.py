@@ -1,10 +1,12 @@
-"""The test generator ``quality_diversity``: roads of many kinds to fail on, and all inside the Brief.
+"""The test generator ``quality_diversity``: searches for diverse roads that satisfy the Brief and make the
+car fail.
 
     elites of the map --mutate--> 8 candidates for each test --surrogate--> the most valuable are driven
 
 MAP-Elites (Mouret, Clune 2015) with a surrogate (Gaier, Asteroth, Mouret 2018): a candidate costs
-milliseconds and a drive many times as much, so most candidates are only predicted. The goal decides what a
-drive is worth. Batches 0 and 1, before which no result is known, are spread over roads that look hard.
+milliseconds and a drive many times as much, so most candidates are only predicted. The goal decides which
+candidates are valuable. Batches 0 and 1 are requested before any result is known; they are spread over
+diverse roads that look hard.
 """
 
 from collections import Counter

@@ -1,6 +1,6 @@
 """The test generator ``random``: independent drafts of the planner.
 
-Searches are compared with it: it keeps the Brief as they do, and learns nothing.
+It is the baseline for searches: its roads satisfy the Brief as theirs do, but it does not learn from results.
 """
 
 from collections.abc import Sequence

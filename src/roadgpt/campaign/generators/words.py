@@ -1,4 +1,4 @@
-"""The test generator ``words``: roads of one description, each different from those before it."""
+"""The test generator ``words``: roads of one description, each different from the earlier ones."""
 
 from collections.abc import Sequence
 

@@ -1,9 +1,10 @@
 """The main loop of a worker process: runs one job after another, and ends with its parent.
 
-The parent sends the paths of modules, what prepares a worker, and then jobs: the call (function, item, names
-of values), the shared values that are new here, and the names of those that can be dropped. The worker sends
-a sign of life every second, and for each job the kind of its end and the pickled value or error. Calls and
-values are pickled one by one, so that one that cannot be unpickled costs one job.
+The parent sends the module search paths, the function that prepares the worker, and then jobs. A job has the
+call (function, item, names of shared values), the shared values that the worker does not have yet, and the
+names of those that it can drop. The worker sends a sign of life every second, and for each job how it ended
+with the pickled value or error. Calls and values are pickled one by one, so that one that cannot be unpickled
+costs one job.
 """
 
 import os
