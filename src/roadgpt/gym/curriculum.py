@@ -1,4 +1,4 @@
-"""A curriculum of descriptions: it continues with the next one when the agent reaches the goal often
+"""A curriculum of descriptions: it advances to the next description when the agent reaches the goal often
 enough."""
 
 from collections import deque
@@ -11,18 +11,20 @@ from roadgpt.errors import UsageError
 
 
 class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """Starts with the first description and advances to the next ones.
+    """Wraps an environment: starts with the first description and advances to the next one as the agent
+    improves.
 
-    ``info["level"]`` is the index of the present description, from 0.
+    ``info["level"]`` is the index of the current description, from 0.
 
     Args:
         env: a LaneKeeping environment.
         prompts: descriptions, the easiest first.
-        share: share of the last episodes that must reach the goal before it advances.
-        episodes: number of episodes that are counted.
+        share: share of the last ``episodes`` episodes, 0 to 1, that must reach the goal before the curriculum
+            advances.
+        episodes: number of most recent episodes from which the share is computed.
 
     Raises:
-        UsageError: there is no description, or a number is out of range.
+        UsageError: ``prompts`` is empty, or a number is out of range.
     """
 
     def __init__(
@@ -36,7 +38,7 @@ class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._last: deque[bool] = deque(maxlen=episodes)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Any]:
-        """Starts an episode on a road of the present description."""
+        """Starts an episode on a road of the current description."""
         chosen = {"prompt": self.prompts[self.level], **(options or {})}
         seen, info = self.env.reset(seed=seed, options=chosen)
         return seen, {**info, "level": self.level}

@@ -34,7 +34,8 @@ State = NDArray[np.float32] | NDArray[np.uint8]
 
 
 class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
-    """Gives one road after another, all of which meet the description; the seed of ``reset`` selects them.
+    """An environment with a new road in each episode; all roads meet the description, and the seed of
+    ``reset`` selects the road.
 
     Action: two numbers from -1 to 1. The first is the angle of the front wheels as a share of full lock (0.62
     rad), left positive; the second is throttle above 0 and brake below.
@@ -42,9 +43,10 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
     Observation ``state``: 24 numbers, see ``roadgpt.gym.observation.LABELS``, each divided by a typical size.
     Observation ``camera``: an image (height, width, 3) from behind the windscreen.
 
-    Reward of a step: metres gained along the lane, minus 0.1 per metre beside the middle of the lane, minus a
-    little for rough steering; +10 at the goal, -10 if the car leaves its lane, falls or gets stuck. An
-    episode ends (``terminated``) as a drive does; if the time runs out, it is ``truncated``.
+    Reward of a step: metres gained along the lane, minus 0.1 per metre of distance from the middle of the
+    lane, minus a small penalty for rough steering; +10 at the goal, -10 if the car leaves its lane, falls or
+    gets stuck. An episode is ``terminated`` under the same conditions as a drive; if the time runs out, it is
+    ``truncated``.
 
     ``info`` has s, t (m, position on the road), outside (share of the car outside its lane), speed (m/s),
     progress (m gained in this step), prompt, and at the end ``ended``: "goal", "out_of_lane", "fell", "stuck"
@@ -55,10 +57,10 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         prompt: one description, or several, from which the seed selects.
         observation: "state" or "camera".
         render_mode: "rgb_array" or None.
-        world: fields of ``roadgpt.road.World`` with other than their default values, such as ``{"friction":
-            0.6}``.
-        camera: camera of the observation; by default the competition's, with 320 x 160 pixels.
-        reader: reader of the descriptions.
+        world: values for fields of ``roadgpt.road.World`` that differ from the defaults, such as
+            ``{"friction": 0.6}``.
+        camera: camera of the observation; by default the one of the SBFT competition, with 320 x 160 pixels.
+        reader: name of the plug-in that reads the descriptions.
 
     Raises:
         BriefError: a description cannot be read, or demands something that the world does not allow.
@@ -97,8 +99,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         """Replaces the descriptions, from the next ``reset`` on.
 
         Raises:
-            BriefError: one cannot be read, or demands something that the world does not allow.
-            UsageError: there is none.
+            BriefError: a description cannot be read, or demands something that the world does not allow.
+            UsageError: ``prompts`` is empty.
         """
         if not prompts:
             raise UsageError("there is no description; give one, such as 'a winding road'")
@@ -141,7 +143,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         raise DesignError(f"no road of '{brief.words}' could be drawn: {said}")
 
     def step(self, action: NDArray[np.float32]) -> tuple[State, float, bool, bool, dict[str, Any]]:
-        """Runs two control steps (40 ms) with an action; after the end of a drive nothing moves, and the
+        """Runs two control steps (40 ms) with an action; after the end of the episode nothing moves, and the
         reward is 0.
 
         Raises:
@@ -178,7 +180,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         return told if self._ended is None else {**told, "ended": self._ended}
 
     def render(self) -> Any:
-        """Returns the image of a camera behind the car, (360, 640, 3); None without a render mode."""
+        """Returns the image of a camera behind the car, (360, 640, 3); None if the render mode is None."""
         if self.render_mode is None or self.road is None:
             return None
         from roadgpt.scene import Camera as Pinhole

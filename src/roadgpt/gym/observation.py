@@ -1,4 +1,4 @@
-"""Computes the observation ``state``: the car in its lane, and the road ahead of it, as numbers."""
+"""Computes the observation ``state``: numbers that describe the car in its lane and the road ahead of it."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,16 +14,17 @@ LABELS = (
     *(f"curvature_{metres:g}" for metres in AHEAD),
     *(f"grade_{metres:g}" for metres in AHEAD),
 )  # fmt: skip
-"""Names of the numbers in their order."""
+"""Names of the 24 numbers of the observation, in their order."""
 SCALES = np.array(
     [20.0, 20.0, 2.0, 0.5, 0.5, 0.5, 2.0, 1.0, *[0.05] * len(AHEAD), *[0.15] * len(AHEAD)], np.float32
 )
-"""Divisors of the numbers: m/s, m/s, m, rad, rad/s, rad, m/s, 1, 1/m, ratio."""
+"""Typical sizes by which the numbers are divided, in the order of LABELS: m/s, m/s, m, rad, rad/s, rad, m/s,
+1, then 1/m for curvatures and ratios for grades."""
 MOST = 20.0  # limit of each number after the division
 
 
 class Preview:
-    """Curvature and grade of one road, in a table for quick access."""
+    """Table of curvature and grade of one road, for quick lookup."""
 
     def __init__(self, road: Road, step: float = 0.5) -> None:
         """Samples the road every ``step`` metres; beyond its end the road continues straight and level."""

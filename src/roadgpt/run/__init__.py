@@ -1,10 +1,11 @@
-"""The whole flow on one page: makes a Run, and a folder of Runs. Verbs: ``perform``, ``prove``, ``campaign``.
+"""The whole pipeline from words to verdict. Main functions: ``perform``, ``prove`` and ``campaign``.
 
     words --read--> Brief --draft--> Design --build--> Road --inspect--> Findings --simulate--> Drive
                                ^                                  |        (none)                 |
                                '----------- their sentences ------'                  Verdict <--judge
 
-``perform`` makes a Run from words; ``prove`` makes one from a Design or a Road that exists.
+``perform`` makes a Run from words, ``prove`` makes a Run from an existing Design or Road, and ``campaign``
+makes a folder of Runs.
 """
 
 import time
@@ -70,16 +71,17 @@ def perform(
     earlier: Sequence[Design] = (),
     meter: Meter | None = None,
 ) -> Run:
-    """Makes a Run from words: reads them, designs until no rule objects, drives, and judges.
+    """Makes a Run from words: reads them, designs until the road breaks no rule, drives it, and judges the
+    drive.
 
     Args:
         words: a description, or the Brief that was read from it.
-        seed: of the campaign; the road's own seed is drawn from it and the road's index.
+        seed: seed of the campaign; the road's own seed is derived from this seed and the road's index.
         world: map, limits of the rules, surface.
         setup: the reader, designer, rules, simulator and driver.
         index: number of the road in its campaign, from 1.
-        earlier: designs that the new one has to differ from.
-        meter: counts what language models are asked, and holds the limits of a campaign.
+        earlier: designs that the new design has to differ from.
+        meter: counts the calls, tokens and cost of language models, and holds the campaign's limits for them.
 
     Raises:
         BriefError: the words cannot be read.
@@ -114,7 +116,8 @@ def perform(
 
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
-    """Returns what the setup's reader reads from the words, if this world has room for such a road.
+    """Returns the Brief that the setup's reader reads from the words, if the world's map has room for such a
+    road.
 
     Raises:
         BriefError: the words cannot be read, or ask for what the world does not allow.
@@ -138,18 +141,17 @@ def prove(
     brief: Brief | None = None,
     despite_findings: bool = False,
 ) -> Run:
-    """Makes a Run from a Design or a Road: checks, drives, and judges it.
+    """Makes a Run from a Design or a Road: checks the road, drives it, and judges the drive.
 
     Args:
         blueprint: the Design, or the Road.
-        seed: of the drive; it is used as it is.
+        seed: seed of the drive; it is used unchanged.
         world: map, limits of the rules, surface.
         setup: the rules, simulator and driver.
         index: number of the road in its campaign, from 1.
-        brief: what the road has to keep; None: nothing was asked for.
-        despite_findings: drive also a road that the rules object to, as roads of real maps are, unless it
-            cannot
-            be driven on at all. The findings stay in the Run, beside the verdict.
+        brief: the requirements that the road has to meet; None: there are no requirements.
+        despite_findings: whether to drive a road that breaks rules, as roads of real maps often do, unless it
+            is physically impossible to drive. The Run then has both the findings and the verdict.
 
     Raises:
         UsageError: a plug-in is not installed, or the driver's file makes no driver.
@@ -175,27 +177,26 @@ def campaign(
     draw: Draw | None = None,
     meter: Meter | None = None,
 ) -> Campaign:
-    """Makes many Runs of one description, and writes each into one folder as it ends.
+    """Makes many Runs of one description, and writes each Run into one folder as soon as it is finished.
 
-    Iterate over the Campaign to make it work, or over ``.all_runs()`` to receive also the roads that an
-    earlier
-    session made. ``.folder`` is its folder. A driver or a simulator that fails costs one Run.
+    The roads are made while you iterate over the returned Campaign. Iterate over ``.all_runs()`` instead to
+    receive also the Runs that an earlier session made. ``.folder`` is the campaign's folder. If a driver or a
+    simulator fails, only the Run in which it failed is lost.
 
     Args:
         words: a description, or the Brief that was read from it.
         n: number of roads.
-        seed: of the campaign; each road's own seed is drawn from it and the road's index.
+        seed: seed of the campaign; each road's own seed is derived from this seed and the road's index.
         world: map, limits of the rules, surface.
         setup: the reader, designer, rules, simulator and driver.
-        out: the folder. An interrupted campaign of the same request is continued there; a finished one is
-            left
-            as it is. None makes a new folder under ``roadgpt-runs``.
+        out: the folder. If it holds an interrupted campaign of the same request, that campaign is continued;
+            a finished campaign is left unchanged. None makes a new folder under ``roadgpt-runs``.
         draw: writes pictures into the folders, as ``report.drawing()`` does; None: no pictures.
-        meter: as for ``perform``; what earlier roads of the folder cost is added to it.
+        meter: as for ``perform``; the cost of earlier roads in the folder is added to it.
 
     Raises:
         BriefError: the words cannot be read.
-        UsageError: the folder holds something else, or a plug-in is not installed.
+        UsageError: the folder holds something other than this campaign, or a plug-in is not installed.
     """
     meter = meter or Meter.of(setup.chat)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
@@ -211,14 +212,12 @@ def campaign(
 
 @cache
 def check_parts(setup: Setup, world: World = USUAL) -> None:
-    """Checks that rules, simulator and driver work before the first road; one that fails later costs one
-    road.
+    """Checks that the rules, the simulator and the driver can be loaded, before the first road is made.
 
     Raises:
         UsageError: a plug-in is not installed, the driver's file makes no driver, or the simulator cannot
-            obey
-            a setting of the world.
-        DriverError: the driver hung while it was made.
+            apply a setting of the world.
+        DriverError: the driver hung while it was created.
     """
     rules_of(setup.rules)
     if setup.drives:

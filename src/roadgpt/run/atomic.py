@@ -1,4 +1,4 @@
-"""Files and folders that are complete or do not exist, whenever the process is killed."""
+"""Writes files and folders so that they are either complete or absent, even if the process is killed."""
 
 import json
 import math
@@ -20,7 +20,8 @@ PART = ".part"  # end of the name of what is not yet whole
 
 
 def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> None:
-    """Writes a file beside its place and then renames it; a private file is readable by its owner only."""
+    """Writes to a temporary file in the same folder and renames it; a private file is readable only by its
+    owner."""
     data = to_bytes(content) if isinstance(content, str) else content
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
@@ -35,7 +36,7 @@ def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> N
 
 
 def refuse_links(*paths: Path) -> None:
-    """Refuses to write through links: within a folder that may be somebody else's, they may lead anywhere.
+    """Raises an error for paths that are links: in a folder from somebody else, a link may point anywhere.
 
     Raises:
         UsageError: one of these paths is a link, or neither a file nor a folder.
@@ -52,13 +53,12 @@ def refuse_links(*paths: Path) -> None:
 def held(path: Path) -> Iterator[None]:
     """Holds a lock file while the block runs; the system releases it when the process is killed.
 
-    The file stays: if it were removed, a process that had just opened it would hold a lock that nobody sees,
-    and
-    Windows removes no file that is open.
+    The lock file is not deleted afterwards: another process that had just opened it would hold a lock on a
+    deleted file, and Windows cannot delete open files.
 
     Raises:
-        BlockingIOError: another process holds it.
-        UsageError: it is not a file.
+        BlockingIOError: another process holds the lock.
+        UsageError: the path is not a regular file.
     """
     refuse_links(path)
     with path.open("a") as file:
@@ -69,7 +69,7 @@ def held(path: Path) -> Iterator[None]:
 
 @contextmanager
 def whole_folder(path: Path) -> Iterator[Path]:
-    """Makes a folder to fill; it gets its name when the block ends well, and is removed when it does not."""
+    """Yields a temporary folder; renames it to ``path`` when the block succeeds, and removes it otherwise."""
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     draft.mkdir(parents=True)
     try:
@@ -83,12 +83,12 @@ def whole_folder(path: Path) -> Iterator[Path]:
 
 
 def missing(folder: Path) -> tuple[Path, ...]:
-    """Returns the folder and those around it that do not exist, the innermost first."""
+    """Returns those of the folder and its parent folders that do not exist, the innermost first."""
     return tuple(path for path in (folder, *folder.parents) if not path.exists())
 
 
 def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
-    """Removes files, and then those folders that are empty."""
+    """Removes the files, and then those of the folders that are empty."""
     for path in files:
         with suppress(OSError):  # Windows removes no file that is open
             path.unlink()
@@ -107,12 +107,12 @@ def sweep(folder: Path) -> None:
 
 
 def to_bytes(text: str) -> bytes:
-    """Returns text as UTF-8; characters from a broken terminal become escapes, which JSON reads back."""
+    """Returns text as UTF-8; characters that UTF-8 cannot encode become backslash escapes."""
     return text.encode("utf-8", "backslashreplace")
 
 
 def json_text(value: Any, indent: int | None = 1) -> str:
-    """Returns JSON that every reader accepts: numbers that are not finite become null."""
+    """Returns strictly valid JSON: numbers that are not finite become null."""
     try:
         return json.dumps(value, indent=indent, allow_nan=False, ensure_ascii=False) + "\n"
     except ValueError:

@@ -1,4 +1,5 @@
-"""Many Runs in one folder: each is written as it ends, and an interrupted campaign is continued."""
+"""Makes many Runs in one folder: each is written when it is finished, and an interrupted campaign can be
+resumed."""
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
@@ -25,23 +26,25 @@ LOCK = "campaign.lock"
 GIVE_UP = 3  # roads that cannot be designed, before any that could
 
 Perform = Callable[[int, Sequence[Design]], Run]
-"""Makes the Run of an index, different from the Designs before it."""
+"""Makes the Run with the given index, with a design that differs from the given earlier designs."""
 
 
 @dataclass
 class Campaign:
-    """Runs of one description; iterate over it to make them. Each Run is on the disk when it is yielded."""
+    """Makes the Runs of one description; iterate over it to make them. Each Run is on disk when it is
+    yielded."""
 
     folder: Path
     request: Request
     roads: int
-    """Number of roads that are asked for."""
+    """Number of roads requested."""
     perform: Perform
     draw: Draw | None = None
     made: tuple[Path, ...] = ()
-    """Folders that were made for it, the innermost first; removed where nothing can be designed."""
+    """Folders that were created for this campaign, the innermost first; removed if no road can be
+    designed."""
     meter: Meter = field(default_factory=Meter)
-    """Counts what is asked of language models, earlier roads included."""
+    """Counts the use of language models, for earlier roads of the folder as well."""
     _finished: set[int] = field(default_factory=set)
     _tally: Tally = field(default_factory=Tally)
     _losses: LostDrives[Run] = field(default_factory=LostDrives)
@@ -59,10 +62,10 @@ class Campaign:
         draw: Draw | None,
         meter: Meter | None = None,
     ) -> "Campaign":
-        """Opens a campaign in its folder: a new one, or the one that is there, to continue it.
+        """Opens a campaign in its folder: creates a new campaign, or continues the one that the folder holds.
 
         Raises:
-            UsageError: the folder holds something else, or cannot be made.
+            UsageError: the folder holds something other than this campaign, or cannot be created.
         """
         if roads < 1:
             raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
@@ -88,7 +91,7 @@ class Campaign:
 
     @property
     def kept(self) -> tuple[int, ...]:
-        """Numbers of the roads that are finished."""
+        """Numbers of the finished roads."""
         return tuple(sorted(self._finished))
 
     @property
@@ -101,13 +104,14 @@ class Campaign:
         return self._runs(with_earlier=False)
 
     def all_runs(self) -> Iterator[Run]:
-        """Yields the Runs that exist, read from the disk, then those that are still to be made.
+        """Yields the Runs that exist, read from disk, then makes the missing ones and yields them.
 
         Raises:
             DesignError: no road could be designed; the folder is removed, unless it was there before.
-            ChatError: a language model cannot be asked, or a limit is reached; roads before it are complete.
-            GivenUpError: the simulator failed three times in a row; these roads have to be made again.
-            UsageError: a plug-in is not installed, or another process is at work in the folder.
+            ChatError: a language model cannot be asked, or a limit is reached; the roads finished before this
+                are saved.
+            GivenUpError: the simulator failed three times in a row; the three roads have to be made again.
+            UsageError: a plug-in is not installed, or another process is using the folder.
             RoadGPTError: a file cannot be written.
         """
         return self._runs(with_earlier=True)
@@ -203,7 +207,7 @@ class Campaign:
             ) from error
 
     def earlier_runs(self) -> Iterator[Run]:
-        """Yields the Runs that were there before, read from the disk."""
+        """Yields the Runs that an earlier session made, read from disk."""
         for index in self.kept:
             yield read_run(run_folder(self.folder, index))
 
@@ -289,7 +293,7 @@ def _may_lie_in_a_new_folder(path: Path) -> bool:
 
 
 def finished(folder: Path) -> list[int]:
-    """Returns the numbers of the roads that are finished, in order."""
+    """Returns the numbers of the finished roads in a campaign's folder, in ascending order."""
     numbers = (path.name.split(".")[1] for path in folder.glob("test.*.json"))
     indices = sorted({int(number) for number in numbers if number.isdecimal()})
     return [

@@ -1,4 +1,4 @@
-"""The card of a campaign, ``campaign.json``: what the folder was asked for, so that it can be continued."""
+"""Reads ``campaign.json``, which stores the request of a campaign so that the campaign can be resumed."""
 
 from pathlib import Path
 from typing import Literal
@@ -23,19 +23,19 @@ class Card(Frozen):
 
 
 def seed_in(folder: Path) -> int | None:
-    """Returns the seed of the campaign in a folder; None where there is none.
+    """Returns the seed of the campaign in a folder; None if the folder holds no campaign.
 
     Raises:
-        UsageError: its card is damaged.
+        UsageError: its ``campaign.json`` is damaged.
     """
     return read_card(folder).request.seed if (folder / CARD).is_file() else None
 
 
 def read_card(folder: Path) -> Card:
-    """Reads the card of a campaign's folder.
+    """Reads the ``campaign.json`` of a campaign's folder.
 
     Raises:
-        UsageError: there is no campaign, or its card is damaged or of another version.
+        UsageError: there is no ``campaign.json``, or it is damaged or has another version.
     """
     try:
         card = read_json(folder / CARD, 4_000_000, "the card of a campaign")

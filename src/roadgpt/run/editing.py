@@ -1,9 +1,9 @@
-"""Changed roads: where a Design comes from, and the folder of the Run of the changed road.
+"""Finds the Design that is to be changed, and writes the Run of the changed road into a folder.
 
 folder/
   test.0001.json, runs/0001/...    the new Run, as in any campaign
-  runs/0001/edit.json              the request, what it changed, and the Design that it was made from
-  runs/0001/before/*.png           the road as it was
+  runs/0001/edit.json              the change request, the changes made, and the original Design
+  runs/0001/before/*.png           pictures of the original road
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ BEFORE = "before"
 
 @dataclass(frozen=True)
 class Original:
-    """The road that is to be changed."""
+    """The road that is to be changed, with the world, setup and seed of its Run."""
 
     design: Design
     world: World
@@ -30,16 +30,16 @@ class Original:
     seed: int
     path: str
     remarks: tuple[str, ...] = ()
-    """Remarks about adjustments that were made when its file was read."""
+    """Notes on adjustments that were made when the road's file was read."""
 
 
 def original(path: Path | str, world: World, setup: Setup) -> Original:
-    """Returns the Design in a run's folder, a campaign's folder of one road, or a file.
+    """Returns the Design to be changed, from a run's folder, a campaign's folder with one road, or a file.
 
     Args:
-        path: of one of these.
-        world: of a Design that belongs to no run.
-        setup: of a Design that belongs to no run.
+        path: the folder or the file.
+        world: used for a Design that belongs to no run.
+        setup: used for a Design that belongs to no run.
 
     Raises:
         UsageError: there is no Design, or there are several.
@@ -54,10 +54,10 @@ def original(path: Path | str, world: World, setup: Setup) -> Original:
 
 
 def original_of(run: Run, path: str) -> Original:
-    """Returns the Design of a Run; ``path`` is where the Run is.
+    """Returns the Design of a Run, to be changed; ``path`` is the path of the Run.
 
     Raises:
-        UsageError: it has none.
+        UsageError: the Run has no Design.
     """
     if run.design is None:
         raise UsageError(f"{path} was made from points and has no design; only a design can be changed")
@@ -65,7 +65,7 @@ def original_of(run: Run, path: str) -> Original:
 
 
 def reject_used(out: Path) -> None:
-    """Raises UsageError where a folder holds something already."""
+    """Raises UsageError if the folder is not empty."""
     if out.is_dir() and any(out.iterdir()):
         raise UsageError(f"{out} is not empty; a changed road goes into a new folder: name another one")
 
@@ -74,7 +74,7 @@ def folder_for(words: str, seed: int, out: Path | None) -> Path:
     """Returns an empty folder for the changed road.
 
     Raises:
-        UsageError: it cannot be made, or is not empty.
+        UsageError: the folder cannot be created, or is not empty.
     """
     if out is None:
         return new_folder(words, seed)
@@ -112,13 +112,13 @@ def write_edit(
     """Writes a changed road; returns the folder of its Run.
 
     Args:
-        run: of the changed road.
-        before: the road as it was, not driven.
-        words: the change request.
-        changes: sentences that say what was changed.
-        source: the path of the road as it was.
-        folder: an empty one.
-        draw: draws the pictures, before and after; None: no pictures.
+        run: the Run of the changed road.
+        before: the Run of the original road, not driven.
+        words: the change request in words.
+        changes: sentences that describe the changes made.
+        source: the path of the original road.
+        folder: an empty folder.
+        draw: draws pictures of the original and of the changed road; None: no pictures.
     """
     card = {
         "request": words,

@@ -1,4 +1,4 @@
-"""A Drive as the SBFT competition records it: ``execution_data``, positional lists of 17 fields.
+"""Converts a Drive to the SBFT competition's ``execution_data``: one list of 17 fields per sample.
 
     timer            s
     pos, dir, vel    [x, y, z]: centre of gravity, m; unit vector ahead; m/s
@@ -14,8 +14,9 @@
     oob_distance     m: half a lane less the distance from the middle of the lane; negative outside
     oob_percentage   0 to 1: share of the car's box outside its lane
 
-Source: the competition's simulation record (2024). Its simulator knows the angle of the steering wheel;
-we know that of the front wheels, and take a common saloon's ratio. The last five: ``verdict.consult``.
+Source: the competition's simulation record (2024). The competition's simulator reports the angle of the
+steering wheel; RoadGPT converts the angle of the front wheels with a typical saloon's steering ratio.
+``verdict.consult`` computes the last five fields.
 """
 
 from typing import NamedTuple
@@ -32,7 +33,7 @@ STEERING_RATIO = 15.0  # steering wheel to front wheels
 
 
 class ExecutionRecord(NamedTuple):
-    """One moment of a drive; the fields are in the competition's order."""
+    """One sample of a drive; the fields are in the competition's order."""
 
     timer: float
     pos: list[float]
@@ -57,7 +58,8 @@ FIELDS = ExecutionRecord._fields
 
 
 def records_of(road: Road, drive: Drive, world: World) -> list[ExecutionRecord]:
-    """Returns the Drive at 10 Hz, with its last step and every step at which the car leaves its lane."""
+    """Returns the Drive sampled at 10 Hz, plus its last step and every step at which the car leaves its
+    lane."""
     oracle = consult(road, drive, world)
     keep = _steps(drive["time"], np.diff(oracle.oob_counter, prepend=0) > 0)
     ahead, velocity = _directions(drive)

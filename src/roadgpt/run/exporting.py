@@ -1,4 +1,4 @@
-"""Road files of Runs: of a campaign while it runs, and of Runs that exist."""
+"""Writes road files of Runs: for each Run while a campaign is running, or for existing Runs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ NAME = "road"  # of the files in a Run's own folder
 
 
 def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAME) -> tuple[Path, ...]:
-    """Writes the road of a Run in each format, with its drive where the format can hold one.
+    """Writes the road of a Run in each format, and its drive if the format can hold one.
 
     Raises:
         PartError: a format is unknown.
@@ -25,7 +25,7 @@ def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAM
 
 
 def poses_of(run: Run) -> Poses | None:
-    """Returns how the car moved; None where it did not."""
+    """Returns the poses of the car during the drive; None if the car did not move."""
     return Poses.of(run.drive.columns) if run.drive is not None and len(run.drive) > 1 else None
 
 
@@ -35,11 +35,11 @@ class Exporting:
 
     formats: tuple[str, ...]
     tell: Callable[[str], None]
-    """Receives a sentence about a road that a format cannot hold; that costs this one file."""
+    """Receives a message if a format cannot hold a road; only this one file is then missing."""
     draw: Draw | None = None
 
     def of_run(self, run: Run, folder: Path) -> None:
-        """Writes all formats, then the pictures."""
+        """Writes the road files of one Run in all formats, then its pictures."""
         for format_ in self.formats if run.road is not None else ():
             try:
                 export(run, folder, [format_])
@@ -49,6 +49,6 @@ class Exporting:
             self.draw.of_run(run, folder)
 
     def of_campaign(self, folder: Path) -> None:
-        """Writes the pictures of all roads."""
+        """Writes the pictures that show all roads of the campaign."""
         if self.draw is not None:
             self.draw.of_campaign(folder)

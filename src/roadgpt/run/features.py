@@ -1,13 +1,14 @@
-"""The features by which the SBFT competition maps tests: two of the road, three of the drive.
+"""Computes the features by which the SBFT competition maps tests: two of the road, three of the drive.
 
-    MAX_CURV   1/m: of circles through interpolated points i, i+2, i+4, the last window left out
-    DIR_COV    share of directions that occur: angles to north fall into 25 bins of 0 to 360 degrees
+    MAX_CURV   1/m: largest curvature of circles through interpolated points i, i+2, i+4, without the last
+    window
+    DIR_COV    share of directions that occur: angles to north, in 25 bins from 0 to 360 degrees
     STD_SA     degrees: standard deviation of the steering wheel's angle
     MEAN_LP, MAX_LP    m: mean and largest distance from the edge of the lane (``oob_distance``)
 
 Source: the competition's test_analysis.py (2024), after DeepHyperion (ISSTA 2021). Its peculiarities are
-kept: DIR_COV divides by the 26 edges of the bins and takes angles by arccos, so that they never exceed 180
-degrees and a full circle scores 0.5.
+kept: DIR_COV divides by the 26 edges of the bins, and computes angles by arccos, so that angles never exceed
+180 degrees and a full circle scores 0.5.
 """
 
 from collections.abc import Sequence
@@ -27,7 +28,8 @@ def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> d
 
     Args:
         points: interpolated points of the road ``(n, 2)`` or ``(n, 3)``, about one per metre.
-        records: its execution data; fewer than three give no features of the drive.
+        records: the execution data of its drive; with fewer than three records, the features of the drive are
+            left out.
     """
     plan = np.asarray(points, float)[:, :2]
     found = {"MAX_CURV": max_curvature(plan), "DIR_COV": direction_coverage(plan)}
@@ -44,7 +46,8 @@ def max_curvature(plan: NDArray[np.float64]) -> float:
 
 
 def direction_coverage(plan: NDArray[np.float64], bins: int = BINS) -> float:
-    """Returns the share of the edges (26 of 25 bins) that the directions of points ``(n, 2)`` fall into."""
+    """Returns the number of direction bins that points ``(n, 2)`` use, divided by the number of bin edges,
+    ``bins`` + 1."""
     step = np.diff(plan, axis=0)
     length = np.sqrt((step**2).sum(axis=1))
     moves = length > 0

@@ -1,13 +1,12 @@
-"""The folder of one Run: written whole, and read back as the Run that it was.
+"""Writes the folder of one Run completely or not at all, and reads it back as an equal Run.
 
 campaign/
   test.0001.json           written last: if it exists, the Run is finished
   runs/0001/
-    brief.json design.json road.json drive.npz verdict.json    the values, each in its own form
-    run.json               outcome, findings, seed, versions, and the whole request
-    seconds.json           seconds on the clock: the one file that differs from day to day
-    error.txt              the traceback where a simulator or driver failed
-    *.png                  the pictures
+    brief.json design.json road.json drive.npz verdict.json    the Run's values, each in its own format
+    run.json               outcome, findings, seed, versions, and the full request seconds.json
+    wall-clock times: the only file that differs when a Run is repeated error.txt              the traceback,
+    if a simulator or driver failed *.png                  the pictures
 """
 
 import shutil
@@ -37,14 +36,14 @@ RUNS = "runs"
 
 
 class Draw(Protocol):
-    """Draws the pictures of folders of runs; ``report.drawing`` makes one."""
+    """Draws pictures into folders of runs; ``report.drawing`` returns an implementation."""
 
     def of_run(self, run: Run, folder: Path) -> object:
         """Draws the pictures of a Run into its folder."""
         ...
 
     def of_campaign(self, folder: Path) -> object:
-        """Draws a picture of all roads into a campaign's folder."""
+        """Draws a picture that shows all roads of a campaign into its folder."""
         ...
 
 
@@ -59,8 +58,9 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
     Args:
         run: the Run.
         campaign: the folder of the campaign.
-        draw: draws the pictures; None: no pictures.
-        test: the content of the test file; None: the usual one.
+        draw: draws pictures into the folder; None: no pictures.
+        test: the content of the file ``test.NNNN.json``; None: the content that ``sbft_json.test_text``
+            gives.
     """
     folder = run_folder(campaign, run.index)
     refuse_links(campaign / RUNS, folder)
@@ -74,7 +74,8 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
 
 
 def remove_run(index: int, campaign: Path) -> None:
-    """Removes a Run from a campaign's folder, its test file first: from then on it has to be made again."""
+    """Removes a Run from a campaign's folder, its test file first, so that the Run counts as unfinished from
+    then on."""
     (campaign / test_name(index)).unlink(missing_ok=True)
     shutil.rmtree(run_folder(campaign, index), ignore_errors=True)
 
@@ -120,10 +121,11 @@ def is_run(path: Path) -> bool:
 
 
 def only_run(path: Path) -> Path:
-    """Returns the folder of the only run of a campaign's folder; any other path as it is.
+    """Returns the run's folder if ``path`` is a campaign's folder with one run; otherwise returns ``path``
+    unchanged.
 
     Raises:
-        UsageError: nothing is there, or the campaign has several runs, or none.
+        UsageError: the path does not exist, or the campaign has several runs, or none.
     """
     if not path.exists():
         raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
@@ -137,10 +139,10 @@ def only_run(path: Path) -> Path:
 
 
 def read_run(path: Path | str) -> Run:
-    """Reads the Run in a folder, or the one that a campaign's test file belongs to.
+    """Reads the Run in a folder, or the Run that a ``test.NNNN.json`` file belongs to.
 
     Raises:
-        UsageError: there is no Run, or a file of it cannot be read.
+        UsageError: there is no Run, or one of its files cannot be read.
     """
     folder = _folder_of(Path(path))
     card = _loaded(folder / "run.json")

@@ -1,4 +1,4 @@
-"""Names of campaigns' folders, which are safe whatever the description says."""
+"""Makes names for campaigns' folders that are safe in paths, whatever the description contains."""
 
 import re
 import unicodedata
@@ -11,16 +11,17 @@ LONGEST = 40  # letters of a description
 
 
 def slug(words: str) -> str:
-    """Returns a description as a part of a path: only a-z, 0-9 and '-', at most 40 characters."""
+    """Returns a description as a path component: only a-z, 0-9 and '-', at most 40 characters."""
     plain = unicodedata.normalize("NFKD", words[:1000].casefold()).encode("ascii", "ignore").decode()
     return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:LONGEST].strip("-") or "road"
 
 
 def new_folder(words: str, seed: int, home: Path = HOME) -> Path:
-    """Makes a folder that did not exist; a number is added where its name is taken.
+    """Creates a new folder named after the description and the seed; a number is appended if the name is
+    taken.
 
     Raises:
-        UsageError: no folder can be made here.
+        UsageError: the folder cannot be created.
     """
     name, number = f"{slug(words)}-{seed}", 1
     try:

@@ -1,8 +1,8 @@
-"""Counts lost drives, to give up a simulator that is dead: one that lost three drives in a row.
+"""Counts lost drives, to stop using a simulator that has lost three drives in a row.
 
-Wherever many roads are driven, each drive is counted here. A drive is lost if the simulator could not be
-started, went away, or gave no answer (``SimulatorError``); a failure of the driver, or of the physics on one
-road, is no loss. A drive that works begins the count anew.
+All commands that drive many roads count their drives here. A drive is lost if the simulator could not be
+started, ended unexpectedly, or did not answer (``SimulatorError``); a failure of the driver, or of the
+physics on one road, does not count. A drive that is not lost resets the count.
 """
 
 from typing import Generic, TypeVar
@@ -14,14 +14,14 @@ MOST = 3  # in a row; each may have cost minutes of waiting for the simulator to
 
 
 class LostDrives(Generic[Key]):
-    """The drives in a row that a simulator lost."""
+    """The consecutive drives that a simulator has lost."""
 
     def __init__(self) -> None:
         self.lost: list[Key] = []
         """Keys of the lost drives."""
 
     def count(self, key: Key, is_lost: bool) -> bool:
-        """Counts a drive; returns True if it is time to give up."""
+        """Counts a drive; returns True if the last three drives in a row were lost."""
         if not is_lost:
             self.lost.clear()
             return False
@@ -30,10 +30,10 @@ class LostDrives(Generic[Key]):
 
     @staticmethod
     def given_up(reason: str, again: str) -> GivenUpError:
-        """Returns the error to raise.
+        """Returns the error that reports that the simulator is not used any more.
 
         Args:
-            reason: the simulator's own sentence about the last drive.
-            again: how to drive the roads that were not driven.
+            reason: the simulator's error message for the last drive.
+            again: a hint on how to drive the remaining roads later.
         """
         return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason})", again)

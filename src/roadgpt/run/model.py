@@ -1,4 +1,4 @@
-"""The Run: everything about one road from words to verdict, and the Request that it answers."""
+"""Defines the Run, which holds everything about one road from words to verdict, and its Request."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -16,30 +16,30 @@ if TYPE_CHECKING:
     from roadgpt.verdict import Verdict
 
 Outcome = Literal["PASS", "FAIL", "INVALID", "ERROR", "VALID"]
-"""VALID: the rules do not object, and the road was not driven."""
+"""The outcome of a Run. VALID: the road breaks no rule and was not driven."""
 
 
 class Setup(Frozen):
-    """The plug-ins that make and drive roads, and how they do it."""
+    """Names the plug-ins that make and drive roads, with their options."""
 
     reader: str = "model"
     designer: str = "planner"
     rules: Literal["strict", "sbft"] = "strict"
     driver: str = "beamng_like"
-    """Name of an installed driver, or FILE.py:CLASS."""
+    """Name of a driver plug-in, or FILE.py:CLASS."""
     simulator: str = "mujoco"
     geometry: Geometry = "arcs"
     keep_driving: bool = False
     drives: bool = True
     """False: roads are only designed and checked."""
     chat: ChatSettings | None = None
-    """The language model, for readers and designers that ask one; None: the user's settings."""
+    """The language model for readers and designers that use one; None: the model of the user's settings."""
 
     def came_with(self, file: object) -> Self:
-        """Returns the Setup as read from a file that may be somebody else's: the user is asked before it is
-        trusted.
+        """Returns the Setup, marked as read from a file of unknown origin: its driver and server need the
+        user's permission.
 
-        See ``roadgpt.provenance``; a driver is trusted if the user named its file.
+        See ``roadgpt.provenance``; a driver is trusted if the user named its file as well.
         """
         driver = permission.driver_from_file(self.driver, file)
         chat = self.chat and self.chat.came_with(file)
@@ -47,27 +47,28 @@ class Setup(Frozen):
 
 
 class Request(Frozen):
-    """A request for roads, without their number; the same Request gives the same files."""
+    """A request for roads, without the number of roads; the same Request gives the same files."""
 
     words: str = ""
-    """The description; empty where roads were given."""
+    """The description; empty if the roads were not made from words."""
     seed: int = 0
     world: World = World()
     setup: Setup = Setup()
 
     def essence(self) -> "Request":
-        """Returns the Request without what may change when an interrupted campaign is continued."""
+        """Returns the Request without the fields that may change when an interrupted campaign is
+        continued."""
         chat = self.setup.chat and self.setup.chat.essence()
         return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
 
     def came_with(self, file: object) -> Self:
-        """Returns the Request as read from a file that may be somebody else's; see ``Setup.came_with``."""
+        """Returns the Request, marked as read from a file of unknown origin; see ``Setup.came_with``."""
         return self.model_copy(update={"setup": self.setup.came_with(file)})
 
 
 @dataclass(frozen=True)
 class Seconds:
-    """Seconds on the clock; the only part of a Run that differs from day to day."""
+    """Wall-clock times; the only part of a Run that differs when the Run is repeated."""
 
     design: float = 0.0
     """Seconds of reading, designing and checking."""
@@ -76,19 +77,21 @@ class Seconds:
 
     @property
     def total(self) -> float:
-        """Seconds altogether."""
+        """Total wall-clock seconds."""
         return self.design + self.drive
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One road from words to verdict. Values of stages that were not reached are None."""
+    """Everything about one road from words to verdict. The values of stages that were not reached are
+    None."""
 
     request: Request
     index: int
     """Number of the road in its campaign, from 1."""
     seed: int
-    """The road's own seed, drawn from the campaign's; a road that was given has the campaign's seed."""
+    """The road's own seed, derived from the campaign's seed; an existing road that is only driven has the
+    campaign's seed."""
     outcome: Outcome = "VALID"
     description: str = "valid, not driven"
     """The outcome in a sentence."""
@@ -99,14 +102,14 @@ class Run:
     drive: "Drive | None" = None
     verdict: "Verdict | None" = None
     rounds: int = 0
-    """Number of drafts."""
+    """Number of drafts that the designer made."""
     designing: DesignReport | None = None
-    """The designer's report on its draft, where it asked a language model."""
+    """The designer's report on its draft, if it used a language model."""
     spent: Spent | None = None
-    """Tokens, seconds and money of all questions for this road; None where none was asked."""
+    """Tokens, seconds and money spent on language models for this road; None if none was asked."""
     versions: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
-    """Name of the file that the road was read from, or the words by which it was changed; for headings."""
+    """Name of the file that the road was read from, or the change request; used in headings."""
     trace: str = ""
     """The traceback of a simulator or a driver that failed."""
     is_lost: bool = False
@@ -124,27 +127,27 @@ class Run:
 
     @property
     def title(self) -> str:
-        """The description, or else the road's source; never empty."""
+        """The description, or the road's source if there is no description; never empty."""
         return self.words or self.source or "a road without a description"
 
     @property
     def world(self) -> World:
-        """The map, its rules and its surface."""
+        """The map, the limits of the rules, and the surface."""
         return self.request.world
 
     @property
     def is_valid(self) -> bool:
-        """True if there is a road that the rules do not object to."""
+        """True if there is a road and it breaks no rule."""
         return self.road is not None and not self.findings
 
     @property
     def validation_message(self) -> str:
-        """The first objection; empty for a valid road."""
+        """The message of the first broken rule; empty for a valid road."""
         if self.findings:
             return self.findings[0].sentence
         return "" if self.road else self.description
 
     @property
     def length(self) -> float:
-        """Length of the road in plan, metres; 0 where there is none."""
+        """Length of the road in plan, metres; 0 if there is no road."""
         return self.road.length if self.road else 0.0

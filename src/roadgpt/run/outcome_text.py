@@ -1,4 +1,5 @@
-"""The outcome of a drive in one sentence, with its end where it went on after a departure."""
+"""Describes the outcome of a drive in one sentence, including how the drive ended if the car drove on after a
+lane departure."""
 
 from roadgpt.drive import Drive
 from roadgpt.verdict import Verdict
@@ -12,7 +13,8 @@ WENT_ON = {
 
 
 def outcome_sentence(verdict: Verdict, drive: Drive) -> str:
-    """Returns the verdict's sentence; for a car that drove on after a departure, also how its drive ended."""
+    """Returns the verdict's sentence; if the car drove on after a lane departure, adds how its drive
+    ended."""
     if verdict.cause != "out of lane" or drive.ended not in WENT_ON:
         return verdict.description
     return f"{verdict.description}, {WENT_ON[drive.ended]} after {drive['s'][-1]:.0f} m"

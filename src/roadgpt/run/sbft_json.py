@@ -1,8 +1,8 @@
-"""A Run in the shape of the SBFT competition's ``test.NNNN.json``, which its tools read.
+"""Converts a Run to the SBFT competition's file ``test.NNNN.json``, which the competition's tools read.
 
-Where the competition leaves a field out (an invalid road has no execution data), it is here and empty. The
-description of a drive has the competition's words; ``verdict.json`` has ours. The competition's interpolated
-points are [x, y]; these have the height as well: [x, y, z].
+There are two differences. A field that the competition omits, such as the execution data of an invalid road,
+is present and empty. Interpolated points are [x, y, z] instead of the competition's [x, y]. The description
+of a drive uses the competition's wording; ``verdict.json`` has RoadGPT's.
 """
 
 from typing import Any
@@ -42,10 +42,10 @@ def test_of(run: Run) -> dict[str, Any]:
 
 
 def test_name(index: int) -> str:
-    """Returns the name of the file of road ``index``."""
+    """Returns the name of the test file of road ``index``."""
     return f"test.{index:04d}.json"
 
 
 def test_text(run: Run) -> str:
-    """Returns the content of the file."""
+    """Returns the content of the Run's test file."""
     return json_text(test_of(run), indent=None)

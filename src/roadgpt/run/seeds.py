@@ -1,4 +1,4 @@
-"""Seeds of the roads of a campaign."""
+"""Derives the seeds of the roads of a campaign."""
 
 import numpy as np
 
@@ -10,8 +10,8 @@ BITS = 53  # so that a seed survives every JSON reader
 def seed_of(seed: int, index: int) -> int:
     """Returns the seed of road ``index`` (from 1) of the campaign with seed ``seed``.
 
-    It is mixed well, so that campaigns with neighbouring seeds share no road: by numpy's SeedSequence, which
-    promises never to change.
+    It uses numpy's SeedSequence, so that campaigns with neighbouring seeds share no road. numpy guarantees
+    that SeedSequence gives the same numbers in all versions.
 
     Raises:
         UsageError: the campaign's seed is negative.

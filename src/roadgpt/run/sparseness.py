@@ -1,18 +1,17 @@
-"""Where cars left their lane, and how much such failures differ: the SBFT competition's analysis.
+"""Finds where cars left their lane and measures how much such failures differ, as the SBFT competition does.
 
-Each failure is the road from 30 m before to 30 m after the place where the car left its lane, as a sequence
-of
-steps (change of direction, length). Two sequences differ by their weighted Levenshtein distance: leaving out
-or adding a step costs 1, and exchanging steps costs (da / (1 + da) + dl / (1 + dl)) / 2 with da in degrees
-and
-dl in metres, or nothing where da < 0.3 and dl < 0.2. Source: the competition's tests_evaluation.py (2024),
-and the code it calls. Its peculiarities are kept, so that its tools give the same figures for our files:
+Each failure is represented by the road from 30 m before to 30 m after the place where the car left its lane,
+as a sequence of steps (change of direction, length). Two sequences differ by their weighted Levenshtein
+distance: deleting or inserting a step costs 1, and substituting a step costs (da / (1 + da) + dl / (1 + dl))
+/ 2 with da in degrees and dl in metres, or nothing if da < 0.3 and dl < 0.2. Source: the competition's
+tests_evaluation.py (2024), and the code it calls. Its peculiarities are kept, so that the competition's tools
+give the same figures for RoadGPT's files:
 
-* sparseness is the mean, over failures, of the distance to the one that differs most *among later tests*, so
-  that the last failure has none;
+* sparseness is the mean, over failures, of the largest distance to any failure of a *later* test; the last
+failure has no such distance and is left out;
 * a failure whose segment cannot be cut out (its road has fewer than four control points, or the car left its
-  lane at the very start) counts as one to the right, and not for sparseness;
-* the road is interpolated once more, and the segment begins and ends within a metre of 30 m.
+  lane at the very start) counts as a failure to the right, and is left out of sparseness;
+* the interpolated road is interpolated once more, so the segment's ends are at 30 m to within 1 m.
 """
 
 import math
@@ -42,19 +41,21 @@ class Departure(NamedTuple):
     """The place where a car left its lane."""
 
     side: str
-    """left or right"""
+    """The side on which the car left its lane: "left" or "right"."""
     number: int
-    """Index of the record in which it was first outside."""
+    """Index of the first record in which the car was outside its lane."""
     first: int = 0
-    """Index of the record in which it came to the segment."""
+    """Index of the record in which the car entered the segment."""
     before: Array | None = None
-    """The road up to the place, points ``(n, 2)``; None where it cannot be cut out."""
+    """The part of the segment before the place, points ``(n, 2)``; None if it cannot be cut out of the
+    road."""
     after: Array | None = None
-    """The road from there on, ``(m, 2)``."""
+    """The part of the segment after the place, points ``(m, 2)``; None if it cannot be cut out of the
+    road."""
 
     @property
     def segment(self) -> Array | None:
-        """Both together; None where it cannot be cut out."""
+        """The parts before and after the place, joined; None if they cannot be cut out of the road."""
         return (
             None if self.before is None or self.after is None else np.concatenate((self.before, self.after))
         )
@@ -63,14 +64,14 @@ class Departure(NamedTuple):
 def departure(
     points: ArrayLike, records: Sequence[ExecutionRecord], before: float = AROUND, after: float = AROUND
 ) -> Departure | None:
-    """Returns what the competition's analysis finds in a failed test; None where the car did not leave its
-    lane.
+    """Returns where the car left its lane in a failed test, as the competition's analysis finds it; None if
+    the car did not leave its lane.
 
     Args:
         points: control points of the road, ``(n, 2)`` or with more columns, metres.
-        records: its execution data.
-        before: metres of road that are cut out before the place.
-        after: metres of road that are cut out after it.
+        records: the execution data of the drive.
+        before: length of the segment before the place, in metres.
+        after: length of the segment after the place, in metres.
     """
     number = next((i for i, record in enumerate(records) if record.is_oob), None)
     if number is None:
@@ -88,7 +89,7 @@ def departure(
 
 
 def segment_around(points: ArrayLike, place: Sequence[float]) -> Array | None:
-    """Returns points ``(n, 2)`` of a road around a place; None where the segment cannot be cut out."""
+    """Returns points ``(n, 2)`` of a road around a place; None if the segment cannot be cut out."""
     line = _interpolated(points)
     found = None if line is None else _cut_out(line, place, AROUND, AROUND)
     return None if found is None else np.concatenate(found)
@@ -176,14 +177,14 @@ def _cost(step: Array, others: Array) -> Array:
 
 
 class Sparseness:
-    """Sparseness that is updated with every failure, without measuring earlier pairs again."""
+    """The sparseness of failures, updated with each new failure without measuring earlier pairs again."""
 
     def __init__(self) -> None:
         self._rows: dict[tuple[int, int], Array] = {}
         self._furthest: dict[tuple[int, int], float] = {}
 
     def add(self, number: int, points: ArrayLike) -> None:
-        """Adds the segment of the failure of one more test, points ``(n, 2)``."""
+        """Adds the segment of the failed test ``number``, points ``(n, 2)``."""
         row = steps_of(points)
         apart = dict(zip(self._rows, distances(row, [*self._rows.values()]).tolist(), strict=True))
         key = (number, len(self._rows))
@@ -194,10 +195,10 @@ class Sparseness:
 
     @property
     def mean(self) -> float:
-        """Mean; NaN for fewer than two failures, as the competition has it."""
+        """Mean sparseness; NaN for fewer than two failures, as in the competition's code."""
         return float(np.mean([*self._furthest.values()])) if self._furthest else math.nan
 
     @property
     def deviation(self) -> float:
-        """Standard deviation; NaN for fewer than two failures."""
+        """Standard deviation of the sparseness; NaN for fewer than two failures."""
         return float(np.std([*self._furthest.values()])) if self._furthest else math.nan

@@ -1,8 +1,7 @@
-"""The tables of a campaign, with the columns of the SBFT competition.
+"""Writes the tables of a campaign, with the columns of the SBFT competition.
 
-generation_stats.csv         counts, and seconds on the clock
-oob_stats.csv                failures by side, and how much they differ
-experiment_description.csv   what was asked for: the competition's columns first, then ours
+generation_stats.csv         counts, and wall-clock seconds oob_stats.csv                failures by side, and
+their sparseness experiment_description.csv   the settings: the competition's columns first, then RoadGPT's
 """
 
 import csv
@@ -32,7 +31,7 @@ class Tally:
         self.spread = Sparseness()
 
     def add(self, run: Run) -> None:
-        """Counts a Run."""
+        """Adds a Run to the counts."""
         self._count(run, 1)
         self.simulated += run.drive.duration if run.drive is not None else 0.0
         if run.outcome != "FAIL" or run.road is None or run.drive is None:
@@ -45,7 +44,7 @@ class Tally:
             self.spread.add(run.index, found.segment)
 
     def take_back(self, run: Run) -> None:
-        """Removes a Run that had no drive from the counts."""
+        """Removes a Run from the counts; the Run must not have a drive."""
         self._count(run, -1)
 
     def _count(self, run: Run, times: int) -> None:
@@ -56,7 +55,7 @@ class Tally:
         self.driving += times * run.seconds.drive
 
     def write(self, folder: Path) -> None:
-        """Writes the tables that change from road to road."""
+        """Writes the two tables that change with each road: generation_stats.csv and oob_stats.csv."""
         for name, row in zip(TABLES, (self._generation(), self._departures()), strict=True):
             write_whole(folder / name, _table([row]))
 
@@ -85,7 +84,7 @@ class Tally:
 
 
 def write_description(request: Request, roads: int, folder: Path) -> None:
-    """Writes the table of what was asked for; competition columns without a meaning here stay empty."""
+    """Writes experiment_description.csv; competition columns without a meaning in RoadGPT stay empty."""
     setup, world = request.setup, request.world
     theirs = {
         "executor": setup.simulator,

@@ -1,4 +1,4 @@
-"""The versions that a Run was made with, which explain later differences."""
+"""Lists the software versions that a Run was made with, to explain later differences."""
 
 import platform
 from functools import cache
@@ -12,7 +12,7 @@ DRIVING = ("mujoco-core", "numba")
 
 
 def versions_of(setup: Setup) -> dict[str, str]:
-    """Returns the versions of roadgpt, Python and the libraries that decide on numbers."""
+    """Returns the versions of RoadGPT, Python and the libraries that affect the numbers."""
     return {
         "roadgpt": __version__,
         "python": platform.python_version(),

@@ -1,4 +1,4 @@
-"""Renders camera images of roads with a software rasteriser. Verb: ``Scene.render``.
+"""Renders camera images of roads with a software rasteriser. Main method: ``Scene.render``.
 
 It needs no display and no graphics driver: compiled code draws triangles, and the same pose gives the same
 bytes. The scene of a road has asphalt and markings, shoulders and embankments, posts, terrain that follows

@@ -54,8 +54,8 @@ class CarPart:
 
 
 def surface(net: Array, kind: int) -> CarPart:
-    """Returns the smooth surface over a net of points ``(rows, columns, 3)``; columns run to the left of rows
-    as seen from outside."""
+    """Returns a smooth surface through a grid of points ``(rows, columns, 3)``, with normals on the side from
+    which columns run counter-clockwise of rows."""
     along, across = np.gradient(net, axis=0), np.gradient(net, axis=1)
     normals = np.cross(along, across)
     size = np.linalg.norm(normals, axis=-1, keepdims=True)
@@ -65,7 +65,7 @@ def surface(net: Array, kind: int) -> CarPart:
 
 
 def body() -> Iterator[CarPart]:
-    """Yields hull and cabin."""
+    """Yields the surfaces of the hull and the cabin."""
     rings = np.stack([_ring(*section) for section in SECTIONS])
     ends = [np.repeat(ring.mean(axis=0)[None], len(ring), axis=0) for ring in (rings[0], rings[-1])]
     yield surface(np.concatenate([ends[0][None], rings, ends[1][None]]), PAINT)
@@ -135,7 +135,7 @@ def _glazed(
 
 
 def trim() -> Iterator[CarPart]:
-    """Yields bumpers, plate, seams, grille, wheel arches and mirrors."""
+    """Yields the bumpers, number plate, seams, grille, wheel arches and mirrors."""
     wide = np.array([-0.76, -0.7, -0.6, -0.3, 0.0, 0.3, 0.6, 0.7, 0.76])
     yield _on_hull(-0.97 * wide, (0.315, 0.36, 0.41), TRIM, -1)
     yield _on_hull(-wide, (0.672, 0.684), TRIM, -1)
@@ -150,7 +150,8 @@ def trim() -> Iterator[CarPart]:
 
 
 def lamps() -> Iterator[CarPart]:
-    """Yields tail lamps around the corners, a third one in the rear window, and headlamps."""
+    """Yields tail lamps that reach around the rear corners, a third brake lamp in the rear window, and
+    headlamps."""
     tail, head = np.array([0.40, 0.55, 0.70, 0.77, 0.82, 0.855]), np.array([0.46, 0.56, 0.66, 0.74, 0.80])
     for side in (-1.0, 1.0):
         yield _on_hull(np.sort(side * tail)[::-1], (0.71, 0.77, 0.83), TAIL, -1)

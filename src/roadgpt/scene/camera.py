@@ -1,4 +1,4 @@
-"""Poses of cars, and the cameras mounted on them."""
+"""Defines the poses of cars, and the cameras mounted on cars."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ NARROWEST, WIDEST = math.radians(5), math.radians(150)
 
 
 class Pose(NamedTuple):
-    """The pose of a car, and what can be seen of its controls; a drive has columns of these names.
+    """The pose of a car and the visible state of its controls; a Drive has columns with the same names.
 
     Positions are those of the centre of gravity in metres. Angles are in radians: heading 0 along +x and
     counter-clockwise, pitch positive with the nose up, roll positive with the left side up.
@@ -30,24 +30,24 @@ class Pose(NamedTuple):
     pitch: float = 0.0
     roll: float = 0.0
     steer: float = 0.0
-    """rad, angle of the front wheels, left positive."""
+    """Angle of the front wheels in rad, left positive."""
     speed: float = 0.0
-    """m/s."""
+    """Speed in m/s."""
     brake: float = 0.0
-    """0..1."""
+    """Brake pedal, from 0 (released) to 1 (full braking)."""
     wheel: float = 0.0
-    """rad by which the wheels have rolled."""
+    """Angle in rad by which the wheels have rolled."""
 
 
 class CameraPlacement(NamedTuple):
     """Position and tilt of a camera on its car."""
 
     ahead: float
-    """m ahead of the centre of gravity."""
+    """Metres ahead of the car's centre of gravity."""
     up: float
-    """m above the ground under the car."""
+    """Metres above the ground under the car."""
     tilt: float
-    """rad relative to the car, positive upwards."""
+    """Pitch in rad relative to the car, positive upwards."""
 
 
 MOUNTS: dict[str, CameraPlacement] = {
@@ -55,19 +55,19 @@ MOUNTS: dict[str, CameraPlacement] = {
     "chase": CameraPlacement(-8.4, 2.95, -0.17),
     "above": CameraPlacement(0.0, 34.0, -math.pi / 2),
 }
-"""Placements by name: the hood camera ("bonnet"), fixed to the body; behind the car and level across; above
-the car, with its nose at the top of the image."""
+"""Camera placements by name: the hood camera ("bonnet") is fixed to the body; the others follow behind the
+car without rolling, or look down from above with the car's nose at the top of the image."""
 
 
 class CameraPose(NamedTuple):
     """A pinhole camera in world coordinates."""
 
     position: Array
-    """(3,), metres."""
+    """Position in metres, shape (3,)."""
     axes: Array
-    """(3, 3): unit vectors to the right, downwards and forward as rows."""
+    """Unit vectors to the right, downwards and forward as rows, shape (3, 3)."""
     focal: float
-    """Pixels."""
+    """Focal length in pixels."""
 
 
 @dataclass(frozen=True)
@@ -79,13 +79,13 @@ class Camera:
     """
 
     width: int = 640
-    """Pixels."""
+    """Width of the image in pixels."""
     height: int = 360
     field_of_view: float = math.radians(70)
-    """rad, horizontal."""
+    """Horizontal field of view in rad."""
     mount: Mount = "bonnet"
     placement: CameraPlacement | None = None
-    """Placement on the car; None stands for that of MOUNTS."""
+    """Placement on the car; None: the placement of the mount's name in MOUNTS."""
 
     def __post_init__(self) -> None:
         if not (1 <= self.width <= LARGEST and 1 <= self.height <= LARGEST):
@@ -106,7 +106,7 @@ class Camera:
         return self.width / 2 / math.tan(self.field_of_view / 2)
 
     def eye(self, pose: Pose) -> CameraPose:
-        """Returns the camera in world coordinates, on a car with this pose."""
+        """Returns the pose of the camera in world coordinates, on a car with the given pose."""
         placement = self.placement or MOUNTS[self.mount]
         if self.mount == "bonnet":
             axes = axes_of(pose.heading, pose.pitch, pose.roll)

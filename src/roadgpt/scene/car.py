@@ -1,4 +1,5 @@
-"""The car that is drawn: a saloon of the simulator's size, with rolling and steering wheels and brake lights.
+"""The model of the drawn car: a saloon of the simulator's size, with rolling and steering wheels and brake
+lights.
 
 The origin of its coordinates is on the ground below the middle of its length; x points forward, y left, z up;
 metres.
@@ -24,20 +25,20 @@ MIRRORED = 0.05  # share of light that paint and glass reflect at normal inciden
 
 @dataclass(frozen=True, eq=False)
 class Saloon:
-    """The surface of the car at rest, with normals, and the points that turn with each wheel."""
+    """The surface of the car at rest, its normals, and the points that turn with each wheel."""
 
     mesh: Mesh
-    """Its attributes are empty, because they depend on the pose."""
+    """The triangles of the car; the mesh's attributes are empty, because they depend on the pose."""
     normals: Array
     gloss: Array
     shade: Array
-    """Share of the light that remains near the ground and under the sills."""
+    """Share of light, 0 to 1, that reaches each point; less than 1 near the ground and under the sills."""
     wheels: tuple[tuple[slice, Array, bool], ...]
-    """Points of each wheel, its hub, and whether it steers."""
+    """For each wheel: the slice of its points, the position of its hub, and whether it steers."""
 
     def placed(self, pose: Pose, eye: CameraPose) -> tuple[Array, Array]:
-        """Returns the points ``(n, 3)`` in world coordinates, and their attributes ``(n, 3)``: reflection, 1
-        unused, light."""
+        """Returns the points ``(n, 3)`` in world coordinates, and their attributes ``(n, 3)``: reflection, an
+        unused column, light."""
         points, normals = self.mesh.points.copy(), self.normals.copy()
         for part, hub, steers in self.wheels:
             turn = _turn(pose.wheel, pose.steer if steers else 0.0)
@@ -75,7 +76,7 @@ def _turn(rolled: float, steer: float) -> Array:
 
 @cache
 def saloon() -> Saloon:
-    """Returns the one model of a car."""
+    """Returns the car model, which is built once."""
     parts: list[CarPart] = [*body(), *trim(), *lamps()]
     count = sum(len(part.points) for part in parts)
     wheels = []
@@ -99,7 +100,8 @@ def saloon() -> Saloon:
 
 
 def palette_of(pose: Pose | None) -> NDArray[np.float64]:
-    """Returns the colours of all plain surfaces, with the brake lights on if the car brakes."""
+    """Returns the colours of all surfaces without a pattern; the brake lights are on if the car at this pose
+    brakes."""
     colours = PALETTE.copy()
     if pose is not None and pose.brake > BRAKE:
         for row, light in SHINING.items():

@@ -1,4 +1,4 @@
-"""Triangles in patches; a patch that the camera does not see is skipped as a whole."""
+"""Stores triangles in patches; a patch outside the camera's view is skipped as a whole."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from roadgpt.geometry.curve import Array
 
 ROAD, GRASS, POST, PLAIN = 0, 1, 2, 3
-"""Kinds of surface; PLAIN and all above it are colours of a palette."""
+"""Kinds of surface; PLAIN and all higher numbers are colours of a palette."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,7 +18,7 @@ class Patch:
     points: Array
     """(n, 3), metres."""
     attributes: Array
-    """(n, 3): two surface coordinates, and the light."""
+    """(n, 3): two surface coordinates, and the brightness of the light."""
     triangles: NDArray[np.int64]
     """(m, 3), counter-clockwise as seen from the visible side."""
     kinds: NDArray[np.int64]
@@ -27,20 +27,21 @@ class Patch:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Patches in flat arrays, as compiled code reads them."""
+    """Patches stored in flat arrays for compiled code."""
 
     points: Array
     attributes: Array
     triangles: NDArray[np.int64]
     kinds: NDArray[np.int64]
     ranges: NDArray[np.int64]
-    """(p, 4): first point, end of points, first triangle, end of triangles, per patch."""
+    """(p, 4): per patch, the indices of its first point, the end of its points, its first triangle, and the
+    end of its triangles."""
     spheres: Array
-    """(p, 4): centre and radius of a sphere around each patch."""
+    """(p, 4): centre and radius of a bounding sphere of each patch, metres."""
 
     @classmethod
     def of(cls, patches: list[Patch]) -> "Mesh":
-        """Returns a mesh of the patches in their order; there must be at least one."""
+        """Returns a mesh of the patches in the given order; at least one patch is required."""
         ends = np.cumsum([(len(p.points), len(p.triangles)) for p in patches], axis=0)
         starts = np.concatenate([np.zeros((1, 2), np.int64), ends[:-1]])
         ranges = np.stack([starts[:, 0], ends[:, 0], starts[:, 1], ends[:, 1]], axis=1)
@@ -59,8 +60,8 @@ class Mesh:
 
 
 def grid(points: Array, attributes: Array, kind: int) -> Patch:
-    """Returns the surface over a net of points ``(rows, columns, 3)``, visible from the side where columns
-    run counter-clockwise of rows."""
+    """Returns the surface through a grid of points ``(rows, columns, 3)``, visible from the side where the
+    direction of the columns is counter-clockwise from that of the rows."""
     rows, columns = points.shape[:2]
     at = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]

@@ -1,4 +1,5 @@
-"""Noise at the resolution of a pixel, and the share of a pixel that a marking covers: for compiled code."""
+"""Noise at the resolution of a pixel, and the share of a pixel that a marking covers, for use in compiled
+code."""
 
 import math
 
@@ -15,7 +16,8 @@ COARSEST = 6.0  # halvings after which a tile is uniform
 
 @inlined
 def plain_noise(tiles: Tiles, tile: int, start: int, side: int, u: float, v: float) -> float:
-    """Returns one version of a tile at (u, v) in its texels, interpolated between four of them."""
+    """Returns the value of one resolution level of a noise tile at (u, v), in texels of that level, by
+    bilinear interpolation."""
     fu, fv = math.floor(u), math.floor(v)
     du, dv = u - fu, v - fv
     mask = side - 1
@@ -29,7 +31,8 @@ def plain_noise(tiles: Tiles, tile: int, start: int, side: int, u: float, v: flo
 
 @inlined
 def fine_noise(tiles: Tiles, tile: int, u: float, v: float, level: float) -> float:
-    """Returns a tile at (u, v) in texels, where a pixel is 2**level texels wide."""
+    """Returns the value of a noise tile at (u, v) in texels, filtered for a pixel that is 2**level texels
+    wide."""
     if level <= 0.0:
         return plain_noise(tiles, tile, 0, SIDE, u, v)
     if not level < COARSEST:
@@ -46,7 +49,8 @@ def fine_noise(tiles: Tiles, tile: int, u: float, v: float, level: float) -> flo
 
 @inlined
 def share(x: float, low: float, high: float, wide: float) -> float:
-    """Returns the share of the window of width ``wide`` around x that lies between low and high."""
+    """Returns the share of the window of width ``wide`` around x that lies between ``low`` and ``high``, from
+    0 to 1."""
     return max(min(x + wide / 2, high) - max(x - wide / 2, low), 0.0) / wide
 
 
@@ -59,20 +63,20 @@ def dashed(x: float, dash: float, period: float) -> float:
 
 @inlined
 def bump(x: float, wide: float) -> float:
-    """Returns 1 at 0, falling smoothly to 0 at ``wide``."""
+    """Returns 1 at x = 0, falling smoothly to 0 at a distance of ``wide``."""
     part = max(1.0 - x * x * (1.0 / (wide * wide)), 0.0)
     return part * part
 
 
 @inlined
 def length_of(x: float, y: float) -> float:
-    """Returns the length of a vector, within 4 percent."""
+    """Returns the length of a vector, with an error of at most 4 percent."""
     x, y = abs(x), abs(y)
     return max(0.96 * max(x, y) + 0.40 * min(x, y), max(x, y))
 
 
 @inlined
 def smooth(low: float, high: float, x: float) -> float:
-    """Returns 0 at low and 1 at high, with a continuous slope."""
+    """Returns 0 at ``low``, 1 at ``high``, and a smooth step with a continuous slope between them."""
     part = min(max((x - low) / (high - low), 0.0), 1.0)
     return part * part * (3.0 - 2.0 * part)

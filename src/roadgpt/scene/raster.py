@@ -128,22 +128,24 @@ def draw(
     ranges: NDArray[np.int64], spheres: Array, eye: Array, depth: Depth, ids: Numbers, planes: Array,
     seen: Array, seen_kinds: NDArray[np.int64], count: int,
 ) -> int:  # fmt: skip
-    """Draws the patches of a `Mesh` into the samples; returns the number of triangles drawn so far.
+    """Draws the patches of a `Mesh` into the samples; returns ``count`` plus the number of triangles drawn.
 
     Args:
-        points: of the mesh, as are attributes, triangles, kinds, ranges and spheres.
+        points: see `Mesh`.
         attributes: see `Mesh`.
         triangles: see `Mesh`.
         kinds: see `Mesh`.
         ranges: see `Mesh`.
         spheres: see `Mesh`.
-        eye: position, axes to the right, downwards and forward, focal length in pixels: (13,).
-        depth: 1 / m, ``(4 * height, width)``; written where a triangle is nearer than before.
-        ids: number of the visible triangle, same shape; written likewise.
-        planes: (n, PLANE), plane equations of the numbered triangles; written.
+        eye: shape (13,): the camera's position, its axes to the right, downwards and forward, and its focal
+            length in pixels.
+        depth: inverse depth in 1/m, ``(4 * height, width)``; updated where a triangle is nearer than the
+            stored depth.
+        ids: number of the visible triangle, same shape as ``depth``; updated with it.
+        planes: (n, PLANE): plane equations of the numbered triangles; filled by this function.
         seen: working memory for the corners of a patch, (n, 3).
-        seen_kinds: (n,), kinds of surface of the numbered triangles; written.
-        count: number of triangles drawn before.
+        seen_kinds: (n,), kinds of surface of the numbered triangles; filled by this function.
+        count: number of triangles that earlier calls have drawn.
     """
     rows, columns = depth.shape
     focal, middle_x, middle_y = eye[12], columns / 2.0, rows / 8.0

@@ -18,7 +18,8 @@ LONGEST = 4.0  # m between stations: light and texture follow crests
 BLOCK = 24  # stations of a patch
 THICK = 0.5  # m of a road that floats
 POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
-"""m; half the distance that German rules require on straights, so that speed becomes visible."""
+"""Distance between posts, their width and their height, metres. The distance is half that of German roads on
+straights, to give a better impression of speed."""
 POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 
 

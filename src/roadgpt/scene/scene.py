@@ -42,7 +42,7 @@ class RenderBuffers:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Built once for a road; renders any number of images of it, also from several threads."""
+    """The scene of one road: built once, it renders any number of images, also from several threads."""
 
     road: Road
     world: World
@@ -64,12 +64,12 @@ class Scene:
         return cls(road, world, land, ground, plant(road, world, land))
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
-        """Renders an image ``(height, width, 3)`` of bytes, red first, from a camera on a car at ``pose``.
+        """Returns an RGB image ``(height, width, 3)`` of bytes from a camera on a car at ``pose``.
 
         Args:
             camera: the camera.
             pose: pose of the car that carries the camera.
-            out: contiguous array for the image; None: a new array.
+            out: contiguous array to write the image to; None: a new array is made.
             car: pose of the car that is drawn, with its shadow; None: no car is drawn.
 
         Raises:

@@ -1,7 +1,7 @@
 """Computes the colour of each pixel: surface, light, the car's shadow, and haze.
 
-Surfaces are coloured from their coordinates, not from textures: the coverage of a pixel by markings is
-computed exactly, and noise is read at the resolution of the pixel. Colours are linear until `to_screen`.
+Surfaces are coloured from their coordinates, not from textures: the share of a pixel that markings cover is
+computed exactly, and noise is filtered to the size of the pixel. Colours are linear until `to_screen`.
 """
 
 import math
@@ -74,8 +74,8 @@ def _post(side: float, height: float, light: float) -> Colour:
 
 @inlined
 def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
-    """Returns a colour seen through air, of which the share ``thin`` remains; the air is warmer towards the
-    sun."""
+    """Returns a colour as seen through haze: the share ``thin`` (0 to 1) of the colour remains, and the rest
+    is the colour of the haze, whose brightness increases by ``warm``, mostly in red."""
     thick = 1.0 - thin
     r, g = r * thin + (0.60 + warm) * thick, g * thin + (0.71 + 0.9 * warm) * thick
     return r, g, b * thin + (0.79 + 0.7 * warm) * thick
@@ -83,8 +83,8 @@ def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
 
 @inlined
 def air(distance: float, toward: float) -> tuple[float, float]:
-    """Returns for `hazy` the share that remains after so many metres, and the warmth at a given cosine to the
-    sun."""
+    """Returns the arguments ``thin`` and ``warm`` of `hazy` for a distance in metres and for the cosine
+    ``toward`` of the angle between the line of sight and the sun."""
     d = distance * (1.0 / HAZE)
     toward = max(toward, 0.0)
     return 1.0 / (1.0 + d * (0.9 + 2.2 * d)), 0.10 * toward * toward
@@ -155,7 +155,7 @@ def shade(
     ids: NDArray[np.int32], depth: NDArray[np.float32], planes: Array, kinds: NDArray[np.int64],
     palette: Array, tiles: Tiles, eye: Array, numbers: Array, picture: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Colours all pixels of ``picture`` (height, width, 3) from the four samples of each.
+    """Colours all pixels of ``picture`` (height, width, 3) from the four samples of each pixel.
 
     Haze and resolution change slowly, so they are computed once for BLOCK pixels side by side.
 
@@ -167,10 +167,10 @@ def shade(
         palette: (n, 6): colours, and the light that they emit.
         tiles: those of `textures.noise`.
         eye: as for `raster.draw`.
-        numbers: lane width and length of the road; then for the shadow: point on the ground under the car
-            (3), its direction (2), length, width, distance of its middle ahead of that point, and 1 if there
-            is a car.
-        picture: linear light; written.
+        numbers: lane width and length of the road; then, for the shadow, the point on the ground under the
+            car (3 numbers), the car's direction (2), its length, its width, the distance from that point
+            forward to the car's middle, and 1 if there is a car, else 0.
+        picture: the image in linear light; filled by this function.
     """
     rows, columns = picture.shape[0], picture.shape[1]
     pixel = 1.0 / eye[12]

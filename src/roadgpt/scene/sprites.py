@@ -37,7 +37,7 @@ def overlay(
     order: NDArray[np.int64], places: Array, sizes: Array, looks: NDArray[np.int64], tints: Array,
     pictures: NDArray[np.float32], eye: Array, depth: NDArray[np.float32], picture: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Draws trees over an image in linear light, in this order, where nothing nearer is visible.
+    """Draws trees over an image in linear light, in the given order, where nothing nearer hides them.
 
     Args:
         order: indices of trees, the farthest first.

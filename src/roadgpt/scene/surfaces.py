@@ -1,4 +1,4 @@
-"""Colours of sky, terrain and road, linear, before sunlight is applied: for compiled code."""
+"""Linear colours of sky, terrain and road, before sunlight is applied, for use in compiled code."""
 
 import math
 
@@ -22,8 +22,8 @@ RIDGES = SIDE / (2.0 * math.pi)  # texels of the far hills to a radian
 
 @inlined
 def sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
-    """Returns the colour in a unit direction: blue above, bright and hazy at the horizon and around the sun,
-    thin clouds."""
+    """Returns the colour of the sky in a unit direction: blue above, bright and hazy at the horizon and
+    around the sun, thin clouds."""
     h = max(dz, 0.0)
     pale = 1.0 / (1.0 + 5.5 * h)
     r, g, b = 0.115 + 0.505 * pale, 0.29 + 0.445 * pale, 0.62 + 0.21 * pale
@@ -48,7 +48,7 @@ def sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
 
 @inlined
 def grass(tiles: Tiles, x: float, y: float, level: float) -> Colour:
-    """Returns the colour of grass at (x, y); ``level`` is the logarithm to base 2 of a pixel's width in
+    """Returns the colour of grass at (x, y); ``level`` is the base-2 logarithm of the pixel's width in
     metres."""
     wide = plain_noise(tiles, CLOUD, 0, SIDE, x * 0.83, y * 0.83)
     blades = fine_noise(tiles, MEADOW, x * 31.0, y * 31.0, level + 4.95)
@@ -59,8 +59,8 @@ def grass(tiles: Tiles, x: float, y: float, level: float) -> Colour:
 
 @inlined
 def asphalt(tiles: Tiles, s: float, t: float, half: float, level: float) -> float:
-    """Returns the brightness of asphalt: grain and patches, darker in the wheel tracks and where oil
-    drips."""
+    """Returns the brightness of asphalt at station s and offset t (m): grain and patches, darker in the wheel
+    tracks and where oil drips."""
     grain = fine_noise(tiles, GRAIN, s * STONE, t * STONE, level + 6.5)
     patches = plain_noise(tiles, CLOUD, 0, SIDE, s * 1.3, t * 5.1)
     lane = abs(t) - half / 2
@@ -73,8 +73,8 @@ def asphalt(tiles: Tiles, s: float, t: float, half: float, level: float) -> floa
 def paved(
     tiles: Tiles, s: float, t: float, wide_s: float, wide_t: float, level: float, half: float, length: float
 ) -> Colour:
-    """Returns the colour of the carriageway with its markings at (s, t); a pixel is ``wide_s`` by ``wide_t``
-    metres."""
+    """Returns the colour of the carriageway with its markings at station s and offset t, for a pixel of
+    ``wide_s`` by ``wide_t`` metres."""
     tone = asphalt(tiles, s, t, half, level)
     r, g, b = tone, tone * 1.005, tone * 1.03
     line, outer = min(LINE, half / 4), half - min(INSET, half / 8)
@@ -104,7 +104,8 @@ def paved(
 
 @inlined
 def shoulder(tiles: Tiles, x: float, y: float, beside: float, ragged: float, level: float) -> Colour:
-    """Returns the colour of gravel that turns into grass, ``beside`` metres from the carriageway."""
+    """Returns the colour of the shoulder ``beside`` metres from the carriageway, where gravel turns into
+    grass."""
     r, g, b = grass(tiles, x, y, level)
     bare = 1.0 - smooth(0.1, 0.9, beside / GRAVEL + 3.5 * ragged)
     if bare > 0.0:
@@ -126,7 +127,8 @@ def road(
     half: float,
     length: float,
 ) -> Colour:
-    """Returns the colour of carriageway or shoulder at (s, t), which is (x, y) in world coordinates."""
+    """Returns the colour of the carriageway or the shoulder at station s and offset t, which is the point (x,
+    y) in world coordinates."""
     beside = abs(t) - half
     if beside < -0.3 - wide_t:
         return paved(tiles, s, t, wide_s, wide_t, level, half, length)

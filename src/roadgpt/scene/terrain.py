@@ -1,4 +1,4 @@
-"""The terrain around a road as cameras see it: its light, and its surface in patches."""
+"""The terrain around a road as it is drawn: its brightness, and its surface in patches."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,24 +16,24 @@ BLOCK = 8  # cells along a side of a patch
 
 @dataclass(frozen=True, eq=False)
 class LitTerrain:
-    """The land in the light of sun and sky."""
+    """The terrain with its brightness in the light of sun and sky."""
 
     land: Land
 
     @cached_property
     def light(self) -> Array:
-        """The light (rows, columns) on the land, from its slope."""
+        """The brightness (rows, columns) of the terrain, computed from its slope."""
         land = self.land
         slope_y, slope_x = np.gradient(ndimage.gaussian_filter(land.heights, 1.0), land.y, land.x)
         normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
         return daylight(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
 
     def light_at(self, x: Array, y: Array) -> Array:
-        """Returns the light on the land at points (x, y)."""
+        """Returns the brightness of the terrain at points (x, y)."""
         return self.land.between(self.light, x, y)
 
     def patches(self) -> list[Patch]:
-        """Returns the surface as patches."""
+        """Returns the surface of the terrain as patches."""
         land = self.land
         x, y = np.meshgrid(land.x, land.y)
         points, values = np.stack([x, y, land.heights], axis=-1), attributes(0.0, 0.0, self.light)

@@ -16,10 +16,10 @@ STEPS = 4096  # of the table
 
 @cache
 def noise() -> NDArray[np.float32]:
-    """Returns tiles ``(3, n)`` of mean 0 and standard deviation 1, each followed by its halved versions down
-    to 1 texel.
+    """Returns three noise tiles ``(3, n)`` of mean 0 and standard deviation 1; each row holds the tile and
+    its successively halved versions, down to 1 texel.
 
-    They hold the grain of stones, clouds of all sizes, and blades of grass in tufts.
+    The tiles are the grain of stones, clouds of all sizes, and tufts of grass.
     """
     rng = np.random.default_rng(SEED)
     grain = _shaped(rng, lambda f: np.exp(-((f / 0.42) ** 2)) + 1.9 * np.exp(-((f / 0.13) ** 2)))
@@ -49,14 +49,15 @@ def _halved(tile: Array) -> Array:
 
 @cache
 def screen_table() -> NDArray[np.uint8]:
-    """Returns bytes ``(STEPS,)`` for linear light from 0 to 1, by the curve of sRGB (IEC 61966-2-1)."""
+    """Returns the table ``(STEPS,)`` of screen bytes for linear light from 0 to 1, using the sRGB curve (IEC
+    61966-2-1)."""
     light = np.arange(STEPS) / (STEPS - 1)
     curve = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     return np.round(255 * curve).astype(np.uint8)
 
 
 def linear(*colour: int) -> tuple[float, float, float]:
-    """Returns the linear light of a screen colour, whose channels are 0 to 255."""
+    """Returns the linear light of an sRGB screen colour with channels from 0 to 255."""
     c = np.array(colour) / 255
     light = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
     return float(light[0]), float(light[1]), float(light[2])

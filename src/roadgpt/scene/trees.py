@@ -1,4 +1,5 @@
-"""Trees beside the road: their pictures and their positions. Cars cannot reach them."""
+"""Trees beside the road: their pictures and their positions. They are too far from the road for cars to reach
+them."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -23,20 +24,20 @@ BORDER = 4  # far columns of the land, where no trees stand
 
 @dataclass(frozen=True, eq=False)
 class Trees:
-    """Upright pictures that face the camera."""
+    """The trees of a scene: upright pictures that face the camera."""
 
     places: Array
     """(n, 3): position of the foot, metres."""
     sizes: Array
     """(n,): height and width, metres."""
     looks: NDArray[np.int64]
-    """(n,): index of the picture."""
+    """(n,): index of the tree's picture."""
     tints: Array
-    """(n,): brightness."""
+    """(n,): factor on the picture's brightness."""
 
 
 def plant(road: Road, world: World, land: Land) -> Trees:
-    """Places trees in loose groups all over the land, but not near the road."""
+    """Places trees in loose groups on the terrain, except near the road."""
     rng = np.random.default_rng(SEED)
     x0, x1, y0, y1 = land.x[BORDER], land.x[-BORDER - 1], land.y[BORDER], land.y[-BORDER - 1]
     count = int(min(MOST, (x1 - x0) * (y1 - y0) / EACH))
@@ -57,8 +58,8 @@ def plant(road: Road, world: World, land: Land) -> Trees:
 
 @cache
 def pictures() -> NDArray[np.float32]:
-    """Returns pictures (looks, n, 4): red, green, blue (multiplied by coverage) and coverage, followed by all
-    halved versions."""
+    """Returns the tree pictures (looks, n, 4): each row holds one picture and its successively halved
+    versions, with red, green and blue (multiplied by coverage) and coverage."""
     rng = np.random.default_rng(SEED)
     drawn = [_tree(*_crown(rng), rng, (0.085, 0.15, 0.035)) for _ in range(BROAD)]
     drawn += [_tree(*_cone(rng), rng, (0.035, 0.085, 0.035)) for _ in range(CONIFERS)]

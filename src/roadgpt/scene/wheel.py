@@ -1,4 +1,4 @@
-"""A wheel: tread, sidewall, and a rim with five spokes."""
+"""Models a wheel: its tread, its sidewall, and a rim with five spokes."""
 
 from collections.abc import Iterator
 
