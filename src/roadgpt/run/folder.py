@@ -4,9 +4,10 @@ campaign/
   test.0001.json           written last: if it exists, the Run is finished
   runs/0001/
     brief.json design.json road.json drive.npz verdict.json    the Run's values, each in its own format
-    run.json               outcome, findings, seed, versions, and the full request seconds.json
-    wall-clock times: the only file that differs when a Run is repeated error.txt              the traceback,
-    if a simulator or driver failed *.png                  the pictures
+    run.json               outcome, findings, seed, versions, and the full request
+    seconds.json           wall-clock times: the only file that differs when a Run is repeated
+    error.txt              the traceback, if a simulator or driver failed
+    *.png                  the pictures
 """
 
 import shutil

@@ -8,7 +8,7 @@ tests_evaluation.py (2024), and the code it calls. Its peculiarities are kept, s
 give the same figures for RoadGPT's files:
 
 * sparseness is the mean, over failures, of the largest distance to any failure of a *later* test; the last
-failure has no such distance and is left out;
+  failure has no such distance and is left out;
 * a failure whose segment cannot be cut out (its road has fewer than four control points, or the car left its
   lane at the very start) counts as a failure to the right, and is left out of sparseness;
 * the interpolated road is interpolated once more, so the segment's ends are at 30 m to within 1 m.

@@ -1,7 +1,8 @@
 """Writes the tables of a campaign, with the columns of the SBFT competition.
 
-generation_stats.csv         counts, and wall-clock seconds oob_stats.csv                failures by side, and
-their sparseness experiment_description.csv   the settings: the competition's columns first, then RoadGPT's
+generation_stats.csv         counts, and wall-clock seconds
+oob_stats.csv                failures by side, and their sparseness
+experiment_description.csv   the settings: the competition's columns first, then RoadGPT's
 """
 
 import csv

@@ -1,11 +1,12 @@
-"""Supports the SBFT tool competition in both directions. Makes a Competition. Verb: ``compete``.
+"""Runs generators of the SBFT tool competition in RoadGPT, and RoadGPT in the competition. Main function:
+``compete``.
 
 The competition's generators run in RoadGPT's simulator: ``compete`` starts a generator in a process of its
 own, passes it an executor under the competition's names, and drives the roads that it submits. RoadGPT runs
 in the competition's pipeline: ``RoadGPTTestGenerator``. The package ``sdc`` serves the competition on test
 selection.
 
-Each name is imported when it is first used, because a generator's own process needs few of them.
+Names of this package are imported lazily, because a generator's own process needs few of them.
 """
 
 from importlib import import_module

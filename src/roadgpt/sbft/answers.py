@@ -1,8 +1,8 @@
-"""Answers requests of other interpreters to RoadGPT, one JSON value per line: calculations for generators,
-and roads.
+"""Answers requests from other Python interpreters for calculations and roads; each message is one line of
+JSON.
 
-``names/roadgpt_client.py``, which is the other end, starts it as ``python -m roadgpt.sbft.answers``. If
-RoadGPT is installed in the generator's own interpreter, ``answer`` is called there instead, and no process is
+The client, ``names/roadgpt_client.py``, starts this module as ``python -m roadgpt.sbft.answers``. If RoadGPT
+is installed in the generator's own interpreter, ``answer`` is called there instead, and no process is
 started.
 """
 
@@ -26,7 +26,8 @@ Points = list[list[float]]
 
 
 def answer(asked: Message) -> Message:
-    """Returns the answer under the key ``answer``, or a sentence under ``error``."""
+    """Returns a message with the result under the key ``answer``, or an error message under the key
+    ``error``."""
     values = dict(asked)
     op = values.pop("op", None)
     if op not in OPS:
@@ -61,24 +62,26 @@ def nodes(points: Any) -> Points:
 
 
 def verdict(points: Any, map_size: float) -> tuple[bool, str]:
-    """Returns the result of the competition's validator for control points: (is valid, message)."""
+    """Returns the result of the competition's validator for control points (metres) on a square map with
+    sides of ``map_size`` metres: (is valid, message)."""
     return sbft_verdict(np.asarray(points, float), map_size)
 
 
 def clear(left: Any, right: Any) -> bool:
-    """Returns whether a road between edge points ``(n, 2)`` does not intersect itself."""
+    """Returns whether a road between left and right edge points ``(n, 2)`` does not intersect itself."""
     return keeps_clear(quads_of(np.asarray(left, float), np.asarray(right, float)))
 
 
 def distance(one: Any, other: Any) -> float:
-    """Returns the competition's edit distance of two sequences of points ``(n, 2)``."""
+    """Returns the competition's edit distance between two sequences of points ``(n, 2)``."""
     from roadgpt.run.sparseness import distances, steps_of
 
     return float(distances(steps_of(one), [steps_of(other)])[0])
 
 
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
-    """Returns where a car left its lane, as the competition's analysis finds it; None if it did not."""
+    """Returns where a car left its lane, as the competition's analysis finds it; None if the car did not
+    leave its lane."""
     from roadgpt.run.execution import ExecutionRecord
     from roadgpt.run.sparseness import departure
 
@@ -91,10 +94,10 @@ def left_lane(points: Any, records: Any, before: float, after: float) -> Message
 
 
 def spread(segments: Any) -> tuple[float, float]:
-    """Returns mean and standard deviation of the competition's sparseness of failures.
+    """Returns the mean and the standard deviation of the competition's sparseness of failures.
 
     Args:
-        segments: points ``(n, 2)`` of each failure, in the order of the tests.
+        segments: points ``(n, 2)`` of the road around each failure, in the order of the tests.
     """
     from roadgpt.run.sparseness import Sparseness
 
@@ -108,7 +111,8 @@ _ROADS: list[Iterator[Any]] = []
 
 
 def begin(map_size: int | None = None, **asked: Any) -> None:
-    """Starts a sequence of roads for a description; environment variables take precedence over ``asked``.
+    """Starts a sequence of roads for a description; environment variables take precedence over the settings
+    in ``asked``.
 
     Raises:
         UsageError: a setting is unknown or invalid.
@@ -152,7 +156,7 @@ OPS: dict[Any, Callable[..., Any]] = {
 
 
 def main() -> None:
-    """Answers until the input ends. What plug-ins print goes to standard error."""
+    """Answers requests on standard input until it is closed. Output of plug-ins goes to standard error."""
     hears, tells = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     for line in hears:

@@ -1,4 +1,5 @@
-"""Defines the Competition: one generator at work, test after test, until its budget is used up or it ends."""
+"""Defines the Competition, which runs one generator test after test until its budget is used up or it
+ends."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -31,14 +32,15 @@ OVER: Message = {"is_over": True}
 
 @dataclass
 class Competition:
-    """Iterate over it to run the generator; each Run is on the disk when it is yielded."""
+    """A generator and its tests. Iterate over it to run the generator; each Run is on disk when it is
+    yielded."""
 
     experiment: Experiment
     request: Request
     folder: Path
     results: Results
     ending: Ending | None = None
-    """How the generator ended; None while it works."""
+    """How the generator ended; None while it is running."""
     tests: int = 0
     _deadline: float = field(default=0.0, repr=False)
     _losses: LostDrives[int] = field(default_factory=LostDrives, repr=False)
@@ -192,18 +194,19 @@ def compete(
     out: Path | None = None,
     draw: Draw | None = None,
 ) -> Competition:
-    """Runs a test generator in the simulator; the work begins when the Competition is iterated over.
+    """Runs a test generator in the simulator; it starts when you iterate over the returned Competition.
 
     Args:
         experiment: the generator and its budget.
-        world: map, speed limit, tolerance; the roads lie on level ground.
-        setup: driver and simulator; the rules are the competition's.
+        world: map, speed limit and tolerance; all roads are level.
+        setup: driver and simulator; its rules are ignored, because the competition's rules apply.
         seed: the driver's seed.
-        out: an empty folder, or one to be made; None: the competition's folder name, under ``results``.
-        draw: draws every test, as ``report.drawing()`` does; None: no drawings.
+        out: an empty or new folder for the results; None: a new folder under ``results`` with the name that
+            the competition would give it.
+        draw: draws pictures of every test, as ``report.drawing()`` does; None: no pictures.
 
     Raises:
-        UsageError: there is no budget, or a plug-in or the folder cannot be used.
+        UsageError: the experiment has no budget, or a plug-in or the folder cannot be used.
     """
     if experiment.time_budget is None and experiment.test_budget is None:
         raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")

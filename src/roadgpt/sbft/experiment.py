@@ -1,4 +1,4 @@
-"""Defines the Experiment, which is a generator with its budget, and the Ending, which is how its work
+"""Defines the Experiment, which is a generator with its budget, and the Ending, which says how the generator
 ended."""
 
 from typing import Annotated, Literal
@@ -17,7 +17,7 @@ class Experiment(Frozen):
     """One generator and its budget."""
 
     module_name: str
-    """Name under which Python imports it."""
+    """Name under which Python imports the generator's module."""
     class_name: str
     module_path: str | None = None
     """An additional folder in which Python searches for modules."""
@@ -28,25 +28,25 @@ class Experiment(Frozen):
     test_budget: Annotated[int, Field(ge=1)] | None = None
     """Number of tests, invalid ones included; a fair budget on every machine."""
     patience: Positive = 600.0
-    """Seconds of wall time within which a generator must submit its next test."""
+    """Seconds of wall time within which the generator must submit its next test."""
     grace: Positive = 30.0
-    """Seconds of wall time within which a generator must notice that its budget is used up."""
+    """Seconds of wall time within which the generator must stop after its budget is used up."""
     debug: bool = False
-    """Whether its log is more detailed."""
+    """Whether the generator writes a more detailed log."""
 
 
 class Ending(Frozen):
-    """How a generator ended."""
+    """How and why a generator ended."""
 
     how: How
     sentence: str
 
     @property
     def is_fine(self) -> bool:
-        """Whether it worked until it finished by itself, or until its budget was used up."""
+        """Whether the generator ended normally: it finished by itself or used up its budget."""
         return self.how in FINE
 
     @property
     def is_of_a_generator(self) -> bool:
-        """Whether a generator could be loaded at all."""
+        """Whether the generator could be loaded."""
         return self.how not in UNBEGUN

@@ -1,4 +1,4 @@
-"""RoadGPT's generator in the competition's own pipeline: descriptions become tests.
+"""RoadGPT's generator for the competition's own pipeline: it makes tests from a description.
 
     python competition.py --module-name roadgpt.sbft --class-name RoadGPTTestGenerator ...
 
@@ -55,7 +55,7 @@ class RoadGPTTestGenerator:
         self.seed = _whole(os.environ.get("ROADGPT_SEED"), self.seed)
 
     def start(self) -> None:
-        """Submits test after test.
+        """Submits tests to the executor, one after another, until the budget is used up.
 
         Raises:
             BriefError: the description cannot be read, or demands something that the map does not allow.
@@ -71,7 +71,8 @@ class RoadGPTTestGenerator:
             log.info("%s: %s", outcome, said)
 
     def roads(self) -> Iterator[Points]:
-        """Yields road points without end: at most 2 m apart, at most 500, and valid for the competition.
+        """Yields the control points of endless roads, in metres: at most 2 m apart, at most 500 points, and
+        valid for the competition.
 
         Raises:
             BriefError, DesignError: as for ``start``.
@@ -106,7 +107,8 @@ class RoadGPTTestGenerator:
 
 
 def road_points(road: Road) -> Points | None:
-    """Returns points for the competition's spline, in metres; None if 500 are too few for the road."""
+    """Returns control points in metres whose spline follows the road; None if the road needs more than 500
+    points."""
     if road.length > DENSE * (MOST_POINTS - 1):
         return None
     return [(round(float(x), DECIMALS), round(float(y), DECIMALS)) for x, y in road.control_points()]

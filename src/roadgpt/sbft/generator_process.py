@@ -1,6 +1,7 @@
 """Starts a generator's process, exchanges messages with it under time limits, and makes sure that it ends.
 
-Two threads read and write, so that a process that neither reads nor writes blocks nothing.
+One thread reads and another one writes, so that a process that neither reads nor writes does not block
+RoadGPT.
 """
 
 import os
@@ -21,7 +22,7 @@ OURS = "ROADGPT_PYTHON"  # names RoadGPT's interpreter to that half, if the gene
 
 
 class GeneratorExitedError(Exception):
-    """Raised when the process has ended; ``status`` is its exit status, negative for a signal."""
+    """Raised when a generator's process has ended; ``status`` is its exit status, negative for a signal."""
 
     def __init__(self, status: int | None) -> None:
         super().__init__(status)
@@ -29,7 +30,7 @@ class GeneratorExitedError(Exception):
 
 
 class GeneratorProcess:
-    """The process of one generator."""
+    """The process in which one generator runs."""
 
     def __init__(self, log: Path, python: str | None = None) -> None:
         """Starts the process in an interpreter (None: this one); its output is written to the log file.
@@ -74,14 +75,14 @@ class GeneratorProcess:
                 send(stream, message)
 
     def tell(self, message: Message) -> None:
-        """Sends a message without waiting for it to be read."""
+        """Queues a message for the generator; does not wait until the message is read."""
         self._to_tell.put(message)
 
     def hear(self, seconds: float) -> Message | None:
-        """Returns the next message; None if none came in time.
+        """Returns the next message from the generator; None if none arrives within ``seconds``.
 
         Raises:
-            GeneratorExitedError: there will be no more messages.
+            GeneratorExitedError: the process has ended and all its messages were read.
         """
         try:
             message = self._heard.get(timeout=max(seconds, 0.0))
@@ -98,7 +99,7 @@ class GeneratorProcess:
             return None
 
     def stop(self) -> None:
-        """Ends the process and its child processes."""
+        """Ends the generator's process and its child processes."""
         self._to_tell.put(None)
         children.end(self._process)
         self._log.close()

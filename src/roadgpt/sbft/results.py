@@ -1,4 +1,4 @@
-"""Writes a folder of results with the competition's files, fields and columns, in its order.
+"""Writes a folder of results with the competition's files, fields and columns, in the competition's order.
 
 results/MODULE_CLASS_STAMP/
   test.NNNN.json  generation_stats.csv  oob_stats.csv  experiment_description.csv    the competition's
@@ -31,10 +31,10 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
     """Makes the folder for results, by default under the competition's name for it.
 
     Returns:
-        The folder, and all folders that were made for it, the innermost first.
+        The folder, and all folders that were created for it, the innermost first.
 
     Raises:
-        UsageError: it is not empty, or cannot be made.
+        UsageError: the folder is not empty, or cannot be created.
     """
     stamp = time.time_ns() // 1_000_000
     name = f"{experiment.module_name}_{experiment.class_name}_{stamp}".replace("/", "-").replace("\\", "-")
@@ -52,7 +52,7 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
 
 
 class Results:
-    """Writes the results as tests end; the files are complete at any time."""
+    """Writes the results after each test; the files are complete at any time."""
 
     def __init__(
         self, folder: Path, request: Request, draw: Draw | None = None, made: tuple[Path, ...] = ()
@@ -66,7 +66,7 @@ class Results:
         self._numbers: set[int] = set()
 
     def add(self, run: Run) -> dict[str, Any]:
-        """Writes a test; returns the content of its file."""
+        """Writes the files of a test; returns the content of its ``test.NNNN.json``."""
         test = test_of(run)
         write_run(run, self.folder, self._draw, json_text(test, indent=None))
         self._tally.add(run)
@@ -76,15 +76,15 @@ class Results:
 
     @property
     def last(self) -> int:
-        """The largest test number so far."""
+        """The largest number of a test so far."""
         return max(self._numbers, default=0)
 
     def has(self, number: int) -> bool:
-        """Returns whether a test of this number exists."""
+        """Returns whether a test with this number exists."""
         return number in self._numbers
 
     def describe(self, experiment: Experiment) -> None:
-        """Writes the description of the experiment."""
+        """Writes ``experiment_description.csv``."""
         self._tally.write(self.folder)
         self._write_card(is_finished=False)
         row = described(experiment, self._request)
@@ -95,11 +95,11 @@ class Results:
         write_whole(self.folder / DESCRIPTION, text.getvalue())
 
     def close(self) -> None:
-        """Records that all tests are written."""
+        """Marks the results as complete."""
         self._write_card(is_finished=True)
 
     def discard(self) -> None:
-        """Removes all that was written, for a generator that did not start."""
+        """Removes all files that were written, for a generator that did not start."""
         names = (CARD, DESCRIPTION, *TABLES, LOG)
         take_away((self.folder / name for name in names), (self.folder / RUNS, *self._made))
 
@@ -109,7 +109,7 @@ class Results:
 
 
 def test_of(run: Run) -> dict[str, Any]:
-    """Returns a test as the competition writes it; for an invalid one, only the first five fields."""
+    """Returns a test as the competition writes it; an invalid test has only the first five fields."""
     plan = interpolated_points(run)
     test: dict[str, Any] = {
         "is_valid": run.is_valid,

@@ -1,4 +1,4 @@
-"""Runs one test from road points to a Run: the competition's validator, then the drive."""
+"""Makes a Run from a test's road points: applies the competition's validator, then drives the road."""
 
 from dataclasses import replace
 from typing import Any
@@ -19,14 +19,15 @@ HEIGHT = -28.0  # m, of the competition's flat level
 
 
 def run_test(points: Any, index: int, request: Request, generating: float, is_test: bool = True) -> Run:
-    """Runs a test.
+    """Validates and drives one test, and returns its Run.
 
     Args:
-        points: control points ``(n, 2)`` in metres; anything for something that is not a test.
+        points: control points ``(n, 2)`` in metres; any value if ``is_test`` is False.
         index: number of the test.
-        request: world, setup and seed; its rules are the competition's.
-        generating: seconds that the generator took.
-        is_test: False for something that is not a test, which is invalid and has no road.
+        request: world, setup and seed; the rules must be the competition's.
+        generating: seconds that the generator took to make the test.
+        is_test: False if the generator submitted something that is not a test; the Run is then invalid and
+            has no road.
 
     Raises:
         PartError: a plug-in is not installed.
@@ -60,7 +61,8 @@ def _invalid(message: str, road: Road | None, index: int, request: Request, gene
 
 
 def sbft_description(run: Run) -> str:
-    """Returns the outcome in the competition's words, which name the drive if it failed."""
+    """Returns the outcome of a Run in the competition's wording, which mentions the drive if the drive
+    failed."""
     if run.verdict is None:
         return run.description
     said = run.verdict.sbft_description
@@ -68,8 +70,8 @@ def sbft_description(run: Run) -> str:
 
 
 def records_at_their_height(run: Run) -> list[ExecutionRecord]:
-    """Returns the execution data; the competition's level lies 28 m below zero, so the heights are
-    shifted."""
+    """Returns the execution data with heights shifted to the competition's level, whose ground is at -28
+    m."""
     if run.road is None or run.drive is None:
         return []
     return [_lowered(record) for record in records_of(run.road, run.drive, run.world)]
@@ -81,7 +83,7 @@ def _lowered(record: ExecutionRecord) -> ExecutionRecord:
 
 
 def interpolated_points(run: Run) -> Array:
-    """Returns the competition's interpolated points ``(n, 2)``; none for a test without a road."""
+    """Returns the competition's interpolated points ``(n, 2)``; an empty array for a test without a road."""
     from roadgpt.geometry import interpolate
 
     return np.empty((0, 2)) if run.road is None else interpolate(run.road.control_points())

@@ -1,4 +1,5 @@
-"""``roadgpt compete sbft`` starts this in the generator's interpreter, which may be as old as Python 3.8."""
+"""Runs a generator in its own interpreter, which may be as old as Python 3.8; ``roadgpt compete sbft`` starts
+it."""
 
 import sys
 

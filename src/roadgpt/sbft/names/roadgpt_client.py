@@ -2,8 +2,8 @@
 
 The competition requires Python below 3.11 and libraries that do not work with RoadGPT, so RoadGPT is
 installed in an environment of its own. The competition's environment needs only this file: it uses the
-standard library alone, runs on Python 3.8 and newer, starts RoadGPT in its environment and requests roads
-from it.
+standard library alone, runs on Python 3.8 and newer, starts RoadGPT in RoadGPT's own environment, and
+requests roads from it.
 
     export ROADGPT_PYTHON=/path/to/roadgpt/environment/bin/python
     python competition.py --time-budget 3600 --module-name roadgpt_client --class-name RoadGPTTestGenerator
@@ -42,18 +42,17 @@ Points = List[Tuple[float, float]]
 
 
 class RoadGPTError(RuntimeError):
-    """RoadGPT cannot be started, or cannot do what was requested; the message is one sentence."""
+    """Raised if RoadGPT cannot be started or cannot do what was requested; the message is one sentence."""
 
 
 def send(stream: IO[bytes], message: Message) -> None:
-    """Writes a message as one line of JSON. Numbers that are not finite are written as Python's JSON writes
-    them."""
+    """Writes a message as one line of JSON. Numbers that are not finite are written as NaN or Infinity."""
     stream.write(json.dumps(message, default=plain).encode() + b"\n")
     stream.flush()
 
 
 def received(line: bytes) -> Optional[Message]:
-    """Returns the message in a line; None if the line is not a message."""
+    """Returns the message in a line; None if the line is not a valid message."""
     try:
         message = json.loads(line)
     except (ValueError, RecursionError):
@@ -62,7 +61,7 @@ def received(line: bytes) -> Optional[Message]:
 
 
 def plain(value: Any) -> Any:
-    """Converts numbers and arrays of other libraries, such as numpy's."""
+    """Converts numbers and arrays of other libraries, such as numpy, to plain Python values."""
     listed = getattr(value, "tolist", None)
     return listed() if callable(listed) else str(value)
 
@@ -97,7 +96,7 @@ class RoadGPT:
         self.ask("hello")
 
     def ask(self, op: str, **values: Any) -> Any:
-        """Sends a request and returns the answer.
+        """Sends a request for the operation ``op`` and returns the answer.
 
         Raises:
             RoadGPTError: RoadGPT reports an error, or its process has ended.
@@ -128,11 +127,12 @@ class RoadGPT:
 
     @property
     def is_ours(self) -> bool:
-        """Whether it was started by this process, and not by the process from which this one was forked."""
+        """Whether this process started the RoadGPT process; False in a process that was forked after the
+        start."""
         return self._owner == os.getpid()
 
     def close(self) -> None:
-        """Closes the connection and waits for the process to end."""
+        """Closes the connection and waits for the RoadGPT process to end."""
         for stream in (self._process.stdin, self._process.stdout):
             if stream is not None:
                 stream.close()
@@ -155,12 +155,12 @@ class RoadGPTTestGenerator:
     """Submits roads that meet a description, one after another, until the budget is used up."""
 
     description: Optional[str] = None
-    """The description of the roads; None: RoadGPT's default."""
+    """The description of the roads; None: RoadGPT's default description."""
     seed = 0
     designer: Optional[str] = None
     reader: Optional[str] = None
     python: Optional[str] = None
-    """The interpreter that RoadGPT is installed in; ROADGPT_PYTHON takes precedence."""
+    """Path of the interpreter in which RoadGPT is installed; ROADGPT_PYTHON takes precedence."""
 
     def __init__(self, executor: Any = None, map_size: Optional[int] = None) -> None:
         """Has the signature that the competition calls."""
@@ -168,7 +168,7 @@ class RoadGPTTestGenerator:
         self.map_size = map_size
 
     def start(self) -> None:
-        """Submits test after test.
+        """Submits tests to the executor, one after another, until the budget is used up.
 
         Raises:
             RoadGPTError: RoadGPT does not start, the description cannot be read, or no road can be designed.
@@ -181,8 +181,8 @@ class RoadGPTTestGenerator:
             log.info("%s: %s", outcome, said)
 
     def roads(self) -> Iterator[Points]:
-        """Yields road points without end, in metres: at most 2 m apart, at most 500, and valid for the
-        competition.
+        """Yields the control points of endless roads, in metres: at most 2 m apart, at most 500 points, and
+        valid for the competition.
 
         Raises:
             RoadGPTError: as for ``start``.

@@ -1,7 +1,8 @@
-"""The messages of the SDC testing competition's service, as in ``competition.proto`` beside this file.
+"""Defines the messages of the SDC testing competition's service, as in ``competition.proto`` in the same
+folder.
 
-They are built from a table, in a descriptor pool of their own: nothing needs to be compiled, and they do not
-collide with compiled messages of the same names in the same process.
+The messages are built from a table in a separate descriptor pool. Nothing needs to be compiled, and the
+messages do not conflict with compiled messages of the same names in the same process.
 """
 
 from typing import Any
@@ -26,7 +27,8 @@ MESSAGES: dict[str, tuple[tuple[str, int | str, bool], ...]] = {
     "SelectionReply": (("testId", Kind.TYPE_STRING, False),),
     "PrioritizationReply": (("testId", Kind.TYPE_STRING, False),),
 }
-"""Message: fields in the order of their numbers, as (name, type or message, is repeated)."""
+"""For each message, its fields in the order of their numbers: (name, scalar type or name of a message, is
+repeated)."""
 
 METHODS = {
     "Name": ("Empty", False, "NameReply", False),
@@ -34,11 +36,11 @@ METHODS = {
     "Select": ("SDCTestCase", True, "SelectionReply", True),
     "Prioritize": ("SDCTestCase", True, "PrioritizationReply", True),
 }
-"""Method: (request, is a stream, reply, is a stream)."""
+"""For each RPC: (request, whether the request is a stream, reply, whether the reply is a stream)."""
 
 
 def description() -> Any:
-    """Returns the file as a protobuf file descriptor."""
+    """Returns ``competition.proto`` as a protobuf file descriptor."""
     file = descriptor_pb2.FileDescriptorProto(name=FILE, syntax="proto3")
     for name, fields in MESSAGES.items():
         message = file.message_type.add(name=name)
@@ -64,5 +66,5 @@ _POOL.AddSerializedFile(description().SerializeToString())
 
 
 def message(name: str) -> Any:
-    """Returns the class of a message."""
+    """Returns the class of the message with this name."""
     return message_factory.GetMessageClass(_POOL.FindMessageTypeByName(name))

@@ -1,10 +1,10 @@
 """Predicts how likely a road is to make the car leave its lane, from the line that the driver plans.
 
-The competition's car is BeamNG's AI at risk 1.5 and up to 120 km/h; a test fails if more than half of the car
-is outside its lane. RoadGPT's stand-in is ``beamng_like``. Nothing is driven: the distance of its line from
-the middle of the lane, with what it cuts inside that line, predicts recorded failures no worse than a drive
-does (docs/reference/benchmarks.md), in a fortieth of the time. If outcomes of tests are known, all features
-are weighted by logistic regression; else the line alone counts.
+In the competition, BeamNG's AI drives at risk 1.5 and up to 120 km/h; a test fails if more than half of the
+car is outside its lane. RoadGPT imitates that driver by ``beamng_like``, without simulating a drive: the
+distance between the driver's planned line and the middle of the lane predicts recorded failures no worse than
+a simulated drive does (docs/reference/benchmarks.md), in a fortieth of the time. If outcomes of tests are
+known, all features are weighted by logistic regression; else only this distance is used.
 """
 
 import logging
@@ -44,17 +44,17 @@ class RiskFeatures(NamedTuple):
     near: float
     """Largest distance of the car from the middle of the lane, metres."""
     wander: float
-    """Mean of that distance, metres."""
+    """Mean distance of the car from the middle of the lane, metres."""
     swing: float
-    """Largest rate of change of the planned offset: metres per metre."""
+    """Largest rate of change of the planned offset, metres per metre of road."""
     tightest: float
     """Largest curvature, 1/m."""
     bends: float
-    """Mean curvature, irrespective of its sign, 1/m."""
+    """Mean of the absolute curvature, 1/m."""
 
 
 UNKNOWN = RiskFeatures(*[np.nan] * len(RiskFeatures._fields))
-"""Features of a road that cannot be used."""
+"""Features of a road that cannot be used; all of them are NaN."""
 
 
 def risk_features(points: Sequence[Sequence[float]], world: World = PLAIN) -> RiskFeatures:
@@ -99,28 +99,28 @@ def _apart(points: Sequence[Sequence[float]]) -> Array:
 
 @dataclass(frozen=True)
 class RiskModel:
-    """Maps features to one score."""
+    """Computes a risk score from the features of a road."""
 
     mean: Array
     scale: Array
     weights: Array
-    """One per feature, and a constant."""
+    """One weight per feature, and a constant."""
     share: float | None = None
-    """Share of the known tests that failed; None if no outcomes are known."""
+    """Share of failures among the tests with known outcomes, 0 to 1; None if no outcomes are known."""
 
     def scores(self, features: Sequence[RiskFeatures]) -> Array:
-        """Returns scores ``(n,)``, larger where failure is more likely; unknown features get the median
-        score."""
+        """Returns scores ``(n,)``, larger if a failure is more likely; roads with UNKNOWN features get the
+        median score."""
         scores = (_table(features) - self.mean) / self.scale @ self.weights[:-1] + self.weights[-1]
         known = np.isfinite(scores)
         return np.asarray(np.where(known, scores, np.median(scores[known]) if known.any() else 0.0))
 
     def select(self, features: Sequence[RiskFeatures]) -> list[int]:
-        """Returns the indices of the tests to select, so that the largest share of them fails: the likeliest
-        ones.
+        """Returns the indices of the tests to select: those most likely to fail.
 
-        These are a twentieth of all tests; or more, until three failures are expected, as long as a test is
-        likelier to fail than the average. If no outcomes are known, they are the likeliest tenth.
+        It selects 5 % of all tests. It selects further tests until three failures are expected, as long as
+        each is more likely to fail than the average test. If no outcomes are known, it selects 10 % of all
+        tests.
         """
         scores = self.scores(features)
         first = order(scores)
@@ -136,7 +136,7 @@ class RiskModel:
 
 ZERO = np.zeros(len(RiskFeatures._fields))
 LINE_ONLY = RiskModel(ZERO, ZERO + 1.0, np.r_[1.0, np.zeros(len(RiskFeatures._fields))])
-"""The model that uses the planned line alone."""
+"""The model that uses only the planned line."""
 
 
 def _table(features: Sequence[RiskFeatures]) -> Array:
@@ -144,12 +144,13 @@ def _table(features: Sequence[RiskFeatures]) -> Array:
 
 
 def order(scores: Array) -> NDArray[np.intp]:
-    """Returns indices from the largest score to the smallest; equal scores keep their order."""
+    """Returns the indices of the scores from the largest to the smallest; equal scores keep their order."""
     return np.argsort(-scores, kind="stable")
 
 
 def fit_model(features: Sequence[RiskFeatures], failed: Sequence[bool]) -> RiskModel:
-    """Fits weights of the features that predict failures; returns LINE_ONLY if there is too little data."""
+    """Fits the weights of the features to the outcomes of tests; returns LINE_ONLY if there is too little
+    data."""
     table, outcome = _table(features), np.asarray(failed, float)
     known = np.isfinite(table).all(axis=1)
     table, outcome = table[known], outcome[known]

@@ -1,4 +1,4 @@
-"""The service: answers the competition's evaluator over gRPC."""
+"""Serves the competition's evaluator over gRPC."""
 
 import logging
 from collections.abc import Iterable, Iterator
@@ -19,7 +19,7 @@ WORKERS = 4
 
 
 class Service:
-    """Serves one evaluator; each method is an RPC."""
+    """Serves one evaluator; each public method is an RPC."""
 
     def __init__(self) -> None:
         """Makes a service without knowledge of any outcomes."""
@@ -30,7 +30,7 @@ class Service:
         return message("NameReply")(name=NAME)
 
     def initialize(self, requests: Iterable[Any], context: Any) -> Any:
-        """Fits the model to tests with known outcomes."""
+        """Fits the risk model to the received tests with known outcomes."""
         oracles = list(requests)
         chosen = oracles[:: max(1, -(-len(oracles) // MOST_OUTCOMES))]
         features = self._features(oracle.testCase for oracle in chosen)
@@ -39,14 +39,14 @@ class Service:
         return message("InitializationReply")(ok=True)
 
     def select(self, requests: Iterable[Any], context: Any) -> Iterator[Any]:
-        """Yields the tests that are likeliest to fail, in the order in which they came."""
+        """Yields the tests most likely to fail, in the order in which they were received."""
         tests = list(requests)
         if tests:
             for i in self.model.select(self._features(tests)):
                 yield message("SelectionReply")(testId=tests[i].testId)
 
     def prioritize(self, requests: Iterable[Any], context: Any) -> Iterator[Any]:
-        """Yields all tests, the likeliest to fail first."""
+        """Yields all tests, from the most to the least likely to fail."""
         tests = list(requests)
         if tests:
             for i in order(self.model.scores(self._features(tests))):
@@ -58,13 +58,13 @@ class Service:
 
 
 def points_of(test: Any) -> list[tuple[float, float]]:
-    """Returns a test's points, ordered by their sequence numbers."""
+    """Returns the road points of a test, ordered by their sequence numbers."""
     points = sorted(test.roadPoints, key=lambda point: point.sequenceNumber)
     return [(point.x, point.y) for point in points]
 
 
 def serve(host: str, port: int) -> tuple[Any, int]:
-    """Starts a server; returns it with its port, which is a free one for port 0.
+    """Starts a server; returns it with its port. Port 0 stands for any free port.
 
     Raises:
         UsageError: the port is not available.

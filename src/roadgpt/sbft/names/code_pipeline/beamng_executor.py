@@ -1,7 +1,7 @@
-"""The executor that a generator gets, under the name of the competition's executor for BeamNG.
+"""Defines the executor that a generator receives; it has the name of the competition's executor for BeamNG.
 
-It does not validate or drive by itself: it sends road points to RoadGPT and returns the results to the
-generator. Only ``validate_test`` answers directly.
+It sends road points to RoadGPT, which validates and drives the road, and returns the results to the
+generator. Only ``validate_test`` works without sending anything.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ KMH = 3.6
 
 
 class BeamngExecutor(AbstractTestExecutor):
-    """Sends tests to ``roadgpt compete sbft``. A deep copy shares the connection and has its own counts."""
+    """Sends tests to ``roadgpt compete sbft``. A deep copy shares the connection, but counts its tests
+    separately."""
 
     def __init__(
         self,
@@ -57,7 +58,7 @@ class BeamngExecutor(AbstractTestExecutor):
         """Validates and drives a test; returns (outcome, description, execution data).
 
         Raises:
-            SystemExit: the budget is used up; the test is dropped, as the competition drops it.
+            SystemExit: the budget is used up; the test is discarded, as in the competition.
         """
         with self._connection.turn:
             generating = time.monotonic() - self.start_generation_time
@@ -77,7 +78,7 @@ class BeamngExecutor(AbstractTestExecutor):
         return self.execute_test(the_test)
 
     def end_iteration(self) -> None:
-        """Does nothing."""
+        """Does nothing; it exists because generators call it."""
 
     def _close(self) -> None:
         """Does nothing."""

@@ -1,4 +1,4 @@
-"""Executors: they take tests, one at a time, until the budget is used up."""
+"""Defines executors, which take one test at a time until the budget is used up."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ PER_TEST = 35.0  # s: what one test takes in the competition's own pipeline
 
 
 class Remaining(Dict[str, float]):
-    """The remaining budget. Since 2022 it is a dictionary; before it was a number, and it still compares like
-    one."""
+    """The remaining budget: a dictionary, as the competition has had it since 2022, that also compares like
+    the number that it was before."""
 
     def __float__(self) -> float:
         return self[REMAINING]
@@ -57,7 +57,7 @@ class Remaining(Dict[str, float]):
 
 
 class SharedCounter:
-    """A count that copies of a budget share."""
+    """A count that is shared by all copies of a budget."""
 
     tests = 0
 
@@ -66,10 +66,10 @@ class SharedCounter:
 
 
 class Budget:
-    """Seconds of wall time, a number of tests, or both.
+    """A budget: seconds of wall time, a number of tests, or both.
 
-    If only tests are counted, the remaining time is the time that they would take in the competition: 35 s
-    each. A generator that plans by the clock then plans as it does there.
+    If only the number of tests is limited, the remaining time is 35 s for each remaining test, as a test
+    takes in the competition. A generator that plans by the remaining time then behaves as in the competition.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class Budget:
 
     @property
     def tests(self) -> int:
-        """Number of tests so far; copies of a budget count together."""
+        """Number of tests so far, including those of all copies of this budget."""
         return self._count.tests
 
     @tests.setter
@@ -100,25 +100,25 @@ class Budget:
         self._count.tests = tests
 
     def start(self) -> None:
-        """Starts the clock."""
+        """Starts the budget's clock."""
         self.start_real_time = time.monotonic()
 
     def get_start_time(self) -> float:
-        """Returns the start time on the monotonic clock."""
+        """Returns the start time in seconds on the monotonic clock."""
         return self.start_real_time
 
     def get_remaining_real_time(self) -> float:
-        """Returns the remaining seconds."""
+        """Returns the remaining seconds of wall time."""
         if self._has_clock:
             return self.time_budget - (time.monotonic() - self.start_real_time)
         return PER_TEST * max((self.test_budget or 0) - self.tests, 0)
 
     def get_remaining_time(self) -> Remaining:
-        """Returns the remaining seconds under the competition's key, ``time-budget``."""
+        """Returns the remaining seconds in a dictionary under the competition's key, ``time-budget``."""
         return Remaining({REMAINING: self.get_remaining_real_time()})
 
     def can_run_a_test(self) -> bool:
-        """Returns whether any budget is left."""
+        """Returns whether enough budget is left for a test."""
         has_tests = self.test_budget is None or self.tests < self.test_budget
         return has_tests and self.get_remaining_real_time() > 0
 
@@ -128,7 +128,8 @@ class Budget:
 
 
 class AbstractTestExecutor(ABC):
-    """Validates, executes, counts and writes tests; subclasses define how a test is executed."""
+    """Base class of executors: validates, executes, counts and writes tests; subclasses define how a test is
+    executed."""
 
     start_time: Any = None
 
@@ -162,7 +163,7 @@ class AbstractTestExecutor(ABC):
         """Validates and executes a test; returns (outcome, description, execution data).
 
         Raises:
-            SystemExit: the budget is used up; the test is dropped, as the competition drops it.
+            SystemExit: the budget is used up; the test is discarded, as in the competition.
         """
         generating = time.monotonic() - self.start_generation_time
         if self.time_budget.is_over():
@@ -199,11 +200,11 @@ class AbstractTestExecutor(ABC):
         sys.exit(OVER)
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns (is valid, first complaint); it uses no budget except time."""
+        """Returns (is valid, message of the first broken rule); it uses no budget except time."""
         return self.test_validator.validate_test(the_test)
 
     def store_test(self, the_test: Any) -> None:
-        """Writes a test's file."""
+        """Writes the test's file."""
         path = Path(self.result_folder, f"test.{the_test.id:04d}.json")
         path.write_text(the_test.to_json(), encoding="utf-8")
 
@@ -216,19 +217,19 @@ class AbstractTestExecutor(ABC):
         return self.timeout_forced
 
     def get_remaining_time(self) -> Remaining:
-        """Returns the remaining seconds under the key ``time-budget``."""
+        """Returns the remaining seconds in a dictionary under the key ``time-budget``."""
         return self.time_budget.get_remaining_time()
 
     def get_elapsed_time(self) -> float:
-        """Returns seconds of wall time since the start."""
+        """Returns the seconds of wall time since the start."""
         return time.monotonic() - self.time_budget.get_start_time()
 
     def get_stats(self) -> TestGenerationStatistic:
-        """Returns the counts so far."""
+        """Returns the counts of tests so far."""
         return self.stats
 
     def close(self) -> None:
-        """Ends the work of the executor."""
+        """Closes the executor."""
         self._close()
 
     @abstractmethod
@@ -244,7 +245,7 @@ class AbstractTestExecutor(ABC):
 
 
 class MockExecutor(AbstractTestExecutor):
-    """The competition's class invents outcomes; here it cannot be used, because RoadGPT's executor has real
+    """Raises an error when used: the competition's mock executor invents outcomes, and RoadGPT has real
     ones."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -263,7 +264,7 @@ class MockExecutor(AbstractTestExecutor):
 
 
 def settle(test: Any, outcome: str, description: str, records: List[Any], features: Dict[str, float]) -> None:
-    """Sets the result on a test."""
+    """Stores the result of a test in the test's attributes."""
     test.execution_data = records
     test.test_outcome = outcome
     test.description = description

@@ -1,4 +1,4 @@
-"""Pairs of neighbours in a sequence."""
+"""Iterates over pairs of neighbouring elements."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from roadgpt_inside import checkout
 
 
 def pairwise(iterable: Iterable[Any]) -> Any:
-    """Returns (first, second), (second, third), and so on."""
+    """Returns an iterator over (first, second), (second, third), and so on."""
     ones, others = tee(iterable)
     next(others, None)
     return zip(ones, others)

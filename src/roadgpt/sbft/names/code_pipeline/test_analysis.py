@@ -1,4 +1,5 @@
-"""Features of tests; each function returns its feature with its name, as the competition's functions do."""
+"""Computes features of tests; each function returns a feature with its name, as the competition's functions
+do."""
 
 from __future__ import annotations
 
@@ -16,7 +17,7 @@ Feature = Tuple[str, float]
 
 
 def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[str, float]:
-    """Returns MAX_CURV and DIR_COV of the road, and STD_SA, MEAN_LP and MAX_LP of the drive, if there is
+    """Returns MAX_CURV and DIR_COV of the road, and STD_SA, MEAN_LP and MAX_LP of the drive if there is
     one."""
     found = [max_curvature(the_test), direction_coverage(the_test)]
     if len(execution_data or ()) >= FEWEST_RECORDS:
@@ -27,16 +28,16 @@ def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[s
 
 
 def max_curvature(the_test: Any, w: int = 5) -> Feature:
-    """Returns the largest curvature in 1/m; with the window of 5, of nodes i, i + 2 and i + 4, as the
-    competition does."""
+    """Returns the largest curvature of the road in 1/m; for the default window ``w`` = 5 it uses circles
+    through nodes i, i + 2 and i + 4, as the competition does."""
     from code_pipeline.validation import smallest_circle
 
     return "MAX_CURV", 1 / smallest_circle(_nodes(the_test), w)
 
 
 def direction_coverage(the_test: Any, n_bins: int = 25) -> Feature:
-    """Returns the share of bins of directions that occur, as angles to north from 0 to 180 degrees; bins are
-    counted by their edges."""
+    """Returns the share of direction bins that the road uses, with angles to north from 0 to 180 degrees; as
+    in the competition, it divides by the number of bin edges."""
     edges = [360.0 / n_bins * i for i in range(n_bins + 1)]
     nodes = _nodes(the_test)
     covered = set()
@@ -50,7 +51,8 @@ def direction_coverage(the_test: Any, n_bins: int = 25) -> Feature:
 
 
 def get_thetas(xs: Any, ys: Any, skip: int = 1) -> Any:
-    """Returns the directions between successive points of two arrays, radians to the x-axis."""
+    """Returns the directions between successive points of the arrays xs and ys, in radians from the
+    x-axis."""
     del skip  # the competition's function ignores it, too
     import numpy
 
@@ -58,7 +60,8 @@ def get_thetas(xs: Any, ys: Any, skip: int = 1) -> Any:
 
 
 def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
-    """Returns the same for the whole circle, from -180 to 180 degrees to the x-axis."""
+    """Returns the share of direction bins that the road uses, with angles to the x-axis from -180 to 180
+    degrees."""
     edges = [-math.pi + 2 * math.pi / (n_bins - 1) * i for i in range(n_bins - 1)] + [math.pi]
     nodes = _nodes(the_test)
     ways = [(after[0] - one[0], after[1] - one[1]) for one, after in zip(nodes, nodes[1:])]
@@ -67,17 +70,17 @@ def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
 
 
 def sd_steering(execution_data: Sequence[Any]) -> Feature:
-    """Returns the standard deviation of the steering, degrees at the steering wheel."""
+    """Returns the standard deviation of the steering wheel's angle, in degrees."""
     return "STD_SA", pstdev(float(record.steering) for record in execution_data)
 
 
 def mean_lateral_position(execution_data: Sequence[Any]) -> Feature:
-    """Returns the mean of ``oob_distance``, metres."""
+    """Returns the mean of ``oob_distance`` over all records, in metres."""
     return "MEAN_LP", fmean(float(record.oob_distance) for record in execution_data)
 
 
 def max_lateral_position(execution_data: Sequence[Any]) -> Feature:
-    """Returns the maximum of ``oob_distance``, metres."""
+    """Returns the maximum of ``oob_distance`` over all records, in metres."""
     return "MAX_LP", max(record.oob_distance for record in execution_data)
 
 

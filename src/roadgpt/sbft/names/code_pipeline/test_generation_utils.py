@@ -1,4 +1,4 @@
-"""Functions that are called when the generator's process ends."""
+"""Registers functions that are called when the generator's process ends."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def register_exit_fun(
     signals: Any = (signal.SIGTERM,),
     logfun: Any = lambda said: print(said, file=sys.stderr),
 ) -> Any:
-    """Registers a function that is called once, when the generator ends or on one of the signals. Also a
-    decorator."""
+    """Registers a function that is called once, when the generator ends or receives one of the signals. It
+    can also be used as a decorator."""
     if fun is None:
         return lambda wrapped: register_exit_fun(wrapped, signals, logfun)
     if not callable(fun):
@@ -47,7 +47,7 @@ def register_exit_fun(
 
 
 def ended() -> None:
-    """Calls the registered functions, the last one first."""
+    """Calls the registered functions, the most recently registered one first."""
     while _REGISTERED:
         _REGISTERED.pop()()
 

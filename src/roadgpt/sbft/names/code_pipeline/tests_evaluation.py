@@ -1,5 +1,4 @@
-"""The competition's analysis of failures; points and lines are shapely's, from the generator's
-interpreter."""
+"""The competition's analysis of failures; it needs shapely in the generator's interpreter."""
 
 from __future__ import annotations
 
@@ -26,7 +25,7 @@ HEADER = "total_oob,left_oob,right_oob,avg_sparseness,stdev_sparseness"
 
 
 class RoadTestEvaluator:
-    """Finds the part of the road around the place where a car left its lane."""
+    """Cuts out the part of a road around the place where a car left its lane."""
 
     def __init__(
         self, road_length_before_oob: float = BEFORE_THRESHOLD, road_length_after_oob: float = AFTER_THRESHOLD
@@ -38,13 +37,13 @@ class RoadTestEvaluator:
     def identify_interesting_road_segments(
         self, road_nodes: Sequence[Sequence[float]], execution_data: Sequence[Any]
     ) -> Tuple[Any, ...]:
-        """Returns the place, the road before it, the road after it, the side, the number of the record, and
-        the records before it.
+        """Returns the place where the car left its lane, the road before and after that place, the side, the
+        index of the record, and the records before it.
 
-        All are None if the car did not leave its lane.
+        All values are None if the car did not leave its lane.
 
         Raises:
-            AssertionError: the segment cannot be cut out.
+            AssertionError: the road around the place cannot be cut out.
         """
         from shapely.geometry import LineString, Point
 
@@ -60,7 +59,7 @@ class RoadTestEvaluator:
 
 
 class OOBAnalyzer:
-    """Analyses the failures in a folder of results."""
+    """Analyses the failures in a folder of test results."""
 
     def __init__(
         self, result_folder: str, road_length_before_oob: float = 30, road_length_after_oob: float = 30
@@ -101,7 +100,7 @@ class OOBAnalyzer:
         }
 
     def create_summary(self) -> str:
-        """Returns the competition's oob_stats.csv."""
+        """Returns the text of the competition's oob_stats.csv."""
         left = sum(oob["oob side"] == "LEFT" for oob in self.oobs)
         segments = [oob["interesting segment"] for oob in self.oobs if oob["oob point"] is not None]
         mean, deviation = ask("spread", segments=segments)
@@ -109,7 +108,7 @@ class OOBAnalyzer:
         return f"{HEADER}\n{total},{left},{total - left},{mean:.3f},{deviation:3.0f}"
 
     def create_oob_report(self) -> str:
-        """Returns the same."""
+        """Returns the text of the competition's oob_stats.csv, as ``create_summary`` does."""
         return self.create_summary()
 
 

@@ -1,4 +1,4 @@
-"""Tests as generators make them, and their statistics."""
+"""Defines the tests that generators make, and statistics of them."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ Node = Tuple[float, float, float, float]
 
 
 class RoadTestFactory:
-    """Makes tests and numbers them."""
+    """Makes tests and gives them numbers."""
 
     test_id_generator: Iterator[int] = count(1)
 
     class RoadTest:
-        """One road. The executor sets its results: ``id``, ``execution_data``, ``test_outcome``,
-        ``description``, ``features``."""
+        """A test, which is one road. The executor sets its results: ``id``, ``execution_data``,
+        ``test_outcome``, ``description``, ``features``."""
 
         id: int
 
@@ -65,27 +65,27 @@ class RoadTestFactory:
 
         @cached_property
         def road_polygon(self) -> RoadPolygon:
-            """The area of the road."""
+            """The area of the road, a RoadPolygon."""
             return RoadPolygon.from_nodes(self.interpolated_points)
 
         def get_road_polygon(self) -> RoadPolygon:
-            """Returns the area of the road."""
+            """Returns the area of the road, a RoadPolygon."""
             return self.road_polygon
 
         def get_road_length(self, interpolate_road_points: bool = False) -> float:
-            """Returns the length in metres along the interpolated points, or along these interpolated once
-            more, as the validator measures."""
+            """Returns the road's length in metres along its interpolated points; with
+            ``interpolate_road_points``, these are interpolated once more first, as the validator does."""
             nodes = [node[:2] for node in self.interpolated_points]
             if interpolate_road_points:
                 nodes = nodes_of(nodes)
             return sum(math.hypot(x1 - x0, y1 - y0) for (x0, y0), (x1, y1) in zip(nodes, nodes[1:]))
 
         def set_validity(self, is_valid: bool, validation_message: str) -> None:
-            """Sets the validator's result."""
+            """Stores the validator's result in the test."""
             self.is_valid, self.validation_message = is_valid, validation_message
 
         def to_json(self) -> str:
-            """Returns the test as in the competition's files."""
+            """Returns the test in the form of the competition's files."""
             data = {name: getattr(self, name) for name in ALWAYS}
             data["interpolated_points"] = [node[:2] for node in self.interpolated_points]
             data.update({name: getattr(self, name) for name in ONCE_DRIVEN if hasattr(self, name)})
@@ -93,7 +93,7 @@ class RoadTestFactory:
 
     @staticmethod
     def create_road_test(road_points: Any) -> "RoadTestFactory.RoadTest":
-        """Returns a test with the next number.
+        """Returns a new test with the next number.
 
         Raises:
             AssertionError, ValueError: as for ``RoadTest``.
@@ -104,7 +104,7 @@ class RoadTestFactory:
 
 
 def interpolated(road_points: Sequence[Sequence[float]]) -> List[Node]:
-    """Returns the competition's interpolated points: x, y, height and width, in metres.
+    """Returns the competition's interpolated points of a road, each as (x, y, height, width) in metres.
 
     Raises:
         ValueError: there are fewer than two points, or there is no spline through them.
@@ -118,7 +118,7 @@ _interpolate = interpolated  # the competition's name
 
 
 def nodes_of(road_points: Sequence[Sequence[float]]) -> List[Tuple[float, float]]:
-    """Returns x and y of the interpolated points, metres.
+    """Returns x and y of the competition's interpolated points of a road, in metres.
 
     Raises:
         ValueError: there is no spline through the points.
@@ -132,7 +132,7 @@ def nodes_of(road_points: Sequence[Sequence[float]]) -> List[Tuple[float, float]
 
 @dataclass
 class TestGenerationStatistic:
-    """Counts of tests by outcome, and seconds of each test."""
+    """Counts tests by outcome, and records the seconds that each test took."""
 
     __test__ = False  # pytest is not to collect it, for all its name
 
@@ -143,13 +143,13 @@ class TestGenerationStatistic:
     test_failed: int = 0
     test_in_error: int = 0
     obes: int = 0
-    """Tests that failed because the car left its lane."""
+    """Number of tests that failed because the car left its lane."""
     test_generation_real_times: List[float] = field(default_factory=list)
     test_execution_real_times: List[float] = field(default_factory=list)
     test_execution_simulation_times: List[float] = field(default_factory=list)
 
     def add(self, outcome: str, description: str) -> None:
-        """Counts a test."""
+        """Adds a test to the counts."""
         self.test_generated += 1
         if outcome == "INVALID":
             self.test_invalid += 1
@@ -173,7 +173,7 @@ class TestGenerationStatistic:
         return "\n".join(f"{name.replace('_', ' ')}: {value:g}" for name, value in self._row().items())
 
     def as_csv(self) -> str:
-        """Returns the competition's generation_stats.csv."""
+        """Returns the text of the competition's generation_stats.csv."""
         row = self._row()
         return ",".join(row) + "\n" + ",".join(f"{value:g}" for value in row.values())
 

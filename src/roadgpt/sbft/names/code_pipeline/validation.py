@@ -1,4 +1,4 @@
-"""The competition's validator."""
+"""The competition's validator of roads."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TOO_SHARP = "The road is too sharp"
 
 
 def find_circle(p1: Sequence[float], p2: Sequence[float], p3: Sequence[float]) -> float:
-    """Returns the radius of the circle through three points in metres; infinite if they lie on a line."""
+    """Returns the radius of the circle through three points, in metres; infinite if they are on a line."""
     square = p2[0] * p2[0] + p2[1] * p2[1]
     one = (p1[0] * p1[0] + p1[1] * p1[1] - square) / 2
     other = (square - p3[0] * p3[0] - p3[1] * p3[1]) / 2
@@ -37,10 +37,10 @@ def find_circle(p1: Sequence[float], p2: Sequence[float], p3: Sequence[float]) -
 
 
 def smallest_circle(nodes: Sequence[Sequence[float]], w: int) -> float:
-    """Returns the radius in metres of the smallest circle through first, middle and last of w successive
-    nodes.
+    """Returns the smallest radius, in metres, of the circles through the first, middle and last node of each
+    window of w nodes.
 
-    The last such window is left out, as in the competition's code. Infinite if there is none.
+    The last window is left out, as in the competition's code. Returns infinity if there is no window.
     """
     windows = range(len(nodes) - w)
     return min(
@@ -49,13 +49,13 @@ def smallest_circle(nodes: Sequence[Sequence[float]], w: int) -> float:
 
 
 def min_radius(x: Sequence[Sequence[float]], w: int = 5) -> float:
-    """Returns the same in feet; 0 if there is none."""
+    """Returns the smallest radius of curvature of the nodes, in feet; 0 if no circle is found."""
     radius = smallest_circle(x, w)
     return 0.0 if radius == math.inf else radius * FEET_PER_METRE
 
 
 class TestValidator:
-    """The competition's validator, including its errors."""
+    """Validates tests as the competition's validator does, including its errors."""
 
     __test__ = False  # pytest is not to collect it, for all its name
 
@@ -68,11 +68,11 @@ class TestValidator:
 
     @cached_property
     def road_bbox(self) -> RoadBoundingBox:
-        """The map."""
+        """The bounding box of the map."""
         return RoadBoundingBox(self.box)
 
     def is_right_type(self, the_test: Any) -> bool:
-        """Returns whether the test was made by the factory."""
+        """Returns whether the test was made by RoadTestFactory."""
         return type(the_test) is RoadTestFactory.RoadTest
 
     def is_enough_road_points(self, the_test: Any) -> bool:
@@ -84,8 +84,8 @@ class TestValidator:
         return len(the_test.road_points) > self.max_points
 
     def is_inside_map(self, the_test: Any) -> bool:
-        """Returns the competition's check, in which ``and`` binds before ``or``: a road wholly outside can
-        pass."""
+        """Returns the result of the competition's check that the road is on the map; because of an error in
+        its logic, a road wholly outside can pass."""
         xs = [node[0] for node in the_test.interpolated_points]
         ys = [node[1] for node in the_test.interpolated_points]
         size = self.map_size
@@ -106,19 +106,20 @@ class TestValidator:
         return bool(the_test.get_road_polygon().is_valid())
 
     def is_not_self_intersecting(self, the_test: Any) -> bool:
-        """Returns the same."""
+        """Returns whether the road does not intersect itself."""
         return self.is_valid_polygon(the_test)
 
     def is_minimum_length(self, the_test: Any) -> bool:
-        """Returns whether the road is long enough."""
+        """Returns whether the road has at least the competition's minimum length."""
         return bool(the_test.get_road_length(interpolate_road_points=True) > self.min_road_length)
 
     def is_too_sharp(self, the_test: Any, TSHD_RADIUS: float = 47) -> bool:
-        """Returns whether some radius of the road is smaller than this number of feet."""
+        """Returns whether the smallest radius of the road is less than ``TSHD_RADIUS`` feet."""
         return TSHD_RADIUS > min_radius(the_test.interpolated_points) > 0.0
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns (is valid, first complaint); never raises an exception for a test."""
+        """Returns (is valid, message of the first broken rule); never raises an exception because of a
+        test."""
         if not self.is_right_type(the_test):
             return False, WRONG_TYPE
         if type(self) is not TestValidator or self.min_road_length != 20 or self.max_points != 500:

@@ -1,4 +1,5 @@
-"""Draws nothing: pictures are drawn by ``roadgpt compete sbft --plot`` and ``roadgpt view --format``."""
+"""Accepts requests to draw and ignores them; ``roadgpt compete sbft --plot`` and ``roadgpt view --format``
+draw pictures."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ class _ShapelyPolygon:
 
 
 class RoadTestVisualizer:
-    """Accepts tests and draws none."""
+    """Accepts tests without drawing them."""
 
     little_triangle = _ShapelyPolygon((10, 0), (0, -5), (0, 5))
     square = _ShapelyPolygon((5, 5), (5, -5), (-5, -5), (-5, 5))
@@ -32,7 +33,7 @@ class RoadTestVisualizer:
         self.last_submitted_test: Any = None
 
     def visualize_road_test(self, the_test: Any) -> None:
-        """Remembers the test."""
+        """Stores the test without drawing it."""
         self.last_submitted_test = the_test
 
 

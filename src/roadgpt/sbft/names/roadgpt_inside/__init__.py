@@ -1,5 +1,7 @@
-"""RoadGPT's half in a generator's process: standard library alone, in the grammar of Python 3.8.
+"""RoadGPT's code that runs in a generator's process; it uses only the standard library and the syntax of
+Python 3.8.
 
 It runs in the generator's interpreter, which has libraries of its own. Whatever needs more than the standard
-library is requested from RoadGPT: in this interpreter if it is installed there, else in its own.
+library is requested from RoadGPT: RoadGPT runs in the generator's interpreter if it is installed there, else
+in its own.
 """

@@ -1,7 +1,7 @@
-"""Requests from RoadGPT whatever needs more than the standard library.
+"""Asks RoadGPT to do whatever needs more than the standard library.
 
-If RoadGPT is installed in this interpreter, it is called here; else it is started in its own interpreter,
-whose path is in ROADGPT_PYTHON. A process that is forked from this one starts a RoadGPT of its own.
+If RoadGPT is installed in this interpreter, it is called directly; else it is started in its own interpreter,
+whose path is in the environment variable ROADGPT_PYTHON. A forked process starts its own RoadGPT process.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _ASKED: List[roadgpt_client.RoadGPT] = []
 
 
 def ask(op: str, **values: Any) -> Any:
-    """Returns RoadGPT's answer to a request.
+    """Returns RoadGPT's answer to a request for the operation ``op``.
 
     Raises:
         RoadGPTError: RoadGPT reports an error, or cannot be started.

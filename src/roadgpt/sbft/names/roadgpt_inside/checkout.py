@@ -1,7 +1,7 @@
-"""Finds names of the competition that RoadGPT does not provide in a checkout of its code, or reports them
-missing.
+"""Finds modules and names of the competition that RoadGPT does not provide in a checkout of the competition's
+code, or reports them as missing.
 
-Most of them control BeamNG or the DAVE-2 network, which a generator does not need here.
+Most of these names control BeamNG or the DAVE-2 network, which a generator does not need in RoadGPT.
 """
 
 from __future__ import annotations
@@ -16,18 +16,20 @@ ADVICE = "put a checkout of the competition's code on PYTHONPATH, or do without 
 
 
 HERE = {"code_pipeline.utils": "code_pipeline/pairs.py", "self_driving.utils": "self_driving/places.py"}
-"""Modules of the competition whose file has another name here."""
+"""Modules of the competition whose files have other names in RoadGPT, with these files."""
 
 
 class Missing:
-    """The last import finder: reports modules that are neither here nor in a checkout."""
+    """An import finder that runs after all others: reports modules of the competition that neither RoadGPT
+    nor a checkout provides."""
 
     @staticmethod
     def find_spec(name: str, path: Optional[List[str]] = None, target: Any = None) -> Any:
-        """Returns the location of a module provided here; None for modules that are not the competition's.
+        """Returns the location of a module that RoadGPT provides; None for modules that are not the
+        competition's.
 
         Raises:
-            ModuleNotFoundError: the module is the competition's.
+            ModuleNotFoundError: the module belongs to the competition, but was not found.
         """
         del path, target
         if name in HERE:
@@ -46,11 +48,12 @@ def watch() -> None:
 
 
 def attribute(module: str, name: str) -> Any:
-    """Returns an attribute that RoadGPT's module lacks from the same module of a checkout.
+    """Returns an attribute that RoadGPT's version of a module lacks, from the same module in a checkout of
+    the competition's code.
 
     Raises:
         AttributeError: the checkout lacks it as well, or the name is one of Python's own.
-        ImportError: there is no checkout, and the attribute serves BeamNG.
+        ImportError: there is no checkout, and the attribute is for BeamNG.
     """
     if name.startswith("__"):
         raise AttributeError(f"module '{module}' has no attribute '{name}'")

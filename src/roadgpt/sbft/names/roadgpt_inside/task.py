@@ -1,5 +1,5 @@
-"""Main program of a generator's own process: imports its class, passes it an executor, and reports how it
-ended.
+"""Main program of a generator's own process: imports the generator's class, passes it an executor, and
+reports how the generator ended.
 
 ``roadgpt.sbft.generator_process`` starts it. Standard input and output are the connection to RoadGPT; what
 the generator prints goes to standard error, which is its log.
@@ -25,7 +25,7 @@ OVER = 123  # exit status with which the competition ends a generator that asks 
 
 
 class Connection:
-    """This process's end of the connection to RoadGPT; all copies of an executor share it."""
+    """The connection from this process to RoadGPT; all copies of an executor share it."""
 
     def __init__(self, hears: IO[bytes], tells: IO[bytes]) -> None:
         self._hears, self._tells = hears, tells
@@ -37,7 +37,7 @@ class Connection:
         return self
 
     def tell(self, message: Message) -> None:
-        """Sends a message.
+        """Sends a message to RoadGPT.
 
         Raises:
             RuntimeError: this process was forked from the one that owns the connection.
@@ -49,20 +49,20 @@ class Connection:
         send(self._tells, message)
 
     def hear(self) -> Message:
-        """Returns the next message; if the other end is closed, ends this process."""
+        """Returns the next message from RoadGPT; ends this process if RoadGPT has closed the connection."""
         message = received(self._hears.readline())
         if message is None:
             os._exit(1)
         return message
 
     def ask(self, message: Message) -> Message:
-        """Sends a message and returns the answer."""
+        """Sends a message to RoadGPT and returns the answer."""
         self.tell(message)
         return self.hear()
 
 
 def main() -> None:
-    """Runs one generator."""
+    """Runs one generator and reports how it ended."""
     connection = _opened()
     task = connection.hear()
     level = logging.DEBUG if task["debug"] else logging.INFO

@@ -1,5 +1,5 @@
-"""The names that generators of the SBFT tool competition import; others are searched in a checkout of the
-competition's own code, if Python finds one."""
+"""Provides the names that generators of the SBFT tool competition import; other names are taken from a
+checkout of the competition's code, if Python finds one."""
 
 from pkgutil import extend_path
 

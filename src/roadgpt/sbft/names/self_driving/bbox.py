@@ -1,4 +1,4 @@
-"""The bounding box of a map; it uses shapely of the generator's interpreter."""
+"""Defines the bounding box of a map; it needs shapely in the generator's interpreter."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from roadgpt_inside import checkout
 
 
 class RoadBoundingBox:
-    """A rectangle that roads must stay in."""
+    """A rectangle that roads must not leave."""
 
     def __init__(self, bbox_size: Sequence[float]) -> None:
         """Takes (x, y, x, y) of two corners.
@@ -22,38 +22,38 @@ class RoadBoundingBox:
 
     @cached_property
     def bbox(self) -> Any:
-        """The rectangle."""
+        """The rectangle as a shapely object."""
         from shapely.geometry import box
 
         return box(*self._size)
 
     def get_sides(self) -> List[Any]:
-        """Returns four lines."""
+        """Returns the four sides of the rectangle as lines."""
         from shapely.geometry import LineString
 
         corners = list(self.bbox.exterior.coords)
         return [LineString(pair) for pair in zip(corners, corners[1:])]
 
     def get_vertices(self) -> List[Any]:
-        """Returns the corners, the first one twice."""
+        """Returns the corners of the rectangle; the first corner is repeated at the end."""
         from shapely.geometry import Point
 
         return [Point(corner) for corner in self.bbox.exterior.coords]
 
     def intersects_sides(self, point: Any) -> bool:
-        """Returns whether a point lies on the border."""
+        """Returns whether a point is on a side of the rectangle."""
         return any(side.intersects(point) for side in self.get_sides())
 
     def intersects_vertices(self, point: Any) -> bool:
-        """Returns whether a point lies in a corner."""
+        """Returns whether a point is on a corner of the rectangle."""
         return any(corner.intersects(point) for corner in self.get_vertices())
 
     def intersects_boundary(self, other: Any) -> bool:
-        """Returns whether an area touches the border."""
+        """Returns whether an area touches the border of the rectangle."""
         return bool(other.intersects(self.bbox.boundary))
 
     def contains(self, other: Any) -> bool:
-        """Returns whether the middle of a road lies inside."""
+        """Returns whether the centre line of a road is inside the rectangle."""
         return bool(self.bbox.contains(other.polyline))
 
 

@@ -1,4 +1,4 @@
-"""Position and rotation of a car in BeamNG."""
+"""Defines the position and rotation of a car in BeamNG."""
 
 from __future__ import annotations
 

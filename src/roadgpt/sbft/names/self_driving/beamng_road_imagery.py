@@ -1,4 +1,4 @@
-"""Pictures of roads; they need matplotlib in the generator's interpreter."""
+"""Draws pictures of roads; it needs matplotlib in the generator's interpreter."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from self_driving.road_points import RoadPoints
 
 
 class BeamNGRoadImagery:
-    """A road and its picture."""
+    """Draws and saves the picture of one road."""
 
     def __init__(self, road_points: RoadPoints) -> None:
         """Takes a road; nothing is drawn yet."""
@@ -18,18 +18,18 @@ class BeamNGRoadImagery:
 
     @classmethod
     def from_sample_nodes(cls, sample_nodes: Any) -> BeamNGRoadImagery:
-        """Makes the picture of nodes [x, y, height, width]."""
+        """Returns an object for the picture of a road with nodes [x, y, height, width]."""
         return cls(RoadPoints().add_middle_nodes(sample_nodes))
 
     def plot(self) -> None:
-        """Draws it."""
+        """Draws the road."""
         from matplotlib.figure import Figure
 
         self._figure = Figure()
         self.road_points.plot_on_ax(self._figure.subplots())
 
     def save(self, image_path: Any) -> None:
-        """Writes it in the format of the file name's suffix."""
+        """Saves the picture in the format of the file name's suffix."""
         if self._figure is None:
             self.plot()
         self._figure.savefig(image_path)

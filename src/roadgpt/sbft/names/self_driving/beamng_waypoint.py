@@ -1,4 +1,4 @@
-"""A goal in BeamNG's file format."""
+"""Defines a goal in BeamNG's file format."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from roadgpt_inside import checkout
 
 
 class BeamNGWaypoint:
-    """A goal, as a line of a level's file."""
+    """A goal (waypoint) in BeamNG, which is one line of a level's file."""
 
     def __init__(self, name: str, position: Sequence[float], persistentId: Optional[str] = None) -> None:
         """Takes a position in metres."""
@@ -18,7 +18,7 @@ class BeamNGWaypoint:
         self.persistentId = persistentId or str(uuid.uuid4())
 
     def to_json(self) -> str:
-        """Returns the line."""
+        """Returns the line of the level's file."""
         told = {
             "name": self.name,
             "class": "BeamNGWaypoint",

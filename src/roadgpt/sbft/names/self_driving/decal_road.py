@@ -1,4 +1,4 @@
-"""A road in BeamNG's file format."""
+"""Defines a road in BeamNG's file format."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from roadgpt_inside import checkout
 
 
 class DecalRoad:
-    """A decal road of a level, as a line of its file."""
+    """A decal road in BeamNG, which is one line of a level's file."""
 
     DEFAULT_MATERIAL = "tig_road_rubber_sticky"
 
@@ -30,7 +30,7 @@ class DecalRoad:
         """Adds nodes [x, y, height, width] in metres.
 
         Raises:
-            AssertionError: there are none, or they are not of four floats each.
+            AssertionError: there are no nodes, or a node does not have four floats.
         """
         assert len(nodes) > 0, "a road needs nodes"
         assert all(len(node) == 4 for node in nodes), "a node is [x, y, height, width]"
@@ -39,19 +39,19 @@ class DecalRoad:
         return self
 
     def to_dict(self) -> Dict[str, Any]:
-        """Returns name and nodes."""
+        """Returns the road's name and nodes as a dictionary."""
         return {"name": self.name, "nodes": self.nodes}
 
     @classmethod
     def from_dict(cls, d: Dict[str, Any]) -> DecalRoad:
-        """Makes a road from name and nodes."""
+        """Returns a road with the name and nodes of a dictionary from ``to_dict``."""
         return cls(name=d["name"]).add_4d_points(nodes=d["nodes"])
 
     def to_json(self) -> str:
-        """Returns the line.
+        """Returns the line of the level's file.
 
         Raises:
-            AssertionError: there are no nodes.
+            AssertionError: the road has no nodes.
         """
         assert self.nodes, "a road needs nodes"
         told = {

@@ -1,4 +1,4 @@
-"""The distance of two sequences of points."""
+"""Computes the edit distance between two sequences of points."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ ListOfPoints = List[Point]
 
 
 def iterative_levenshtein(s: Sequence[Sequence[float]], t: Sequence[Sequence[float]]) -> float:
-    """Returns the weighted Levenshtein distance of two sequences of steps (change of direction, length)."""
+    """Returns the weighted Levenshtein distance between two sequences of steps (change of direction,
+    length)."""
     return float(ask("distance", one=[p[:2] for p in s], other=[p[:2] for p in t]))
 
 

@@ -1,4 +1,4 @@
-"""Measures how far a car is outside its lane, with boxes and polygons of shapely."""
+"""Measures how far a car is outside its lane; it needs shapely in the generator's interpreter."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ class OutOfBoundsMonitor:
         self.tolerance = tolerance
 
     def get_oob_info(self, wrt: str = "right", oob_bb: bool = True) -> Tuple[bool, int, float, float, float]:
-        """Returns (is outside, how often so far, largest share, distance inside in metres, present share)."""
+        """Returns (is outside, number of departures so far, largest share outside, distance inside in metres,
+        current share outside)."""
         is_oob = self.is_oob_bb(wrt) if oob_bb else self.is_oob(wrt)
         if oob_bb:
             self.update_oob_percentage(is_oob)
@@ -32,12 +33,12 @@ class OutOfBoundsMonitor:
         return is_oob, self.oob_counter, largest, self.oob_distance(wrt), self.oob_percentage(wrt)
 
     def update_oob_counter(self, is_oob: bool) -> None:
-        """Counts, if the car has just gone outside."""
+        """Adds 1 to the counter if the car was inside before and is outside now."""
         self.oob_counter += is_oob and not self.last_is_oob
         self.last_is_oob = is_oob
 
     def update_oob_percentage(self, is_oob: bool) -> None:
-        """Keeps the largest share since the car went outside."""
+        """Updates the largest share outside since the car left its lane."""
         if is_oob:
             share = self.oob_percentage()
             self.last_max_oob_percentage = (
@@ -45,21 +46,23 @@ class OutOfBoundsMonitor:
             )
 
     def oob_percentage(self, wrt: str = "right") -> float:
-        """Returns the share of the car's box that is outside a lane, or outside the road."""
+        """Returns the share of the car's box, 0 to 1, that is outside the lane or the road that ``wrt``
+        names."""
         box = self._get_car_bbox_polygon()
         return 1 - float(box.intersection(self._of(wrt, "polygon")).area) / float(box.area)
 
     def is_oob_bb(self, wrt: str = "right") -> bool:
-        """Returns whether the share outside exceeds the tolerance."""
+        """Returns whether the share of the car's box that is outside exceeds the tolerance."""
         return self.oob_percentage(wrt) > self.tolerance
 
     def oob_distance(self, wrt: str = "right") -> float:
-        """Returns half the width of the lane, or of the road, minus the distance from its middle, metres."""
+        """Returns half the width of the lane or the road minus the car's distance from its centre line, in
+        metres."""
         share = 4.0 if wrt in ("right", "left") else 2.0
         return float(self.road_polygon.road_width / share - self._of(wrt, "polyline").distance(self._place()))
 
     def is_oob(self, wrt: str = "right") -> bool:
-        """Returns whether the car's centre is outside."""
+        """Returns whether the car's centre is outside the lane or the road that ``wrt`` names."""
         return not self._of(wrt, "polygon").contains(self._place())
 
     def _of(self, wrt: str, kind: str) -> Any:

@@ -1,4 +1,4 @@
-"""Coordinates of nodes."""
+"""Functions on the coordinates of road nodes."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from roadgpt_inside import checkout
 
 
 def get_node_coords(node: Sequence[float]) -> Tuple[float, float, float]:
-    """Returns x, y and height, metres."""
+    """Returns x, y and height of a node, in metres."""
     return node[0], node[1], node[2]
 
 
 def points_distance(p1: Sequence[float], p2: Sequence[float]) -> float:
-    """Returns the distance in space, metres."""
+    """Returns the distance between two points in 3-D, in metres."""
     return math.sqrt(sum((a - b) ** 2 for a, b in zip(get_node_coords(p1), get_node_coords(p2))))
 
 

@@ -1,4 +1,4 @@
-"""The edges of a road beside its nodes."""
+"""Computes the edge points of a road from its nodes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Place = Tuple[float, float]
 
 
 class RoadPoints:
-    """Nodes of the middle, and edge points at right angles to the direction to the next node."""
+    """The nodes of a road's centre line, and edge points perpendicular to the direction to the next node."""
 
     def __init__(self) -> None:
         """Makes a road without nodes."""
@@ -25,14 +25,14 @@ class RoadPoints:
 
     @classmethod
     def from_nodes(cls, middle_nodes: Sequence[Sequence[float]]) -> RoadPoints:
-        """Makes a road from two or more nodes [x, y, height, width]."""
+        """Returns a road with two or more nodes [x, y, height, width]."""
         return cls().add_middle_nodes(middle_nodes)
 
     def add_middle_nodes(self, middle_nodes: Sequence[Sequence[float]]) -> RoadPoints:
-        """Adds nodes.
+        """Adds nodes to the centre line.
 
         Raises:
-            AssertionError: there are fewer than two, or a node has fewer than four numbers.
+            AssertionError: there are fewer than two nodes, or a node has fewer than four numbers.
         """
         assert len(self.middle) + len(middle_nodes) >= 2, "a road needs two nodes or more"
         assert all(len(node) >= 4 for node in middle_nodes), "a node is (x, y, height, width)"
@@ -48,7 +48,7 @@ class RoadPoints:
 
     @classmethod
     def calc_point_edges(cls, p1: Sequence[float], p2: Sequence[float]) -> Tuple[Place, Place]:
-        """Returns left and right edge points of the first node, given the next one."""
+        """Returns the left and right edge points at the node ``p1``, given the next node ``p2``."""
         x, y = p2[0] - p1[0], p2[1] - p1[1]
         way, half = math.sqrt(x * x + y * y), p1[3] / 2
         # coinciding nodes have no direction: not a number, as with the competition's library
@@ -57,7 +57,7 @@ class RoadPoints:
 
     @staticmethod
     def angle_to_quat(angle: Sequence[float]) -> Tuple[float, float, float, float]:
-        """Returns the quaternion (x, y, z, w) of roll, pitch and yaw in degrees."""
+        """Returns the quaternion (x, y, z, w) of the angles roll, pitch and yaw in degrees."""
         roll, pitch, yaw = (math.radians(a) / 2 for a in angle)
         sr, cr, sp, cp = math.sin(roll), math.cos(roll), math.sin(pitch), math.cos(pitch)
         sy, cy = math.sin(yaw), math.cos(yaw)
@@ -71,10 +71,11 @@ class RoadPoints:
     def vehicle_start_pose(
         self, meters_from_road_start: float = 2.5, road_point_index: int = 0
     ) -> BeamNGPose:
-        """Returns where the competition places the car: in the middle of the right lane.
+        """Returns the pose in which the competition places the car at the start: in the middle of the right
+        lane.
 
         Raises:
-            AssertionError: there is no such node.
+            AssertionError: the road has no node with this index.
         """
         assert self.n > road_point_index, f"there are {self.n} nodes, and no number {road_point_index}"
         here, after = self.middle[road_point_index], self.middle[road_point_index + 1]
@@ -86,13 +87,13 @@ class RoadPoints:
         return BeamNGPose(pos=place, rot=self.angle_to_quat((0, 0, math.degrees(math.atan2(-x, -y)))))
 
     def new_imagery(self) -> Any:
-        """Returns a picture of the road, not yet drawn."""
+        """Returns an object that draws the road; nothing is drawn yet."""
         from self_driving.beamng_road_imagery import BeamNGRoadImagery
 
         return BeamNGRoadImagery(self)
 
     def plot_on_ax(self, ax: Any) -> None:
-        """Draws the road on axes of matplotlib."""
+        """Draws the road on matplotlib axes."""
         ax.set_facecolor("#7D9051")
         for points, colour in ((self.middle, "#FEA952"), (self.left, "white"), (self.right, "white")):
             ax.plot([p[0] for p in points], [p[1] for p in points], color=colour, linewidth=1)

@@ -1,4 +1,4 @@
-"""The area of a road; its polygons are shapely's, from the generator's interpreter."""
+"""Defines the area of a road; it needs shapely in the generator's interpreter."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from self_driving.road_points import RoadPoints
 
 
 class RoadPolygon:
-    """The area of a road between its edges; polygons are made on access."""
+    """The area of a road between its edges; its polygons are computed on access."""
 
     def __init__(self, road_points: RoadPoints) -> None:
         """Takes nodes and edges.
@@ -26,17 +26,17 @@ class RoadPolygon:
 
     @classmethod
     def from_nodes(cls, nodes: Sequence[Sequence[float]]) -> RoadPolygon:
-        """Makes the area from two or more nodes (x, y, height, width)."""
+        """Returns the area of a road with two or more nodes (x, y, height, width)."""
         return cls(RoadPoints.from_nodes(nodes))
 
     @property
     def num_polygons(self) -> int:
-        """Number of nodes minus one."""
+        """Number of polygons, which is the number of nodes minus one."""
         return len(self.road_points.middle) - 1
 
     @cached_property
     def polygons(self) -> List[Any]:
-        """The parts of the road between successive nodes."""
+        """The polygons between successive nodes."""
         from shapely.geometry import Polygon
 
         left, right = self.road_points.left, self.road_points.right
@@ -44,32 +44,32 @@ class RoadPolygon:
 
     @cached_property
     def polygon(self) -> Any:
-        """The whole road."""
+        """The whole road as one polygon."""
         return _area(self.road_points.left, self.road_points.right)
 
     @cached_property
     def right_polygon(self) -> Any:
-        """The right lane."""
+        """The right lane as a polygon."""
         return _area(self._middle, self.road_points.right)
 
     @cached_property
     def left_polygon(self) -> Any:
-        """The left lane."""
+        """The left lane as a polygon."""
         return _area(self.road_points.left, self._middle)
 
     @cached_property
     def polyline(self) -> Any:
-        """The middle of the road."""
+        """The centre line of the road."""
         return _line(self._middle)
 
     @cached_property
     def right_polyline(self) -> Any:
-        """The middle of the right lane."""
+        """The centre line of the right lane."""
         return _line(_between(self._middle, self.road_points.right))
 
     @cached_property
     def left_polyline(self) -> Any:
-        """The middle of the left lane."""
+        """The centre line of the left lane."""
         return _line(_between(self.road_points.left, self._middle))
 
     @property

@@ -1,4 +1,4 @@
-"""Records of a drive, and the competition's files for them."""
+"""Stores the records of a drive in the competition's files."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SimulationDataRecordProperties = [
     "oob_distance",
     "oob_percentage",
 ]
-"""roadgpt.run.execution explains the fields."""
+"""Names of the fields of a record; the docstring of roadgpt.run.execution explains the fields."""
 
 SimulationDataRecord = namedtuple("SimulationDataRecord", SimulationDataRecordProperties)  # type: ignore[misc]
 SimulationDataRecords = List[SimulationDataRecord]
@@ -43,7 +43,7 @@ def delete_folder_recursively(path: Union[str, Path]) -> None:
     """Removes a folder, if it exists.
 
     Raises:
-        AssertionError: it is a file.
+        AssertionError: the path is a file.
     """
     if Path(path).exists():
         assert Path(path).is_dir(), str(path)
@@ -51,7 +51,7 @@ def delete_folder_recursively(path: Union[str, Path]) -> None:
 
 
 class SimulationInfo:
-    """Time and result of a drive; each attribute exists once its value is known."""
+    """Times and result of a drive; each attribute exists only after its value is known."""
 
     start_time: str
     end_time: str
@@ -96,7 +96,7 @@ class SimulationData:
         return len(self.states)
 
     def set(self, params: Any, road: Any, states: Any, info: Optional[SimulationInfo] = None) -> None:
-        """Sets the content."""
+        """Stores parameters, road, records and result of the drive."""
         self.params, self.road, self.states = params, road, states
         if info is None:
             info = SimulationInfo()
@@ -104,7 +104,7 @@ class SimulationData:
         self.info = info
 
     def clean(self) -> None:
-        """Removes its folder."""
+        """Removes the folder of the drive."""
         delete_folder_recursively(self.path_root)
 
     def __str__(self) -> str:
@@ -118,7 +118,7 @@ class SimulationData:
         )
 
     def save(self) -> None:
-        """Writes its files, and pictures of its road."""
+        """Writes the files of the drive, and pictures of its road."""
         from self_driving.beamng_road_imagery import BeamNGRoadImagery
 
         self.path_root.mkdir(parents=True, exist_ok=True)
@@ -131,7 +131,7 @@ class SimulationData:
             imagery.save(self.path_road_img.with_suffix(suffix))
 
     def load(self) -> SimulationData:
-        """Reads its file."""
+        """Reads the drive from its file."""
         from self_driving.decal_road import DecalRoad
 
         read = json.loads(self.path_json.read_text(encoding="utf-8"))
@@ -143,7 +143,7 @@ class SimulationData:
         return self
 
     def complete(self) -> bool:
-        """Returns whether its file exists."""
+        """Returns whether the drive's file exists."""
         return self.path_json.exists()
 
     def min_oob_distance(self) -> float:
@@ -151,13 +151,13 @@ class SimulationData:
         return float(min(state.oob_distance for state in self.states))
 
     def start(self) -> None:
-        """Records the start of the drive."""
+        """Stores the time at which the drive starts."""
         self.info.success = None
         self.info.start_time = str(datetime.datetime.now())
         self.info.computer_name = platform.node()
 
     def end(self, success: bool, exception: Any = None) -> None:
-        """Records the end of the drive."""
+        """Stores the time and result when the drive ends."""
         self.info.end_time = str(datetime.datetime.now())
         self.info.success = success
         if exception:

@@ -1,4 +1,4 @@
-"""The state of a car; reading it needs BeamNG, and so a checkout of the competition's code."""
+"""Takes the reader of a car's state from a checkout of the competition's code, because it needs BeamNG."""
 
 from __future__ import annotations
 
