@@ -1,6 +1,6 @@
-"""Drives cars: a road, a driver and a simulator give a Drive. Verb: ``simulate``.
+"""Drives cars: a road, a driver and a simulator give a Drive. Main function: ``simulate``.
 
-Two kinds of plug-ins belong to this room. A simulator (``simulators/``) is a car and its physics; a driver
+This package has two kinds of plug-ins. A simulator (``simulators/``) is a car and its physics; a driver
 (``drivers/``) controls the car:
 
     class Simulator:
@@ -59,8 +59,8 @@ class Driver(Protocol):
 class Simulator(Protocol):
     """Simulates a car and its physics.
 
-    A simulator that cannot apply some field of the World, such as "friction", lists the field in an attribute
-    ``ignores``. Users who set such a field get an error.
+    A simulator that cannot apply some field of the World, such as "friction", lists the field's name in an
+    attribute ``ignores``. Users who set such a field get an error.
     """
 
     def simulate(
@@ -68,10 +68,10 @@ class Simulator(Protocol):
     ) -> Drive:
         """Drives from the start of the road until the drive ends.
 
-        At every control step the simulator checks these conditions in this order: the car is at the goal; the
-        car is stuck; more than ``world.oob_tolerance`` of its box is outside the right lane or, with
-        ``world.lane_departure``, a front tyre is beyond a marking (both unless ``keep_driving``); the car has
-        fallen; the time is up. The first condition that holds ends the drive.
+        At every control step the simulator checks these conditions in this order: the car has reached the
+        goal; the car is stuck; more than ``world.oob_tolerance`` of its box is outside the right lane or,
+        with ``world.lane_departure``, a front tyre is beyond a marking (both unless ``keep_driving``); the
+        car has fallen; the time is up. The first condition that holds ends the drive.
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
@@ -95,7 +95,8 @@ def simulate(
     Args:
         road: the road.
         world: lane width, friction, speed limit and tolerances.
-        driver: a driver, its class, the name of a driver plug-in, or a user's PATH.py:CLASS.
+        driver: a driver, a driver class, the name of a driver plug-in, or PATH.py:CLASS for a user's own
+            file.
         seed: passed to the driver and recorded; the car's physics uses no random numbers.
         simulator: a simulator, or the name of a simulator plug-in.
         keep_driving: whether to continue after the car has left the lane.
@@ -105,7 +106,7 @@ def simulate(
         UsageError: the user's file does not define a driver, or the simulator cannot apply a setting of the
             world.
         DriverError: the driver raised an exception, returned something that is not a command, or hung.
-        SimulationError: the physics became unstable, or moved the car as no car can move.
+        SimulationError: the physics became unstable, or the recorded motion is impossible for a car.
     """
     made: Any = driver_of(driver) if isinstance(driver, str) else driver
     if isinstance(made, type):

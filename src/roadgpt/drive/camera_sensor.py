@@ -1,4 +1,4 @@
-"""Renders the images of a driver's camera, for simulators that draw none themselves."""
+"""Renders the images of a driver's camera, for simulators that have no camera of their own."""
 
 import math
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ def camera_of(driver: Any) -> CameraSpec | None:
 
 
 class CameraSensor:
-    """Renders the road as the driver's camera sees it; the bytes depend on nothing but road, world and
+    """Renders the road as the driver's camera sees it; the image depends only on the road, the world and the
     pose."""
 
     def __init__(self, camera: CameraSpec, road: "Road", world: "World") -> None:

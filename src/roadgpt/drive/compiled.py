@@ -1,8 +1,8 @@
 """Compiles inner loops to machine code where possible; elsewhere the same functions run as plain Python.
 
-The decision is made once and for all functions together. If numba or llvmlite is missing or does not load, or
-if MuJoCo's functions cannot be called by their addresses, everything runs as plain Python, which is far
-slower. ``ROADGPT_NO_NUMBA=1`` forces this. ``roadgpt doctor`` shows which of the two is used.
+The decision is made once for all functions. If numba or llvmlite is missing or does not load, or if MuJoCo's
+functions cannot be called by their addresses, everything runs as plain Python, which is far slower.
+``ROADGPT_NO_NUMBA=1`` forces this. ``roadgpt doctor`` shows whether machine code or plain Python is used.
 """
 
 import logging
@@ -35,7 +35,7 @@ def _numba() -> tuple[Any, Any, str]:
 
 numba, call_at, WHY_NOT = _numba()
 COMPILES = numba is not None
-"""Whether this process compiles its inner loops; if not, WHY_NOT gives the reason."""
+"""Whether this process compiles its inner loops; if not, the constant WHY_NOT gives the reason."""
 
 COMPILING = "compiling the simulator for this machine, once after an installation: 10 to 30 s"
 

@@ -1,6 +1,6 @@
-"""Checks that a drive is physically possible: the car moves as its speed says, without jumps.
+"""Checks that a drive is physically possible: the car must move at the speed it reports, without jumps.
 
-The bound between two samples is what a car can do, with some slack:
+Between two samples, the distance must not exceed what a car can do, plus some slack:
 
     way <= speed * dt + 1/2 A dt^2 + SLACK        speed: the larger of both samples, at most FASTEST
 """
@@ -20,11 +20,11 @@ FAILED = ", so the simulation failed, which says nothing about the driver; drive
 
 
 def check_motion(drive: Drive) -> None:
-    """Checks that the positions of a drive are those of a car.
+    """Checks that a car can have moved as the positions and speeds of a drive say.
 
     Raises:
-        SimulationError: a position or a speed is not a finite number, the car jumped, or it did not move as
-            its speed says.
+        SimulationError: a position or a speed is not a finite number, the car jumped, or its motion does not
+            match its speed.
     """
     place = np.stack([drive[name] for name in ("x", "y", "z")], axis=-1)
     time, speed = drive["time"], np.abs(drive["speed"])

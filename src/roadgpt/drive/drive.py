@@ -50,7 +50,7 @@ FORMAT = 2
 class Box(NamedTuple):
     """The outline of the car, and the position and lock angle of its front wheels.
 
-    The defaults are the numbers of RoadGPT's saloon; they apply where a file of an older version lacks a
+    The defaults are the numbers of RoadGPT's saloon; they are used if a file of an older version lacks a
     field.
     """
 
@@ -59,7 +59,8 @@ class Box(NamedTuple):
     width: float
     """Metres."""
     ahead: float = 0.0
-    """Metres from the centre of gravity forward to the middle of the box."""
+    """Metres from the centre of gravity forward to the middle of the box; negative if the middle is
+    behind."""
     lock: float = 0.6
     """Radians, the angle of the front wheels at full lock; 0.5 to 0.7 for saloons."""
     axle: float = 1.36
@@ -100,7 +101,7 @@ class Columns(Mapping[str, FloatArray]):
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """One driver on one road: poses every 20 ms, the seed, and how the drive ended.
+    """The recorded drive of one driver on one road: poses every 20 ms, the seed, and how the drive ended.
 
     ``drive["x"]`` is a column of shape (n,); COLUMNS lists the columns and their units.
     """
@@ -129,16 +130,17 @@ class Drive:
 
     @property
     def lane_steps(self) -> int:
-        """Number of steps that count for the lane, from the first on.
+        """Number of steps, from the first on, at which the car's position in the lane is judged.
 
-        All steps count, except the last one where the car reached the goal or was stuck: the SBFT competition
-        checks for the goal first, then for motion, then for the lane.
+        All steps count, except the last step if the car reached the goal or was stuck at that step: the SBFT
+        competition checks for the goal first, then for motion, then for the lane.
         """
         return max(len(self) - 1, 1) if self.ended in ("goal", "stuck") else len(self)
 
     @property
     def max_outside(self) -> float:
-        """Largest share of the car's box outside the right lane, 0..1, over the steps that count."""
+        """Largest share of the car's box outside the right lane, 0..1, over the steps that ``lane_steps``
+        counts."""
         return float(self.columns["outside"][: self.lane_steps].max())
 
     def corners(self, step: int) -> FloatArray:
@@ -175,7 +177,7 @@ class Drive:
 
     @classmethod
     def load(cls, path: Path | str) -> "Drive":
-        """Reads a file that holds the bytes of `to_bytes`.
+        """Reads a Drive from a file that ``to_bytes`` made.
 
         Raises:
             UsageError: there is no such file, or it does not hold a Drive.

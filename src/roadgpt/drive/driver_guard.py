@@ -1,6 +1,6 @@
 """Calls a driver with time limits and checks its answers, for every simulator.
 
-Whatever a driver does wrong becomes one DriverError. A driver that hangs is stopped in one of two ways:
+All errors of a driver are raised as DriverError. A driver that hangs is stopped in one of two ways:
 
 - In the main thread of a system with interval timers (Linux, macOS) it is stopped by a signal, which ends
   endless loops, sleeps and most waits.
@@ -36,7 +36,7 @@ TICK = 0.2  # s between two checks of the clock
 
 
 class RemoteDriverError(DriverError):
-    """A DriverError whose message the guard in the driver's own process has already worded."""
+    """A DriverError from the driver's own process, whose message needs no further wording."""
 
 
 class _HungError(BaseException):
@@ -86,8 +86,8 @@ class DriverGuard:
             self.guarded(0.0, self._before_start, lambda: start(road, world, seed))
 
     def ask(self, view: View) -> tuple[float, float, float]:
-        """Returns the driver's answer as (steer, throttle, brake): finite, with throttle and brake limited to
-        0..1.
+        """Asks the driver for a command and returns it as (steer, throttle, brake): finite numbers, steer in
+        radians, throttle and brake limited to 0..1.
 
         Raises:
             DriverError: the driver raised an exception or hung, or its answer is not a command.
@@ -112,8 +112,7 @@ class DriverGuard:
         return self._checked(answer, view.time)
 
     def guarded(self, at: float, limit: float, action: Callable[[], Any]) -> None:
-        """Runs something that the driver does before its drive; ``at`` is the time in seconds that errors
-        state.
+        """Runs an action of the driver before its drive; error messages give ``at`` as its time in seconds.
 
         Raises:
             DriverError: the action raised an exception, or took longer than ``limit`` seconds.
@@ -172,7 +171,7 @@ class DriverGuard:
 
     @contextlib.contextmanager
     def watched(self) -> Iterator[None]:
-        """While this context is open, a driver that takes too long is stopped."""
+        """Context manager: while it is open, a driver that exceeds its time limit is stopped."""
         try:
             with _by_signal(self) if _has_signals() else _by_thread(self):
                 yield
@@ -180,7 +179,7 @@ class DriverGuard:
             raise self._failure(error, 0.0) from error
 
     def is_late(self) -> bool:
-        """Returns whether the driver is being asked and has exceeded its time limit."""
+        """Returns whether a call of the driver is in progress and has exceeded its time limit."""
         return time.perf_counter() > self._due
 
 

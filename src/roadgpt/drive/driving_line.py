@@ -1,7 +1,7 @@
 """Computes driving lines: the centre line of the road, shifted sideways by a given offset at every station.
 
-Drivers look the line up every 20 ms. It is therefore computed once per road and kept as plain lists, in which
-a lookup is one index.
+Drivers look up the line every 20 ms. The line is therefore computed once per road and stored as plain lists,
+so that a lookup takes one index.
 """
 
 import math
@@ -23,7 +23,8 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class DrivingLine:
-    """Lists over equally spaced stations of the road; entry ``i`` belongs to station ``i * step``."""
+    """A driving line, as lists over equally spaced stations of the road; entry ``i`` belongs to station ``i *
+    step``."""
 
     step: float
     """Metres of road between stations."""
@@ -32,7 +33,7 @@ class DrivingLine:
     x: list[float]
     y: list[float]
     heading: list[float]
-    """Radians, continuous."""
+    """Heading of the line in radians, continuous (not wrapped)."""
     curvature: list[float]
     """1/m, curvature of the line itself, positive to the left."""
     stretch: list[float]
@@ -43,7 +44,8 @@ class DrivingLine:
     """Vertical curvature of the road in 1/m, negative on a crest."""
 
     def place(self, s: float) -> tuple[int, float]:
-        """Returns the index below station ``s``, and the fraction of the step from it to ``s``."""
+        """Returns the index of the last listed station at or before ``s``, and the fraction of the step from
+        that station to ``s``."""
         at = s / self.step
         last = len(self.x) - 2
         if at <= 0.0:
@@ -53,7 +55,8 @@ class DrivingLine:
 
 
 def stations(road: "Road") -> FloatArray:
-    """Returns the stations of the road at which a line is computed, both ends included, shape ``(n,)``."""
+    """Returns the stations of the road at which a line is computed, in metres, both ends included, shape
+    ``(n,)``."""
     return np.linspace(0.0, road.length, max(2, math.ceil(road.length / STEP)) + 1)
 
 
@@ -63,7 +66,7 @@ def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
 
     Args:
         road: the road.
-        offset: metres; one number, or one per station of ``stations(road)``.
+        offset: metres to the left; one number, or one number per station of ``stations(road)``.
     """
     s = stations(road)
     step = float(s[1])

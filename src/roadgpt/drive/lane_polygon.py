@@ -1,8 +1,8 @@
 """Computes how much of the car lies outside the right lane, by clipping two polygons exactly.
 
 The lane is a strip of quadrilaterals between the centre line and a line one lane width to its right. Only the
-part of the strip near the car's own station counts, so that another lane that passes under or beside it does
-not.
+part of the strip near the car's own station counts, so that other parts of the same road nearby, or crossing
+above or below, are ignored.
 """
 
 import math
@@ -26,7 +26,7 @@ class LanePolygon(NamedTuple):
     edges: FloatArray
     """Shape (n, 4): x and y of the left edge (the centre line), x and y of the right edge, in metres."""
     step: float
-    """Metres along the centre line between rows."""
+    """Distance between rows in metres along the centre line."""
 
     @classmethod
     def along(cls, road: "Road", world: "World") -> "LanePolygon":
@@ -39,8 +39,8 @@ class LanePolygon(NamedTuple):
         return cls(edges, road.length / count)
 
     def outside(self, corners: FloatArray, s: float) -> float:
-        """Returns the share, 0..1, of a convex counter-clockwise box of shape (4, 2) that is outside the lane
-        near station s."""
+        """Returns the share, 0..1, of a convex counter-clockwise box of shape (4, 2) that is outside the
+        lane; only the part of the lane near station s is considered."""
         box = np.ascontiguousarray(corners, dtype=np.float64)
         return share_outside(self.edges, self.step, box, float(s), np.empty((2, 16, 2)))
 

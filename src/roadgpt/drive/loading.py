@@ -16,10 +16,10 @@ from roadgpt.errors import UsageError
 
 
 def load_driver(spec: str) -> Any:
-    """Returns an instance of the driver that a user named, in this process.
+    """Creates the driver that a user named, in this process, and returns it.
 
-    Runs the user's file, unless only a run, a campaign or a plan names it: see ``drive.permission``. Use
-    ``isolation.driver_of`` to get a user's driver in a process of its own.
+    The user's file is run only with permission: a file that only a run, a campaign or a plan names is not run
+    (see ``drive.permission``). Use ``isolation.driver_of`` to get a user's driver in a process of its own.
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.
@@ -38,11 +38,11 @@ def load_driver(spec: str) -> Any:
 
 
 def absolute_spec(spec: str, folder: Path) -> str:
-    """Returns the same driver with an absolute path, so that it is found from any folder.
+    """Makes the path in a driver's specification absolute, so that the driver is found from any folder.
 
     Args:
         spec: as for ``load_driver``; the name of a plug-in is returned unchanged.
-        folder: the folder that a relative path is relative to.
+        folder: the folder to which a relative path refers.
     """
     path, wanted = split_spec(spec)
     if not path:

@@ -28,37 +28,39 @@ LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per met
 
 
 class MarkingMonitor(NamedTuple):
-    """The markings of one road's right lane, and the points of a car that are compared with them."""
+    """The markings of the right lane of one road, and the points of a car whose distance to them is
+    computed."""
 
     sampled: SampledRoad
     left: float
-    """Metres to the left of the centre line, outer edge of the left marking."""
+    """Position of the outer edge of the left marking, in metres to the left of the centre line."""
     right: float
-    """Metres to the left of the centre line, outer edge of the right marking; negative."""
+    """Position of the outer edge of the right marking, in metres to the left of the centre line; negative."""
     points: FloatArray
     """Shape (n, 3): metres ahead, to the left and up of the car's centre of gravity."""
 
     @classmethod
     def for_tyres(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":
-        """Returns a monitor of the outer edges of the front tyres."""
+        """Returns a monitor for the outer edges of the front tyres."""
         side = box.tyres / 2
         points = [(box.axle, side, -box.height), (box.axle, -side, -box.height)]
         return cls(sample_road(road), *world.marking_edges, np.array(points))
 
     @classmethod
     def for_body(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":
-        """Returns a monitor of both sides of the body, corners included."""
+        """Returns a monitor for both sides of the car's body, corners included."""
         front, side = box.ahead + box.length / 2, box.width / 2
         way = np.linspace(front - box.length, front, ALONG)
         points = [(x, y, -box.under) for y in (-side, side) for x in way]
         return cls(sample_road(road), *world.marking_edges, np.array(points))
 
     def beyond(self, poses: FloatArray, floor: float = -math.inf) -> FloatArray:
-        """Returns metres beyond the outer edge of the nearer marking, per pose, shape (n,).
+        """Returns how far the car reaches beyond the outer edge of the nearer marking, in metres for each
+        pose, shape (n,); negative inside.
 
         Args:
-            poses: shape (n, 6), the columns POSE.
-            floor: values below it need not be exact; setting it saves time when only the largest value
+            poses: shape (n, 6), with the columns POSE.
+            floor: values below ``floor`` need not be exact; set it to save time when only the largest value
                 matters.
         """
         sampled = self.sampled
@@ -75,7 +77,7 @@ class MarkingMonitor(NamedTuple):
         )
 
     def along(self, drive: "Drive", floor: float = -math.inf) -> FloatArray:
-        """Returns the same for every step of a drive."""
+        """Returns ``beyond`` for every step of a drive."""
         return self.beyond(np.stack([drive[name] for name in POSE], axis=-1), floor)
 
 
@@ -90,7 +92,7 @@ def farthest(
     right: float,
     floor: float,
 ) -> FloatArray:
-    """Implements `MarkingMonitor.beyond`."""
+    """Computes the result of ``MarkingMonitor.beyond`` in compiled code."""
     found = np.empty(poses.shape[0])
     long = np.abs(points[:, 0]).max()
     wide = np.abs(points[:, 1]).max()

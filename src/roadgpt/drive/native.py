@@ -11,11 +11,12 @@ LIBRARIES = ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll")  # by system; na
 
 @functools.cache
 def addresses() -> tuple[int, ...]:
-    """Returns the addresses of FUNCTIONS in the library that MuJoCo's own bindings use.
+    """Returns the memory addresses of the functions listed in FUNCTIONS, in the library that MuJoCo's
+    bindings use.
 
     Raises:
         OSError: the library is missing or does not load.
-        AttributeError: the library lacks such a function, or the bindings do not expose the address of a
+        AttributeError: the library lacks one of the functions, or the bindings do not expose the address of a
             model.
     """
     import mujoco

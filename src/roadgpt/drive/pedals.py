@@ -18,8 +18,8 @@ def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[f
     speed error.
 
     Args:
-        line: the line that the speeds belong to.
-        speed: m/s at the stations of the line.
+        line: the driving line.
+        speed: planned speed in m/s at each station of the line.
         s: station of the car, metres.
         v: speed of the car, m/s.
     """

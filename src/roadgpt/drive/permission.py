@@ -1,7 +1,7 @@
-"""Decides whose code is run: a driver's file that only another file names is not run until the user names it.
+"""Decides which drivers may be run: a driver's code that is named only in a file is not run until the user
+names it.
 
-Installed plug-ins need no permission, because the user installed them. A file that came from elsewhere may
-name them, but nothing else.
+Plug-ins need no permission, because the user has installed them.
 """
 
 from pathlib import Path
@@ -19,10 +19,10 @@ def split_spec(spec: str) -> tuple[str, str]:
 
 
 def permit(spec: str) -> None:
-    """Records that the user names this driver: it may be run, also where files name it.
+    """Records that the user has named this driver: it may then be run, even if a file names it.
 
-    A file that was written elsewhere names the driver by a path that does not exist here. The file's own name
-    and the class are therefore enough to match; the user's file is then the one that is run.
+    A file written on another machine names the driver by a path that does not exist on this machine. A driver
+    with the same file name and class therefore counts as the same; the file that the user named is run.
     """
     if split_spec(spec)[0]:
         CODE.add_from_user(_whole(spec))
@@ -30,7 +30,8 @@ def permit(spec: str) -> None:
 
 
 def driver_from_file(spec: str, file: object) -> str:
-    """Returns the driver to use for one that a file names: the user's own, if the user named it."""
+    """Returns the driver to use if a file names ``spec``: the user's driver if the user has named the same
+    one, else ``spec``."""
     if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
     theirs = CODE.given_as(_short(spec))
@@ -40,10 +41,10 @@ def driver_from_file(spec: str, file: object) -> str:
 
 
 def require_permission(spec: str) -> None:
-    """Allows a driver's file to be run, asking the user if somebody can be asked.
+    """Permits a driver's file to be run; asks the user if only a file names the driver.
 
     Raises:
-        UsageError: only a file names the driver, and the user does not agree.
+        UsageError: only a file names the driver, and the user does not agree or cannot be asked.
     """
     if not split_spec(spec)[0]:
         return
@@ -57,10 +58,10 @@ def require_permission(spec: str) -> None:
 
 
 def check_named_driver(spec: str | None, drivers: set[str], place: object) -> None:
-    """Checks that the driver of the option ``--driver`` is one of those that drive in this folder.
+    """Checks that the driver of the option ``--driver`` is one of the drivers used in this folder.
 
     Raises:
-        UsageError: it is not.
+        UsageError: the driver is not used in this folder.
     """
     if spec is not None and spec not in drivers:
         told = ", ".join(sorted(drivers)) or "nobody"

@@ -1,5 +1,5 @@
-"""Samples a road for the physics: a smooth surface over a table of equally spaced stations, asked point by
-point.
+"""Samples a road for the physics as a table of equally spaced stations, from which the smooth road surface is
+computed at any point.
 
 Between stations the centre line is a cubic in x, y and z, continuous in its direction, so that there are no
 kinks. The table continues straight beyond both ends.
@@ -38,7 +38,7 @@ class SampledRoad(NamedTuple):
 
 
 def sample_road(road: "Road") -> SampledRoad:
-    """Samples a road."""
+    """Returns the table of stations of a road."""
     length = float(road.length)
     count = max(2, math.ceil(length / STEP))
     step = length / count
@@ -78,8 +78,8 @@ def locate_on(
     """Returns station, offset, height, slope and heading of the road at the point (x, y), searching near
     station s.
 
-    The slope is that along the road at this offset. The search is Newton's method on the distance along the
-    road; with the station of a moment ago as s, two iterations are enough.
+    The slope is measured along the road at this offset. The search uses Newton's method; if s is the station
+    of the previous time step, two iterations are enough.
     """
     last = table.shape[0] - 2
     t = height = slope = heading = 0.0

@@ -1,4 +1,4 @@
-"""Defines what a driver gets, and what it returns, at every control step."""
+"""Defines the View that a driver gets and the Command that it returns at every control step."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -7,8 +7,8 @@ if TYPE_CHECKING:
 
 
 class View(NamedTuple):
-    """The present state of the car and its road; a new View is made for every control step (20 ms), so a
-    driver may keep it.
+    """The current state of the car, with its road and world; a new View is made for every control step (20
+    ms), so a driver may keep it.
 
     The position is that of the car's centre of gravity.
     """
@@ -16,53 +16,54 @@ class View(NamedTuple):
     time: float
     """Seconds since the start."""
     x: float
-    """Metres."""
+    """Position along x in metres."""
     y: float
-    """Metres."""
+    """Position along y in metres."""
     z: float
-    """Metres, height of the centre of gravity (about half a metre above the road)."""
+    """Height of the centre of gravity in metres; it is about half a metre above the road."""
     heading: float
-    """Radians, 0 along +x, positive to the left, in (-pi, pi]."""
+    """Heading in radians, in (-pi, pi]; 0 along +x, positive to the left."""
     speed: float
-    """Metres per second, never negative."""
+    """Speed in metres per second, never negative."""
     yaw_rate: float
-    """Radians per second, positive to the left."""
+    """Yaw rate in radians per second, positive to the left."""
     s: float
-    """Metres along the centre line."""
+    """Station of the car, in metres along the road's centre line."""
     t: float
-    """Metres to the left of the centre line; the middle of the right lane is ``-world.lane_width / 2``."""
+    """Offset of the car in metres to the left of the centre line; the middle of the right lane is
+    ``-world.lane_width / 2``."""
     road: "Road"
     world: "World"
     steer: float
-    """Radians, the present angle of the front wheels, left positive."""
+    """Current angle of the front wheels in radians, left positive."""
     dt: float
     """Seconds to the next control step."""
     vx: float
-    """Metres per second, forward along the car; negative when it rolls back."""
+    """Velocity in metres per second forward along the car; negative when the car rolls back."""
     vy: float
-    """Metres per second, to the car's left."""
+    """Velocity in metres per second to the car's left."""
     image: Any = None
     """The driver's camera image, shape (height, width, 3), uint8; None if the driver has no attribute
     ``camera``."""
 
 
 class CameraSpec(NamedTuple):
-    """The camera that a driver asks for with an attribute ``camera``; the defaults are those of the
+    """The camera that a driver requests by having an attribute ``camera``; the defaults are those of the SBFT
     competition."""
 
     width: int = 320
-    """Pixels."""
+    """Width of the image in pixels."""
     height: int = 160
     field_of_view: float = 1.22
-    """Radians, from the top of the image to the bottom."""
+    """Vertical field of view in radians, from the top of the image to the bottom."""
     ahead: float = 0.3
-    """Metres ahead of the centre of gravity."""
+    """Position of the camera in metres ahead of the centre of gravity."""
     up: float = 1.3
-    """Metres above the road."""
+    """Position of the camera in metres above the road."""
     down: float = 0.05
-    """Radians by which the camera is tilted downwards."""
+    """Angle in radians by which the camera is tilted downwards."""
     every: int = 2
-    """Control steps from one image to the next; 2 gives 25 images a second. BeamNG gives an image at every
+    """Control steps from one image to the next; 2 gives 25 images a second. BeamNG renders an image at every
     step."""
 
 
@@ -70,8 +71,8 @@ class Command(NamedTuple):
     """The driver's answer, which holds until the next control step."""
 
     steer: float
-    """Radians at the front wheels, left positive; the car turns its wheels at a limited rate."""
+    """Angle of the front wheels in radians, left positive; the car turns its wheels at a limited rate."""
     throttle: float = 0.0
-    """0 to 1."""
+    """Throttle pedal, 0 to 1."""
     brake: float = 0.0
-    """0 to 1."""
+    """Brake pedal, 0 to 1."""

@@ -1,1 +1,1 @@
-"""Driver plug-ins: one file each, every one a class with ``start(road, world, seed)`` and ``steer(view)``."""
+"""Driver plug-ins: each file defines one class with ``start(road, world, seed)`` and ``steer(view)``."""

@@ -26,9 +26,9 @@ TIGHTEST = 0.2  # lower bound of 1 + 2k, for centre lines that turn more tightly
 class BeamngLike:
     """Cuts the inside of every bend, as BeamNG's AI did in recordings.
 
-    It follows a line that lies inside the lane's middle by ``cut * tanh(k / sharpness)`` metres, where k is
-    the curvature of the middle of the right lane. It steers towards a point of this line ahead, and takes
-    bends at a given lateral acceleration.
+    Its planned line is shifted from the lane's middle towards the inside of the bend by ``cut * tanh(k /
+    sharpness)`` metres, where k is the curvature of the middle of the right lane. It steers towards a point
+    of this line ahead of the car, and limits its speed in bends to a given lateral acceleration.
 
     It imitates BeamNG's AI at aggression 0.7 under a speed limit of 70 km/h, as the SBFT tool competition
     uses it. Its parameters were fitted to the recorded outcomes of 2,388 flat roads, and tested on 2,129
@@ -37,23 +37,26 @@ class BeamngLike:
     lane counts as outside, and so does the shoulder.
 
     Two of its properties are assumed, because all recordings have one speed limit and a dry road: the higher
-    the speed limit, the more it cuts (``eagerness``), and it takes every road for dry (``assumed_friction``).
+    the speed limit, the more it cuts (``eagerness``), and it plans for a dry road, whatever the friction
+    (``assumed_friction``).
 
     Args:
-        cut: metres, at 70 km/h.
-        sharpness: 1/m.
-        aside: metres by which its line lies to the right of the lane's middle.
-        joining: metres from the road's start in which it moves from the lane's middle to its line.
-        eagerness: the cut grows with this power of the speed limit; 0 makes it constant.
-        risk: lateral acceleration in bends, in g (aggression 0.7 drives 0.64); at most 0.95 of the friction.
-        headway: seconds to the point ahead.
-        nearest: metres, the smallest distance to the point ahead.
-        compensation: s^2/m, steering angle added per lateral acceleration.
+        cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
+        sharpness: curvature in 1/m at which the shift is 76 % of ``cut``.
+        aside: constant shift of the line to the right of the lane's middle, in metres.
+        joining: distance from the road's start, in metres, over which it moves from the lane's middle to its
+            line.
+        eagerness: exponent with which ``cut`` grows with the speed limit; 0 makes it constant.
+        risk: lateral acceleration in bends, in g (BeamNG's AI at aggression 0.7 reaches 0.64); at most 0.95
+            of the friction is used.
+        headway: time to the point ahead, in seconds.
+        nearest: smallest distance to the point ahead, in metres.
+        compensation: steering angle added per lateral acceleration, in rad per m/s^2.
         throttle: throttle per m/s of speed error.
         brake: brake per m/s of speed error.
-        edge_room: metres that the right wheels keep from the edge of the carriageway where the world has no
-            shoulder (a floating mesh road); with None it drives there as on flat ground, and falls.
-        assumed_friction: friction that it plans for; None stands for the friction of the world.
+        edge_room: distance in metres that the right wheels keep from the edge of the carriageway if the world
+            has no shoulder (a floating mesh road); with None the driver ignores the edge and may fall off.
+        assumed_friction: friction that it plans for; None: the friction of the world.
         wheelbase: metres.
     """
 
@@ -83,7 +86,7 @@ class BeamngLike:
         self.edge_room, self.assumed_friction, self.wheelbase = edge_room, assumed_friction, wheelbase
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Plans line and speed."""
+        """Plans the line and the speed for a road."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, self.offsets(road, world))
         friction = world.friction if self.assumed_friction is None else self.assumed_friction
@@ -95,15 +98,16 @@ class BeamngLike:
         self._line, self._speed = line, plan_speed(replace(line, crest=[0.0] * len(line.crest)), limits)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
-        """Returns the curvature of the lane's middle at the line's stations in 1/m, smoothed so that short
-        bends vanish."""
+        """Returns the curvature of the lane's middle in 1/m at the stations of the line, smoothed so that
+        short bends vanish."""
         s = stations(road)
         bend = road.curvature(s)
         stretch = np.maximum(1 + world.lane_width / 2 * bend, TIGHTEST)
         return _smoothed(bend / stretch, float(s[1]))
 
     def offsets(self, road: "Road", world: "World") -> FloatArray:
-        """Returns the offsets of its line, metres to the left of the centre line, at the line's stations."""
+        """Returns the offsets of the planned line at its stations, in metres to the left of the road's centre
+        line."""
         s, bend = stations(road), self.bend(road, world)
         middle = -world.lane_width / 2
         cut = self.cut * (world.speed_limit / USUAL) ** self.eagerness
@@ -120,7 +124,7 @@ class BeamngLike:
         return np.asarray(share * share * (3 - 2 * share), float)
 
     def steer(self, view: View) -> Command:
-        """Steers towards the point of the line ahead; follows the planned speed."""
+        """Steers towards a point of the planned line ahead of the car, and follows the planned speed."""
         line, v = self._line, view.speed
         bend = pursuit_curvature(line, view, max(self.headway * v, self.nearest))
         steer = math.atan(self.wheelbase * bend) + self.compensation * v * v * bend

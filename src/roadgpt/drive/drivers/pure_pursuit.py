@@ -21,8 +21,8 @@ class PurePursuit:
 
     Args:
         risk: lateral acceleration in bends, in g; at most 0.95 of the friction is used.
-        headway: seconds to the point ahead.
-        nearest: metres, the smallest distance to the point ahead.
+        headway: time to the point ahead, in seconds.
+        nearest: smallest distance to the point ahead, in metres.
         wheelbase: metres.
     """
 
@@ -42,7 +42,7 @@ class PurePursuit:
         self._line, self._speed = line, plan_speed(line, limits)
 
     def steer(self, view: View) -> Command:
-        """Steers towards the point ahead; follows the planned speed."""
+        """Steers towards a point of the lane's middle ahead of the car, and follows the planned speed."""
         line = self._line
         bend = pursuit_curvature(line, view, max(self.headway * view.speed, self.nearest))
         return Command(math.atan(self.wheelbase * bend), *pedals(line, self._speed, view.s, view.speed))

@@ -28,13 +28,14 @@ class Reference:
         risk: lateral acceleration in bends, in g; at most 0.72 of the friction is used.
         wheelbase: metres.
         to_rear: metres from the centre of gravity to the rear axle.
-        understeer: s^2/m, steering angle per lateral acceleration beyond the Ackermann angle. Like ``slip``
-            it belongs to the car; both were measured on RoadGPT's car in steady state at 0.3 g.
-        slip: s^2/m, slip angle of the rear axle per lateral acceleration.
+        understeer: steering angle beyond the Ackermann angle per lateral acceleration, in rad per m/s^2.
+            ``understeer`` and ``slip`` depend on the car; both were measured on RoadGPT's car in steady state
+            at 0.3 g.
+        slip: slip angle of the rear axle per lateral acceleration, in rad per m/s^2.
         gain: rad of steering angle per metre of lateral error at the point ahead.
-        ahead: metres; the point lies ``ahead + headway * speed`` metres before the car.
+        ahead: metres; the point ahead is ``ahead + headway * speed`` metres in front of the car.
         headway: seconds, see ``ahead``.
-        lag: seconds of steering delay; the bend is looked up that far ahead.
+        lag: steering delay in seconds; the curvature is looked up this time ahead of the car.
     """
 
     name = "reference"
@@ -57,7 +58,7 @@ class Reference:
         self.gain, self.ahead, self.headway, self.lag = gain, ahead, headway, lag
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Plans line and speed."""
+        """Plans the line and the speed for a road."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, -world.lane_width / 2)
         lateral = min(self.risk, FRICTION_USED * world.friction)

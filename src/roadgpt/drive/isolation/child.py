@@ -1,5 +1,5 @@
-"""Main loop of a driver's own process: creates the driver, passes views to it, and restores what it has
-changed.
+"""Main loop of a driver's own process: creates the driver, passes views to it, and undoes the driver's
+changes to the process.
 
 There is no time limit in this process: if a driver takes too long, RoadGPT's process ends the whole process.
 The driver may therefore use alarms, signals and threads as it likes.

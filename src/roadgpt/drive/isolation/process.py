@@ -1,5 +1,5 @@
-"""Manages the processes of drivers: asks them, limits their time and memory, ends them, and keeps them for
-reuse."""
+"""Manages the processes in which drivers run: sends requests to them, limits their time and memory, ends
+them, and keeps them for reuse."""
 
 import os
 import sys
@@ -19,8 +19,7 @@ BEGIN = 60.0  # s within which a new process must be ready
 
 
 class GoneError(Exception):
-    """Raised when the process no longer exists; the message gives the reason, worded to follow the driver's
-    name."""
+    """Raised when a driver's process has ended; the message is a clause that follows the driver's name."""
 
     def __init__(self, why: str, is_late: bool = False) -> None:
         super().__init__(why)
@@ -50,7 +49,7 @@ class DriverProcess:
         threading.Thread(target=self._watch, name="roadgpt-driver", daemon=True).start()
 
     def ask(self, kind: int, body: bytes, seconds: float) -> protocol.Packet:
-        """Sends a packet and returns the answer.
+        """Sends a packet to the driver's process and returns the answer.
 
         Raises:
             GoneError: the process ended, or did not answer within ``seconds``; in the second case it is
@@ -71,7 +70,7 @@ class DriverProcess:
         return answer
 
     def tell(self, kind: int) -> None:
-        """Sends a packet that gets no answer."""
+        """Sends a packet to the driver's process without waiting for an answer."""
         with suppress(OSError):
             protocol.send(self._down, kind)
 
@@ -84,7 +83,7 @@ class DriverProcess:
 
     @property
     def is_alive(self) -> bool:
-        """Whether the process can be asked."""
+        """Whether the process is running and can be asked."""
         return not self.is_broken and self._process.poll() is None
 
     def _watch(self) -> None:
@@ -110,7 +109,7 @@ class DriverProcess:
 
 
 def memory_limit() -> float:
-    """Returns the bytes of memory that a driver may use: half of what the machine, or the container, has."""
+    """Returns the memory limit of a driver in bytes: half of the memory of the machine or the container."""
     found = []
     with suppress(ValueError, OSError, AttributeError):
         found.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
@@ -138,7 +137,7 @@ _lock = threading.Lock()
 
 
 def take() -> DriverProcess:
-    """Returns an idle process, or a new one.
+    """Returns an idle driver process, or starts a new one.
 
     Raises:
         OSError: the system cannot start a process.

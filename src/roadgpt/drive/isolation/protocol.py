@@ -1,7 +1,8 @@
 """Defines the packets between RoadGPT and a driver's process: one byte for the kind, a length, and the body.
 
-Packets to the driver's process are pickles made by RoadGPT, and views as packed numbers. Packets from it are
-three numbers or JSON, so reading them runs no code of the driver in RoadGPT's process.
+Packets to the driver's process contain pickles made by RoadGPT, or views as packed numbers. Packets from the
+driver's process contain three numbers or JSON, so that RoadGPT can read them without running the driver's
+code.
 """
 
 import os
@@ -13,8 +14,8 @@ MADE, COMMAND, FAILED = range(3)  # kinds of packets from it
 
 HEAD = struct.Struct("<BI")
 SEEN = struct.Struct("<13dBHH")
-"""A view without road and world: its 13 numbers; whether it has no image, the previous one, or a new one that
-follows; height and width of the image."""
+"""Format of a View without its road and world: 13 numbers; a code for no image, the previous image, or a new
+image that follows; and the height and width of the image."""
 ANSWER = struct.Struct("<3d")
 NO_PICTURE, SAME_PICTURE, NEW_PICTURE = range(3)
 ROOM = 1 << 16  # bytes that are read at once, as many as a pipe holds
@@ -22,14 +23,14 @@ MOST = 1 << 20  # bytes, the largest packet that the driver's process may send
 
 
 class Packet(NamedTuple):
-    """One packet."""
+    """One packet: its kind and its body."""
 
     kind: int
     body: bytes
 
 
 def send(number: int, kind: int, body: bytes = b"") -> None:
-    """Writes a packet to a file descriptor.
+    """Writes a packet to the file descriptor ``number``.
 
     Raises:
         OSError: the other end is closed.
@@ -41,10 +42,10 @@ def send(number: int, kind: int, body: bytes = b"") -> None:
 
 
 def receive(number: int, most: int = 1 << 32) -> Packet:
-    """Reads the next packet from a file descriptor.
+    """Reads the next packet from the file descriptor ``number``; its body may have at most ``most`` bytes.
 
     Raises:
-        EOFError: the other end is closed, or sent something that is not a packet.
+        EOFError: the other end is closed, or sent invalid data.
         OSError: reading failed.
     """
     kind, length = HEAD.unpack(_exactly(number, HEAD.size))

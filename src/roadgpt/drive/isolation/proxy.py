@@ -1,4 +1,4 @@
-"""Stands in for a driver in another process; simulators use it like any other driver."""
+"""Represents a driver that runs in another process; simulators use it like any other driver."""
 
 import json
 import os
@@ -27,9 +27,11 @@ MAKING = 30.0  # s for a new process to import what it needs, on top of the driv
 
 
 def driver_of(spec: str, limit: float = BEFORE_START) -> Any:
-    """Returns the driver that a user named: RoadGPT's own in this process, any other in a process of its own.
+    """Returns the driver that a user named: RoadGPT's own drivers run in this process, any other in a
+    separate process.
 
-    Runs the user's file, unless only a run, a campaign or a plan names it: see ``drive.permission``.
+    The user's file is run only with permission: a file that only a run, a campaign or a plan names is not run
+    (see ``drive.permission``).
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.
@@ -57,7 +59,7 @@ class _TraceError(Exception):
 
 
 class IsolatedDriver:
-    """A driver in another process."""
+    """A driver that runs in another process."""
 
     def __init__(self, spec: str, limit: float = BEFORE_START) -> None:
         """Creates the driver there; raises the errors of ``driver_of``."""

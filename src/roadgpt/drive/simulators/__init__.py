@@ -1,1 +1,1 @@
-"""Simulator plug-ins."""
+"""Simulator plug-ins: each defines a class with ``simulate(road, world, driver, seed, keep_driving)``."""

@@ -1,9 +1,9 @@
-"""Lists which BeamNG.tech works with which beamngpy, and words the advice for versions that do not match.
+"""Lists which versions of BeamNG.tech and beamngpy work together, and gives advice for versions that do not.
 
-Both send a protocol version in their first message, and the client continues only if the two are the same.
-RoadGPT therefore drives with every pair that passes this check, and logs a warning if this client has not
-been tried. Sources: the compatibility page of BeamNGpy 1.36 for the pairs, its releases' source code for the
-protocols.
+BeamNG and beamngpy each send a protocol version in their first message, and beamngpy continues only if both
+are the same. RoadGPT therefore drives with every pair that passes this check, and logs a warning if this
+version of beamngpy has not been tested. Sources: BeamNGpy 1.36's compatibility page for the pairs, and the
+source code of BeamNGpy's releases for the protocols.
 """
 
 import logging
@@ -18,7 +18,7 @@ class VersionPair(NamedTuple):
     client: str
     protocol: str
     is_tried: bool = False
-    """Whether RoadGPT's tests pass with this client."""
+    """Whether RoadGPT's tests pass with this version of beamngpy."""
 
 
 VERSION_PAIRS = (
@@ -34,7 +34,7 @@ VERSION_PAIRS = (
 
 
 def warn_if_untested(version: str) -> None:
-    """Logs a warning if this version of beamngpy has not been tried with RoadGPT."""
+    """Logs a warning if this version of beamngpy has not been tested with RoadGPT."""
     if any(pair.is_tried and pair.client == version for pair in VERSION_PAIRS):
         return
     tried = ", ".join(pair.client for pair in VERSION_PAIRS if pair.is_tried)
@@ -46,11 +46,11 @@ def warn_if_untested(version: str) -> None:
 
 
 def mismatch_advice(game: str, client: str, version: str) -> str:
-    """Returns advice for a BeamNG of one protocol and a client of another.
+    """Returns advice for a user whose BeamNG and beamngpy use different protocols.
 
     Args:
-        game: protocol of the BeamNG that answered.
-        client: protocol of the installed beamngpy.
+        game: protocol version of the BeamNG that answered.
+        client: protocol version of the installed beamngpy.
         version: version of the installed beamngpy.
     """
     theirs = [pair for pair in VERSION_PAIRS if pair.protocol == game]

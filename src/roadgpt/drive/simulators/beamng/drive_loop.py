@@ -35,7 +35,7 @@ AI = "beamng_ai"
 
 
 class Sample(NamedTuple):
-    """The car at one time, and its position on the road."""
+    """The car at one time, and its position relative to the road."""
 
     car: CarSample
     s: float
@@ -47,7 +47,7 @@ class Sample(NamedTuple):
 
 
 class DriveLoop:
-    """Drives one road and records the samples."""
+    """Drives one road, step by step, and records the samples."""
 
     def __init__(self, loaded: LoadedRoad, road: "Road", world: "World", guard: DriverGuard | None) -> None:
         """Prepares a drive; ``guard`` is None if BeamNG's AI drives."""
@@ -207,7 +207,7 @@ class DriveLoop:
 def record(
     loaded: LoadedRoad, road: "Road", world: "World", guard: DriverGuard | None, seed: int, keep_driving: bool
 ) -> Drive:
-    """Runs one driver on the road that is loaded.
+    """Runs one driver on the loaded road, and returns the Drive.
 
     Raises:
         DriverError, SimulationError: as for ``DriveLoop.drive``.

@@ -1,7 +1,8 @@
-"""Exchanges the first message with whatever listens on a port, to find out whether it is BeamNG, and its
-version.
+"""Exchanges the first message with the program that listens on a port, to find out whether it is BeamNG, and
+which version.
 
-A message is its length, four bytes big-endian, and one MessagePack map; the first message is Hello.
+A message consists of its length (four bytes, big-endian) and one MessagePack map; the first message is named
+Hello.
 """
 
 import socket
@@ -15,7 +16,7 @@ MOST = 1 << 20  # bytes, the largest answer to Hello that is accepted
 
 
 def is_taken(host: str, port: int) -> bool:
-    """Returns whether something listens there."""
+    """Returns whether a program listens on this port."""
     try:
         with socket.create_connection((host, port), timeout=1.0):
             return True
@@ -24,11 +25,11 @@ def is_taken(host: str, port: int) -> bool:
 
 
 def protocol_at(host: str, port: int, protocol: str, patience: float) -> str:
-    """Returns the protocol version of BeamNG's answer.
+    """Sends a first message with the given protocol version, and returns the version in BeamNG's answer.
 
     Raises:
-        OSError: nothing listens there, or no answer came in time.
-        SimulatorError: what listens there is not BeamNG.
+        OSError: no program listens on the port, or no answer came within ``patience`` seconds.
+        SimulatorError: the program that listens on the port is not BeamNG.
     """
     msgpack: Any = import_module("msgpack")
 

@@ -1,7 +1,7 @@
 """Starts, watches and ends BeamNG as a child process.
 
-The client could start it as well, but it would wait for minutes for a process that has already ended, and it
-knows only the newest versions' options. The command line is the one that beamngpy 1.36 uses.
+beamngpy could start BeamNG as well, but it would wait for minutes for a process that has already ended, and
+it supports only the options of the newest versions. The command line is that of beamngpy 1.36.
 """
 
 import platform
@@ -27,7 +27,7 @@ def binary_of(home: Path) -> Path:
     """Returns the path of BeamNG's program in its folder.
 
     Raises:
-        PartError: there is none.
+        PartError: the folder does not contain the program.
     """
     names = BINARIES.get(platform.system(), BINARIES["Linux"])
     for name in names:
@@ -54,7 +54,7 @@ def command_line(binary: Path, settings: BeamngSettings, port: int, user: Path |
 
 
 class BeamngProcess:
-    """A BeamNG that this process has started."""
+    """A BeamNG process that RoadGPT has started."""
 
     def __init__(self, words: list[str], host: str, port: int) -> None:
         """Starts it.
@@ -70,11 +70,11 @@ class BeamngProcess:
             raise SimulatorError(f"BeamNG cannot be started ({error}); check --beamng-home") from error
 
     def wait(self, patience: float) -> None:
-        """Waits until it listens on its port.
+        """Waits until BeamNG listens on its port.
 
         Raises:
-            SimulatorError: it ended, or does not listen within ``patience`` seconds, in which case it is
-                killed.
+            SimulatorError: BeamNG ended, or did not listen within ``patience`` seconds; in the second case it
+                is killed.
         """
         due = time.monotonic() + patience
         while not is_taken(self.host, self.port):
@@ -94,15 +94,15 @@ class BeamngProcess:
 
     @property
     def is_alive(self) -> bool:
-        """Whether the process runs."""
+        """Whether BeamNG's process is running."""
         return self.process.poll() is None
 
     def kill(self) -> None:
-        """Ends it and its child processes, by force if necessary."""
+        """Ends BeamNG and its child processes, by force if necessary."""
         children.end(self.process, GRACE)
 
     def end(self) -> None:
-        """Waits for it to quit after it was asked to; kills it if it does not."""
+        """Waits for BeamNG to end after it was asked to quit; kills it if it does not."""
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(GRACE)
         self.kill()

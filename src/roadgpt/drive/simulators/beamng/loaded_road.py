@@ -39,8 +39,8 @@ REFRESH = "if map and map.reset then map.reset() end"
 
 
 class LoadedRoad:
-    """One road in BeamNG. Use it as ``with LoadedRoad(...) as loaded``; its objects are removed at the
-    end."""
+    """One road in BeamNG. Use it as ``with LoadedRoad(...) as loaded``; the road and the car are removed at
+    the end."""
 
     def __init__(self, session: Session, road: "Road", world: "World", seed: int) -> None:
         """Loads the road and places the car at its start.
@@ -129,7 +129,7 @@ class LoadedRoad:
 
     @property
     def body(self) -> CarGeometry:
-        """The geometry of the car."""
+        """The geometry of the car, measured in BeamNG."""
         assert self.session.body is not None
         return self.session.body
 
@@ -152,7 +152,7 @@ class LoadedRoad:
         return max(self._clock() - self._begun, since.time + step / 2)
 
     def step(self) -> CarSample:
-        """Runs one step of physics; returns the sample after it."""
+        """Runs one step of physics, and returns the sample of the car after this step."""
         self.session.watchdog.due_in(self.settings.poll_timeout)
         self.bng.control.step(1)
         self.now = self._sample(self.now)
@@ -170,7 +170,7 @@ class LoadedRoad:
         )
 
     def let_ai_drive(self, limit: float) -> None:
-        """Lets BeamNG's own AI drive to the goal, up to ``limit`` m/s."""
+        """Makes BeamNG's own AI drive to the goal, at up to ``limit`` m/s."""
         self.vehicle.control(parkingbrake=0.0)
         ai = self.vehicle.ai
         # In the competition's order, which is known to work: the goal, which sets it off, comes last.
@@ -182,7 +182,7 @@ class LoadedRoad:
     def take_the_wheel(self) -> None:
         """Prepares the car for a RoadGPT driver: selects an automatic gearbox mode and measures the steering.
 
-        In BeamNG's other modes a gear has to be selected first, so a car in one of them would not move.
+        In BeamNG's other gearbox modes the car does not move until a gear is selected.
         """
         with self.session.within(self.settings.poll_timeout, "the gearbox was set"):
             self.vehicle.set_shift_mode(GEARBOX)
@@ -293,7 +293,8 @@ def _triple(point: FloatArray) -> tuple[float, float, float]:
 
 
 def as_quaternion(matrix: FloatArray) -> tuple[float, float, float, float]:
-    """Returns x, y, z, w of a rotation matrix, as the client takes a car's attitude."""
+    """Returns the quaternion (x, y, z, w) of a rotation matrix, in the form in which beamngpy takes a car's
+    attitude."""
     from scipy.spatial.transform import Rotation
 
     x, y, z, w = Rotation.from_matrix(matrix).as_quat().tolist()

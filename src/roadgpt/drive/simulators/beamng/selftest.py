@@ -1,6 +1,6 @@
 """Runs checks against a real BeamNG and reports the answers; RoadGPT was developed without a licence for it.
 
-Each check ends with a sentence that contains figures. The checks answer the questions that BeamNG's
+The result of each check is a sentence with figures. The checks answer the questions that BeamNG's
 documentation leaves open: whether the AI finds roads of prefabs, whether decals lie correctly on slopes, how
 much repeated runs differ, and whether RoadGPT's level folders load.
 """
@@ -39,7 +39,7 @@ PATIENCE = 15.0  # s for that
 
 @dataclass(frozen=True)
 class Check:
-    """One check and its result."""
+    """A check and its result."""
 
     about: str
     is_fine: bool
@@ -48,7 +48,7 @@ class Check:
 
 
 def bent(z: float, incline: float) -> Road:
-    """Returns a road of 190 m: a straight, one bend to each side, and another straight."""
+    """Returns a test road of 190 m: a straight, one bend to each side, and another straight."""
     left = Segment(distance=40, direction="left", turn_degrees=60, incline=incline)
     right = Segment(distance=50, direction="right", turn_degrees=-60, incline=incline)
     straight = Segment(distance=50, direction="straight", incline=incline)
@@ -56,7 +56,7 @@ def bent(z: float, incline: float) -> Road:
 
 
 class Selftest:
-    """The checks in their order, and the images that they save."""
+    """Runs the checks in their order, and saves their images."""
 
     def __init__(self, settings: BeamngSettings, folder: Path, repeats: int) -> None:
         """Prepares the checks; images are saved in the folder."""
@@ -65,7 +65,7 @@ class Selftest:
         self.pictures: list[str] = []
 
     def checks(self) -> Iterator[Check]:
-        """Yields the checks one after another; if BeamNG does not start, only the first."""
+        """Yields the result of each check in turn; if BeamNG does not start, only the first result."""
         first = self._tried("connection", self._connection)
         yield first
         if not first.is_fine:
@@ -208,8 +208,8 @@ class Selftest:
 
 
 def run(settings: BeamngSettings, folder: Path, repeats: int, tell: Callable[[Check], None]) -> list[Check]:
-    """Runs all checks, passes each to ``tell`` as it ends, and writes the report into the folder as .json and
-    .md."""
+    """Runs all checks, passes each result to ``tell`` as it becomes available, and writes a report into the
+    folder as .json and .md files."""
     test = Selftest(settings, folder, repeats)
     done = []
     for check in test.checks():

@@ -1,5 +1,5 @@
-"""Connects to one BeamNG and uses it for many roads: starts or finds it when needed, restarts it when it
-fails."""
+"""Connects to one BeamNG and uses it for many roads: starts or finds BeamNG when needed, and restarts it when
+it fails."""
 
 import atexit
 import logging
@@ -24,10 +24,10 @@ LEVELS = {"tig": -28.0, "tech_ground": 0.0, "smallgrid": 0.0}
 
 
 def client() -> Any:
-    """Returns the package beamngpy, imported at the first call.
+    """Returns the Python package beamngpy, which is imported at the first call.
 
     Raises:
-        PartError: it is not installed.
+        PartError: beamngpy is not installed.
     """
     try:
         package = import_module("beamngpy")
@@ -41,7 +41,7 @@ def client() -> Any:
 
 
 class Session:
-    """The connection to one BeamNG, and what is known about its car."""
+    """A connection to one BeamNG, with the geometry of its car."""
 
     def __init__(self, settings: BeamngSettings) -> None:
         """Starts nothing yet."""
@@ -140,7 +140,7 @@ class Session:
         self.bng.settings.set_steps_per_second(self.settings.rate)
 
     def loading(self) -> AbstractContextManager[None]:
-        """Returns the context in which a road is loaded, with its time limit; the first road may take
+        """Returns a context manager that limits the time for loading a road; the first road may take
         minutes."""
         if self.has_loaded:
             return self.within(self.settings.load_timeout, "it was loading a road")
@@ -154,12 +154,12 @@ class Session:
 
     @contextmanager
     def within(self, seconds: float, doing: str) -> Iterator[None]:
-        """Ends calls inside this context that take longer than ``seconds``; see `Watchdog`."""
+        """Context manager: ends calls to BeamNG that take longer than ``seconds``; see `Watchdog`."""
         with self.watchdog.within(seconds, doing):
             yield
 
     def close(self) -> None:
-        """Asks a BeamNG that RoadGPT started to quit, or disconnects from another one."""
+        """Asks BeamNG to quit if RoadGPT started it; otherwise disconnects from it."""
         game, bng = self.game, self.bng
         if bng is not None:
             with suppress(Exception), self.within(self.settings.poll_timeout, "it was closing"):
@@ -171,7 +171,7 @@ class Session:
         self._forget()
 
     def drop(self) -> None:
-        """Kills a BeamNG that RoadGPT started, or drops the connection to another one."""
+        """Kills BeamNG if RoadGPT started it; otherwise drops the connection to it."""
         for each in self._sockets():
             with suppress(OSError):
                 each.close()
@@ -208,7 +208,7 @@ _sessions: dict[BeamngSettings, Session] = {}
 
 
 def session_of(settings: BeamngSettings) -> Session:
-    """Returns the one session of this process for these settings."""
+    """Returns the session for these settings; a process has one session for each settings."""
     if settings not in _sessions:
         leave_all()  # one BeamNG at a time is enough for a graphics card
         _sessions[settings] = Session(settings)

@@ -1,4 +1,4 @@
-"""Settings of BeamNG, read from environment variables, in which the command line stores its options.
+"""Reads the settings of BeamNG from environment variables; the command line stores its options there as well.
 
 Each field is read from ``ROADGPT_BEAMNG_`` plus its name in capitals, so that worker processes get the same
 settings.
@@ -23,45 +23,45 @@ class BeamngSettings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     home: Path | None = None
-    """BeamNG's folder; None: a running BeamNG is used, and none is started."""
+    """BeamNG's folder; None: RoadGPT uses a running BeamNG and starts none."""
     user: Path | None = None
-    """BeamNG's user folder; further workers get folders beside it."""
+    """BeamNG's user folder; further workers get folders next to it."""
     host: str = "127.0.0.1"
     port: Annotated[int, Field(ge=1, le=65535)] = PORT
     """Port of the first worker; the others use the next free ports."""
     headless: bool = False
     nogpu: bool = False
-    """Whether BeamNG draws nothing; drivers that need images cannot drive then."""
+    """Whether BeamNG runs without graphics; drivers that need images cannot be used then."""
     gfx: Literal["dx11", "vk"] | None = None
     level: str = ""
-    """Level in which roads are placed; empty: ``tig`` if it is installed, else a flat level that comes with
-    BeamNG."""
+    """Level in which roads are placed; empty: the level ``tig`` if it is installed, else a flat level that
+    comes with BeamNG."""
     model: str = "etk800"
     aggression: Annotated[float, Field(ge=0.3, le=1.0)] = 0.7
-    """Aggression of BeamNG's AI; the default is the competition's."""
+    """Aggression of BeamNG's AI; the default is that of the SBFT competition."""
     rate: Annotated[int, Field(ge=20, le=200)] = 50
-    """Steps and samples per second."""
+    """Physics steps and samples per second."""
     recycle: Annotated[int, Field(ge=1)] = 100
-    """Roads after which BeamNG is restarted; it has been seen to fail after about 500 (BeamNGpy issue
-    159)."""
+    """Number of roads after which BeamNG is restarted; BeamNG has been seen to fail after about 500 roads
+    (BeamNGpy issue 159)."""
     start_timeout: Annotated[float, Field(gt=0)] = 180.0
-    """s until BeamNG must answer."""
+    """Seconds within which BeamNG must answer after its start."""
     load_timeout: Annotated[float, Field(gt=0)] = 120.0
-    """s for loading a level."""
+    """Seconds within which a level must be loaded."""
     first_load_timeout: Annotated[float, Field(gt=0)] = 600.0
-    """s for loading the first level, during which BeamNG may compile shaders."""
+    """Seconds within which the first level must be loaded; BeamNG may compile shaders during this time."""
     poll_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """s for any other answer."""
+    """Seconds within which BeamNG must give any other answer."""
     imitation: bool = False
-    """Whether ``beamng_like`` drives itself; by default BeamNG's own AI, which it imitates, drives in its
-    place."""
+    """Whether the driver ``beamng_like`` drives itself; if not, BeamNG's own AI, which it imitates, drives in
+    its place."""
 
     @classmethod
     def of(cls, environment: Mapping[str, str] = os.environ) -> Self:
-        """Returns the settings of the environment.
+        """Returns the settings that the environment variables define.
 
         Raises:
-            UsageError: a value is invalid.
+            UsageError: the value of a variable is invalid.
         """
         given = {
             name: environment[PREFIX + name.upper()]
@@ -79,10 +79,10 @@ class BeamngSettings(BaseModel):
 
     @property
     def launches(self) -> bool:
-        """Whether RoadGPT starts BeamNG, instead of using one that runs already."""
+        """Whether RoadGPT starts BeamNG, instead of using a running BeamNG."""
         return self.home is not None
 
     def summary(self) -> str:
-        """Returns the settings that affect how a road is driven, in one line."""
+        """Returns one line with the settings that affect how a road is driven."""
         level = self.level or "tig, or another flat level"
         return f"{self.model} on {level}, aggression {self.aggression:g}, {self.rate} steps/s"

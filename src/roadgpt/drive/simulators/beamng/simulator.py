@@ -41,8 +41,8 @@ class BeamngSimulator:
     def simulate(
         self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
     ) -> Drive:
-        """Implements `roadgpt.drive.Simulator.simulate`; the driver uses the seed, which also moves the road
-        by millimetres."""
+        """Implements `roadgpt.drive.Simulator.simulate`; the seed is passed to the driver, and also moves the
+        road by millimetres."""
         session = session_of(self.settings)
         for tried in range(TRIES):
             try:

@@ -33,14 +33,15 @@ class Slot:
         self.port, self.user, self._lock = port, user, lock
 
     def note(self, pid: int) -> None:
-        """Writes down which process listens on the port, for use after this worker was killed."""
+        """Stores the id of the process that listens on the port, so that it can be found after this worker
+        was killed."""
         self._lock.seek(0)
         self._lock.truncate()
         self._lock.write(str(pid))
         self._lock.flush()
 
     def release(self) -> None:
-        """Makes the slot available to others."""
+        """Makes the slot available to other processes."""
         self._lock.seek(0)
         self._lock.truncate()
         self._lock.close()
@@ -49,8 +50,8 @@ class Slot:
 def take(settings: BeamngSettings) -> Slot:
     """Returns the first free slot.
 
-    If RoadGPT starts BeamNG itself, ports on which something listens already are skipped, because it may be
-    any program.
+    If RoadGPT starts BeamNG itself, ports on which a program already listens are skipped, because it may not
+    be BeamNG.
 
     Raises:
         UsageError: BeamNG cannot use the user folder.

@@ -1,4 +1,5 @@
-"""Converts what BeamNG reports of a car's reference node to the pose of its centre of gravity on the road."""
+"""Converts the state of a car as BeamNG reports it, at a reference node, to the pose of the car's centre of
+gravity on the road."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -24,19 +25,19 @@ SIZES = (1.0, 12.0), (0.5, 4.0)  # m, length and width that a car can have
 
 
 class CarGeometry(NamedTuple):
-    """The geometry of a car, measured once while it stands; in metres ahead, left and up of the centre of
-    gravity."""
+    """The geometry of a car, measured once while the car stands; positions are in metres ahead, to the left
+    and up of its centre of gravity."""
 
     node: tuple[float, float, float]
-    """Position of the reference node, which is the point whose position BeamNG reports."""
+    """Position of the reference node, whose position BeamNG reports as that of the car."""
     rear: float
     front: float
     half: float
-    """Half the width."""
+    """Half the width of the car, metres."""
     under: float
-    """Height of the box's underside; negative."""
+    """Height of the underside of the car's box, metres relative to the centre of gravity; negative."""
     height: float
-    """Height of the centre of gravity above the road."""
+    """Height of the centre of gravity above the road, metres."""
 
     @classmethod
     def measured(
@@ -49,13 +50,13 @@ class CarGeometry(NamedTuple):
         """Returns the geometry of a standing car.
 
         Args:
-            state: a poll of the car's state.
+            state: the car's state as BeamNG reports it.
             gravity: position of its centre of gravity in metres.
             corners: positions of the corners of its bounding box in metres.
             ground: the point of the road that the car was placed on.
 
         Raises:
-            SimulationError: the numbers are not those of a car.
+            SimulationError: the numbers are impossible for a car.
         """
         frame = frame_of(state)
         centre = np.asarray(gravity, float)
@@ -80,16 +81,16 @@ class CarGeometry(NamedTuple):
 
     @property
     def underside(self) -> FloatArray:
-        """The lower corners, shape (4, 3), counter-clockwise as seen from above."""
+        """The lower corners of the car's box, shape (4, 3), metres, counter-clockwise as seen from above."""
         a, b, h, u = self.rear, self.front, self.half, self.under
         return np.array([[a, -h, u], [b, -h, u], [b, h, u], [a, h, u]])
 
 
 def frame_of(state: Mapping[str, Any]) -> FloatArray:
-    """Returns the unit vectors ahead, to the left and up of a polled state, as rows.
+    """Returns the car's unit vectors ahead, to the left and up, from its state as BeamNG reports it, as rows.
 
     Raises:
-        SimulationError: the state has no direction, as after a failure of the physics.
+        SimulationError: the state has no direction, which happens after the physics has failed.
     """
     ahead, up = np.asarray(state["dir"], float), np.asarray(state["up"], float)
     size = float(np.linalg.norm(ahead))
@@ -132,7 +133,7 @@ class RoadTracker:
         self._near = 0.0
 
     def begin(self, s: float) -> None:
-        """Starts the next search for the car at this station."""
+        """Sets the station from which the next search for the car starts."""
         self._near = s
 
     def place(self, x: float, y: float) -> tuple[float, float, float]:
@@ -171,7 +172,8 @@ def car_sample(
     since: CarSample | None,
     time: float,
 ) -> CarSample:
-    """Converts a poll to a sample at the centre of gravity; ``since`` is the previous sample."""
+    """Converts a state as BeamNG reports it to a sample at the centre of gravity; ``since`` is the previous
+    sample."""
     frame = frame_of(state)
     ahead, left, up = frame
     position = np.asarray(state["pos"], float) - np.asarray(body.node) @ frame
@@ -204,7 +206,8 @@ def car_sample(
 
 
 def interpolate_samples(a: CarSample, b: CarSample, share: float) -> CarSample:
-    """Returns the sample at the given share of the time from one sample to the next."""
+    """Returns the sample at a share (0 to 1) of the time from sample ``a`` to sample ``b``, by
+    interpolation."""
     values = [p + share * (q - p) for p, q in zip(a, b, strict=True)]
     values[4] = a.heading + share * math.remainder(b.heading - a.heading, math.tau)
     return CarSample(*values)

@@ -1,9 +1,9 @@
 """Ends calls to BeamNG that do not return.
 
-beamngpy blocks for ever if BeamNG hangs; where it has a timeout, it silently reconnects and waits again,
-without its Hello and with the answer lost. A thread therefore watches the clock: an overdue call loses its
-process and its sockets, which makes the blocked call raise an exception. A call that reconnects loses the
-next socket as well, until it gives up.
+beamngpy blocks for ever if BeamNG hangs. Its timeouts do not help: after one, it silently reconnects without
+the first message (Hello), and waits again for an answer that is lost. A thread therefore watches the time:
+when a call is overdue, it kills BeamNG's process and closes the sockets, so that the blocked call raises an
+exception. If the call reconnects, the new socket is closed as well, until the call fails.
 """
 
 import socket
@@ -16,7 +16,7 @@ TICK = 0.1  # s between two checks of the clock
 
 
 class OverdueError(Exception):
-    """Raised when a call did not return in time."""
+    """Raised when a call to BeamNG did not return in time."""
 
 
 class Watchdog:
@@ -35,7 +35,8 @@ class Watchdog:
 
     @contextmanager
     def within(self, seconds: float, doing: str) -> Iterator[None]:
-        """While this context is open, a call that takes longer than ``seconds`` is ended.
+        """Context manager: ends a call that takes longer than ``seconds``; ``doing`` describes the call in
+        messages.
 
         Raises:
             OverdueError: in place of the exception that the ended call raised.
@@ -55,7 +56,7 @@ class Watchdog:
             watcher.join()
 
     def due_in(self, seconds: float) -> None:
-        """Restarts the clock; for a loop of short calls in one context."""
+        """Restarts the time limit with this number of seconds; for loops of short calls in one context."""
         self._due = time.monotonic() + seconds
 
     def pause(self) -> None:

@@ -1,6 +1,7 @@
 """The simulator ``mujoco``.
 
-Its car is a value: ``MujocoSimulator(replace(ETK_LIKE, max_drive_acceleration=4.0))`` drives a weaker one.
+The car can be changed: ``MujocoSimulator(replace(ETK_LIKE, max_drive_acceleration=4.0))`` uses a car with
+weaker acceleration.
 """
 
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Axle, Car, Tyre

@@ -1,5 +1,5 @@
-"""Calls MuJoCo's functions: by their addresses from compiled code, through MuJoCo's bindings from plain
-Python."""
+"""Calls MuJoCo's functions: compiled code calls them by address, and plain Python calls them through MuJoCo's
+bindings."""
 
 import functools
 from typing import Any
@@ -20,12 +20,13 @@ call: Any = call_at if COMPILES else _by_bindings
 
 @functools.cache
 def functions() -> tuple[Any, ...]:
-    """Returns MuJoCo's two half steps and its kinematics function, in the form that `call` takes."""
+    """Returns MuJoCo's two half steps and its kinematics function, in the form that the function ``call``
+    takes."""
     # MuJoCo would log warnings to a file in the current folder; our simulator reports what failed.
     mujoco.set_mju_user_warning(lambda _: None)
     return addresses() if COMPILES else tuple(getattr(mujoco, name) for name in FUNCTIONS)
 
 
 def handles(model: Any, data: Any) -> tuple[Any, Any]:
-    """Returns a model and its data in the form that `call` takes."""
+    """Returns a MuJoCo model and its data in the form that the function ``call`` takes."""
     return (model._address, data._address) if COMPILES else (model, data)

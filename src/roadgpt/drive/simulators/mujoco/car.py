@@ -1,8 +1,8 @@
-"""Defines the car as a value: masses, axles, tyres, engine, brakes and stability systems.
+"""Defines the parameters of the car: masses, axles, tyres, engine, brakes and stability systems.
 
 The default is a saloon with the size, drive and acceleration of BeamNG's ETK 800 (AWD, about 220 kW). Its
 numbers are typical values, tuned until the manoeuvres in ``tests/drive/test_simulator_manoeuvres.py`` lie in
-the published ranges; they were not measured on one car.
+the published ranges; they were not measured on an actual car.
 """
 
 import math
@@ -20,8 +20,8 @@ GRAVITY = 9.81  # m/s^2
 
 @dataclass(frozen=True)
 class Tyre:
-    """Parameters of the Magic Formula, similarity method: H. B. Pacejka, Tyre and Vehicle Dynamics, 3rd ed.,
-    4.3 and 7.2."""
+    """Parameters of a tyre for the Magic Formula with the similarity method: H. B. Pacejka, Tyre and Vehicle
+    Dynamics, 3rd ed., 4.3 and 7.2."""
 
     peak_friction_x: float = 1.17
     """Longitudinal peak friction at nominal load, on a road of friction 1 (PAC2002 sets, dry: 1.1 to
@@ -38,17 +38,17 @@ class Tyre:
     stiffness_load_sensitivity: float = 0.15
     """Share of the stiffness over load that is lost when the load doubles."""
     shape_factor_x: float = 1.6
-    """C of the Magic Formula; 1.6411 in CommonRoad's PAC2002 set."""
+    """Longitudinal shape factor C of the Magic Formula; 1.6411 in CommonRoad's PAC2002 set."""
     shape_factor_y: float = 1.35
-    """C of the Magic Formula; 1.3507 in CommonRoad's set."""
+    """Lateral shape factor C of the Magic Formula; 1.3507 in CommonRoad's set."""
     curvature_factor_x: float = 0.4
-    """E of the Magic Formula; 0.464 in CommonRoad's set."""
+    """Longitudinal curvature factor E of the Magic Formula; 0.464 in CommonRoad's set."""
     curvature_factor_y: float = -0.2
-    """E of the Magic Formula; -0.0075 in CommonRoad's set."""
+    """Lateral curvature factor E of the Magic Formula; -0.0075 in CommonRoad's set."""
     relaxation_length_x: float = 0.25
-    """m, the distance over which a longitudinal slip builds up."""
+    """Distance in m over which a longitudinal slip builds up."""
     relaxation_length_y: float = 0.45
-    """m, the distance over which a slip angle builds up."""
+    """Distance in m over which a slip angle builds up."""
     camber_horizontal_shift: float = 0.03
     """Slip angle to which one rad of camber is equivalent (p_Hy3)."""
     camber_vertical_shift: float = 0.0
@@ -62,41 +62,43 @@ class Tyre:
     rolling_resistance: float = 0.011
     """Rolling resistance as a share of the load (typical 0.010 to 0.013)."""
     vertical_stiffness: float = 230e3
-    """N/m."""
+    """Vertical stiffness of the tyre, N/m."""
     vertical_damping: float = 400.0
-    """Ns/m."""
+    """Vertical damping of the tyre, Ns/m."""
 
 
 @dataclass(frozen=True)
 class Axle:
-    """One axle with two wheels."""
+    """Parameters of one axle with two wheels."""
 
     position: float
-    """m, ahead of the centre of gravity of the sprung mass."""
+    """Position of the axle in m ahead of the centre of gravity of the sprung mass; negative for the rear
+    axle."""
     tyre: Tyre
     track_width: float = 1.58
-    """m, between the centres of the two wheels."""
+    """Distance in m between the centres of the two wheels."""
     unsprung_mass: float = 42.0
-    """kg, per wheel."""
+    """Unsprung mass in kg per wheel."""
     wheel_rate: float = 30e3
     """N/m, stiffness of the spring measured at the wheel."""
     damping: float = 3200.0
     """Ns/m, damping measured at the wheel."""
     anti_roll_stiffness: float = 18e3
-    """Nm/rad of the anti-roll bar."""
+    """Stiffness of the anti-roll bar in Nm/rad."""
     roll_centre_height: float = 0.06
-    """m above the road."""
+    """Height of the roll centre in m above the road."""
     camber_gain: float = -0.4
     """rad of camber per metre of rebound, as CommonRoad's D_f: with a negative value the tops of the wheels
     move inwards in compression."""
     drive_torque_share: float = 0.5
-    """Share of the engine's torque."""
+    """Share of the engine's torque that goes to this axle, 0 to 1."""
     brake_torque_share: float = 0.5
-    """Share of the brakes' torque."""
+    """Share of the brakes' torque that goes to this axle, 0 to 1."""
 
     @property
     def inclination(self) -> float:
-        """rad by which the axes of suspension travel lean outwards at the top; it places the roll centre."""
+        """Angle in rad by which the axes of suspension travel lean outwards at the top; it determines the
+        height of the roll centre."""
         return math.atan2(self.roll_centre_height, self.track_width / 2)
 
 
@@ -107,52 +109,54 @@ class Car:
     front: Axle
     rear: Axle
     length: float = 4.70
-    """m."""
+    """Length of the car in m."""
     width: float = 1.86
-    """m, without mirrors."""
+    """Width of the car in m, without mirrors."""
     box_offset: float = -0.10
-    """m, from the centre of gravity forward to the middle of the box; negative where the middle is behind."""
+    """Distance in m from the centre of gravity forward to the middle of the car's box; negative if the middle
+    is behind."""
     sprung_mass: float = 1532.0
-    """kg, with one person on board."""
+    """Sprung mass in kg, with one person on board."""
     roll_inertia: float = 560.0
-    """kg m^2, of the sprung mass about its own centre of gravity."""
+    """Roll inertia in kg m^2 of the sprung mass about its own centre of gravity."""
     pitch_inertia: float = 2300.0
-    """kg m^2, of the sprung mass about its own centre of gravity."""
+    """Pitch inertia in kg m^2 of the sprung mass about its own centre of gravity."""
     yaw_inertia: float = 2450.0
-    """kg m^2, of the sprung mass about its own centre of gravity."""
+    """Yaw inertia in kg m^2 of the sprung mass about its own centre of gravity."""
     cg_height: float = 0.56
-    """m, centre of gravity of the sprung mass above the road at rest."""
+    """Height in m of the sprung mass's centre of gravity above the road, at rest."""
     ground_clearance: float = 0.14
-    """m, underbody above the road at rest."""
+    """Height in m of the underbody above the road, at rest."""
     overall_height: float = 1.44
-    """m above the road."""
+    """Height in m of the car's roof above the road."""
     unloaded_radius: float = 0.33
-    """m, radius of a tyre without load."""
+    """Radius in m of a tyre without load."""
     wheel_inertia: float = 1.2
-    """kg m^2, about the axle, driveline included."""
+    """Inertia in kg m^2 of a wheel about its axle, driveline included."""
     tyre_width: float = 0.225
-    """m."""
+    """Width of a tyre in m."""
     bump_travel: float = 0.09
-    """m of suspension travel in either direction before the bump stops."""
+    """Suspension travel in m, in either direction, before the bump stops."""
     bump_stop_rate: float = 250e3
-    """N/m, stiffness of the bump stops."""
+    """Stiffness of the bump stops in N/m."""
     drag_area: float = 0.62
-    """m^2, drag coefficient times frontal area."""
+    """Drag coefficient times frontal area, m^2."""
     max_power: float = 125e3
-    """W at the wheels, mean of a run through the gears: of 220 kW, 85 % pass the driveline, and gear ratios,
-    shifts and turbo lag leave two thirds of that."""
+    """Power in W at the wheels, averaged over a run through the gears: 85 % of the engine's 220 kW pass the
+    driveline, and gear ratios, shifts and turbo lag leave two thirds of that."""
     max_drive_acceleration: float = 6.8
-    """m/s^2, the limit of the engine in first gear (BeamNG recordings of an ETK 800: 6.7 to 7.2)."""
+    """Largest acceleration in m/s^2 that the engine can produce, in first gear (BeamNG recordings of an ETK
+    800: 6.7 to 7.2)."""
     max_brake_deceleration: float = 13.0
-    """m/s^2, the limit of the brakes with unlimited tyre friction."""
+    """Largest deceleration in m/s^2 that the brakes can produce if the tyres have unlimited friction."""
     throttle_time_constant: float = 0.10
-    """s."""
+    """Time constant in s of the response to the throttle."""
     brake_time_constant: float = 0.06
-    """s."""
+    """Time constant in s of the response to the brake."""
     max_steer_angle: float = 0.62
-    """rad at the front wheels."""
+    """Steering angle at full lock, in rad at the front wheels."""
     max_steer_rate: float = 0.8
-    """rad/s at the front wheels."""
+    """Largest steering rate, in rad/s at the front wheels."""
     ackermann: float = 1.0
     """Ackermann fraction: 1 turns the inner wheel as far as geometry requires, 0 keeps both wheels
     parallel."""
@@ -167,17 +171,17 @@ class Car:
 
     @property
     def mass(self) -> float:
-        """kg, of the whole car."""
+        """Mass of the whole car in kg."""
         return self.sprung_mass + 2 * (self.front.unsprung_mass + self.rear.unsprung_mass)
 
     @property
     def wheelbase(self) -> float:
-        """m."""
+        """Distance between the axles in m."""
         return self.front.position - self.rear.position
 
     @property
     def box(self) -> Box:
-        """The outline of the car, its front wheels, and their lock angle."""
+        """The outline of the car, and the position and lock angle of its front wheels."""
         return Box(
             self.length,
             self.width,
@@ -218,8 +222,8 @@ ETK_LIKE = Car(
 
 
 def tables(car: Car) -> tuple[Any, Any]:
-    """Returns the car as the inner loop reads it: one record of the car, and two of its axles (front,
-    rear)."""
+    """Returns the car's parameters in the form that the inner loop reads: one record for the car, and two
+    records for its axles (front, rear)."""
     body = _numbers(car) | {
         "mass": car.mass,
         "wheelbase": car.wheelbase,

@@ -1,4 +1,4 @@
-"""The systems between the driver's pedals and the wheels: ABS, traction control and a simple ESC."""
+"""Models the systems between the driver's pedals and the wheels: ABS, traction control and a simple ESC."""
 
 import math
 from typing import Any
@@ -19,8 +19,8 @@ FRICTION_USED = 0.95  # share of the friction that the expected yaw rate may nee
 
 @inlined
 def slip_valve(opening: float, slip: float, limit: float, dt: float) -> float:
-    """Returns the share of the torque that passes after a time step; it falls while the slip exceeds its
-    limit."""
+    """Returns the share of the torque, 0 to 1, that ABS or traction control lets pass after a time step of
+    ``dt`` seconds; the share decreases while ``slip`` exceeds ``limit``."""
     if limit <= 0.0:
         return 1.0
     rate = 20.0 * (limit - slip) / limit
@@ -32,8 +32,8 @@ def slip_valve(opening: float, slip: float, limit: float, dt: float) -> float:
 def expected_yaw_rate(
     car: Any, friction: float, speed: float, steer: float, before: float, dt: float
 ) -> float:
-    """Returns the yaw rate in rad/s that corresponds to the steering angle, limited by the friction, with a
-    lag."""
+    """Returns the yaw rate in rad/s that the ESC expects for the steering angle, limited by the friction and
+    delayed by a lag; ``before`` is the value one time step earlier."""
     wanted = speed * math.tan(steer) / (car.wheelbase + car.esc_understeer_gradient * speed * speed)
     most = FRICTION_USED * friction * 9.81 / max(speed, 1.0)
     wanted = min(max(wanted, -most), most)
@@ -46,7 +46,7 @@ def esc_torques(
     car: Any, speed: float, yaw_rate: float, expected: float
 ) -> tuple[float, float, float, float, float]:
     """Returns the ESC's braking torques in Nm (left front, right front, left rear, right rear) and the share
-    of throttle that it leaves."""
+    of the throttle, 0 to 1, that the ESC allows."""
     excess = yaw_rate - expected
     beyond = abs(excess) - TOLERANCE - TOLERANCE_SHARE * abs(expected)
     if car.esc_gain <= 0.0 or speed < SLOWEST_ESC or beyond <= 0.0:

@@ -25,7 +25,7 @@ _POSE = list(map(_NAMES.index, POSE))
 
 
 class DriveMonitor:
-    """Watches one drive along a road, from its first step on."""
+    """Watches one drive along a road, from its first step to its end."""
 
     def __init__(self, road: "Road", world: "World", box: Box, keep_driving: bool = False) -> None:
         """Prepares the checks.

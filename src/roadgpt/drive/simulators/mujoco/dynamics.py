@@ -42,7 +42,7 @@ WHEEL_STATE = 8
 
 
 class MujocoHandles(NamedTuple):
-    """MuJoCo as compiled code uses it: functions, model and data, and views of the data's arrays."""
+    """What compiled code needs of MuJoCo: functions, model and data, and views of the data's arrays."""
 
     first: Any
     second: Any
@@ -59,28 +59,28 @@ class MujocoHandles(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """The surface under the wheels."""
+    """The surface under the wheels: a road or a plane."""
 
     sampled: SampledRoad
     edge: float
-    """m from the centre line to where the ground ends."""
+    """Distance in m from the centre line to the edge of the ground."""
     friction: float
     lane: LanePolygon
 
 
 class CarState(NamedTuple):
-    """The state of the car beside MuJoCo's own, and working memory."""
+    """The parts of the car's state that MuJoCo does not store, and working memory."""
 
     state: FloatArray
-    """Shape (STATE,)."""
+    """State of the whole car, shape (STATE,)."""
     wheels: FloatArray
-    """Shape (4, WHEEL_STATE)."""
+    """State of each wheel, shape (4, WHEEL_STATE)."""
     hull: FloatArray
-    """Shape (n, 3): points of the hull, which never change."""
+    """Constant points of the hull, shape (n, 3), metres."""
     box: FloatArray
-    """Shape (4, 2)."""
+    """Corners of the car's box in plan, shape (4, 2), metres."""
     scratch: FloatArray
-    """Shape (2, 16, 2)."""
+    """Working memory for clipping polygons, shape (2, 16, 2)."""
 
 
 @inlined
@@ -94,7 +94,7 @@ def step_once(
     throttle: float,
     brake: float,
 ) -> None:
-    """Simulates 2 ms with these commands (rad, 0..1, 0..1)."""
+    """Simulates 2 ms with these commands: ``steer`` in rad, ``throttle`` and ``brake`` from 0 to 1."""
     state = car_state.state
     _steer_and_pedals(mj, car, axles, state, steer, throttle, brake)
     call(mj.first, mj.model, mj.data)

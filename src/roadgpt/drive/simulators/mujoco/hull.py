@@ -1,7 +1,7 @@
-"""Contact forces between the car's body and the road, at points of the hull.
+"""Computes contact forces between the car's body and the road, at points of the hull.
 
-They matter when wheels have left the road: the sill then rests on the edge, and the car slides or overturns.
-Impacts are modelled as soft springs; their forces are not validated.
+These forces matter when wheels have left the road: the sill then rests on the road's edge, and the car slides
+or overturns. Impacts are modelled as soft springs; their forces are not validated.
 """
 
 import math
@@ -40,7 +40,8 @@ def hull_points(car: Car) -> FloatArray:
 
 @inlined
 def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray) -> None:
-    """Adds the forces on the hull's points to those on the body (moments in the world's axes)."""
+    """Adds the contact forces at the hull's points to the forces and moments on the body; moments are in
+    world axes."""
     qfrc = mj.qfrc
     sampled = ground.sampled
     m = mj.xmat[BODY]

@@ -2,8 +2,8 @@
 
     body (6) --- slide along the suspension (4) --- steering hinge (2, front) --- wheel spin (4)
 
-Springs, dampers, tyres, brakes, engine and air are computed in `dynamics`; MuJoCo has no contacts and no
-constraints to solve here. The wheels are numbered left front, right front, left rear, right rear.
+Springs, dampers, tyres, brakes, engine and air drag are computed in ``dynamics``; the MuJoCo model has no
+contacts and no constraints. The wheels are numbered left front, right front, left rear, right rear.
 """
 
 import math
@@ -33,7 +33,7 @@ _DISABLED = """constraint equality frictionloss limit contact spring damper clam
 
 
 def model_of(car: Car) -> Any:
-    """Returns the compiled MuJoCo model of the car's masses and positions."""
+    """Returns the compiled MuJoCo model with the masses and positions of the car's parts."""
     flags = " ".join(f'{name}="disable"' for name in _DISABLED.split())
     wheels = "".join(
         _wheel(car, axle, name, side)

@@ -33,8 +33,8 @@ class MujocoSimulator:
     def simulate(
         self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
     ) -> Drive:
-        """Implements `roadgpt.drive.Simulator.simulate`; only the driver uses the seed, the physics has no
-        random numbers."""
+        """Implements `roadgpt.drive.Simulator.simulate`; the seed is only passed to the driver, because the
+        physics uses no random numbers."""
         guard, camera = DriverGuard(driver), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
         sensor = None if camera is None else CameraSensor(camera, road, world)

@@ -35,19 +35,20 @@ def tyre_forces(
     slip_y: float,
     dt: float,
 ) -> tuple[float, float, float, float]:
-    """Returns the forces along and across the tyre, and its slips after a time step.
+    """Returns the forces on the tyre in its longitudinal and lateral direction, and its slips after a time
+    step.
 
     Args:
         axle: record with the tyre's parameters and its nominal load.
         friction: friction of the road.
         load: N, vertical.
         camber: rad, positive when the top leans to the right.
-        forward: m/s of the contact point along the wheel.
-        across: m/s of the contact point to the left.
+        forward: speed of the contact point along the wheel, m/s.
+        across: speed of the contact point to the left, m/s.
         rolling: m/s, wheel speed times radius.
-        slip_x: longitudinal slip one step before (positive: pushes forward).
-        slip_y: lateral slip one step before (positive: pushes to the left).
-        dt: s.
+        slip_x: longitudinal slip one step before (positive: the tyre's force points forward).
+        slip_y: lateral slip one step before (positive: the tyre's force points to the left).
+        dt: length of the time step, s.
 
     Returns:
         (N forward, N to the left, slip_x, slip_y)

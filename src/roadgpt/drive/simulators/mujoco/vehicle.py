@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 CONTROL = STEPS * STEP
-"""s between two answers of the driver."""
+"""Seconds between two answers of the driver."""
 SETTLED = 2e-4  # m/s and rad/s, below which all parts count as at rest
 LONGEST_SETTLING = 150  # control steps
 
@@ -39,7 +39,7 @@ _PLACE = {name: place for place, name in enumerate(COLUMNS)}
 
 
 class Vehicle:
-    """One car on one ground; it changes as it moves."""
+    """One car on a road or a plane; its state changes as it moves."""
 
     def __init__(
         self, car: Car, sampled: SampledRoad, lane: LanePolygon, edge: float, friction: float
@@ -63,7 +63,7 @@ class Vehicle:
 
     @classmethod
     def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
-        """Returns a car on a road with the world's lanes, shoulder and friction."""
+        """Returns a car on a road, with the lanes, shoulder and friction of the world."""
         edge = world.lane_width + world.verge
         return cls(car, sample_road(road), LanePolygon.along(road, world), edge, world.friction)
 
@@ -98,12 +98,13 @@ class Vehicle:
         self.row[_PLACE["ax"]] = self.row[_PLACE["ay"]] = 0.0
 
     def move(self, steer: float, throttle: float, brake: float) -> None:
-        """Runs one control step of 20 ms with these commands (rad, 0..1, 0..1)."""
+        """Runs one control step of 20 ms with these commands: ``steer`` in rad, ``throttle`` and ``brake``
+        from 0 to 1."""
         self._move(steer, throttle, brake, STEPS)
         self.row[0] = round(self._data.time, 9)
 
     def see(self) -> dict[str, float]:
-        """Returns the row by column name."""
+        """Returns the current row of a Drive, as values by column name."""
         return dict(zip(COLUMNS, self.row.tolist(), strict=True))
 
     def _move(self, steer: float, throttle: float, brake: float, steps: int) -> None:
