@@ -237,7 +237,9 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
 
 def inside(least: float) -> float:
-    """Returns the metres to draw so that at least ``least`` are measured between the turns at the ends."""
+    """Returns the design length of a straight, metres, with which at least ``least`` are measured on the
+    road.
+    """
     return 1.05 * least + 3.0
 
 

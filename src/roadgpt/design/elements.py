@@ -60,7 +60,7 @@ def as_written(element: Element) -> Element:
 
 
 def segments_of_turn(angle: float) -> int:
-    """Returns how many of RoadGPT's segments a turn of so many degrees takes."""
+    """Returns the number of RoadGPT segments into which a turn of ``angle`` degrees is cut."""
     return max(1, ceil(angle / MAX_TURN - 1e-9))
 
 

@@ -41,11 +41,12 @@ def eased(
     """Returns elements with joints moved inside rows of straights, and narrow grades kept on the whole.
 
     Args:
-        drawn: the elements of a draft in driving order; a straight of several slopes is several of them.
-        limit: percent that no incline may leave.
-        pace: radii that the speeds ask for.
-        ease: share of comfort that is tried first.
-        bumps: crests and dips were asked for, so that the last resort is what wheels can follow.
+        drawn: the elements of a draft in driving order; a straight of several slopes is several elements.
+        limit: range of inclines that are allowed, in percent.
+        pace: vertical radii that the expected speeds require.
+        ease: share of the comfortable vertical radius that is tried first, from 0 to 1.
+        bumps: whether crests and dips were requested; then, as a last resort, radii may be as small as the
+            wheels can follow.
     """
     out = [*drawn]
     starts = np.cumsum([0.0, *(sum(element.length for element in own) for own in drawn)])

@@ -144,12 +144,13 @@ def drawn_heights(
 
     Args:
         plan: elements of a draft, in driving order.
-        outline: what was asked for.
-        windows: the grades that it allows.
-        rng: source of chance.
-        pace: the vertical radii that the speeds on this plan ask for.
-        ease: share of comfort that changes of grade leave room for; 0 is what the rule allows.
-        bumps: crests or dips were asked for.
+        outline: the requirements.
+        windows: the grades that the requirements allow.
+        rng: source of randomness.
+        pace: the vertical radii that the expected speeds on this plan require.
+        ease: vertical radii as a share of the comfortable ones, from 0 (only as large as the rule
+            requires) to 1 (fully comfortable).
+        bumps: whether crests or dips were requested.
     """
     is_hilly = bool(outline.hills and outline.hills.lo > 0)
     if is_hilly:

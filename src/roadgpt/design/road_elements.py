@@ -165,5 +165,5 @@ def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:
 
 
 def is_turn(degrees: float) -> bool:
-    """Returns whether a change of heading of so many degrees is seen as a turn."""
+    """Returns whether a change of heading by ``degrees`` is large enough to be seen as a turn."""
     return abs(degrees) >= LEAST_TURN

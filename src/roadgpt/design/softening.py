@@ -62,7 +62,7 @@ def softened_values(
 
 
 def climbing(grades: np.ndarray, lengths: np.ndarray, limits: Sequence[Range], metres: float) -> np.ndarray:
-    """Returns grades shifted alike, each as far as its limits allow, until they climb so many metres."""
+    """Returns grades shifted alike, each as far as its limits allow, until the total climb is ``metres``."""
     least, most = np.array([r.lo for r in limits]), np.array([r.hi for r in limits])
     down, up = -MOST_SHIFT, MOST_SHIFT
     for _ in range(BISECTIONS):

@@ -120,15 +120,15 @@ def made_to_fit(
     pace: Pace,
     roomier: float = 1.0,
 ) -> list[float]:
-    """Returns grades of segments, moved until the parabolas that the rule asks for fit.
+    """Returns grades of segments, moved until the parabolas that the rule requires fit.
 
     Args:
         grades: percent, of each segment.
-        lengths: metres.
-        runs: a number for each segment; neighbours of one number are one slope.
+        lengths: of the segments, metres.
+        runs: a number for each segment; neighbours with the same number form one slope.
         bounds: percent, least and greatest grade of each segment.
-        pace: the radii that the speeds ask for.
-        roomier: so many times the parabolas are to fit.
+        pace: the vertical radii that the expected speeds require.
+        roomier: factor on the required radii, to leave more room than the rule requires.
     """
     rows = [[*row] for _, row in groupby(range(len(grades)), key=lambda i: runs[i])]
     own = [sum(lengths[i] for i in row) for row in rows]
@@ -195,8 +195,8 @@ def joined(
 
     Args:
         segments: in driving order.
-        pace: the radii that the speeds ask for.
-        ease: share of comfort; 0 is what the rule allows.
+        pace: the vertical radii that the expected speeds require.
+        ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
         opened: indices of the segments whose parabola is decided anew; None: of those without a radius.
     """
     out, at, own = [], 0.0, set[int]()

@@ -1,4 +1,4 @@
-"""Puts clauses together: what one leaves out is taken from those around it. Verb: ``gathered``."""
+"""Combines clauses; what one omits is taken from its neighbours. Main function: ``gathered``."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Reads limits out of what is not wanted: 'no steeper than 6 %'. Verb: ``bounded``."""
+"""Reads limits from phrases with 'no' or 'not', such as 'no steeper than 6 %'. Main function: ``bounded``."""
 
 from dataclasses import replace
 

@@ -1,8 +1,8 @@
-"""Reads change requests by rules: words -> EditRequest. Verb: ``read_request``.
+"""Reads change requests by rules: words -> EditRequest. Main function: ``read_request``.
 
-The words are cut into clauses at commas and at 'and'. Each clause names a place and what is to be different
-there; what it leaves out is taken from the clause before, or from the one behind: 'make the first and the
-last turn sharper', 'make it longer, too'.
+The words are cut into clauses at commas and at 'and'. Each clause names a place and the change to make there;
+what a clause omits is taken from the clause before or after it: 'make the first and the last turn sharper',
+'make it longer, too'.
 """
 
 from collections.abc import Sequence

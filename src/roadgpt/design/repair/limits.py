@@ -1,7 +1,7 @@
-"""The limits that lengths and turns are held to, as rows: a . lengths + b . |turns| <= c, all in metres.
+"""The limits on lengths and turns, as rows of a matrix: a . lengths + b . |turns| <= c, all in metres.
 
-A radius is one of them: a turn of ``turn`` radians over ``length`` metres, whose curvature is ``peak`` times
-as large at its tightest place as on average, has a least radius of   length / (peak * turn).
+A radius becomes such a limit: a turn of ``turn`` radians over ``length`` metres, whose curvature is ``peak``
+times as large at its tightest place as on average, has a least radius of   length / (peak * turn).
 """
 
 from collections.abc import Sequence
@@ -32,17 +32,17 @@ class Margins(NamedTuple):
     """Distances that a repaired road keeps from the limits of the rules."""
 
     radius: float = 1.045
-    """Of the least one: the competition's spline cuts corners."""
+    """Factor on the least radius that the rules allow, because the competition's spline cuts corners."""
     seen: float = 12.0
-    """Degrees of the least turn."""
+    """Least angle of a turn, in degrees."""
     apart: float = 15.5
-    """Metres between two turns of one hand."""
+    """Least distance between two successive turns to the same side, in metres."""
     clear: float = 1.1
     """Metres between two stretches of the road, more than it is wide."""
     edge: float = 0.6
     """Metres between the road and the border of the map."""
     promise: float = 0.04
-    """Of a length or radius that was promised."""
+    """Margin inside a required range of lengths or radii, as a share of its bounds."""
 
 
 MARGINS = (Margins(), Margins(1.07, 13.5, 18.0, 1.5, 1.0, 0.1), Margins(1.12, 15.0, 22.0, 2.5, 1.5, 0.2))
@@ -67,14 +67,16 @@ class Rows:
         self.most.append(most)
 
     def within(self, members: Sequence[int], span: Range | None) -> None:
-        """Adds the limit that the lengths of some segments add up to a sum in the range, metres."""
+        """Adds the constraint that the total length of the given segments lies within a range, in metres."""
         if span and span.lo > 0:
             self.add(dict.fromkeys(members, -1.0), {}, -span.lo)
         if span and span.hi < inf:
             self.add(dict.fromkeys(members, 1.0), {}, span.hi)
 
     def turned(self, members: Sequence[int], span: Range | None) -> None:
-        """Adds the limit that the turns of some segments add up to a sum in the range, degrees."""
+        """Adds the constraint that the total turning angle of the given segments lies within a range, in
+        degrees.
+        """
         if span and span.lo > 0:
             self.add({}, dict.fromkeys(members, -METRES_PER_RADIAN), -METRES_PER_RADIAN * radians(span.lo))
         if span and span.hi < inf:

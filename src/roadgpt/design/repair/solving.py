@@ -1,8 +1,8 @@
 """The smallest change of lengths and turns that keeps all limits: least squares with penalties.
 
-What is made small is the sum of squares of all relative changes, each weighed so that a few larger ones are
-no dearer than many small ones; what breaks a limit is added to it, in metres, ever more heavily. Every step
-solves for all lengths, all turns and the place on the map at once (Levenberg and Marquardt).
+The objective is a weighted sum of squared relative changes, with weights that make a few larger changes cost
+no more than many small ones, plus a penalty for each violated limit, in metres, whose weight grows from round
+to round. Each step solves for all lengths, all turns and the place on the map at once (Levenberg-Marquardt).
 """
 
 from math import radians
@@ -63,7 +63,7 @@ class Solution(NamedTuple):
     cost: float
     broken: float
     steps: int
-    """That it took."""
+    """Number of solver steps that were taken."""
 
 
 def solved(aim: Aim) -> Solution | None:
