@@ -10,15 +10,15 @@ class DesignReport(Frozen):
     """A report of one draft by a designer that asks a language model."""
 
     rounds: int = 0
-    """Questions that it took."""
+    """Number of questions that the model was asked."""
     changes: tuple[str, ...] = ()
     """What was changed of the proposal, one sentence each."""
     tokens: Usage = Usage()
     seconds: float = 0.0
-    """That the model took."""
+    """Time that the model took, in seconds."""
     cost: float | None = None
-    """USD; None: the price is not known."""
+    """Cost in USD; None if the price is not known."""
     model: str = ""
-    """As the server calls it."""
+    """Name of the model, as the server gives it."""
     proposed: dict[str, Any] | None = None
     """The model's own design, before any change, in RoadGPT's format."""

@@ -35,9 +35,9 @@ class PlanShape(NamedTuple):
     metres: Complex
     """Every ``STEP`` metres from the start; ``(MOST,)`` or ``(m, MOST)``, 0 beyond the end."""
     reach: NDArray[np.intp]
-    """How many of ``metres`` lie on the road."""
+    """Number of points of ``metres`` that lie on the road."""
     centres: Complex
-    """Of the first 1, 2, ... of ``metres``: their mean."""
+    """Mean of the first 1, 2, ... points of ``metres``."""
     spreads: Array
     """Of the first 1, 2, ... of ``metres``: root mean square of their distances from that."""
 

@@ -28,9 +28,9 @@ class Target:
     """Places on the road, as a person names them: 'the second left turn', 'turns 2 to 4', 'the end'."""
 
     noun: Noun | None = None
-    """None where only a number was said: 'the second'."""
+    """None if only a number was given: 'the second'."""
     kind: Kind | None = None
-    """Of a turn: 'the hairpin'."""
+    """Kind of turn: 'the hairpin'."""
     numbers: tuple[int, ...] = ()
     """Counted from 1, from the last backwards from -1; empty for all that are meant."""
     middle: bool = False
@@ -92,18 +92,18 @@ class Change:
     to: float | None = None
     times: float | None = None
     bound: Literal[-1, 0, 1] = 0
-    """-1: ``to`` is the most that it may be, 1: the least."""
+    """-1: ``to`` is an upper limit; 1: ``to`` is a lower limit; 0: ``to`` is the value itself."""
     dose: float = 1.0
     """How much is meant where no number was said: 'slightly' is less than 1, 'much' more."""
     way: Way | None = None
     side: Side | None = None
-    """None for the other one."""
+    """New side; None for the opposite of the present one."""
     kind: Kind | None = None
     sharpness: Sharpness | None = None
     count: int = 1
     place: Place | None = None
     degrees: float | None = None
-    """Of a turn that is added."""
+    """Angle of a turn that is added."""
     radius: float | None = None
     length: float | None = None
     grade: float | None = None

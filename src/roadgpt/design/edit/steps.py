@@ -52,7 +52,7 @@ class EditStep(Protocol):
 
 
 def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], RoadElement]) -> RoadElements:
-    """Returns the elements, of which the one of that name is changed."""
+    """Returns the elements, with ``change`` applied to the element called ``name``."""
     return tuple(change(element) if element.name == name else element for element in elements)
 
 
@@ -187,7 +187,7 @@ def turn_segments(
 
 
 def stretched(element: RoadElement, more: float) -> RoadElement:
-    """Returns a gap with ``more`` metres more of straight road."""
+    """Returns a gap with its straight road lengthened by ``more`` metres."""
     straight = [i for i, s in enumerate(element.segments) if not s.turn_degrees]
     if not straight:
         new = Segment(distance=max(round(more * TENTH) / TENTH, LEAST), direction="straight")
@@ -220,7 +220,7 @@ class Mirror:
     """Mirrors some elements, or the whole road."""
 
     names: frozenset[str] | None = None
-    """None: of all elements."""
+    """Names of the elements to mirror; None for all elements."""
     goals: tuple[Goal, ...] = ()
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
@@ -271,7 +271,7 @@ class Insert:
     split: str = ""
     """The gap that is split in two first; its second half is what the new elements stand before."""
     index: int = 0
-    """Segments of its first half; 0 halves the longest one."""
+    """Number of segments in the first half of the split gap; 0 halves the gap's longest segment."""
 
     def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
         """Returns the elements with the new ones in their place, on the slope that is aimed at."""

@@ -27,11 +27,11 @@ class PlanPolyline(NamedTuple):
     """A plan as steps of a polyline."""
 
     owner: NDArray[np.intp]
-    """Segment of every step, ``(k,)``."""
+    """Index of the segment that each step belongs to, ``(k,)``."""
     share: Array
-    """Of its segment's turn that is behind in the middle of a step, ``(k,)``."""
+    """Share of its segment's turn that is completed in the middle of each step, ``(k,)``."""
     peak: Array
-    """Of every segment: its largest curvature times its length, over its turn; 0 of straights."""
+    """Ratio of the largest to the mean curvature of each segment; 0 for straights."""
 
     def walk(self, lengths: Array, turns: Array, heading: float) -> tuple[Complex, Complex]:
         """Returns points ``(k + 1,)`` as x + iy from the origin, and every step.
