@@ -1,6 +1,6 @@
 """Computes the features by which the SBFT competition maps tests: two of the road, three of the drive.
 
-    MAX_CURV   1/m: largest curvature of circles through interpolated points i, i+2, i+4 (without the last)
+    MAX_CURV   1/m: largest curvature of circles through points i, i+2, i+4; the last window is left out
     DIR_COV    share of directions that occur: angles to north, in 25 bins from 0 to 360 degrees
     STD_SA     degrees: standard deviation of the steering wheel's angle
     MEAN_LP, MAX_LP    m: mean and largest distance from the edge of the lane (``oob_distance``)
