@@ -17,7 +17,7 @@ HEADINGS = {
         "show": "Summarise a run, a folder of runs or a campaign; watch a campaign.",
         "view": "View a road in 3-D with a replay of its drive, or draw pictures.",
         "film": "Film drives: from behind the car, from its hood, or two side by side.",
-        "compare": "Measure how alike two roads are, and draw both.",
+        "compare": "Measure how similar two roads are, and draw both.",
     },
     "Search": {
         "campaign": "Search for failures, or make thousands of roads, with parallel workers.",

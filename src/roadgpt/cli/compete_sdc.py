@@ -27,7 +27,7 @@ EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
 )
 @quiet_option
 def sdc_command(port: int, host: str, quiet: bool) -> None:
-    """Serve test selection and prioritisation over gRPC, by how likely the car is to leave its lane.
+    """Serve test selection and prioritisation over gRPC, ranked by how likely the car is to leave its lane.
 
     The likelihood is estimated from how far the driver's planned line leaves the lane, and from how the road
     bends; nothing is driven. The estimate learns from outcomes that the evaluator sends. Ctrl-C ends the

@@ -311,7 +311,7 @@ CHAT = (
         "--max-cost",
         "max_cost",
         None,
-        "Stop when all roads together have cost this many USD.",
+        "Stop when the language model has cost this many USD in all.",
         measure(0, 1e6, "USD", above=True),
         1.0,
     ),

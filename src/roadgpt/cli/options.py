@@ -93,8 +93,8 @@ driver_again_option = under(
         type=driver_again,
         metavar="FILE.py:CLASS",
         default=None,
-        help="The driver's file. Repeat it here if the folder names one: for safety, code is not run just "
-        "because a folder names it.",
+        help="The driver's file. Give it again if the run used a driver from a file: for safety, code "
+        "that only a folder names is never run.",
     ),
 )
 

@@ -20,14 +20,16 @@ ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
 NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
 
 choice_options: Decorator = together(
-    click.option("--failures", is_flag=True, help="Use only the roads in a folder on which the car failed."),
+    click.option(
+        "--failures", is_flag=True, help="From a folder, use only the roads on which the car failed."
+    ),
     click.option(
         "--faults", is_flag=True, help="Use only one typical failure of each distinct fault in a folder."
     ),
     click.option(
         "--worst",
         is_flag=True,
-        help="Use only the road in a folder with the smallest margin.",
+        help="From a folder, use only the road with the smallest margin to failure.",
     ),
 )
 

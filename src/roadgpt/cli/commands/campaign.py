@@ -66,8 +66,8 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "j
         multiple=True,
         default=("beamng_like",),
         show_default=True,
-        help="Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With FILE.toml: allows "
-        "the code of this driver, which FILE.toml names, to be run.",
+        help="Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With FILE.toml: "
+        "permits running the code of a driver that FILE.toml names.",
         cls=SettableOption,
         table="run",
         key="driver",

@@ -51,7 +51,7 @@ def command(
     geometry: Any,
     **rest: Any,
 ) -> None:
-    """Measure how alike two roads are, and draw one above the other, as in RoadGPT's thesis.
+    """Measure how similar two roads are, and plot one above the other, as in RoadGPT's thesis.
 
     A and B are runs, tests of campaigns or road files. A similarity is a number from 0 (nothing in
     common) to 1 (identical). Moving or rotating a road does not change it.

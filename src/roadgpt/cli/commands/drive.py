@@ -79,10 +79,11 @@ def command(
     points at the same place, or no room for a car. With --rules sbft every broken rule makes a road INVALID,
     as in the competition. The exit status is 0 if every road could be read.
 
-    With --again, give a campaign and the numbers of its tests in results.csv, such as CAMPAIGN 17 or
-    CAMPAIGN/c02/17. Road, world, driver and seed are taken from the test, so the drive should be identical
-    byte for byte; the command says so if it is not. Each test is written into a run folder of its own. To
-    look at a test without driving it again, give CAMPAIGN/c02/17 to show, view, film or export.
+    With --again, give a campaign followed by test numbers from its results.csv, such as CAMPAIGN 17, or a
+    test such as CAMPAIGN/c02/17. Road, world, driver and seed are taken from the test, so the drive should
+    be identical byte for byte; the command says so if it is not. Each test is written into a run folder of
+    its own. To look at a test without driving it again, use roadgpt show, view, film or export with
+    CAMPAIGN/c02/17.
 
     \b
     roadgpt drive my_road.json --friction 0.6

@@ -58,9 +58,8 @@ def command(
     """Change a road with a request in plain words.
 
     RUN is a run, a folder that holds one run, or a file with a RoadGPT design. The changed road is written
-    into a new folder. Every number that the words do not concern stays the same. World, driver and rules are
-    those of the run; --map-size applies only to a design
-    from a file.
+    into a new folder. Everything that the request does not refer to stays the same. World, driver and rules
+    are those of the run; --map-size applies only to a design from a file.
 
     \b
     roadgpt edit my-roads/runs/0001 "make the second turn sharper and the end downhill"

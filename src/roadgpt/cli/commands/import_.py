@@ -39,9 +39,9 @@ ROUND = 50.0  # m, to which a map's size is rounded up
 def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, quiet: bool) -> None:
     """Read a road from an OpenDRIVE file, write it as a road file, and describe it in words.
 
-    Lines, arcs, spirals, poly3, paramPoly3, elevation and widths are read. The road's centre line is the
-    inner edge of the lane that is driven. A road that is off the map is moved onto it. The file can then be
-    checked, driven and viewed as any other road.
+    Lines, arcs, spirals, poly3, paramPoly3, elevation and widths are read. The inner edge of the driving
+    lane becomes the centre line of the imported road. A road that is off the map is moved onto it. The file
+    can then be checked, driven and viewed as any other road.
 
     \b
     roadgpt import town.xodr --road 12

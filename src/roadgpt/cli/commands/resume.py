@@ -25,8 +25,8 @@ SERVER = next(flag for flag in CHAT if flag.field == "base_url")
     SERVER.flag,
     SERVER.field,
     default=None,
-    help="Address of the server. Repeat it here if the campaign names one: for safety, no API key is sent to "
-    "an address just because a folder names it.",
+    help="Address of the server. Give it again if the campaign used one: for safety, no API key is sent to "
+    "an address that only a folder names.",
 )
 @fault_options
 @junit_option

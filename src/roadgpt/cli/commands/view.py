@@ -72,8 +72,8 @@ def command(
     ROAD is a RoadGPT design, an SBFT test, a list of points or an OpenDRIVE file. RUN is a run, such as
     DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, such as CAMPAIGN/c01/17; its drive is shown.
 
-    Without --format, writes one page that needs no server and no network. With --format, draws each road from
-    above, its height, curvature and grade into a new folder OUT/NAME. Prints the names of the files.
+    Without --format, writes one page that needs no server and no network. With --format, saves pictures of
+    each road (top view, height, curvature and grade) in a new folder OUT/NAME. Prints the names of the files.
 
     \b
     roadgpt view roadgpt-runs/hairpins-7/runs/0001 --open
