@@ -128,18 +128,23 @@ class Server:
         uvicorn runs in a thread of its own, since it would take a KeyboardInterrupt that is raised within a
         request for an error of the application, and go on.
         """
-        Thread(target=self._run, daemon=True).start()
+        thread = Thread(target=self._run, daemon=True)
         try:
+            thread.start()
             # not Thread.join, which takes a thread for ended when a KeyboardInterrupt is raised in it
             while not self._has_ended.wait(0.5):
                 pass
         finally:
             self.stop()
-            self._has_ended.wait(LONGEST_END)
+            if thread.ident is not None:
+                self._has_ended.wait(LONGEST_END)
 
     def _run(self) -> None:
         try:
             self._uvicorn.run([self._socket])
+        except OSError:
+            if not self._uvicorn.should_exit:  # else the socket was closed before uvicorn had begun
+                raise
         finally:
             self._has_ended.set()
 
