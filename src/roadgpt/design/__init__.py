@@ -1,4 +1,4 @@
-"""Drafts: makes Designs from Briefs, with geometry and rules at hand. Verb: ``draft``.
+"""Drafts: makes Designs from Briefs, with geometry and rules at hand. Main function: ``draft``.
 
 A designer is a class without arguments, or one that takes ChatSettings as ``settings``, whose objects have
 one method:

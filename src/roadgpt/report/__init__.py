@@ -1,4 +1,4 @@
-"""Draws pictures of Runs and campaigns, and writes pages and films. Verb: ``draw``.
+"""Draws pictures of Runs and campaigns, and writes pages and films. Main function: ``draw``.
 
 birds_eye.png          the road from above, the driven path coloured by speed, the place of a failure
 height.png             distance against height

@@ -1,4 +1,4 @@
-"""Evaluates many roads of many descriptions, as RoadGPT's thesis did, and compares roads. Verb: ``compare``.
+"""Evaluates many roads of many descriptions, as RoadGPT's thesis did, and compares roads.
 
 ``plan``, ``execution``  what a study consists of; runs it: descriptions, designers, roads of each
 ``road_record``          what a study reads from each run

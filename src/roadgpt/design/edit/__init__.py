@@ -1,4 +1,4 @@
-"""Edits: changes a Design by words, and leaves alone the rest. Verbs: ``read_request``, ``edit``.
+"""Changes a Design as a request asks, and leaves the rest alone: ``read_request``, ``edit``.
 
     words --read_request--> EditRequest --pointed--> elements --ways--> trials --measured, inspected--> Edited
 

@@ -1,4 +1,4 @@
-"""Says the same in words that the reader of clauses knows. Verb: ``reworded``.
+"""Says the same in words that the reader of clauses knows. Main function: ``reworded``.
 
 turn 4 (the last one) a hairpin          turn 4 a hairpin
 left instead of right                    left

@@ -1,4 +1,4 @@
-"""Repairs: makes a proposed Design valid and true to its Brief by the smallest change. Verb: ``repair``.
+"""Repairs a proposed Design by the smallest change that makes it valid and meets its Brief: ``repair``.
 
     none   nothing is touched
     place  the road is moved, turned only where that is not enough, and raised above the ground

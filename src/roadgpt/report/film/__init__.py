@@ -1,4 +1,4 @@
-"""Films of drives from behind the car or from a hood camera, of one road or two. Verb: ``film_of``.
+"""Films of drives from behind the car or from a hood camera, of one road or two. Main function: ``film_of``.
 
 The frames depend on nothing but the Run and the settings; threads draw them, and PyAV encodes them.
 """

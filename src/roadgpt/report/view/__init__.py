@@ -1,4 +1,4 @@
-"""One HTML page of one or two Runs: the road in 3-D and the drive as a replay. Verb: ``write``.
+"""One HTML page of one or two Runs: the road in 3-D and the drive as a replay. Main function: ``write``.
 
 The page needs no server and no network: scripts, styles and data stand in it, and its content security policy
 forbids it to fetch anything. Parts of the page lie in ``page/`` and are joined in the order of SCRIPTS;
