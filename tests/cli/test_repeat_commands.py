@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from roadgpt.chat import ChatSettings
 from roadgpt.cli import app
-from roadgpt.cli.flags import CHAT, SETUP, WORLD
-from roadgpt.cli.options import world_of
+from roadgpt.cli.options import CHAT, SETUP, WORLD, world_of
 from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.summary import show
 from roadgpt.road import Road, World

@@ -5,31 +5,25 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roadgpt.cli.beamng import beamng_options
+from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import folder, whole
+from roadgpt.cli.option_types import folder, whole
+from roadgpt.cli.options import BEAMNG_OPTIONS
 from roadgpt.errors import RoadGPTError
 
 if TYPE_CHECKING:
     from roadgpt.drive.simulators.beamng.selftest import Check
 
 
-@click.command("beamng", cls=GroupedCommand)
-@click.option(
-    "--out",
-    type=folder,
-    default=Path(),
-    show_default="this folder",
-    help="Folder for the report and pictures.",
-)
-@click.option(
-    "--repeats",
-    type=whole(2, 1000, "a number of runs"),
-    default=5,
-    show_default=True,
-    help="Runs of the same road, to measure how much they differ.",
-)
-@beamng_options
+OPTIONS = (
+    Option("--out", "Folder for the report and pictures.", folder, Path(), show_default="this folder"),
+    Option("--repeats", "Runs of the same road, to measure how much they differ.",
+           whole(2, 1000, "a number of runs"), 5),
+    *BEAMNG_OPTIONS,
+)  # fmt: skip
+
+
+@click.command("beamng", cls=GroupedCommand, params=[*OPTIONS])
 def beamng_command(out: Path, repeats: int) -> None:
     """Test RoadGPT with an installed BeamNG.tech, and write a report.
 

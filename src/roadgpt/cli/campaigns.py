@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.next_steps import lines, of_status
-from roadgpt.cli.option_groups import Decorator, under
-from roadgpt.cli.options import OUTPUT, whole
 from roadgpt.cli.result_row import COLOURS, metres
 from roadgpt.cli.screen import new_bar
 
@@ -18,37 +16,11 @@ if TYPE_CHECKING:
     from roadgpt.campaign.scheduler import Progress
     from roadgpt.campaign.status import CellStatus, Status
 
-MOST_WORKERS = 4096
 COMPARED = 500  # failures of a campaign, evenly spread, whose faults are counted: under a second
 MOST_CELLS = 40  # that are shown one by one
 HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
 LINE = "{:<6} {:>9} {:>7} {:>7} {:>7} {:>13}  {}"
 LONGEST = 60  # letters of a description, in a line of a table
-
-worker_options = under(
-    "Workers",
-    click.option(
-        "-j",
-        "--workers",
-        type=whole(1, MOST_WORKERS, "the number of workers"),
-        default=1,
-        show_default=True,
-        help="Number of tests run in parallel; use one per core.",
-    ),
-    click.option(
-        "--executor",
-        default="processes",
-        show_default=True,
-        help="Where workers run: processes of this machine, or ray.",
-    ),
-    click.option("--address", default="", help="Address of a Ray cluster. [default: this machine]"),
-)
-
-screen_options: Decorator = under(
-    OUTPUT,
-    click.option("--json", "as_json", is_flag=True, help="Print one JSON object at the end."),
-    click.option("--quiet", "-q", is_flag=True, help="Print errors only."),
-)
 
 
 def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool) -> None:

@@ -6,19 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.crash import crashes_go_to
-from roadgpt.cli.flags import measure
+from roadgpt.cli.option import DRIVE, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import (
-    SEED,
-    competition_options,
-    folder,
-    pictures_options,
-    screen_options,
-    setup_options,
-    whole,
-)
+from roadgpt.cli.option_types import measure, whole
+from roadgpt.cli.options import AXES, BEAMNG_OPTIONS, FORMAT, SCREEN, SETUP, out, seed
 from roadgpt.cli.result_row import row_of
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
@@ -51,86 +43,46 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
     ctx.exit()
 
 
-@click.command("sbft", cls=GroupedCommand)
-@click.option("--module-name", required=True, help="Python module of the generator.")
-@click.option("--class-name", required=True, help="Class of the generator.")
-@click.option(
-    "--module-path",
-    type=click.Path(exists=True, file_okay=False),
-    default=None,
-    help="Additional folder in which Python looks for the module.",
+# fmt: off
+OPTIONS = (
+    Option("--module-name", "Python module of the generator.", required=True),
+    Option("--class-name", "Class of the generator.", required=True),
+    Option("--module-path", "Additional folder in which Python looks for the module.",
+           click.Path(exists=True, file_okay=False)),
+    Option("--python", "Interpreter for the generator, with its own libraries; Python 3.8 or later. "
+           "[default: RoadGPT's]"),
+    Option("--time-budget", "Budget in seconds, for generating and driving.",
+           measure(0, 10_000_000, "s", above=True)),
+    Option("--test-budget", "Budget in tests, including invalid ones.", whole(1, 10**7, "tests")),
+    Option("--map-size", "Side of the square map, m.", whole(100, 1000, "metres"), 200),
+    # the competition's own defaults and bounds, which no configuration file changes
+    Option("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
+           0.95, heading=DRIVE),
+    Option("--speed-limit", "Speed limit, km/h.", measure(10, 300, "km/h"), 70, heading=DRIVE),
+    *named(SETUP, "driver", "simulator"),
+    *BEAMNG_OPTIONS,
+    seed("Seed for the driver.", 0),
+    Option("--patience", "Seconds that the generator may take for one test.",
+           measure(0, 86_400, "s", above=True), 600),
+    out("An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]"),
+    Option("--plot has_pictures", "Draw every test, and not only the overview.", bool),
+    Option("--no-plot", "Draw nothing.", bool),
+    *(AXES, FORMAT),
+    Option("--debug", "Log more of the generator.", bool),
+    Option("--client", "Write the file with which the competition's environment calls RoadGPT, and exit.",
+           click.Path(dir_okay=False, path_type=Path), is_eager=True, expose_value=False,
+           callback=_write_client),
+    *SCREEN,
 )
-@click.option(
-    "--python",
-    default=None,
-    help="Interpreter for the generator, with its own libraries; Python 3.8 or later. [default: RoadGPT's]",
-)
-@click.option(
-    "--time-budget",
-    type=measure(0, 10_000_000, "s", above=True),
-    default=None,
-    help="Budget in seconds, for generating and driving.",
-)
-@click.option(
-    "--test-budget",
-    type=whole(1, 10**7, "tests"),
-    default=None,
-    help="Budget in tests, including invalid ones.",
-)
-@click.option(
-    "--map-size",
-    type=whole(100, 1000, "metres"),
-    default=200,
-    show_default=True,
-    help="Side of the square map, m.",
-)
-@competition_options(oob_tolerance=0.95, speed_limit_kmh=70)
-@setup_options("driver", "simulator")
-@beamng_options
-@click.option("--seed", type=SEED, default=0, show_default=True, help="Seed for the driver.")
-@click.option(
-    "--patience",
-    type=measure(0, 86_400, "s", above=True),
-    default=600,
-    show_default=True,
-    help="Seconds that the generator may take for one test.",
-)
-@click.option(
-    "--out",
-    type=folder,
-    default=None,
-    help="An empty folder, or a new one. [default: results/MODULE_CLASS_STAMP]",
-)
-@click.option("--plot", "has_pictures", is_flag=True, help="Draw every test, and not only the overview.")
-@click.option("--no-plot", is_flag=True, help="Draw nothing.")
-@pictures_options
-@click.option("--debug", is_flag=True, help="Log more of the generator.")
-@click.option(
-    "--client",
-    type=click.Path(dir_okay=False, path_type=Path),
-    is_eager=True,
-    expose_value=False,
-    callback=_write_client,
-    help="Write the file with which the competition's environment calls RoadGPT, and exit.",
-)
-@screen_options
+# fmt: on
+
+
+@click.command("sbft", cls=GroupedCommand, params=[*OPTIONS])
 def sbft_command(
-    map_size: int,
-    oob_tolerance: float,
-    speed_limit: float,
-    driver: str,
-    simulator: str,
-    seed: int,
-    out: Path | None,
-    has_pictures: bool,
-    no_plot: bool,
-    axes: "Scale",
-    picture_formats: Any,
-    as_json: bool,
-    quiet: bool,
-    verbose: bool,
-    **experiment: Any,
-) -> int:
+    map_size: int, oob_tolerance: float, speed_limit: float, driver: str, simulator: str, seed: int,
+    out: Path | None, has_pictures: bool, no_plot: bool, axes: "Scale", picture_formats: Any,
+    as_json: bool, quiet: bool, verbose: bool, **experiment: Any,
+) -> int:  # fmt: skip
     """Run a test generator of the SBFT tool competition.
 
     The generator runs unchanged, in a process of its own, until the budget is used up: seconds, tests, or

@@ -4,28 +4,25 @@ import logging
 
 import click
 
+from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import quiet_option, whole
+from roadgpt.cli.option_types import whole
+from roadgpt.cli.options import QUIET
 from roadgpt.errors import UsageError
 
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
 
 
-@click.command("sdc", cls=GroupedCommand)
-@click.option(
-    "--port",
-    type=whole(0, 65_535, "a port"),
-    default=4545,
-    show_default=True,
-    help="Port of the service; 0: a free one.",
+OPTIONS = (
+    Option("--port", "Port of the service; 0: a free one.", whole(0, 65_535, "a port"), 4545),
+    Option(
+        "--host", "Who can connect: 127.0.0.1, this machine; 0.0.0.0, all (in a container).", str, "127.0.0.1"
+    ),
+    QUIET,
 )
-@click.option(
-    "--host",
-    default="127.0.0.1",
-    show_default=True,
-    help="Who can connect: 127.0.0.1, this machine; 0.0.0.0, all (in a container).",
-)
-@quiet_option
+
+
+@click.command("sdc", cls=GroupedCommand, params=[*OPTIONS])
 def sdc_command(port: int, host: str, quiet: bool) -> None:
     """Serve test selection and prioritisation over gRPC, ranked by how likely the car is to leave its lane.
 

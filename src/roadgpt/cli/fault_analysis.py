@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from roadgpt.cli.option_groups import under
-from roadgpt.cli.options import whole
+from roadgpt.cli.option import FAILURES, Option
+from roadgpt.cli.option_types import whole
 from roadgpt.cli.pool import shared
 from roadgpt.cli.progress import watched
 
@@ -20,21 +20,13 @@ if TYPE_CHECKING:
 REPEAT = 10  # disturbed drives of each fault, where nobody says how many
 DRIVES = whole(1, 1000, "drives")
 
-fault_options = under(
-    "Failures",
-    click.option("--faults", is_flag=True, help="At the end, analyse the failures as 'roadgpt faults' does."),
-    click.option(
-        "--minimise",
-        is_flag=True,
-        help="For each fault, also find the simplest road on which it still occurs; implies --faults.",
-    ),
-    click.option(
-        "--repeat",
-        type=DRIVES,
-        default=None,
-        help=f"Number of slightly disturbed drives for each fault; implies --faults. [default: {REPEAT}]",
-    ),
-)
+FAULT_OPTIONS = (
+    Option("--faults", "At the end, analyse the failures as 'roadgpt faults' does.", bool, heading=FAILURES),
+    Option("--minimise", "For each fault, also find the simplest road on which it still occurs; implies "
+           "--faults.", bool, heading=FAILURES),
+    Option("--repeat", "Number of slightly disturbed drives for each fault; implies --faults. "
+           f"[default: {REPEAT}]", DRIVES, heading=FAILURES),
+)  # fmt: skip
 
 
 class AnalysisOptions(NamedTuple):
@@ -68,7 +60,7 @@ class AnalysisOptions(NamedTuple):
 def analysis_options(
     faults: bool, minimise: bool, repeat: int | None, workers: int, is_quiet: bool, is_apart: bool
 ) -> AnalysisOptions | None:
-    """Returns the analysis that the ``fault_options`` of a campaign request; None if they request none."""
+    """Returns the analysis that the ``FAULT_OPTIONS`` of a campaign request; None if they request none."""
     if not faults and not minimise and repeat is None:
         return None
     # the campaign's workers may be on other machines

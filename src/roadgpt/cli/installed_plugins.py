@@ -10,6 +10,7 @@ import click
 
 from roadgpt import plugins
 from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import json_option
 from roadgpt.errors import PartError
 
 
@@ -44,8 +45,7 @@ def _first_sentence(part: Any) -> str:
     return re.split(r"(?<=[.;:]) ", paragraph)[0].rstrip(".;:")
 
 
-@click.command("plugins", cls=GroupedCommand)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
+@click.command("plugins", cls=GroupedCommand, params=[json_option("Print one JSON list.")])
 def plugins_command(as_json: bool) -> None:
     """List the plug-ins: readers, designers, rules, exporters, simulators, drivers and others.
 

@@ -7,7 +7,7 @@ import click
 
 from roadgpt import stopping
 from roadgpt.cli import edit_job
-from roadgpt.cli.options import ROADS
+from roadgpt.cli.option_types import ROADS
 from roadgpt.cli.run_job import carry_out
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import RoadGPTError

@@ -5,9 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
-from roadgpt.cli.option_groups import under
 from roadgpt.cli.result_row import Row, row_of
 
 if TYPE_CHECKING:
@@ -16,28 +13,6 @@ if TYPE_CHECKING:
 
 LONGEST = 120  # letters of a suite's name
 UNKNOWN = "roads that were given"
-
-
-def file(value: str) -> Path:
-    """Converts the value of an option to the path of a file that can be written."""
-    path = Path(value)
-    if not str(value).strip() or path.is_dir():
-        raise click.BadParameter(f"'{value}' is a folder; give the name of a file, such as roads.xml")
-    if not path.absolute().parent.is_dir():
-        raise click.BadParameter(f"there is no folder {path.absolute().parent}; make it first")
-    return path
-
-
-junit_option = under(
-    "Files",
-    click.option(
-        "--junit",
-        type=file,
-        default=None,
-        metavar="FILE.xml",
-        help="Also write the tests as JUnit XML.",
-    ),
-)
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,6 @@ from contextlib import contextmanager
 
 import click
 
-from roadgpt.cli.option_groups import GroupedCommand
-
 
 @contextmanager
 def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
@@ -36,12 +34,3 @@ def _description(args: Sequence[str]) -> str | None:
             return f"{word} ..."
         before = word
     return None
-
-
-class DescribedCommand(GroupedCommand):
-    """A command with a description as argument; gives advice if the description begins with a dash."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parses the arguments after the command."""
-        with dash_advice(ctx, args):
-            return super().parse_args(ctx, args)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadgpt.cli.flags import WORLD
+from roadgpt.cli.options import WORLD
 
 if TYPE_CHECKING:
     from roadgpt.campaign.status import Status

@@ -1,54 +1,16 @@
 """Help with options in named groups: ``--help`` lists common options, ``--help-all`` lists every option."""
 
-from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
+from collections.abc import Iterator
+from typing import Any
 
 import click
 
 from roadgpt.cli.command_table import renamed_options
-from roadgpt.cli.configuration import tell_settings
+from roadgpt.cli.leading_dash import dash_advice
+from roadgpt.cli.option import FROM_FILES, HEADINGS, OUTPUT, Option
 
-Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
-
-FIRST, LAST = "Options", "Output and help"  # the first is for options that are in no other
-ORDER = (
-    FIRST, "Design and check", "World", "Drive and verdict", "Tests of a campaign", "Files",
-    "Failures", "Workers", "Language model", "BeamNG", LAST,
-)  # fmt: skip
 WHOLE = 20  # a command with at most this many options lists all of them under --help
 ALL = "roadgpt.help_all"  # key of click's Context.meta while --help-all is answered
-
-
-class Listing(NamedTuple):
-    """The heading under which the help lists an option, and whether the option is rare."""
-
-    heading: str = FIRST
-    is_rare: bool = False
-    """Whether ``--help`` leaves the option out if the command has many options."""
-
-
-_LISTINGS: "WeakKeyDictionary[click.Parameter, Listing]" = WeakKeyDictionary()
-
-
-def under(heading: str, *decorators: Decorator, rare: bool = False) -> Decorator:
-    """Returns one decorator that adds several options, which the help lists under a heading.
-
-    Args:
-        heading: One of ``ORDER``.
-        decorators: Each adds one or more options to a function, as ``click.option`` does.
-        rare: Whether only ``--help-all`` lists the options if a command has many options.
-    """
-
-    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
-        before = len(getattr(function, "__click_params__", ()))
-        for decorator in reversed(decorators):
-            function = decorator(function)
-        for parameter in getattr(function, "__click_params__", ())[before:]:
-            _LISTINGS[parameter] = Listing(heading, rare)
-        return function
-
-    return decorate
 
 
 def _help_all(ctx: click.Context, parameter: click.Parameter, is_asked: bool) -> None:
@@ -60,68 +22,71 @@ def _help_all(ctx: click.Context, parameter: click.Parameter, is_asked: bool) ->
         ctx.exit()
 
 
+HELP_ALL = Option(
+    "--help-all", "Show every option and exit.", bool, heading=OUTPUT, is_eager=True, expose_value=False,
+    callback=_help_all,
+)  # fmt: skip
+
+
 class GroupedCommand(click.Command):
     """A command whose help lists its options in groups, and that prints which settings come from files."""
 
     def __init__(self, *args: Any, **rest: Any) -> None:
         super().__init__(*args, **rest)
-        flag = click.Option(
-            ["--help-all"], is_flag=True, is_eager=True, expose_value=False, callback=_help_all,
-            help="Show every option and exit.",
-        )  # fmt: skip
-        _LISTINGS[flag] = Listing(LAST)
-        self.params.append(flag)
+        self.params.append(HELP_ALL)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parses the arguments; an earlier name of an option is accepted, and the present name is printed."""
+        """Parses the arguments; an earlier name of an option is accepted, and the present name is printed.
+
+        Raises:
+            click.UsageError: An argument is wrong; for a description that begins with a dash, the message
+                says where to put it.
+        """
         known = [name for parameter in self.params for name in parameter.opts]
         words, told = renamed_options(args, known)
         for sentence in () if ctx.resilient_parsing else told:
             click.echo(f"roadgpt: {sentence}", err=True)
-        return super().parse_args(ctx, words)
+        if "words" not in known:
+            return super().parse_args(ctx, words)
+        with dash_advice(ctx, args):
+            return super().parse_args(ctx, words)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Writes the options under their headings."""
         shown = [*self._shown(ctx)]
-        for heading in ORDER:
+        for heading in HEADINGS:
             records = [record for its, record in shown if its == heading]
             if records:
                 with formatter.section(heading):
                     formatter.write_dl(records)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Prints on standard error which options are set by configuration files, then runs the command."""
-        tell_settings(ctx)
+        """Prints on standard error which options configuration files and the environment set, then runs the
+        command.
+        """
+        told: dict[str, list[str]] = {}
+        for option, setting in ctx.meta.get(FROM_FILES, {}).values():
+            shown = ",".join(setting.value) if isinstance(setting.value, tuple) else setting.value
+            told.setdefault(setting.origin.partition(" ")[0], []).append(f"{option.setting_name} = {shown}")
+        if told and not ctx.params.get("quiet"):
+            parts = "; ".join(f"{place} sets {', '.join(values)}" for place, values in told.items())
+            click.echo(f"roadgpt: {parts}", err=True)
         return super().invoke(ctx)
 
-    def _options(self, ctx: click.Context) -> list[click.Option]:
-        return [each for each in self.get_params(ctx) if isinstance(each, click.Option) and not each.hidden]
-
-    def _is_whole(self, ctx: click.Context) -> bool:
-        """Returns whether this help lists every option."""
-        options = self._options(ctx)
-        is_short = len(options) <= WHOLE
-        return bool(ctx.meta.get(ALL)) or is_short or not any(_listing(each).is_rare for each in options)
-
     def _shown(self, ctx: click.Context) -> Iterator[tuple[str, tuple[str, str]]]:
-        is_whole = self._is_whole(ctx)
-        for option in self._options(ctx):
-            listing = _listing(option)
-            if listing.is_rare and not is_whole:
-                continue
-            if option.opts == ["--help-all"] and is_whole and not ctx.meta.get(ALL):
-                continue
+        """Yields the heading and the two columns of each option that this help lists."""
+        options = [
+            each for each in self.get_params(ctx) if isinstance(each, click.Option) and not each.hidden
+        ]
+        rare = {each for each in options if isinstance(each, Option) and each.is_rare}
+        is_all = bool(ctx.meta.get(ALL))
+        left_out = {HELP_ALL} if not rare or len(options) <= WHOLE else rare
+        for option in options:
             record = option.get_help_record(ctx)
-            if record is None:
-                continue
-            names = record[0] if ctx.meta.get(ALL) else record[0].partition(" / ")[0]
-            yield listing.heading, (names, record[1])
-
-
-def _listing(option: click.Option) -> Listing:
-    if "--help" in option.opts:
-        return Listing(LAST)
-    return _LISTINGS.get(option, Listing())
+            if record is not None and (is_all or option not in left_out):
+                names = record[0] if is_all else record[0].partition(" / ")[0]
+                # only click's own option --help is no Option
+                yield option.heading if isinstance(option, Option) else OUTPUT, (names, record[1])
 
 
 class CommandGroup(click.Group):

@@ -1,110 +1,221 @@
-"""Options that several commands share, and the functions that convert their values."""
+"""The options that several commands share, each declared once, and the values that they make together.
 
-from functools import reduce
-from pathlib import Path
+One entry in ``WORLD`` or ``SETUP`` makes an option of ``roadgpt run``, ``campaign`` and others, a key of the
+configuration files, a line of ``roadgpt config show``, and a part of the commands that RoadGPT prints.
+"""
+
+import os
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
-from roadgpt.cli.configuration import SettableOption
-from roadgpt.cli.flags import CHAT, DRIVE, SETUP, WORLD, driver_again, measure
-from roadgpt.cli.flags import whole as whole
-from roadgpt.cli.option_groups import FIRST, LAST, Decorator, under
+from roadgpt.cli.configuration import designer_guard, driver_guard, path_guard, place_guard, reader_guard
+from roadgpt.cli.option import (
+    AGAIN,
+    BEAMNG,
+    DESIGN,
+    DRIVE,
+    FILES,
+    MODEL,
+    OUTPUT,
+    SITE,
+    WORKERS,
+    Option,
+)  # fmt: skip
+from roadgpt.cli.option_types import (
+    SEED,
+    driver,
+    driver_again,
+    file,
+    folder,
+    formats,
+    measure,
+    picture_formats,
+    whole,
+)  # fmt: skip
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from roadgpt.campaign.selection import Choice
     from roadgpt.chat import ChatSettings
     from roadgpt.road import World
 
-MOST_ROADS = 1_000_000
-FILES, OUTPUT = "Files", LAST  # headings of help
+_world = partial(Option, heading=SITE, table="world")
+_run = partial(Option, heading=DESIGN, table="run")
+_chat = partial(Option, heading=MODEL)
+_rare = partial(Option, heading=MODEL, is_rare=True)
+_files = partial(Option, heading=FILES)
+_again = partial(Option, heading=AGAIN)
+
+# fmt: off
+WORLD = (
+    _world("--map-size", "Side of the square map, m.", measure(50, 10_000, "metres"), 250),
+    _world("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6, heading=DRIVE,
+           key="speed_limit_kmh"),
+    _world("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
+           0.95, heading=DRIVE),
+    _world("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool, heading=DRIVE),
+    _world("--lane-width", "Width of each of the two lanes, m.", measure(2, 10, "metres"), 4),
+    _world("--shoulder verge", "Width of the firm ground along each side of the road, m; 0: none.",
+           measure(0, 100, "metres"), 3, is_rare=True),
+    _world("--friction", "Friction: dry 1.0, wet 0.6, snow 0.35.", measure(0, 2, above=True), 1.0),
+)
+"""The options that set fields of the World."""
+
+SETUP = (
+    _run("--reader", "What reads descriptions: model, grammar or chat.", str, "model", guard=reader_guard),
+    _run("--designer", "What designs roads: planner, chat or thesis.", str, "planner",
+         guard=designer_guard),
+    _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=DRIVE,
+         guard=driver_guard),
+    _run("--simulator", "What simulates the car.", str, "mujoco", heading=DRIVE),
+    _run("--keep-driving", "Continue to the end after the car leaves its lane.", bool, heading=DRIVE),
+    _run("--geometry",
+         "How a design becomes a road: lines, arcs and clothoids (arcs), or the thesis' spline.",
+         click.Choice(["arcs", "spline"]), "arcs", is_rare=True),
+    _run("--rules", "Which rules a road must satisfy: RoadGPT's own (strict), or those of the SBFT tool "
+         "competition.", click.Choice(["strict", "sbft"]), "strict", is_rare=True),
+)
+"""The options that set fields of the Setup."""
+
+CHAT = (
+    _chat("--model", "Name of the model on its server."),
+    _chat("--base-url", "Address of the server, including /v1. [default: OpenAI's]"),
+    _rare("--provider", "Protocol of the server. [default: openai]"),
+    _rare("--api",
+          "Chat Completions, or Responses, where the server keeps the conversation. [default: chat]",
+          click.Choice(["chat", "responses"])),
+    _rare("--temperature", "Sampling temperature. [default: the server's]", measure(0, 2)),
+    _rare("--timeout", "Seconds to wait for an answer. [default: 60]", measure(0, 86_400, "s", above=True)),
+    _rare("--retries", "Further attempts when the server fails. [default: 3]", whole(0, 20, "retries")),
+    _rare("--max-completion", "Maximum number of tokens in one answer. [default: 4096]",
+          whole(16, 1_000_000, "tokens")),
+    _rare("--max-tokens", "Stop when all roads together have used this many tokens.",
+          whole(1, 10**12, "tokens")),
+    _chat("--max-cost", "Stop when the language model has cost this many USD in all.",
+          measure(0, 1e6, "USD", above=True)),
+    _rare("--price",
+          "USD per million input and output tokens, such as 0.15/0.60. [default: from a table]"),
+    _rare("--record", "Save every exchange with the server in this folder."),
+    _rare("--replay", "Use the answers saved in this folder; ask no server."),
+    _rare("--rounds", "Maximum number of requests to the model for one road. [default: 3]",
+          whole(1, 20, "rounds")),
+    _rare("--repair", "How a road from a language model may be changed to become valid: none, not at all; "
+          "place, only moved and turned; full, also its lengths and angles. [default: full]",
+          click.Choice(["none", "place", "full"])),
+    _rare("--strategy", "Ask for the whole road, or for one segment at a time. [default: whole]",
+          click.Choice(["whole", "stepwise"])),
+)
+"""The options that set fields of ChatSettings; ``roadgpt.chat.config`` looks up those that are not given."""
+# fmt: on
+CHAT_WITHOUT_DRAFTS = tuple(each for each in CHAT if each.field not in ("repair", "strategy"))
 
 
-def folder(value: str) -> Path:
-    """Converts the value of an option to the path of a folder that exists or can be created."""
-    if not str(value).strip():
-        raise click.BadParameter("a folder without a name; give its name, or '.' for this one")
-    path = Path(value)
-    for place in (path, *path.parents):
-        if place.is_dir():
-            break
-        if place.exists():
-            raise click.BadParameter(f"'{place}' is a file; give the name of a folder")
-    return path
+def _keep(ctx: click.Context, option: click.Parameter, value: Any) -> None:
+    """Puts the value of a BeamNG option into the environment, where the simulator and its workers read it."""
+    assert isinstance(option, Option)
+    if value not in (None, False):
+        os.environ[option.variable] = "1" if value is True else str(value)
+    elif ctx.get_parameter_source(option.field) is ParameterSource.COMMANDLINE:
+        os.environ.pop(option.variable, None)  # --no-headless
 
 
-ROADS = whole(1, MOST_ROADS, "the number of roads")
-SEED = whole(0, 2**63 - 1, "a seed")
+def _whole_folder(value: str) -> "Path":
+    return folder(value).expanduser().absolute()  # workers may run in another folder
 
 
-def together(*decorators: Decorator) -> Decorator:
-    """Returns one decorator that adds several options, which the help lists in this order."""
-    return lambda function: reduce(lambda made, decorate: decorate(made), reversed(decorators), function)
+_whole_folder.__name__ = "folder"  # click shows it in the help
+_beamng = partial(Option, heading=BEAMNG, table="beamng", is_rare=True, expose_value=False, callback=_keep)
+_place = partial(_beamng, guard=place_guard)
+
+# fmt: off
+BEAMNG_OPTIONS = (
+    _beamng("--beamng-home", "Start the BeamNG.tech in this folder (for --simulator beamng).", _whole_folder,
+            key="home", guard=path_guard),
+    _beamng("--beamng-user", "BeamNG's user folder; other workers get folders next to it.", _whole_folder,
+            key="user", guard=path_guard),
+    _place("--beamng-host", "Host of a BeamNG that is already running.", key="host"),
+    _place("--beamng-port", "Port of BeamNG. [default: 25252]", whole(1, 65535, "a port"), key="port"),
+    _beamng("--beamng-level", "Level in which roads are placed. [default: tig, or a flat one]", key="level"),
+    _beamng("--beamng-aggression", "Aggression of BeamNG's AI, 0.3 to 1. [default: 0.7]", measure(0.3, 1),
+            key="aggression"),
+    _beamng("--beamng-recycle", "Restart BeamNG after this many roads. [default: 100]",
+            whole(1, 1_000_000, "a number of roads"), key="recycle"),
+    _beamng("--headless", "Run BeamNG without a window.", bool),
+    _beamng("--nogpu", "Run BeamNG without rendering.", bool),
+    _beamng("--gfx", "Graphics API that BeamNG uses.", click.Choice(["dx11", "vk"])),
+)
+
+AXES = _files(
+    "--axes", "Axes of pictures: equal, to scale; or thesis, with the ranges of RoadGPT's thesis: 220 m by "
+    "220 m seen from above, 200 m by 20 m for the height.", click.Choice(["equal", "thesis"]), "equal",
+    is_rare=True, table="run",
+)
+FORMAT = _files("--format picture_formats", "Formats of pictures: png, svg, pdf.", picture_formats, ("png",),
+                metavar="FORMAT,...", table="run")
+NO_PLOT = _files("--no-plot", "Draw no pictures.", bool)
+JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml")
+NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=DRIVE)
+DRIVER_AGAIN = Option(
+    "--driver", "The driver's file. Give it again if the run used a driver from a file: for safety, code "
+    "that only a folder names is never run.", driver_again, metavar="FILE.py:CLASS", heading=DRIVE,
+)
+
+QUIET = Option("--quiet -q", "Print errors only.", bool, heading=OUTPUT)
+VERBOSE = Option("--verbose -v", "Print details: requirements, versions, times.", bool, heading=OUTPUT)
+SCREEN = (Option("--json as_json", "Print one JSON line per road.", bool, heading=OUTPUT), QUIET, VERBOSE)
+
+CHOICES = (
+    Option("--failures", "From a folder, use only the roads on which the car failed.", bool),
+    Option("--faults", "Use only one typical failure of each distinct fault in a folder.", bool),
+    Option("--worst", "From a folder, use only the road with the smallest margin to failure.", bool),
+)
+WORKER_OPTIONS = (
+    Option("-j --workers", "Number of tests run in parallel; use one per core.",
+           whole(1, 4096, "the number of workers"), 1, heading=WORKERS),
+    Option("--executor", "Where workers run: processes of this machine, or ray.", str, "processes",
+           heading=WORKERS),
+    Option("--address", "Address of a Ray cluster. [default: this machine]", str, "", heading=WORKERS),
+)
+# fmt: on
+OPEN = Option("--open opens", "Open the page in the browser.", bool)
+WORDS = click.Argument(["words"], nargs=-1, required=True, metavar="DESCRIPTION")
+ROADS_ARGUMENT = click.Argument(["files"], nargs=-1, required=True, metavar="ROAD...")
 
 
-def world_options(*fields: str) -> Decorator:
-    """Returns a decorator that adds the options for these fields of the World; without names, for all
-    fields.
-    """
-    return together(*(flag.option() for flag in WORLD if not fields or flag.field in fields))
+def seed(sentence: str, default: int | None = None) -> Option:
+    """Returns the option --seed with this sentence in the help and default."""
+    return Option("--seed", sentence, SEED, default)
+
+
+def out(sentence: str, **more: Any) -> Option:
+    """Returns the option --out, which names a folder, with this sentence in the help."""
+    return Option("--out", sentence, folder, **more)
+
+
+def json_option(sentence: str = "Print one JSON object.", **more: Any) -> Option:
+    """Returns the option --json with this sentence in the help."""
+    return Option("--json as_json", sentence, bool, **more)
+
+
+def formats_option(names: str, sentence: str, **more: Any) -> Option:
+    """Returns an option for formats of road files, which can be separated by commas, or repeated."""
+    return Option(
+        names, sentence, formats, metavar="FORMAT,...", multiple=True,
+        callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
+        **more,
+    )  # fmt: skip
 
 
 def world_of(values: dict[str, Any]) -> "World":
     """Returns the World that option values describe, and removes these options from ``values``."""
     from roadgpt.road import World
 
-    return World(**{f.field: f.read(values.pop(f.field)) for f in WORLD if f.field in values})
-
-
-def competition_options(oob_tolerance: float, speed_limit_kmh: float) -> Decorator:
-    """Returns a decorator that adds the options --oob-tolerance and --speed-limit with a competition's own
-    defaults.
-    """
-    return under(
-        DRIVE,
-        click.option(
-            "--oob-tolerance",
-            type=measure(0, 1, above=True),
-            default=oob_tolerance,
-            show_default=True,
-            help="Share of the car that may be outside its lane.",
-        ),
-        click.option(
-            "--speed-limit",
-            type=measure(10, 300, "km/h"),
-            default=speed_limit_kmh,
-            show_default=True,
-            help="Speed limit, km/h.",
-        ),
-    )
-
-
-def setup_options(*fields: str) -> Decorator:
-    """Returns a decorator that adds the options for these fields of the Setup, in this order."""
-    known = {flag.field: flag for flag in SETUP}
-    return together(*(known[field].option() for field in fields))
-
-
-driver_again_option = under(
-    DRIVE,
-    click.option(
-        "--driver",
-        "driver",
-        type=driver_again,
-        metavar="FILE.py:CLASS",
-        default=None,
-        help="The driver's file. Give it again if the run used a driver from a file: for safety, code "
-        "that only a folder names is never run.",
-    ),
-)
-
-
-def chat_options_but(*fields: str) -> Decorator:
-    """Returns a decorator that adds all options of language models except those for the given fields."""
-    return together(*(flag.option() for flag in CHAT if flag.field not in fields))
-
-
-chat_options = chat_options_but()
+    return World(**{each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values})
 
 
 def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":
@@ -116,8 +227,8 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
         UsageError: An option of language models is given but no language model is used, or a setting is
             invalid.
     """
-    given = {flag: flag.read(values.pop(flag.field, None)) for flag in CHAT}
-    told = {flag.field: value for flag, value in given.items() if value is not None}
+    given = {each: each.read(values.pop(each.field, None)) for each in CHAT}
+    told = {each.field: value for each, value in given.items() if value is not None}
     from roadgpt import plugins
     from roadgpt.chat import asks_a_model, configured
 
@@ -125,101 +236,28 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
     if any(asks_a_model(plugins.find(shelf, name.partition(":")[0])) for shelf, name in shelves if name):
         return configured(told)
     if told:
-        flag = next(flag for flag, value in given.items() if value is not None)
+        flag = next(each.flag for each, value in given.items() if value is not None)
         advice = " or ".join(
             f"--{part} chat" for part, name in (("designer", designer), ("reader", reader)) if name
         )
-        raise UsageError(f"{flag.flag} is for language models; give {advice} as well")
+        raise UsageError(f"{flag} is for language models; give {advice} as well")
     return None
 
 
-def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
-    """Converts comma-separated names of formats to a tuple of names."""
-    if isinstance(value, tuple):
-        return value
-    names = tuple(name.strip() for name in value.split(",") if name.strip())
-    if not names:
-        raise click.BadParameter("no format is given; 'roadgpt config plugins' lists the exporters")
-    return names
+def choice_of(values: dict[str, Any]) -> "Choice | None":
+    """Returns which of --failures, --faults and --worst was given, or None, and removes them from ``values``.
 
-
-def formats_option(flag: str, required: bool = False, is_settable: bool = False) -> Decorator:
-    """Returns a decorator that adds an option for formats of road files, which can be comma-separated or
-    repeated.
+    Raises:
+        UsageError: More than one choice is given.
     """
-    settable: dict[str, Any] = {"cls": SettableOption, "table": "run", "key": flag[2:]} if is_settable else {}
-    return under(
-        FILES if is_settable else FIRST,
-        click.option(
-            flag,
-            "formats",
-            type=formats,
-            metavar="FORMAT,...",
-            multiple=True,
-            required=required,
-            callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
-            help="Also write road files: opendrive, csv, ..."
-            if is_settable
-            else "Formats to write: opendrive, csv, ...; 'roadgpt config plugins' lists them.",
-            **settable,
-        ),
-    )
+    choices: tuple[Choice, ...] = ("failures", "faults", "worst")
+    said = [name for name in choices if values.pop(name)]
+    if len(said) > 1:
+        raise UsageError(f"--{said[0]} and --{said[1]} contradict each other; give one of them")
+    return said[0] if said else None
 
 
-PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load matplotlib
-
-
-def picture_formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
-    """Converts comma-separated names of picture formats to a tuple of names."""
-    names = value if isinstance(value, tuple) else tuple(name.strip().lower() for name in value.split(","))
-    for name in names:
-        if name not in PICTURES:
-            raise click.BadParameter(
-                f"'{name}' is no format of pictures; give {', '.join(PICTURES)}, or several"
-            )
-    return tuple(dict.fromkeys(names))
-
-
-format_option = under(
-    FILES,
-    click.option(
-        "--format",
-        "picture_formats",
-        type=picture_formats,
-        default=("png",),
-        metavar="FORMAT,...",
-        help="Formats of pictures: png, svg, pdf. [default: png]",
-        cls=SettableOption,
-        table="run",
-        key="format",
-    ),
-)
-
-axes_option = under(
-    FILES,
-    click.option(
-        "--axes",
-        type=click.Choice(["equal", "thesis"]),
-        default="equal",
-        show_default=True,
-        help="Axes of pictures: equal, to scale; or thesis, with the ranges of RoadGPT's thesis: 220 m by "
-        "220 m seen from above, 200 m by 20 m for the height.",
-        cls=SettableOption,
-        table="run",
-        key="axes",
-    ),
-    rare=True,
-)
-pictures_options = together(axes_option, format_option)
-no_drive_option = under(DRIVE, click.option("--no-drive", is_flag=True, help="Do not drive the roads."))
-no_plot_option = under(FILES, click.option("--no-plot", is_flag=True, help="Draw no pictures."))
-quiet_option = under(OUTPUT, click.option("--quiet", "-q", is_flag=True, help="Print errors only."))
-
-screen_options = under(
-    OUTPUT,
-    click.option("--json", "as_json", is_flag=True, help="Print one JSON line per road."),
-    click.option("--quiet", "-q", is_flag=True, help="Print errors only."),
-    click.option("--verbose", "-v", is_flag=True, help="Print details: requirements, versions, times."),
-)
-
-files_argument = click.argument("files", nargs=-1, required=True, metavar="ROAD...")
+def pictures_of(values: dict[str, Any]) -> Any:
+    """Returns the formats of the pictures to draw, and removes their options; empty with --no-plot."""
+    given = values.pop("picture_formats")
+    return () if values.pop("no_plot") else given

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from roadgpt.cli.configuration import keys_set
-from roadgpt.cli.flags import CHAT, SETUP, WORLD, Flag
+from roadgpt.cli.option import Option, named, words_of
+from roadgpt.cli.options import CHAT, SETUP, WORLD
 from roadgpt.run.model import Request, Run
 
-# Flags of the command that drives a road which exists; the road's file says what its geometry is.
-OF_DRIVES = tuple(flag for flag in SETUP if flag.field in ("driver", "simulator", "keep_driving", "rules"))
+# What the command that drives a road which exists takes; the road's file says what its geometry is.
+OF_DRIVES = named(SETUP, "driver", "simulator", "keep_driving", "rules")
 
 
 def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
@@ -38,17 +39,13 @@ def request_words(request: Request, roads: int) -> list[str]:
 def _asked(request: Request) -> list[str]:
     """Returns the options of the language model that differ from their defaults."""
     chat = request.setup.chat
-    if chat is None:
-        return []
-    usual = type(chat)()
-    return [
-        word for flag in CHAT for word in flag.written(getattr(chat, flag.field), getattr(usual, flag.field))
-    ]
+    return words_of(CHAT, chat, chat and type(chat)())
 
 
-def _written(request: Request, flags: Sequence[Flag]) -> list[str]:
+def _written(request: Request, options: Sequence[Option]) -> list[str]:
     """Returns the options that differ from their defaults, or that a file of settings would change."""
     told = keys_set()
-    values = [(flag, getattr(request.setup, flag.field)) for flag in flags]
-    values += [(flag, getattr(request.world, flag.field)) for flag in WORLD]
-    return [word for flag, value in values for word in flag.written(value, is_set=flag.name in told)]
+    return [
+        *words_of(options, request.setup, told=told),
+        *words_of(WORLD, request.world, told=told),
+    ]

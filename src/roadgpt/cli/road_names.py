@@ -6,10 +6,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
-from roadgpt.cli.option_groups import Decorator
-from roadgpt.cli.options import together
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -18,33 +14,6 @@ if TYPE_CHECKING:
 
 ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
 NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
-
-choice_options: Decorator = together(
-    click.option(
-        "--failures", is_flag=True, help="From a folder, use only the roads on which the car failed."
-    ),
-    click.option(
-        "--faults", is_flag=True, help="Use only one typical failure of each distinct fault in a folder."
-    ),
-    click.option(
-        "--worst",
-        is_flag=True,
-        help="From a folder, use only the road with the smallest margin to failure.",
-    ),
-)
-
-
-def choice_of(values: dict[str, bool]) -> "Choice | None":
-    """Returns which of --failures, --faults and --worst was given, or None, and removes them from ``values``.
-
-    Raises:
-        UsageError: More than one choice is given.
-    """
-    choices: tuple[Choice, ...] = ("failures", "faults", "worst")
-    said = [name for name in choices if values.pop(name)]
-    if len(said) > 1:
-        raise UsageError(f"--{said[0]} and --{said[1]} contradict each other; give one of them")
-    return said[0] if said else None
 
 
 @dataclass(frozen=True)

@@ -9,25 +9,22 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from roadgpt.cli.configuration import SettableOption, designer_guard
-from roadgpt.cli.flags import CHAT, DESIGN, SETUP, WORLD
-from roadgpt.cli.option_groups import GroupedCommand, under
+from roadgpt.cli.configuration import designer_guard
+from roadgpt.cli.option import DESIGN, FILES, OUTPUT, Option, named, words_of
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.option_types import ROADS, whole
 from roadgpt.cli.options import (
-    FILES,
-    OUTPUT,
-    ROADS,
-    SEED,
+    CHAT,
+    FORMAT,
+    NO_DRIVE,
+    SETUP,
+    WORLD,
     chat_of,
-    chat_options,
-    folder,
-    format_option,
-    no_drive_option,
-    setup_options,
-    together,
-    whole,
+    out,
+    pictures_of,
+    seed,
     world_of,
-    world_options,
-)
+)  # fmt: skip
 from roadgpt.errors import ChatError
 
 if TYPE_CHECKING:
@@ -40,39 +37,33 @@ EVERY = 0.1  # share of the roads between two lines in a pipe
 NOT_ASKED = ChatError.exit_status
 SHOWN = ("reader", "driver", "simulator", "keep_driving", "geometry")
 
-study_options = together(
-    under(
-        DESIGN,
-        click.option(
-            "--designer", "designers", multiple=True, default=("planner",), show_default=True,
-            help="What designs roads; repeat the option to compare designers.",
-            cls=SettableOption, table="run", key="designer", guard=designer_guard,
-        ),
-    ),
-    click.option(
-        "--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same files.",
-    ),
-    click.option("--out", type=folder, default=None, help="Folder for the study. [default: in roadgpt-runs]"),
-    click.option(
-        "--workers", type=whole(1, 64, "processes"), default=2, show_default=True,
-        help="Number of descriptions processed in parallel; it does not change the files.",
-    ),
-    setup_options(*SHOWN),
-    world_options(),
-    format_option,
-    under(FILES, click.option("--no-plot", is_flag=True, help="Draw no pictures of single runs.")),
-    under(
-        OUTPUT,
-        click.option("--quiet", "-q", is_flag=True, help="Print only errors and the path of the report."),
-    ),
-    chat_options,
-)  # fmt: skip
+
+def roads_option(number: int) -> Option:
+    """Returns the option --roads with this default."""
+    return Option("--roads -n", "Roads per description.", ROADS, number)
 
 
-@click.command(cls=GroupedCommand)
-@click.option("--roads", "-n", type=ROADS, default=100, show_default=True, help="Roads per description.")
-@no_drive_option
-@study_options
+# fmt: off
+STUDY_OPTIONS = (
+    Option("--designer designers", "What designs roads; repeat the option to compare designers.",
+           default=("planner",), multiple=True, heading=DESIGN, table="run", guard=designer_guard),
+    seed("The same seed gives the same files.", 1),
+    out("Folder for the study. [default: in roadgpt-runs]"),
+    Option("--workers", "Number of descriptions processed in parallel; it does not change the files.",
+           whole(1, 64, "processes"), 2),
+    *named(SETUP, *SHOWN),
+    *WORLD,
+    FORMAT,
+    Option("--no-plot", "Draw no pictures of single runs.", bool, heading=FILES),
+    Option("--quiet -q", "Print only errors and the path of the report.", bool, heading=OUTPUT),
+    *CHAT,
+)
+PROMPTS = click.Argument(["prompts"], metavar="PROMPTS.jsonl", type=click.Path(path_type=Path))
+DRIVES = Option("--drive drives", "Drive the roads as well.", bool)
+# fmt: on
+
+
+@click.command(cls=GroupedCommand, params=[roads_option(100), NO_DRIVE, *STUDY_OPTIONS])
 def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
     """Repeat the evaluation of RoadGPT's thesis: validity, drives, alignment and diversity.
 
@@ -90,11 +81,7 @@ def thesis(roads: int, no_drive: bool, **rest: Any) -> int:
     return _study("thesis", thesis_prompts(), "", roads, not no_drive, rest)
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("prompts", metavar="PROMPTS.jsonl", type=click.Path(path_type=Path))
-@click.option("--roads", "-n", type=ROADS, default=10, show_default=True, help="Roads per description.")
-@click.option("--drive", "drives", is_flag=True, help="Drive the roads as well.")
-@study_options
+@click.command(cls=GroupedCommand, params=[PROMPTS, roads_option(10), DRIVES, *STUDY_OPTIONS])
 def alignment(prompts: Path, roads: int, drives: bool, **rest: Any) -> int:
     """Measure how well roads match their descriptions, criterion by criterion.
 
@@ -127,8 +114,7 @@ def _study(
     from roadgpt.study.study_report import keep_problems, write_study
 
     workers, quiet = rest.pop("workers"), rest.pop("quiet")
-    given = rest.pop("picture_formats")
-    formats = () if rest.pop("no_plot") else given
+    formats = pictures_of(rest)
     seed, out = rest.pop("seed"), rest.pop("out")
     place = out or Path("roadgpt-runs") / f"study-{kind}-{seed}"
     plan = _plan(kind, prompts, source, roads, seed, drives, rest)
@@ -197,14 +183,9 @@ def _command(plan: "StudyPlan", place: Path) -> str:
     words += ["--roads", str(plan.roads), "--seed", str(plan.seed)]
     if plan.designers != ("planner",):
         words += [word for name in plan.designers for word in ("--designer", name)]
-    for flag in SETUP:
-        if flag.field in SHOWN:
-            words += flag.written(getattr(plan.setup, flag.field))
-    words += [word for flag in WORLD for word in flag.written(getattr(plan.world, flag.field))]
+    words += [*words_of(named(SETUP, *SHOWN), plan.setup), *words_of(WORLD, plan.world)]
     if plan.setup.chat is not None:
-        chat, usual = plan.setup.chat, type(plan.setup.chat)()
-        for flag in CHAT:
-            words += flag.written(getattr(chat, flag.field), getattr(usual, flag.field))
+        words += words_of(CHAT, plan.setup.chat, type(plan.setup.chat)())
     if plan.setup.drives != (plan.kind == "thesis"):
         words.append("--drive" if plan.setup.drives else "--no-drive")
     return shlex.join([*words, "--out", str(place)])

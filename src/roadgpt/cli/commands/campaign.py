@@ -8,25 +8,28 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.beamng import beamng_options
-from roadgpt.cli.campaigns import screen_options, watch, worker_options
-from roadgpt.cli.configuration import SettableOption, driver_guard
-from roadgpt.cli.fault_analysis import analyse_failures, analysis_options, fault_options
-from roadgpt.cli.flags import CHAT, DRIVE, driver, driver_again, measure
-from roadgpt.cli.junit import junit_option, write_folder
-from roadgpt.cli.leading_dash import DescribedCommand
-from roadgpt.cli.option_groups import under
+from roadgpt.cli.campaigns import watch
+from roadgpt.cli.configuration import driver_guard
+from roadgpt.cli.fault_analysis import FAULT_OPTIONS, analyse_failures, analysis_options
+from roadgpt.cli.junit import write_folder
+from roadgpt.cli.option import DRIVE, OUTPUT, Option, named
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.option_types import driver, driver_again, measure, whole
 from roadgpt.cli.options import (
-    SEED,
+    BEAMNG_OPTIONS,
+    CHAT,
+    JUNIT,
+    NO_DRIVE,
+    QUIET,
+    SETUP,
+    WORKER_OPTIONS,
+    WORLD,
     chat_of,
-    chat_options,
-    folder,
-    no_drive_option,
-    setup_options,
-    whole,
+    json_option,
+    out,
+    seed,
     world_of,
-    world_options,
-)
+)  # fmt: skip
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -38,51 +41,31 @@ SECONDS = measure(0, 1e8, "s", above=True)
 BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "junit", "as_json", "quiet"}
 
 
-@click.command(cls=DescribedCommand)
-@click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION|FILE.toml")
-@click.option("-n", "--tests", type=TESTS, default=None, help="Number of tests.")
-@click.option(
-    "--goal",
-    type=click.Choice(["failures", "coverage", "hardest", "boundary"]),
-    default=None,
-    help="What to search for. [default: no search; the designer makes the roads]",
+# fmt: off
+PARAMETERS = (
+    click.Argument(["words"], nargs=-1, required=True, metavar="DESCRIPTION|FILE.toml"),
+    Option("-n --tests", "Number of tests.", TESTS),
+    Option("--goal", "What to search for. [default: no search; the designer makes the roads]",
+           click.Choice(["failures", "coverage", "hardest", "boundary"])),
+    Option("--generator", "Test generator. [default: quality_diversity, or 'words' if no --goal is given]"),
+    Option("--seconds", "Start no more tests after this many seconds.", SECONDS),
+    seed("The same seed gives the same table.", 0),
+    out("Folder for the campaign. [default: a new one]"),
+    *WORKER_OPTIONS,
+    *named(SETUP, "reader", "designer"),
+    Option("--driver drivers", "Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With "
+           "FILE.toml: permits running the code of a driver that FILE.toml names.", driver, ("beamng_like",),
+           multiple=True, heading=DRIVE, table="run", guard=driver_guard),
+    *named(SETUP, "simulator", "keep_driving"),
+    *WORLD,
+    *named(SETUP, "geometry", "rules"),
+    *(NO_DRIVE, *CHAT, *BEAMNG_OPTIONS, *FAULT_OPTIONS, JUNIT),
+    *(json_option("Print one JSON object at the end.", heading=OUTPUT), QUIET),
 )
-@click.option(
-    "--generator",
-    default=None,
-    help="Test generator. [default: quality_diversity, or 'words' if no --goal is given]",
-)
-@click.option("--seconds", type=SECONDS, default=None, help="Start no more tests after this many seconds.")
-@click.option("--seed", type=SEED, default=0, show_default=True, help="The same seed gives the same table.")
-@click.option("--out", type=folder, default=None, help="Folder for the campaign. [default: a new one]")
-@worker_options
-@setup_options("reader", "designer")
-@under(
-    DRIVE,
-    click.option(
-        "--driver",
-        "drivers",
-        type=driver,
-        multiple=True,
-        default=("beamng_like",),
-        show_default=True,
-        help="Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With FILE.toml: "
-        "permits running the code of a driver that FILE.toml names.",
-        cls=SettableOption,
-        table="run",
-        key="driver",
-        guard=driver_guard,
-    ),
-)
-@setup_options("simulator", "keep_driving")
-@world_options()
-@setup_options("geometry", "rules")
-@no_drive_option
-@chat_options
-@beamng_options
-@fault_options
-@junit_option
-@screen_options
+# fmt: on
+
+
+@click.command(cls=GroupedCommand, params=[*PARAMETERS])
 @click.pass_context
 def command(
     ctx: click.Context,

@@ -5,14 +5,9 @@ from typing import Any
 
 import click
 
+from roadgpt.cli.option import named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import (
-    files_argument,
-    screen_options,
-    setup_options,
-    world_of,
-    world_options,
-)
+from roadgpt.cli.options import ROADS_ARGUMENT, SCREEN, SETUP, WORLD, world_of
 from roadgpt.cli.result_row import Row
 from roadgpt.cli.roads import blueprint_of, each_road
 from roadgpt.cli.screen import Screen
@@ -21,12 +16,10 @@ INVALID = 1  # exit status, so that a script can ask
 UNREADABLE = 2
 
 
-@click.command(cls=GroupedCommand)
-@files_argument
-@setup_options("rules")
-@world_options("map_size")
-@setup_options("geometry")
-@screen_options
+OPTIONS = (*named(SETUP, "rules"), *named(WORLD, "map_size"), *named(SETUP, "geometry"), *SCREEN)
+
+
+@click.command(cls=GroupedCommand, params=[ROADS_ARGUMENT, *OPTIONS])
 def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **rest: Any) -> int:
     """Check roads against the rules.
 

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.cli.option import Option, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import axes_option, setup_options, world_of, world_options
+from roadgpt.cli.option_types import PATH
+from roadgpt.cli.options import AXES, SETUP, WORLD, json_option, world_of
 from roadgpt.cli.roads import shown_run
 from roadgpt.errors import RoadGPTError, UsageError
 
@@ -27,29 +29,24 @@ NAMES = {
 }
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("one", metavar="A")
-@click.argument("other", metavar="B")
-@click.option(
-    "--out", type=click.Path(path_type=Path), default=PICTURE, show_default=True, metavar="FILE.png",
-    help="The picture: .png, .svg or .pdf. An existing file is replaced.",
+OPTIONS = (
+    Option("--out", "The picture: .png, .svg or .pdf. An existing file is replaced.", PATH, PICTURE,
+           metavar="FILE.png"),
+    Option("--no-plot", "Draw no picture.", bool),
+    Option("--mirror", "Treat a road and its mirror image as alike.", bool),
+    json_option(),
+    AXES,
+    *named(WORLD, "map_size"),
+    *named(SETUP, "geometry"),
 )  # fmt: skip
-@click.option("--no-plot", is_flag=True, help="Draw no picture.")
-@click.option("--mirror", is_flag=True, help="Treat a road and its mirror image as alike.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-@axes_option
-@world_options("map_size")
-@setup_options("geometry")
+
+
+@click.command(
+    cls=GroupedCommand,
+    params=[click.Argument(["one"], metavar="A"), click.Argument(["other"], metavar="B"), *OPTIONS],
+)
 def command(
-    one: str,
-    other: str,
-    out: Path,
-    no_plot: bool,
-    mirror: bool,
-    as_json: bool,
-    axes: Any,
-    geometry: Any,
-    **rest: Any,
+    one: str, other: str, out: Path, no_plot: bool, mirror: bool, as_json: bool, axes: Any, **rest: Any
 ) -> None:
     """Measure how similar two roads are, and plot one above the other, as in RoadGPT's thesis.
 
@@ -66,7 +63,7 @@ def command(
     if not no_plot:
         format_of(out)
     world = world_of(rest)
-    runs = [shown_run(file, world, geometry) for file in (one, other)]
+    runs = [shown_run(file, world, rest["geometry"]) for file in (one, other)]
     roads = [run.road for run in runs if run.road is not None]
     if len(roads) < 2:
         missing = one if runs[0].road is None else other

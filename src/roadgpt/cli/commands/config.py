@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from roadgpt.cli.configuration import TABLES, SettableOption, layers_of, settable_options
-from roadgpt.cli.flags import CHAT
+from roadgpt.cli.configuration import TABLES, layers_of, settable_options
 from roadgpt.cli.installed_plugins import plugins_command
+from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import CommandGroup
-from roadgpt.cli.options import chat_options
+from roadgpt.cli.options import CHAT, json_option
 
 if TYPE_CHECKING:
     from roadgpt.chat.config import Layer
@@ -33,12 +33,14 @@ class ShownSetting(NamedTuple):
     origin: str
 
 
-@command.command()
-@click.option(
-    "--origin", "with_origin", is_flag=True, help="With --json: also print where each setting comes from."
+OPTIONS = (
+    Option("--origin with_origin", "With --json: also print where each setting comes from.", bool),
+    json_option(),
+    *CHAT,
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-@chat_options
+
+
+@command.command(params=[*OPTIONS])
 def show(with_origin: bool, as_json: bool, **values: Any) -> None:
     """Show all settings that options, environment variables or files can set, and where each comes from.
 
@@ -84,7 +86,7 @@ def _of_options() -> list[ShownSetting]:
     return [_of_option(option, layers) for option in settable_options()]
 
 
-def _of_option(option: SettableOption, layers: "Sequence[Layer]") -> ShownSetting:
+def _of_option(option: Option, layers: "Sequence[Layer]") -> ShownSetting:
     setting = option.found(layers)
     context = click.Context(click.Command(None), resilient_parsing=True)
     if setting is None:

@@ -16,6 +16,7 @@ import click
 from roadgpt import __version__
 from roadgpt.cli.beamng_selftest import beamng_command
 from roadgpt.cli.option_groups import CommandGroup
+from roadgpt.cli.options import json_option
 from roadgpt.errors import RoadGPTError
 
 LIBRARIES = ("numpy", "scipy", "numba", "mujoco-core", "matplotlib", "shapely", "pydantic", "click", "rich")
@@ -115,8 +116,7 @@ def _writable(folder: Path) -> str:
         return "can be written to"
 
 
-@click.group(cls=CommandGroup, invoke_without_command=True)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
+@click.group(cls=CommandGroup, invoke_without_command=True, params=[json_option("Print one JSON list.")])
 @click.pass_context
 def command(ctx: click.Context, /, as_json: bool) -> None:
     """Check this installation: versions, plug-ins, compiler, a test drive, folders.

@@ -8,23 +8,28 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.beamng import beamng_options
 from roadgpt.cli.drive_again import drive_again
-from roadgpt.cli.flags import driver_again
-from roadgpt.cli.junit import Junit, junit_option
-from roadgpt.cli.option_groups import GroupedCommand, under
+from roadgpt.cli.junit import Junit
+from roadgpt.cli.option import AGAIN, Option, named
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.option_types import driver_again, folder
 from roadgpt.cli.options import (
-    SEED,
-    folder,
-    no_plot_option,
-    pictures_options,
-    screen_options,
-    setup_options,
+    AXES,
+    BEAMNG_OPTIONS,
+    CHOICES,
+    FORMAT,
+    JUNIT,
+    NO_PLOT,
+    ROADS_ARGUMENT,
+    SCREEN,
+    SETUP,
+    WORLD,
+    choice_of,
+    pictures_of,
+    seed,
     world_of,
-    world_options,
-)
+)  # fmt: skip
 from roadgpt.cli.result_row import Row, row_of
-from roadgpt.cli.road_names import choice_of, choice_options
 from roadgpt.cli.roads import blueprint_of, each_road
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import UsageError
@@ -35,42 +40,30 @@ if TYPE_CHECKING:
     from roadgpt.run.model import Setup
 
 UNREADABLE = 2  # exit status
-AGAIN = "Tests of a campaign"  # heading of help
-ONLY_AGAIN = {"out", "no_plot", "axes", "picture_formats", "failures", "faults", "worst"}
+OF_AGAIN = (
+    Option("--out", "Folder for the runs. [default: CAMPAIGN/again]", folder),
+    *CHOICES,
+    *(NO_PLOT, AXES, FORMAT),
+)
+OPTIONS = (
+    seed("Seed for the driver.", 1),
+    *WORLD,
+    *named(SETUP, "driver", "simulator", "keep_driving", "geometry", "rules"),
+    *BEAMNG_OPTIONS,
+    Option("--again", "Drive tests of a campaign again.", bool, heading=AGAIN),
+    *(each.under(AGAIN) for each in OF_AGAIN),
+    *(JUNIT, *SCREEN),
+)
+ONLY_AGAIN = {each.field for each in OF_AGAIN}
 BOTH = {"files", "again", "driver"}
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("files", nargs=-1, required=True, metavar="ROAD...")
-@click.option("--seed", type=SEED, default=1, show_default=True, help="Seed for the driver.")
-@world_options()
-@setup_options("driver", "simulator", "keep_driving", "geometry", "rules")
-@beamng_options
-@under(
-    AGAIN,
-    click.option("--again", is_flag=True, help="Drive tests of a campaign again."),
-    click.option("--out", type=folder, default=None, help="Folder for the runs. [default: CAMPAIGN/again]"),
-)
-@under(AGAIN, choice_options, no_plot_option, pictures_options)
-@junit_option
-@screen_options
+@click.command(cls=GroupedCommand, params=[ROADS_ARGUMENT, *OPTIONS])
 @click.pass_context
 def command(
-    ctx: click.Context,
-    /,
-    files: tuple[str, ...],
-    seed: int,
-    again: bool,
-    out: Path | None,
-    no_plot: bool,
-    axes: Any,
-    picture_formats: Any,
-    junit: Path | None,
-    as_json: bool,
-    quiet: bool,
-    verbose: bool,
-    **rest: Any,
-) -> int:
+    ctx: click.Context, /, files: tuple[str, ...], seed: int, again: bool, out: Path | None, axes: Any,
+    junit: Path | None, as_json: bool, quiet: bool, verbose: bool, **rest: Any,
+) -> int:  # fmt: skip
     """Drive roads that exist, or drive tests of a campaign again.
 
     ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
@@ -90,11 +83,11 @@ def command(
     roadgpt drive --again roadgpt-runs/an-uphill-road-with-3-turns-7 17
     """
     _refuse_mixture(ctx, again)
-    choice = choice_of(rest)
+    choice, pictures = choice_of(rest), pictures_of(rest)
     if again:
         is_named = ctx.get_parameter_source("driver") is ParameterSource.COMMANDLINE
         driver = driver_again(rest["driver"]) if is_named else None
-        drive_again(files, choice, out, driver, axes, () if no_plot else picture_formats)
+        drive_again(files, choice, out, driver, axes, pictures)
         return 0
     from roadgpt.run import Request, Setup, check_parts
     from roadgpt.run.lost_drives import LostDrives

@@ -1,60 +1,44 @@
 """``roadgpt edit``: changes a road as a request in words says."""
 
-from pathlib import Path
 from typing import Any
 
 import click
 
 from roadgpt.cli.edit_job import EditJob, edit_road
-from roadgpt.cli.leading_dash import DescribedCommand
-from roadgpt.cli.option_groups import under
+from roadgpt.cli.option import OUTPUT, Option, named
+from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.options import (
-    OUTPUT,
+    CHAT_WITHOUT_DRAFTS,
+    DRIVER_AGAIN,
+    FORMAT,
+    NO_DRIVE,
+    NO_PLOT,
+    QUIET,
+    WORLD,
     chat_of,
-    chat_options_but,
-    driver_again_option,
-    folder,
-    format_option,
-    no_drive_option,
-    no_plot_option,
-    quiet_option,
+    json_option,
+    out,
+    pictures_of,
     world_of,
-    world_options,
-)
+)  # fmt: skip
 from roadgpt.cli.screen import Screen
 
-
-@click.command(cls=DescribedCommand)
-@click.argument("run", metavar="RUN")
-@click.argument("words", nargs=-1, required=True, metavar="CHANGE")
-@click.option("--out", type=folder, default=None, help="Folder for the changed road. [default: a new one]")
-@click.option(
-    "--designer",
-    default="planner",
-    show_default=True,
-    help="What changes the road: planner (by rules) or chat (a language model).",
+PARAMETERS = (
+    click.Argument(["run"], metavar="RUN"),
+    click.Argument(["words"], nargs=-1, required=True, metavar="CHANGE"),
+    out("Folder for the changed road. [default: a new one]"),
+    Option(
+        "--designer", "What changes the road: planner (by rules) or chat (a language model).", str, "planner"
+    ),
+    *CHAT_WITHOUT_DRAFTS,
+    *named(WORLD, "map_size"),
+    *(DRIVER_AGAIN, NO_DRIVE, NO_PLOT, FORMAT),
+    *(json_option("Print one JSON line.", heading=OUTPUT), QUIET),
 )
-@chat_options_but("repair", "strategy")
-@world_options("map_size")
-@driver_again_option
-@no_drive_option
-@no_plot_option
-@format_option
-@under(OUTPUT, click.option("--json", "as_json", is_flag=True, help="Print one JSON line."))
-@quiet_option
-def command(
-    run: str,
-    words: tuple[str, ...],
-    out: Path | None,
-    designer: str,
-    driver: str | None,
-    no_drive: bool,
-    no_plot: bool,
-    picture_formats: Any,
-    as_json: bool,
-    quiet: bool,
-    **rest: Any,
-) -> None:
+
+
+@click.command(cls=GroupedCommand, params=[*PARAMETERS])
+def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest: Any) -> None:
     """Change a road with a request in plain words.
 
     RUN is a run, a folder that holds one run, or a file with a RoadGPT design. The changed road is written
@@ -68,16 +52,13 @@ def command(
     The exit status is 2 if the words cannot be read, refer to something that is not on the road, or ask for
     a road that cannot be valid. In these cases nothing is written.
     """
-    chat = chat_of(rest, designer=designer)
     job = EditJob(
         run,
         " ".join(words),
-        out,
-        designer,
-        world_of(rest),
-        chat=chat,
-        driver=driver,
-        drives=not no_drive,
-        pictures=() if no_plot else picture_formats,
+        world=world_of(rest),
+        chat=chat_of(rest, designer=rest["designer"]),
+        pictures=pictures_of(rest),
+        drives=not rest.pop("no_drive"),
+        **rest,
     )
     edit_road(job, Screen(1, as_json, quiet))

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.flags import WORLD
+from roadgpt.cli.option import named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import folder, formats_option, quiet_option, setup_options, world_of, world_options
-from roadgpt.cli.road_names import NamedRoad, choice_of, choice_options, roads_named
+from roadgpt.cli.options import CHOICES, QUIET, SETUP, WORLD, choice_of, formats_option, out, world_of
+from roadgpt.cli.road_names import NamedRoad, roads_named
 from roadgpt.cli.roads import blueprint_of
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError
 
@@ -23,14 +23,20 @@ UNREADABLE = 2
 OPENDRIVE = ".xodr"
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("files", nargs=-1, required=True, metavar="RUN|ROAD...")
-@formats_option("--to", required=True)
-@choice_options
-@click.option("--out", type=folder, default=Path("exports"), show_default=True, help="Folder for the files.")
-@world_options("lane_width", "verge", "speed_limit", "friction")
-@setup_options("geometry")
-@quiet_option
+FORMATS = "Formats to write: opendrive, csv, ...; 'roadgpt config plugins' lists them."
+OPTIONS = (
+    formats_option("--to formats", FORMATS, required=True),
+    *CHOICES,
+    out("Folder for the files.", default=Path("exports")),
+    *named(WORLD, "speed_limit", "lane_width", "verge", "friction"),
+    *(*named(SETUP, "geometry"), QUIET),
+)
+
+
+@click.command(
+    cls=GroupedCommand,
+    params=[click.Argument(["files"], nargs=-1, required=True, metavar="RUN|ROAD..."), *OPTIONS],
+)
 def command(
     files: tuple[str, ...], formats: tuple[str, ...], out: Path, geometry: Any, quiet: bool, **rest: Any
 ) -> int:

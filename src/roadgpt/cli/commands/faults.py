@@ -1,54 +1,29 @@
 """``roadgpt faults``: groups failures into distinct faults, and finds why each occurs."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 from roadgpt.cli.fault_analysis import DRIVES, REPEAT, AnalysisOptions, analyse_failures
+from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import (
-    driver_again_option,
-    folder,
-    format_option,
-    no_plot_option,
-    quiet_option,
-    whole,
+from roadgpt.cli.option_types import folder, whole
+from roadgpt.cli.options import DRIVER_AGAIN, FORMAT, NO_PLOT, QUIET, pictures_of
+
+# fmt: off
+OPTIONS = (
+    Option("--repeat", "Number of slightly disturbed drives for each fault.", DRIVES, REPEAT),
+    Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
+    Option("-j workers", "Number of faults analysed in parallel.", whole(1, 256, "processes"), 1),
+    *(DRIVER_AGAIN, FORMAT, NO_PLOT, QUIET),
 )
+# fmt: on
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("place", type=folder, metavar="DIR")
-@click.option(
-    "--repeat",
-    type=DRIVES,
-    default=REPEAT,
-    show_default=True,
-    help="Number of slightly disturbed drives for each fault.",
-)
-@click.option(
-    "--minimise", is_flag=True, help="For each fault, also find the simplest road on which it still occurs."
-)
-@click.option(
-    "-j",
-    "workers",
-    type=whole(1, 256, "processes"),
-    default=1,
-    show_default=True,
-    help="Number of faults analysed in parallel.",
-)
-@driver_again_option
-@format_option
-@no_plot_option
-@quiet_option
+@click.command(cls=GroupedCommand, params=[click.Argument(["place"], type=folder, metavar="DIR"), *OPTIONS])
 def command(
-    place: Path,
-    repeat: int,
-    minimise: bool,
-    workers: int,
-    driver: str | None,
-    picture_formats: tuple[str, ...],
-    no_plot: bool,
-    quiet: bool,
+    place: Path, repeat: int, minimise: bool, workers: int, driver: str | None, quiet: bool, **rest: Any
 ) -> None:
     """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
 
@@ -67,6 +42,4 @@ def command(
 
     if driver is not None:
         check_named_driver(driver, drivers_of(place), place)
-    analyse_failures(
-        place, AnalysisOptions(repeat, minimise, workers, () if no_plot else picture_formats, quiet)
-    )
+    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, pictures_of(rest), quiet))

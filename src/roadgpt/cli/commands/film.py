@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.cli.option import Option, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import quiet_option, setup_options, world_of, world_options
-from roadgpt.cli.road_names import choice_of, choice_options, roads_named
+from roadgpt.cli.option_types import PATH
+from roadgpt.cli.options import CHOICES, QUIET, SETUP, WORLD, choice_of, world_of
+from roadgpt.cli.road_names import roads_named
 from roadgpt.cli.roads import run_of, shown_runs
 from roadgpt.errors import UsageError
 
@@ -58,63 +60,32 @@ def _seconds(value: str) -> tuple[float, float | None]:
     return begin, None if end is None else end - begin
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("files", nargs=-1, required=True, metavar="RUN [RUN]")
-@click.option(
-    "--view", type=_view, default="chase", show_default=True, metavar=f"[{'|'.join(VIEWS)}]",
-    help="Where the camera is: behind the car, on its hood, or both.",
-)  # fmt: skip
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    default=None,
-    metavar="FILM.mp4",
-    help=f"The film, or the folder for several films. [default: {FILM}, {FILMS}]",
+# fmt: off
+PARAMETERS = (
+    click.Argument(["files"], nargs=-1, required=True, metavar="RUN [RUN]"),
+    Option("--view", "Where the camera is: behind the car, on its hood, or both.", _view, "chase",
+           metavar=f"[{'|'.join(VIEWS)}]"),
+    Option("--out", f"The film, or the folder for several films. [default: {FILM}, {FILMS}]", PATH,
+           metavar="FILM.mp4"),
+    Option("--fps", "Frames per second.", click.IntRange(1, 120), 25, metavar="NUMBER"),
+    Option("--size", "Width and height of a frame, pixels.", _size, "640x360", metavar="WxH"),
+    Option("--seconds",
+           "Which seconds of the drive to film. [default: the whole drive, followed by the outcome]",
+           _seconds, metavar="N|FROM:TO"),
+    Option("--all is_all", "Film every road in a folder; the film of a run is saved in the run's own folder.",
+           bool),
+    *CHOICES,
+    *named(WORLD, "map_size"),
+    *named(SETUP, "geometry"),
+    QUIET,
 )
-@click.option(
-    "--fps",
-    type=click.IntRange(1, 120),
-    default=25,
-    show_default=True,
-    metavar="NUMBER",
-    help="Frames per second.",
-)
-@click.option(
-    "--size",
-    type=_size,
-    default="640x360",
-    show_default=True,
-    metavar="WxH",
-    help="Width and height of a frame, pixels.",
-)
-@click.option(
-    "--seconds",
-    type=_seconds,
-    default=None,
-    metavar="N|FROM:TO",
-    help="Which seconds of the drive to film. [default: the whole drive, followed by the outcome]",
-)
-@click.option(
-    "--all",
-    "is_all",
-    is_flag=True,
-    help="Film every road in a folder; the film of a run is saved in the run's own folder.",
-)
-@choice_options
-@world_options("map_size")
-@setup_options("geometry")
-@quiet_option
+# fmt: on
+
+
+@click.command(cls=GroupedCommand, params=[*PARAMETERS])
 def command(
-    files: tuple[str, ...],
-    view: str,
-    out: Path | None,
-    fps: int,
-    size: tuple[int, int],
-    seconds: tuple[float, float | None] | None,
-    is_all: bool,
-    geometry: Any,
-    quiet: bool,
-    **rest: Any,
+    files: tuple[str, ...], view: str, out: Path | None, fps: int, size: tuple[int, int],
+    seconds: tuple[float, float | None] | None, is_all: bool, geometry: Any, quiet: bool, **rest: Any,
 ) -> None:  # fmt: skip
     """Film a drive as an MP4: from behind the car, from its hood, or both; or two drives side by side.
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roadgpt.cli.flags import WORLD
+from roadgpt.cli.option import Option, words_of
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import quiet_option
+from roadgpt.cli.option_types import PATH
+from roadgpt.cli.options import QUIET, WORLD
 from roadgpt.errors import RoadGPTError
 
 if TYPE_CHECKING:
@@ -20,22 +21,18 @@ LARGEST_MAP = 10_000.0  # m
 ROUND = 50.0  # m, to which a map's size is rounded up
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("file", metavar="FILE.xodr", type=click.Path(path_type=Path))
-@click.option(
-    "--road",
-    "wanted",
-    default=None,
-    help="Id of the road. [default: the longest with a driving lane]",
+OPTIONS = (
+    Option("--road wanted", "Id of the road. [default: the longest with a driving lane]"),
+    Option("--out", "Road file to write. [default: named after FILE and the road]",
+           click.Path(path_type=Path, dir_okay=False)),
+    Option("--keep-place", "Keep the coordinates, even if the road is off the map.", bool),
+    QUIET,
+)  # fmt: skip
+
+
+@click.command(
+    cls=GroupedCommand, params=[click.Argument(["file"], metavar="FILE.xodr", type=PATH), *OPTIONS]
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
-    default=None,
-    help="Road file to write. [default: named after FILE and the road]",
-)
-@click.option("--keep-place", is_flag=True, help="Keep the coordinates, even if the road is off the map.")
-@quiet_option
 def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, quiet: bool) -> None:
     """Read a road from an OpenDRIVE file, write it as a road file, and describe it in words.
 
@@ -96,8 +93,7 @@ def _drive(file: Path, world: "World") -> str:
     """Returns the command that drives the road with the lanes and limits of the OpenDRIVE file."""
     # as a sign shows it: files in m/s are no whole km/h to the last digit
     world = world.model_copy(update={"speed_limit": round(world.speed_limit * 3.6, 3) / 3.6})
-    words = [word for flag in WORLD for word in flag.written(getattr(world, flag.field))]
-    return shlex.join(["roadgpt", "drive", str(file), *words])
+    return shlex.join(["roadgpt", "drive", str(file), *words_of(WORLD, world)])
 
 
 def _new(folder: Path, stem: str) -> Path:

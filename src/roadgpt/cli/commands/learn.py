@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import CommandGroup
-from roadgpt.cli.options import SEED, folder, whole
+from roadgpt.cli.option_types import PATH, folder, whole
+from roadgpt.cli.options import seed
 from roadgpt.errors import LearnError
 
 if TYPE_CHECKING:
@@ -23,13 +25,47 @@ SPLITS = ("train", "validation", "test", "exam")
 COUNT = whole(1, 10_000_000, "a number")
 MEASURED = 600  # descriptions of measured roads among the pairs that are trained on
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
-hand_option = click.option(
+# fmt: off
+HAND = Option(
     "--hand",
-    type=folder,
-    default=Path("data/descriptions"),
-    show_default=True,
-    help="Folder with the hand-written training pairs: JSON lines in its folders train, validation and test.",
+    "Folder with the hand-written training pairs: JSON lines in its folders train, validation and test.",
+    folder, Path("data/descriptions"),
 )
+OUT, CHECKPOINT = (click.Argument([name], type=folder) for name in ("out", "checkpoint"))
+OF_DATA = (
+    *(OUT, HAND),
+    Option("--number -n", "Number of pairs to generate.", COUNT, 100_000),
+    seed("The same seed gives the same pairs.", 1),
+)
+OF_TRAIN = (
+    *(OUT, HAND),
+    Option("--weights", "Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.", folder),
+    Option("--installed", "Start from the installed reader instead.", bool),
+    Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
+    Option("--size", "Number of pairs in a batch.", COUNT, 48),
+    Option("--workers", "Number of training processes; use one per core.", whole(1, 64, "processes"), 2),
+    Option("--own", "Folder with training pairs of your own, used in addition.", folder),
+    seed("The same seed gives the same pairs.", 1),
+)
+OF_EXPORT = (
+    *(CHECKPOINT, OUT, HAND),
+    Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
+    seed("Seed of the generated pairs in which words are counted.", 1),
+)
+OF_CHATS = (
+    OUT,
+    Option("--number -n", "Number of pairs.", COUNT, 1000),
+    seed("The same seed gives the same chats.", 1),
+)
+OF_EVALUATE = (
+    HAND,
+    Option("--split", "Part of the hand-written pairs to evaluate on.", click.Choice(SPLITS), "validation"),
+    Option("--reader names", "Reader to evaluate; repeat the option for more readers.",
+           default=("model", "grammar"), multiple=True),
+    Option("--misses", "Show this many descriptions that were misread.", whole(0, 10_000, "a number"), 0),
+    Option("--card", "Write the model card of the first reader to this file.", PATH),
+)
+# fmt: on
 
 
 @click.group(cls=CommandGroup)
@@ -37,13 +73,7 @@ def command() -> None:
     """Train, evaluate and export a reader of your own: the model that reads descriptions."""
 
 
-@command.command()
-@click.argument("out", type=folder)
-@hand_option
-@click.option(
-    "--number", "-n", type=COUNT, default=100_000, show_default=True, help="Number of pairs to generate."
-)
-@click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
+@command.command(params=[*OF_DATA])
 def data(out: Path, hand: Path, number: int, seed: int) -> None:
     """Check the hand-written training pairs, and write generated pairs into the folder OUT.
 
@@ -78,38 +108,9 @@ def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
     return written
 
 
-@command.command()
-@click.argument("out", type=folder)
-@hand_option
-@click.option("--weights", type=folder, help="Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.")
-@click.option("--installed", is_flag=True, help="Start from the installed reader instead.")
-@click.option(
-    "--steps",
-    type=COUNT,
-    default=14_000,
-    show_default=True,
-    help="Number of batches that each process trains on.",
-)
-@click.option("--size", type=COUNT, default=48, show_default=True, help="Number of pairs in a batch.")
-@click.option(
-    "--workers",
-    type=whole(1, 64, "processes"),
-    default=2,
-    show_default=True,
-    help="Number of training processes; use one per core.",
-)
-@click.option("--own", type=folder, help="Folder with training pairs of your own, used in addition.")
-@click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same pairs.")
+@command.command(params=[*OF_TRAIN])
 def train(
-    out: Path,
-    hand: Path,
-    weights: Path | None,
-    installed: bool,
-    steps: int,
-    size: int,
-    workers: int,
-    own: Path | None,
-    seed: int,
+    out: Path, hand: Path, weights: Path | None, installed: bool, own: Path | None, seed: int, **rest: Any
 ) -> None:
     """Train a reader, or continue from the checkpoint in the folder OUT.
 
@@ -134,33 +135,10 @@ def train(
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
-    train_together(
-        out,
-        pieces,
-        start,
-        pairs,
-        TrainingSettings(steps=steps, size=size, seed=seed, workers=workers),
-        click.echo,
-    )
+    train_together(out, pieces, start, pairs, TrainingSettings(seed=seed, **rest), click.echo)
 
 
-@command.command()
-@click.argument("checkpoint", type=folder)
-@click.argument("out", type=folder)
-@hand_option
-@click.option(
-    "--chats",
-    type=COUNT,
-    default=None,
-    help="Also write this many pairs as chats, to fine-tune larger models.",
-)
-@click.option(
-    "--seed",
-    type=SEED,
-    default=1,
-    show_default=True,
-    help="Seed of the generated pairs in which words are counted.",
-)
+@command.command(params=[*OF_EXPORT])
 def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int) -> None:
     """Write the reader of a CHECKPOINT folder, quantised to int8, into the folder OUT, ready for use."""
     try:
@@ -174,10 +152,7 @@ def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int
         _write_chats(out, chats, seed)
 
 
-@command.command()
-@click.argument("out", type=folder)
-@click.option("--number", "-n", type=COUNT, default=1000, show_default=True, help="Number of pairs.")
-@click.option("--seed", type=SEED, default=1, show_default=True, help="The same seed gives the same chats.")
+@command.command(params=[*OF_CHATS])
 def chats(out: Path, number: int, seed: int) -> None:
     """Write training pairs as chats into the folder OUT, for fine-tuning a larger model.
 
@@ -201,32 +176,7 @@ def _write_chats(out: Path, number: int, seed: int) -> None:
         click.echo(f"{written} chats in {path}")
 
 
-@command.command()
-@hand_option
-@click.option(
-    "--split",
-    type=click.Choice(SPLITS),
-    default="validation",
-    show_default=True,
-    help="Part of the hand-written pairs to evaluate on.",
-)
-@click.option(
-    "--reader",
-    "names",
-    multiple=True,
-    default=("model", "grammar"),
-    show_default=True,
-    help="Reader to evaluate; repeat the option for more readers.",
-)
-@click.option(
-    "--misses",
-    type=whole(0, 10_000, "a number"),
-    default=0,
-    help="Show this many descriptions that were misread.",
-)
-@click.option(
-    "--card", type=click.Path(path_type=Path), help="Write the model card of the first reader to this file."
-)
+@command.command(params=[*OF_EVALUATE])
 def evaluate(hand: Path, split: str, names: Sequence[str], misses: int, card: Path | None) -> None:
     """Evaluate readers on hand-written pairs."""
     from roadgpt.brief import reader_of

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.leading_dash import DescribedCommand
-from roadgpt.cli.options import chat_of, chat_options_but, setup_options, whole, world_of, world_options
+from roadgpt.cli.option import Option, named
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.option_types import whole
+from roadgpt.cli.options import CHAT_WITHOUT_DRAFTS, SETUP, WORDS, WORLD, chat_of, json_option, world_of
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -19,24 +21,19 @@ LEAST = 0.01  # chance of a reading that is listed
 TEMPERATURE = 1.3  # of readings beside the likeliest one
 
 
-@click.command(cls=DescribedCommand)
-@click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION")
-@setup_options("reader")
-@world_options("map_size")
-@click.option("--table", "as_table", is_flag=True, help="Print a row for each turn and straight.")
-@click.option("--json", "as_json", is_flag=True, help="Print the interpretation as JSON.")
-@click.option(
-    "--alternatives", "number", type=FEW, default=1, help="Show up to this many different interpretations."
+OPTIONS = (
+    *named(SETUP, "reader"),
+    *named(WORLD, "map_size"),
+    Option("--table as_table", "Print a row for each turn and straight.", bool),
+    json_option("Print the interpretation as JSON."),
+    Option("--alternatives number", "Show up to this many different interpretations.", FEW, 1),
+    *CHAT_WITHOUT_DRAFTS,
 )
-@chat_options_but("repair", "strategy")
+
+
+@click.command(cls=GroupedCommand, params=[WORDS, *OPTIONS])
 def command(
-    words: tuple[str, ...],
-    reader: str,
-    map_size: float,
-    as_table: bool,
-    as_json: bool,
-    number: int,
-    **asked: Any,
+    words: tuple[str, ...], reader: str, as_table: bool, as_json: bool, number: int, **rest: Any
 ) -> None:
     """Show how RoadGPT interprets a description, how confident it is, and whether the road fits on the map.
 
@@ -47,8 +44,8 @@ def command(
     """
     from roadgpt.cli.run_job import understood
 
-    world = world_of({"map_size": map_size})
-    briefs = _readings(" ".join(words), reader, world, number, chat_of(asked, reader))
+    world = world_of(rest)
+    briefs = _readings(" ".join(words), reader, world, number, chat_of(rest, reader))
     if as_json:
         found = [_as_data(brief, world.map_size) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))

@@ -4,33 +4,26 @@ from pathlib import Path
 
 import click
 
-from roadgpt.cli.campaigns import screen_options, watch, worker_options
-from roadgpt.cli.fault_analysis import analyse_failures, analysis_options, fault_options
-from roadgpt.cli.flags import CHAT
-from roadgpt.cli.junit import junit_option, write_folder
+from roadgpt.cli.campaigns import watch
+from roadgpt.cli.fault_analysis import FAULT_OPTIONS, analyse_failures, analysis_options
+from roadgpt.cli.junit import write_folder
+from roadgpt.cli.option import MODEL, OUTPUT, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import driver_again_option, together
+from roadgpt.cli.option_types import PATH
+from roadgpt.cli.options import CHAT, DRIVER_AGAIN, JUNIT, QUIET, WORKER_OPTIONS, json_option
 from roadgpt.errors import UsageError
 
-LIMITS = [flag for flag in CHAT if flag.field in ("max_tokens", "max_cost")]
-SERVER = next(flag for flag in CHAT if flag.field == "base_url")
+OPTIONS = (
+    *(*WORKER_OPTIONS, *named(CHAT, "max_tokens", "max_cost"), DRIVER_AGAIN),
+    Option("--base-url", "Address of the server. Give it again if the campaign used one: for safety, no API "
+           "key is sent to an address that only a folder names.", heading=MODEL),
+    *(*FAULT_OPTIONS, JUNIT, json_option("Print one JSON object at the end.", heading=OUTPUT), QUIET),
+)  # fmt: skip
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("campaign", metavar="CAMPAIGN", type=click.Path(path_type=Path))
-@worker_options
-@together(*(flag.option() for flag in LIMITS))
-@driver_again_option
-@click.option(
-    SERVER.flag,
-    SERVER.field,
-    default=None,
-    help="Address of the server. Give it again if the campaign used one: for safety, no API key is sent to "
-    "an address that only a folder names.",
+@click.command(
+    cls=GroupedCommand, params=[click.Argument(["campaign"], metavar="CAMPAIGN", type=PATH), *OPTIONS]
 )
-@fault_options
-@junit_option
-@screen_options
 def command(
     campaign: Path,
     workers: int,

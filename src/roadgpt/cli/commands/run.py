@@ -1,51 +1,51 @@
 """``roadgpt run``: designs, checks, drives, judges and draws roads from a description."""
 
-from pathlib import Path
 from typing import Any
 
 import click
 
-from roadgpt.cli.beamng import beamng_options
-from roadgpt.cli.junit import junit_option
-from roadgpt.cli.leading_dash import DescribedCommand
+from roadgpt.cli.option import FILES, Option, named
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.option_types import ROADS
 from roadgpt.cli.options import (
-    ROADS,
-    SEED,
+    AXES,
+    BEAMNG_OPTIONS,
+    CHAT,
+    FORMAT,
+    JUNIT,
+    NO_DRIVE,
+    NO_PLOT,
+    SCREEN,
+    SETUP,
+    WORDS,
+    WORLD,
     chat_of,
-    chat_options,
-    folder,
     formats_option,
-    no_drive_option,
-    no_plot_option,
-    pictures_options,
-    screen_options,
-    setup_options,
+    out,
+    pictures_of,
+    seed,
     world_of,
-    world_options,
-)
+)  # fmt: skip
 from roadgpt.cli.run_job import RunJob, carry_out
 from roadgpt.cli.screen import Screen
 
+OPTIONS = (
+    Option("-n --roads", "Number of roads.", ROADS, 1),
+    seed("The same seed gives the same roads. [default: random]"),
+    out("Folder for the runs. [default: a new one]"),
+    *named(SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
+    *WORLD,
+    *named(SETUP, "geometry", "rules"),
+    *(NO_DRIVE, NO_PLOT, AXES, FORMAT),
+    formats_option(
+        "--export formats", "Also write road files: opendrive, csv, ...", heading=FILES, table="run"
+    ),
+    *(*CHAT, *BEAMNG_OPTIONS, JUNIT, *SCREEN),
+)
 
-@click.command(cls=DescribedCommand)
-@click.argument("words", nargs=-1, required=True, metavar="DESCRIPTION")
-@click.option("-n", "--roads", type=ROADS, default=1, show_default=True, help="Number of roads.")
-@click.option("--seed", type=SEED, default=None, help="The same seed gives the same roads. [default: random]")
-@click.option("--out", type=folder, default=None, help="Folder for the runs. [default: a new one]")
-@setup_options("reader", "designer", "driver", "simulator", "keep_driving")
-@world_options()
-@setup_options("geometry", "rules")
-@no_drive_option
-@no_plot_option
-@pictures_options
-@formats_option("--export", is_settable=True)
-@chat_options
-@beamng_options
-@junit_option
-@screen_options
-def command(
-    words: tuple[str, ...], roads: int, as_json: bool, quiet: bool, verbose: bool, **rest: Any
-) -> None:
+
+@click.command(cls=GroupedCommand, params=[WORDS, *OPTIONS])
+def command(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, **rest: Any) -> None:
     """Make roads from a description: design, check, drive and judge them.
 
     \b
@@ -61,34 +61,19 @@ def command(
       4  a language model could not be used, or its token or cost limit was hit
     Roads finished before an error are saved in full.
     """
-    carry_out(job_of(" ".join(words), roads, **rest), Screen(roads, as_json, quiet, verbose))
+    roads = rest["roads"]
+    carry_out(_job_of(" ".join(words), rest), Screen(roads, as_json, quiet, verbose))
 
 
-def job_of(
-    words: str,
-    roads: int,
-    seed: int | None,
-    out: Path | None,
-    no_drive: bool,
-    no_plot: bool,
-    axes: Any,
-    picture_formats: Any,
-    formats: tuple[str, ...],
-    junit: Path | None,
-    **rest: Any,
-) -> RunJob:
-    """Returns the job that the values of the options describe.
-
-    Raises:
-        UsageError: The options contradict each other, or a setting cannot be used.
-    """
+def _job_of(words: str, given: dict[str, Any]) -> RunJob:
+    """Returns the job that the values of the options describe; removes some of them from ``given``."""
     from roadgpt.run import Setup
 
-    world = world_of(rest)
-    chat = chat_of(rest, rest["reader"], rest["designer"])
-    setup = Setup(drives=not no_drive, chat=chat, **rest)
-    pictures = () if no_plot else picture_formats
-    return RunJob(words, roads, world, setup, seed, out, axes, pictures, formats, junit)
+    own = {name: given.pop(name) for name in ("roads", "seed", "out", "axes", "formats", "junit")}
+    world, pictures = world_of(given), pictures_of(given)
+    chat = chat_of(given, given["reader"], given["designer"])
+    setup = Setup(drives=not given.pop("no_drive"), chat=chat, **given)
+    return RunJob(words=words, world=world, setup=setup, pictures=pictures, **own)
 
 
 def usual_job(words: str, roads: int) -> RunJob:
@@ -100,6 +85,6 @@ def usual_job(words: str, roads: int) -> RunJob:
     """
     parent = click.get_current_context(silent=True)
     values = command.make_context("run", ["-n", str(roads), "--", words], parent).params
-    for name in ("words", "roads", "as_json", "quiet", "verbose"):
+    for name in ("words", "as_json", "quiet", "verbose"):
         values.pop(name)
-    return job_of(words, roads, **values)
+    return _job_of(words, values)

@@ -5,22 +5,24 @@ from typing import Any
 
 import click
 
-from roadgpt.cli.option_groups import GroupedCommand, under
-from roadgpt.cli.options import OUTPUT
-from roadgpt.cli.road_names import choice_of, choice_options
+from roadgpt.cli.option import OUTPUT, Option
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.options import CHOICES, choice_of, json_option
 from roadgpt.errors import UsageError
 
-
-@click.command(cls=GroupedCommand)
-@click.argument("folders", nargs=-1, required=True, metavar="RUN...")
-@choice_options
-@click.option("--watch", is_flag=True, help="Show the progress of a campaign until it ends.")
-@under(
-    OUTPUT,
-    click.option("--json", "as_json", is_flag=True, help="Print one JSON object for each campaign or road."),
+OPTIONS = (
+    *CHOICES,
+    Option("--watch", "Show the progress of a campaign until it ends.", bool),
+    json_option("Print one JSON object for each campaign or road.", heading=OUTPUT),
+    Option("--progress", "As the earlier command 'status'.", bool, hidden=True),
+    Option("--once", "Show the progress once.", bool, hidden=True),
 )
-@click.option("--progress", is_flag=True, hidden=True)
-@click.option("--once", is_flag=True, hidden=True)
+
+
+@click.command(
+    cls=GroupedCommand,
+    params=[click.Argument(["folders"], nargs=-1, required=True, metavar="RUN..."), *OPTIONS],
+)
 def command(
     folders: tuple[str, ...], watch: bool, as_json: bool, progress: bool, once: bool, **rest: Any
 ) -> None:

@@ -4,15 +4,44 @@ from pathlib import Path
 
 import click
 
-from roadgpt.cli.flags import measure
+from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import CommandGroup
-from roadgpt.cli.options import SEED, folder, whole
+from roadgpt.cli.option_types import PATH, folder, measure, whole
+from roadgpt.cli.options import out, seed
 from roadgpt.errors import UsageError
 
 PORT = 8765
 FILE = "SURVEY.toml"
 ASK = "say who asks, which raters read first: --asks 'Jane Roe, University of X' --contact jane@x.example"
-survey_folder = click.argument("directory", metavar="DIR", type=folder)
+DIRECTORY = click.Argument(["directory"], metavar="DIR", type=folder)
+# fmt: off
+OF_NEW = (
+    click.Argument(["file"], metavar="[SURVEY.toml]", required=False, type=PATH),
+    Option("--from study", "Draw roads from its folders of runs.", folder, metavar="STUDY_DIR"),
+    out("The survey's folder.", required=True, metavar="DIR"),
+    Option("--asks", "With --from: who conducts the survey; raters see it first.", str, ""),
+    Option("--contact", "With --from: where raters can send questions.", str, ""),
+    Option("--pairs", "With --from: number of pairs of roads to compare.", whole(0, 20, "a number"), 2),
+    seed("With --from: seed of the draw.", 0),
+    Option("--no-films", "Make no films, which take most of the time.", bool),
+)
+OF_SERVE = (
+    DIRECTORY,
+    Option("--raters", "Number of raters who each get a personal link.", whole(0, 10_000, "people"), 0),
+    Option("--open is_open", "Let anyone join who has the shared link.", bool),
+    Option("--port", "Port of the server; 0: a free one.", whole(0, 65_535, "a port"), PORT),
+    Option("--host", "127.0.0.1: only this machine; 0.0.0.0: all.", str, "127.0.0.1"),
+    Option("--url", "Address at which raters reach the server, if it is behind a proxy.", str, ""),
+)
+OF_ANALYSE = (
+    DIRECTORY,
+    out("Folder for the report. [default: in the survey's]", metavar="DIR"),
+    Option("--synthetic", "Analyse answers of this many simulated raters instead.",
+           whole(1, 10_000, "a number")),
+    Option("--agreement", "With --synthetic: how often raters agree, 0 to 1.", measure(0, 1), 0.8),
+    seed("With --synthetic: seed of the raters.", 0),
+)
+# fmt: on
 
 
 @click.group("survey", cls=CommandGroup)
@@ -20,23 +49,7 @@ def command() -> None:
     """Ask people how well roads match their descriptions, as RoadGPT's thesis did."""
 
 
-@command.command()
-@click.argument("file", metavar="[SURVEY.toml]", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "--from", "study", type=folder, metavar="STUDY_DIR", help="Draw roads from its folders of runs."
-)
-@click.option("--out", type=folder, required=True, metavar="DIR", help="The survey's folder.")
-@click.option("--asks", default="", help="With --from: who conducts the survey; raters see it first.")
-@click.option("--contact", default="", help="With --from: where raters can send questions.")
-@click.option(
-    "--pairs",
-    type=whole(0, 20, "a number"),
-    default=2,
-    show_default=True,
-    help="With --from: number of pairs of roads to compare.",
-)
-@click.option("--seed", type=SEED, default=0, show_default=True, help="With --from: seed of the draw.")
-@click.option("--no-films", is_flag=True, help="Make no films, which take most of the time.")
+@command.command(params=[*OF_NEW])
 def new(
     file: Path | None,
     study: Path | None,
@@ -81,26 +94,7 @@ def new(
     )
 
 
-@command.command()
-@survey_folder
-@click.option(
-    "--raters",
-    type=whole(0, 10_000, "people"),
-    default=0,
-    help="Number of raters who each get a personal link.",
-)
-@click.option("--open", "is_open", is_flag=True, help="Let anyone join who has the shared link.")
-@click.option(
-    "--port",
-    type=whole(0, 65_535, "a port"),
-    default=PORT,
-    show_default=True,
-    help="Port of the server; 0: a free one.",
-)
-@click.option(
-    "--host", default="127.0.0.1", show_default=True, help="127.0.0.1: only this machine; 0.0.0.0: all."
-)
-@click.option("--url", default="", help="Address at which raters reach the server, if it is behind a proxy.")
+@command.command(params=[*OF_SERVE])
 def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url: str) -> None:
     """Serve a survey until Ctrl-C; each answer is on the disk before it is confirmed.
 
@@ -116,22 +110,7 @@ def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url
     serve_until_stopped(directory, click.echo, host, port, raters, is_open, url)
 
 
-@command.command()
-@survey_folder
-@click.option("--out", type=folder, metavar="DIR", help="Folder for the report. [default: in the survey's]")
-@click.option(
-    "--synthetic",
-    type=whole(1, 10_000, "a number"),
-    help="Analyse answers of this many simulated raters instead.",
-)
-@click.option(
-    "--agreement",
-    type=measure(0, 1),
-    default=0.8,
-    show_default=True,
-    help="With --synthetic: how often raters agree, 0 to 1.",
-)
-@click.option("--seed", type=SEED, default=0, show_default=True, help="With --synthetic: seed of the raters.")
+@command.command(params=[*OF_ANALYSE])
 def analyse(directory: Path, out: Path | None, synthetic: int | None, agreement: float, seed: int) -> None:
     """Analyse the answers: figures, medians, tests, agreement, and measurements.
 

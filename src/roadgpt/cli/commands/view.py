@@ -8,18 +8,11 @@ import click
 from click.core import ParameterSource
 
 from roadgpt.cli.draw_pictures import PLOTS, draw_pictures
-from roadgpt.cli.option_groups import GroupedCommand, under
-from roadgpt.cli.options import (
-    FILES,
-    axes_option,
-    picture_formats,
-    quiet_option,
-    setup_options,
-    world_of,
-    world_options,
-)
-from roadgpt.cli.options import folder as folder_of
-from roadgpt.cli.road_names import choice_of, choice_options
+from roadgpt.cli.option import FILES, Option, named
+from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.option_types import PATH, picture_formats
+from roadgpt.cli.option_types import folder as folder_of
+from roadgpt.cli.options import AXES, CHOICES, OPEN, QUIET, SETUP, WORLD, choice_of, world_of
 from roadgpt.cli.roads import shown_runs
 from roadgpt.errors import UsageError
 
@@ -28,45 +21,26 @@ PAGE = Path("roadgpt-view.html")
 ENDINGS = (".html", ".htm")
 
 
-@click.command(cls=GroupedCommand)
-@click.argument("files", nargs=-1, required=True, metavar="ROAD|RUN...")
-@choice_options
-@under(
-    FILES,
-    click.option(
-        "--out",
-        type=click.Path(path_type=Path),
-        default=None,
-        metavar="PATH",
-        help=f"The page, or the folder for pictures. [default: {PAGE}, {PLOTS}]",
-    ),
-    click.option("--open", "opens", is_flag=True, help="Open the page in the browser."),
-    click.option(
-        "--format",
-        "formats",
-        type=picture_formats,
-        default=None,
-        metavar="FORMAT,...",
-        help="Draw pictures instead of the page: png, svg, pdf.",
-    ),
-    axes_option,
+OPTIONS = (
+    *CHOICES,
+    Option("--out", f"The page, or the folder for pictures. [default: {PAGE}, {PLOTS}]", PATH, metavar="PATH",
+           heading=FILES),
+    OPEN.under(FILES),
+    Option("--format formats", "Draw pictures instead of the page: png, svg, pdf.", picture_formats,
+           metavar="FORMAT,...", heading=FILES),
+    *(AXES, *named(WORLD, "map_size"), *named(SETUP, "geometry"), QUIET),
+)  # fmt: skip
+
+
+@click.command(
+    cls=GroupedCommand,
+    params=[click.Argument(["files"], nargs=-1, required=True, metavar="ROAD|RUN..."), *OPTIONS],
 )
-@world_options("map_size")
-@setup_options("geometry")
-@quiet_option
 @click.pass_context
 def command(
-    ctx: click.Context,
-    /,
-    files: tuple[str, ...],
-    out: Path | None,
-    opens: bool,
-    formats: Any,
-    axes: Any,
-    geometry: Any,
-    quiet: bool,
-    **rest: Any,
-) -> int | None:
+    ctx: click.Context, /, files: tuple[str, ...], out: Path | None, opens: bool, formats: Any, axes: Any,
+    geometry: Any, quiet: bool, **rest: Any,
+) -> int | None:  # fmt: skip
     """View a road in 3-D with a replay of its drive, or two roads side by side; or draw pictures.
 
     ROAD is a RoadGPT design, an SBFT test, a list of points or an OpenDRIVE file. RUN is a run, such as

@@ -1,0 +1,213 @@
+"""An option of the command line: one value with its names, help, heading, default, settings key and field."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from copy import copy
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from roadgpt.cli.configuration import EARLIER_KEYS, OF_ENVIRONMENT, OF_FOLDER, OF_USER, Guard, layers_of
+from roadgpt.errors import UsageError
+
+if TYPE_CHECKING:
+    from roadgpt.chat.config import Layer, Setting
+
+FIRST, DESIGN, SITE, DRIVE = "Options", "Design and check", "World", "Drive and verdict"
+AGAIN, FILES, FAILURES, WORKERS = "Tests of a campaign", "Files", "Failures", "Workers"
+MODEL, BEAMNG, OUTPUT = "Language model", "BeamNG", "Output and help"
+HEADINGS = (FIRST, DESIGN, SITE, DRIVE, AGAIN, FILES, FAILURES, WORKERS, MODEL, BEAMNG, OUTPUT)
+"""The headings of a command's help, in their order."""
+FROM_FILES = "roadgpt.from_files"  # key of click's Context.meta
+
+
+class Option(click.Option):
+    """An option, with everything that the help, configuration files and printed commands need of it.
+
+    Several commands can share one Option. ``click.Option`` documents the other arguments.
+
+    Args:
+        names: The names of the option, and that of the function's argument if it differs, between blanks.
+        sentence: The option's text in the help.
+        kind: A type as click takes it, or a function that converts the text; ``bool`` makes a switch.
+        default: The value without the option; the help shows it unless ``sentence`` does.
+        heading: The heading in the help, one of ``HEADINGS``.
+        is_rare: Whether only --help-all lists the option if its command has many options.
+        table: The table of configuration files in which the option can be set; empty if it cannot be set.
+            A switch that can be set also gets a name with --no-.
+        key: The option's key in that table; empty if it is the option's first name.
+        guard: A function that refuses values which a configuration file must not set.
+        unit: The factor from the unit of the field that the option sets to the option's own unit, such as 3.6
+            for m/s and km/h.
+    """
+
+    def __init__(
+        self, names: str, sentence: str, kind: Any = None, default: Any = None, *, heading: str = FIRST,
+        is_rare: bool = False, table: str = "", key: str = "", guard: Guard | None = None, unit: float = 1.0,
+        **rest: Any,
+    ) -> None:  # fmt: skip
+        first, *others = names.split()
+        if kind is bool:
+            kind, default, rest["is_flag"] = None, False, True
+            names = " ".join([f"{first}/--no-{first[2:]}" if table else first, *others])
+        shows = default not in (None, "") and default is not False and "[default:" not in sentence
+        usual = {} if rest.get("required") else {"default": default}
+        super().__init__(names.split(), help=sentence, type=kind, **usual, **{"show_default": shows, **rest})
+        self.flag = next((name for name in self.opts if name.startswith("--")), first)
+        self.heading, self.is_rare, self.table = heading, is_rare, table
+        self.key, self.guard, self.unit = key or self.flag[2:].replace("-", "_"), guard, unit
+
+    def under(self, heading: str) -> "Option":
+        """Returns the same option as one that every help lists, under another heading."""
+        twin = copy(self)
+        twin.heading, twin.is_rare = heading, False
+        return twin
+
+    @property
+    def field(self) -> str:
+        """The field that the option sets, which is also the name of the command's argument."""
+        return str(self.name)
+
+    def read(self, given: Any) -> Any:
+        """Returns the field's value for an option's value: the same, but in the field's unit."""
+        return given if given is None or self.unit == 1.0 else given / self.unit
+
+    def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
+        """Returns the command-line arguments that give the field a value; empty if it is the default.
+
+        Args:
+            value: The field's value.
+            usual: The field's default; None: that of the option.
+            is_set: Whether a configuration file sets the option, so that even the default has to be given.
+        """
+        default = self.read(self.default) if usual is None else usual
+        if value is None or (value == default and not is_set):
+            return []
+        if isinstance(value, bool):
+            return [self.flag if value else f"--no-{self.flag[2:]}"]
+        return [self.flag, _digits(value, self.unit) if isinstance(value, float) else str(value)]
+
+    @property
+    def variable(self) -> str:
+        """The name of the option's environment variable."""
+        return f"ROADGPT_{self.setting_name.upper()}"
+
+    @property
+    def setting_name(self) -> str:
+        """The option's name in a list of the settings of all tables."""
+        return f"beamng_{self.key}" if self.table == "beamng" else self.key
+
+    def consume_value(self, ctx: click.Context, opts: Any) -> tuple[Any, ParameterSource]:
+        """Returns the unconverted value and its source; a value on the command line takes precedence."""
+        value, source = super().consume_value(ctx, opts)
+        setting = self.found(layers_of(ctx)) if self.table and source is ParameterSource.DEFAULT else None
+        if setting is None:
+            return value, source
+        ctx.meta.setdefault(FROM_FILES, {})[self.name] = (self, setting)
+        return setting.value, ParameterSource.DEFAULT_MAP
+
+    def process_value(self, ctx: click.Context, value: Any) -> Any:
+        """Returns the converted value.
+
+        Raises:
+            UsageError: A value from a file or the environment cannot be used; the message says where it is.
+        """
+        own, setting = ctx.meta.get(FROM_FILES, {}).get(self.name, (None, None))
+        if own is not self:
+            return super().process_value(ctx, value)
+        with self._naming(setting.origin):
+            return super().process_value(ctx, value)
+
+    def converted(self, ctx: click.Context, setting: "Setting") -> Any:
+        """Returns the value of a setting, converted to the option's type.
+
+        Raises:
+            UsageError: The value cannot be used.
+        """
+        with self._naming(setting.origin):
+            return self.type_cast_value(ctx, setting.value)
+
+    def found(self, layers: "Sequence[Layer]") -> "Setting | None":
+        """Returns the value from the source with the highest precedence; None if no source has one.
+
+        Args:
+            layers: The environment and the configuration files, highest precedence first.
+
+        Raises:
+            UsageError: The value is of the wrong kind, or must not come from that source.
+        """
+        from roadgpt.chat.config import FOLDER, Setting
+
+        keys = (self.key, *(old for old, new in EARLIER_KEYS.items() if new == self.key))
+        for layer in layers:
+            table = layer.tables.get(self.table, {})
+            said, where = next((table[key] for key in keys if key in table), None), f"[{self.table}]"
+            if self.variable in layer.found:
+                said, where = layer.found[self.variable], f"({self.variable})"
+            if said is None:
+                continue
+            origin = f"{layer.name} {where}"
+            with self._naming(origin):
+                value = self._text(said)
+            place = OF_FOLDER if layer.name in FOLDER else OF_USER if layer.tables else OF_ENVIRONMENT
+            for one in value if isinstance(value, tuple) else (value,):
+                if self.guard and (refusal := self.guard(str(one), place)):
+                    raise UsageError(f"{origin} says {self.key} = {one}: {refusal}")
+            return Setting(value, origin)
+        return None
+
+    def _text(self, value: Any) -> Any:
+        """Returns a value of TOML as the command line would have it."""
+        if self.is_flag:
+            if isinstance(value, bool | str):
+                return value
+            raise click.BadParameter("give true or false")
+        listed = value if isinstance(value, list) else [value]
+        if any(isinstance(each, bool) or not isinstance(each, str | int | float) for each in listed):
+            raise click.BadParameter("give a text or a number")
+        if len(listed) > 1 and not self.multiple and self.key != "format":
+            raise click.BadParameter("give one value")
+        texts = tuple(str(each) for each in listed)
+        return texts if self.multiple else ",".join(texts)
+
+    @contextmanager
+    def _naming(self, origin: str) -> Iterator[None]:
+        """Says in the error of a value where that value is set."""
+        try:
+            yield
+        except click.BadParameter as error:
+            why = error.message.rstrip(".")
+            raise UsageError(f"the setting '{self.key}' from {origin} cannot be used: {why}") from None
+
+
+def named(options: Sequence[Option], *fields: str) -> list[Option]:
+    """Returns the options that set these fields, in the order of the fields."""
+    by_field = {option.field: option for option in options}
+    return [by_field[field] for field in fields]
+
+
+def words_of(
+    options: Sequence[Option], values: object, usual: object = None, told: Sequence[str] | set[str] = ()
+) -> list[str]:
+    """Returns the command-line arguments that give options the values of an object's fields.
+
+    Args:
+        options: The options.
+        values: An object that has the options' fields; None: there are no arguments.
+        usual: An object with the defaults of these fields; None: the defaults are those of the options.
+        told: The keys of options that configuration files set, so that even a default has to be given.
+    """
+    return [
+        word
+        for option in options
+        for word in option.written(
+            getattr(values, option.field, None), getattr(usual, option.field, None), option.key in told
+        )
+    ]
+
+
+def _digits(value: float, unit: float) -> str:
+    """Returns the shortest number, in the option's unit, that is read as exactly this value."""
+    texts = [f"{value * unit:.{digits}g}" for digits in range(6, 18)]
+    return next((text for text in texts if float(text) / unit == value), texts[-1])

@@ -1,0 +1,118 @@
+"""Converts and checks the texts of options: numbers within bounds, folders, files, drivers and formats."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+PICTURES = ("png", "svg", "pdf")  # as report.FORMATS has them, which would load matplotlib
+
+
+def measure(low: float, high: float, unit: str = "", above: bool = False) -> Callable[[str], float]:
+    """Returns the type of an option that takes a finite number within bounds.
+
+    Args:
+        low, high: The bounds, inclusive.
+        unit: Unit of the number, for messages.
+        above: Whether the lower bound is excluded.
+    """
+    bounds = f"above {low:g}, up to {high:g}" if above else f"from {low:g} to {high:g}"
+    advice = f"give a number {bounds}{unit and ' ' + unit}"
+
+    def number(value: str) -> float:
+        try:
+            found = float(value)
+        except ValueError:
+            raise click.BadParameter(f"'{value}' is no number; {advice}") from None
+        if not math.isfinite(found) or not low <= found <= high or (above and found == low):
+            raise click.BadParameter(f"{value} is not possible; {advice}")
+        return found
+
+    return number
+
+
+def whole(low: int, high: int, what: str) -> Callable[[str], int]:
+    """Returns the type of an option that takes a whole number within bounds, which are included.
+
+    Args:
+        low, high: The bounds.
+        what: What the number is or counts, for messages, such as 'a seed' or 'metres'.
+    """
+    advice = f"give {what}, a whole number from {low} to {high}"
+
+    def number(value: str) -> int:
+        try:
+            found = int(value)
+        except ValueError:
+            raise click.BadParameter(f"'{value}' is no whole number; {advice}") from None
+        if not low <= found <= high:
+            raise click.BadParameter(f"{value} is not possible; {advice}")
+        return found
+
+    return number
+
+
+ROADS = whole(1, 1_000_000, "the number of roads")
+SEED = whole(0, 2**63 - 1, "a seed")
+PATH = click.Path(path_type=Path)
+
+
+def folder(value: str) -> Path:
+    """Converts the value of an option to the path of a folder that exists or can be created."""
+    if not str(value).strip():
+        raise click.BadParameter("a folder without a name; give its name, or '.' for this one")
+    path = Path(value)
+    for place in (path, *path.parents):
+        if place.is_dir():
+            break
+        if place.exists():
+            raise click.BadParameter(f"'{place}' is a file; give the name of a folder")
+    return path
+
+
+def file(value: str) -> Path:
+    """Converts the value of an option to the path of a file that can be written."""
+    path = Path(value)
+    if not str(value).strip() or path.is_dir():
+        raise click.BadParameter(f"'{value}' is a folder; give the name of a file, such as roads.xml")
+    if not path.absolute().parent.is_dir():
+        raise click.BadParameter(f"there is no folder {path.absolute().parent}; make it first")
+    return path
+
+
+def driver(value: str) -> str:
+    """Returns the value of --driver; if it names a file, permits the file's code to be run."""
+    if ".py" in value:
+        from roadgpt.drive.permission import permit
+
+        permit(value)
+    return value
+
+
+def driver_again(value: str) -> str:
+    """Returns the value of --driver with an absolute path, for comparison with the driver of a folder."""
+    from roadgpt.drive.loading import absolute_spec
+
+    return driver(absolute_spec(value, Path.cwd()))
+
+
+def formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
+    """Converts comma-separated names of road formats to a tuple of names."""
+    if isinstance(value, tuple):
+        return value
+    names = tuple(name.strip() for name in value.split(",") if name.strip())
+    if not names:
+        raise click.BadParameter("no format is given; 'roadgpt config plugins' lists the exporters")
+    return names
+
+
+def picture_formats(value: str | tuple[str, ...]) -> tuple[str, ...]:
+    """Converts comma-separated names of picture formats to a tuple of names."""
+    names = value if isinstance(value, tuple) else tuple(name.strip().lower() for name in value.split(","))
+    for name in names:
+        if name not in PICTURES:
+            raise click.BadParameter(
+                f"'{name}' is no format of pictures; give {', '.join(PICTURES)}, or several"
+            )
+    return tuple(dict.fromkeys(names))
