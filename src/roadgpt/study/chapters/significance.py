@@ -5,9 +5,7 @@ from typing import NamedTuple
 
 from roadgpt.report.page import Block, Table, TableCell, cell
 from roadgpt.study.chapters.wording import decimal, p_value
-from roadgpt.study.statistics import ChiSquared, chi_squared, exact, trend
-
-LEVEL = 0.05
+from roadgpt.study.statistics import LEVEL, ChiSquared, chi_squared, exact, trend
 
 
 class Count(NamedTuple):
@@ -50,7 +48,7 @@ def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[B
         miss: heading of the roads that do not have it.
         name: name of the table's files.
     """
-    found = chi_squared(source.table(), LEVEL)
+    found = chi_squared(source.table())
     return [_table(source, found, hit, miss, name), _verdict(source, found, hit, miss)]
 
 

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from math import isfinite
 
 from roadgpt.report.page import Block, Details, Figure, Table, TableCell, cell
-from roadgpt.study.statistics import conover, friedman, spearman, wilcoxon
+from roadgpt.study.statistics import LEVEL, conover, friedman, spearman, wilcoxon
 from roadgpt.study.survey.answers import Answers
 from roadgpt.study.survey.questions import REMARKS
 from roadgpt.study.survey.rating_charts import PageFigure
 from roadgpt.study.survey.tally import RatingTally, Unit, agreement, score_matrix
 
-LEVEL = 0.05
 NAMES = {"alignment": "road and description", "similarity": "two roads"}
 
 

@@ -126,4 +126,4 @@ def agreement(units: Sequence[Unit]) -> float:
     """Returns Krippendorff's alpha of ordinal ratings; NaN if it is undefined, as for a single unit."""
     if len(units) < 2 or not len(units[0].scores):
         return float("nan")
-    return krippendorff(score_matrix(units), "ordinal")
+    return krippendorff(score_matrix(units))

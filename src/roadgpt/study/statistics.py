@@ -1,0 +1,366 @@
+"""Computes the tests and intervals of the reports of studies and surveys: those of scipy, and what it lacks.
+
+scipy has neither Cochran and Armitage's trend, Conover's and Holm's comparisons of pairs, nor Krippendorff's
+alpha; it has Fisher's exact test of larger tables and Wilcoxon's of tied ratings only as approximations. The
+tests in ``tests/authorities`` compare each function with other libraries, published examples or enumerations.
+
+Ratings are arrays ``(people, columns)`` of numbers; NaN marks a missing rating, and tests that need complete
+rows leave incomplete ones out. If the data cannot answer the question (one column, no variation, no people),
+a test returns p = 1 and an effect of 0 or NaN; it never raises an error.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import permutations
+from math import nan, prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import special, stats
+
+Array = NDArray[np.float64]
+
+LEVEL = 0.05  # of all tests: differences with a smaller p count as shown
+CONFIDENCE = 0.95  # of all intervals
+FEW = 5.0  # Cochran (1954): an expected count below this is small
+MOST_SMALL = 0.2  # share of small expected counts that the chi-squared test tolerates, if none is below 1
+MOST_TABLES = 2_000_000  # tables with the same sums that are enumerated; of more, some are drawn
+DRAWN, FEWEST = 99_999, 999  # number of tables that are drawn: usually, and if they are very large
+MOST_CELLS, AT_ONCE = 20_000_000, 2_000_000  # cells of all tables that are drawn, and of those in memory
+AS_RARE = 1e-7  # two tables whose log-probabilities differ by less are equally probable
+FEW_SIGNS = 50  # differing pairs up to which Wilcoxon's test counts every way to sign their ranks
+FEW_ORDERS = 8  # pairs up to which Spearman's test counts every order: 8! are 40,320
+RESAMPLES = 10_000
+
+
+class Interval(NamedTuple):
+    """An interval from ``lo`` to ``hi``."""
+
+    lo: float
+    hi: float
+
+
+class Estimate(NamedTuple):
+    """A mean with its confidence interval."""
+
+    value: float
+    interval: Interval
+
+
+@dataclass(frozen=True, eq=False)
+class ChiSquared:
+    """Pearson's chi-squared test without continuity correction, with its intermediate values."""
+
+    expected: Array
+    """Expected count of each cell."""
+    terms: Array
+    """(observed - expected)^2 / expected of each cell; 0 where the expected count is 0."""
+    statistic: float
+    freedom: int
+    """Degrees of freedom; empty rows and columns do not count."""
+    critical: float
+    """Critical value of the statistic at the 5 % level; NaN without a degree of freedom."""
+    p: float
+    cramers_v: float
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether Cochran's rule holds: no expected count is below 1, and at most a fifth are below 5.
+
+        Empty rows and columns are left out, as in the test.
+        """
+        present = self.expected[self.expected > 0]
+        return bool(self.freedom and present.min() >= 1 and (present < FEW).mean() <= MOST_SMALL)
+
+
+class Exact(NamedTuple):
+    """Result of the exact test of a table."""
+
+    p: float
+    tables: int
+    """Number of tables that were enumerated or drawn."""
+    is_drawn: bool
+    """Whether tables were drawn at random, because there were too many to enumerate."""
+
+
+class Trend(NamedTuple):
+    """Result of the trend test; z is positive if the shares rise from group to group."""
+
+    z: float
+    p: float
+    """Two-sided p-value."""
+
+
+class Friedman(NamedTuple):
+    """Result of Friedman's test, which asks whether columns that the same people rated differ."""
+
+    statistic: float
+    freedom: int
+    p: float
+    kendalls_w: float
+    """Kendall's W: 0 if people do not agree on the order of the columns, 1 if all agree."""
+    people: int
+    """Number of people who rated all columns."""
+
+
+class Paired(NamedTuple):
+    """Result of Wilcoxon's test, which asks whether two columns that the same people rated differ."""
+
+    statistic: float
+    """The smaller sum of signed ranks."""
+    p: float
+    effect: float
+    """Matched-pairs rank-biserial correlation; positive if the first column is larger."""
+    pairs: int
+    """Number of people who rated both columns, including those who rated them alike."""
+
+
+class Correlation(NamedTuple):
+    """Spearman's rank correlation of two columns."""
+
+    rho: float
+    p: float
+    pairs: int
+
+
+def wilson(k: int, n: int) -> Interval:
+    """Returns Wilson's 95 % score interval of the share k of n; 0 to 1 if n is 0."""
+    return Interval(*stats.binomtest(k, n).proportion_ci(CONFIDENCE, "wilson")) if n else Interval(0.0, 1.0)
+
+
+def clopper_pearson(k: int, n: int) -> Interval:
+    """Returns Clopper and Pearson's exact 95 % interval of the share k of n; 0 to 1 if n is 0."""
+    return Interval(*stats.binomtest(k, n).proportion_ci(CONFIDENCE, "exact")) if n else Interval(0.0, 1.0)
+
+
+def bootstrap(groups: Sequence[Sequence[float]]) -> Estimate:
+    """Returns the mean of all values with the 95 % percentile interval of resampling whole groups.
+
+    Roads of one prompt are alike, so prompts are resampled and not roads. The same groups always give the
+    same interval.
+
+    Args:
+        groups: the values of each group, such as the roads of one prompt; empty groups are left out.
+    """
+    sums, sizes = (np.array([size(group) for group in groups if len(group)], float) for size in (sum, len))
+    if not len(sums):
+        return Estimate(nan, Interval(nan, nan))
+    value = float(sums.sum() / sizes.sum())
+    if len(sums) == 1:
+        return Estimate(value, Interval(value, value))
+
+    def mean(sums: Array, sizes: Array, axis: int) -> Array:
+        return np.asarray(sums.sum(axis) / sizes.sum(axis))
+
+    found = stats.bootstrap(
+        (sums, sizes), mean, n_resamples=RESAMPLES, paired=True, vectorized=True, method="percentile",
+        confidence_level=CONFIDENCE, rng=np.random.default_rng(0),
+    )  # fmt: skip
+    return Estimate(value, Interval(*map(float, found.confidence_interval)))
+
+
+def chi_squared(table: ArrayLike) -> ChiSquared:
+    """Returns Pearson's chi-squared test of a table of counts ``(rows, columns)``.
+
+    Empty rows and columns are left out of the test. If fewer than two of either are left, the statistic is 0
+    and p is 1.
+    """
+    observed = np.asarray(table, int)
+    expected = stats.contingency.expected_freq(observed) if observed.any() else observed.astype(float)
+    terms = np.divide((observed - expected) ** 2, expected, out=np.zeros_like(expected), where=expected > 0)
+    present = observed[observed.any(axis=1)][:, observed.any(axis=0)]
+    if min(present.shape) < 2:
+        return ChiSquared(expected, terms, 0.0, 0, nan, 1.0, 0.0)
+    found = stats.chi2_contingency(present, correction=False)
+    statistic, p, freedom = float(found.statistic), float(found.pvalue), int(found.dof)
+    cramers_v = float(stats.contingency.association(present, method="cramer"))
+    return ChiSquared(
+        expected, terms, statistic, freedom, float(stats.chi2.isf(LEVEL, freedom)), p, cramers_v
+    )
+
+
+def exact(table: ArrayLike) -> Exact:
+    """Returns Fisher's exact test of a table of counts ``(rows, columns)``, as Freeman and Halton extend it.
+
+    p is the share of the tables with the same sums that are as improbable as this one or more so. Tables of
+    two columns are enumerated; if there are too many, and for more columns, tables are drawn, always the same
+    ones. ``scipy.stats.fisher_exact`` draws them too, but takes rounding errors for differences.
+    """
+    observed = np.asarray(table, int)
+    observed = observed[observed.any(axis=1)][:, observed.any(axis=0)]
+    if min(observed.shape) < 2:
+        return Exact(1.0, 1, is_drawn=False)
+    if observed.shape[1] != 2 and observed.shape[0] == 2:
+        observed = observed.T
+    if observed.shape[1] == 2 and prod(int(row) + 1 for row in observed[:-1].sum(axis=1)) <= MOST_TABLES:
+        return _enumerated(observed)
+    return _drawn(observed)
+
+
+def _enumerated(observed: NDArray[np.intp]) -> Exact:
+    """Enumerates all tables of two columns with the same sums, by their first column."""
+    rows, hits = observed.sum(axis=1), int(observed[:, 0].sum())
+    first = np.indices([row + 1 for row in rows[:-1]]).reshape(len(rows) - 1, -1).T
+    last = hits - first.sum(axis=1)
+    possible = (last >= 0) & (last <= rows[-1])
+    column = np.c_[first[possible], last[possible]]
+    weight = _log_weight(np.stack([column, rows - column], axis=2))
+    share = np.exp(weight - special.logsumexp(weight))
+    rare = share[weight <= _log_weight(observed) + AS_RARE]
+    return Exact(min(1.0, float(rare.sum())), len(column), is_drawn=False)
+
+
+def _drawn(observed: NDArray[np.intp]) -> Exact:
+    """Draws tables with the same sums at random; the observed one counts among them."""
+    rng = np.random.default_rng(0)
+    source = stats.random_table(observed.sum(axis=1), observed.sum(axis=0))
+    tables = min(DRAWN, max(FEWEST, MOST_CELLS // observed.size))
+    own, as_rare, at_once = _log_weight(observed), 0, max(1, AT_ONCE // observed.size)
+    for first in range(0, tables, at_once):
+        many = np.asarray(source.rvs(min(at_once, tables - first), random_state=rng))
+        as_rare += int(np.count_nonzero(_log_weight(many) <= own + AS_RARE))
+    return Exact((as_rare + 1) / (tables + 1), tables, is_drawn=True)
+
+
+def _log_weight(tables: NDArray[Any]) -> Array:
+    """Returns the logarithm of the probability of tables with the same sums, up to a constant."""
+    return np.asarray(-special.gammaln(tables + 1.0).sum(axis=(-2, -1)))
+
+
+def trend(successes: Sequence[int], totals: Sequence[int]) -> Trend:
+    """Returns Cochran and Armitage's test for a trend from group to group, with the variance for fixed sums.
+
+    z is the correlation of success and group number over all trials, times the root of their number less 1.
+
+    Args:
+        successes: number of successes in each group.
+        totals: number of trials in each group.
+    """
+    k, n = np.asarray(successes, float), np.asarray(totals, float)
+    x = np.arange(len(k), dtype=float)
+    total = float(n.sum())
+    if total < 2:
+        return Trend(0.0, 1.0)
+    share, middle = k.sum() / total, (n * x).sum() / total
+    variance = share * (1 - share) * (n * (x - middle) ** 2).sum() * total / (total - 1)
+    if variance <= 0:
+        return Trend(0.0, 1.0)
+    z = float(((k - n * share) * x).sum() / np.sqrt(variance))
+    return Trend(z, float(2 * stats.norm.sf(abs(z))))
+
+
+def friedman(ratings: ArrayLike) -> Friedman:
+    """Returns Friedman's test of ratings ``(people, 3 or more)``, corrected for ties."""
+    x = _complete(np.asarray(ratings, float))
+    people, columns = x.shape
+    if people < 2 or not np.ptp(x, axis=1).any():  # or all people rated all columns alike
+        return Friedman(0.0, columns - 1, 1.0, 0.0, people)
+    found = stats.friedmanchisquare(*x.T)
+    statistic = float(found.statistic)
+    return Friedman(statistic, columns - 1, float(found.pvalue), statistic / (people * (columns - 1)), people)
+
+
+def conover(ratings: ArrayLike) -> Array:
+    """Returns p ``(k, k)`` of every pair of columns of ratings ``(people, k)``, by Conover's test after Holm.
+
+    Sources: Conover, Practical nonparametric statistics, 3rd edition (1999), 5.8; Holm (1979).
+    """
+    x = _complete(np.asarray(ratings, float))
+    people, columns = x.shape
+    out = np.ones((columns, columns))
+    ranks = stats.rankdata(x, axis=1)
+    spread = ((ranks - (columns + 1) / 2) ** 2).sum()
+    if people < 2 or spread <= 0:
+        return out
+    sums, freedom = ranks.sum(axis=0), (people - 1) * (columns - 1)
+    apart = ((sums - people * (columns + 1) / 2) ** 2).sum() / people
+    error = 2 * people * (spread - apart) / freedom
+    one, other = np.triu_indices(columns, 1)
+    difference = np.abs(sums[one] - sums[other])
+    if error <= 1e-12 * spread:  # all people ordered the columns alike: every difference is beyond doubt
+        p = np.where(difference > 0, 0.0, 1.0)
+    else:
+        p = 2 * stats.t.sf(difference / np.sqrt(error), freedom)
+    order = np.argsort(p, kind="stable")
+    scaled = np.minimum(np.maximum.accumulate(p[order] * np.arange(len(p), 0, -1)), 1.0)
+    out[one[order], other[order]] = out[other[order], one[order]] = scaled
+    return out
+
+
+def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
+    """Returns Wilcoxon's two-sided signed-rank test of two columns ``(people,)``.
+
+    It is exact for up to 50 differing pairs, ties included, since ratings have many ties: with five raters
+    the normal approximation finds a difference where five cannot show one. Beyond 50, scipy's approximation
+    is used. Equal pairs are left out of the ranks.
+    """
+    x, y = _complete(np.column_stack([np.ravel(one), np.ravel(other)])).T
+    moved = (x - y)[x != y]
+    if not len(moved):
+        return Paired(0.0, 1.0, 0.0, len(x))
+    ranks = stats.rankdata(np.abs(moved))
+    up, down = float(ranks[moved > 0].sum()), float(ranks[moved < 0].sum())
+    if len(moved) <= FEW_SIGNS:
+        p = _signed(ranks, min(up, down))
+    else:
+        p = float(stats.wilcoxon(moved, method="approx").pvalue)
+    return Paired(min(up, down), p, (up - down) / (up + down), len(x))
+
+
+def _signed(ranks: Array, smaller: float) -> float:
+    """Returns the exact two-sided p: twice the share of sign patterns with this sum or a smaller one."""
+    ways = np.ones(1)  # to reach each sum of doubled ranks, which are whole numbers even with ties
+    for rank in np.rint(2 * ranks).astype(int):
+        ways = np.r_[ways, np.zeros(rank)] + np.r_[np.zeros(rank), ways]
+    return min(1.0, float(2 * ways[: round(2 * smaller) + 1].sum() / ways.sum()))
+
+
+def spearman(one: ArrayLike, other: ArrayLike) -> Correlation:
+    """Returns Spearman's rank correlation of two columns, two-sided; rho is NaN if a column is constant.
+
+    It is exact for up to 8 pairs, ties included, by every order of the second column. Beyond 8, scipy's
+    approximation by Student's t is used.
+    """
+    x, y = _complete(np.column_stack([np.ravel(one), np.ravel(other)])).T
+    if len(x) < 3 or not np.ptp(x) or not np.ptp(y):
+        return Correlation(nan, 1.0, len(x))
+    found = stats.spearmanr(x, y)
+    p = _ordered(x, y) if len(x) <= FEW_ORDERS else float(found.pvalue)
+    return Correlation(float(found.statistic), p, len(x))
+
+
+def _ordered(x: Array, y: Array) -> float:
+    """Returns the share of all orders of y whose correlation with x is as strong as this one or stronger."""
+    one, other = (ranks - ranks.mean() for ranks in (stats.rankdata(x), stats.rankdata(y)))
+    orders = np.array(list(permutations(range(len(y)))))
+    return float((np.abs(other[orders] @ one) >= abs(other @ one) - 1e-9).mean())
+
+
+def krippendorff(ratings: ArrayLike) -> float:
+    """Returns Krippendorff's alpha of ordinal ratings ``(people, units)``, in which people may have gaps.
+
+    Only units that two or more people rated count. Two values are as far apart as there are ratings from one
+    to the other. Source: Krippendorff, Computing Krippendorff's alpha-reliability (2011).
+
+    Returns:
+        Alpha: 1 is full agreement, 0 agreement by chance; NaN if no unit has two ratings, or if all ratings
+        are equal, so that nobody can disagree.
+    """
+    x = np.asarray(ratings, float)
+    x = x[:, np.isfinite(x).sum(axis=0) >= 2]
+    values = np.unique(x[np.isfinite(x)])
+    if len(values) < 2:
+        return nan
+    counts = np.stack([(x == value).sum(axis=0) for value in values]).astype(float)  # (values, units)
+    weighted = counts / (counts.sum(axis=0) - 1)
+    pairs = weighted @ counts.T - np.diag(weighted.sum(axis=1))
+    totals = counts.sum(axis=1)
+    apart = np.subtract.outer(*2 * [np.cumsum(totals) - totals / 2]) ** 2
+    by_chance = (np.outer(totals, totals) * apart).sum() / (totals.sum() - 1)
+    return float(1 - (pairs * apart).sum() / by_chance)
+
+
+def _complete(x: Array) -> Array:
+    """Returns the rows without a gap."""
+    return np.asarray(x[np.isfinite(x).all(axis=1)], float)
