@@ -18,7 +18,7 @@ from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import Measures
 from roadgpt.check.rules.promises import complaints
-from roadgpt.study.truth import SHORTEST, Truth, feature_of, groups_of, holds, sequence_holds
+from roadgpt.study.truth import FREE, SHORTEST, Truth, feature_of, groups_of, holds, sequence_holds
 
 Criterion = Literal["turns", "incline", "order", "extent", "general"]
 CRITERIA: tuple[Criterion, ...] = ("turns", "incline", "order", "extent", "general")
@@ -46,6 +46,14 @@ KEYS: Mapping[str, Criterion] = {
 }
 """The criterion of each key of a Truth. ``sequence``, ``starts`` and ``ends`` concern several criteria."""
 
+FIELDS: Mapping[Criterion, tuple[str, ...]] = {
+    "turns": ("turns", "left", "right"),
+    "incline": ("grade", "grade_range", "steepest", "climb", "hills"),
+    "order": ("alternating",),
+    "extent": ("each_turn", "length"),
+}
+"""The fields of an Outline that concern the whole road or every turn, by criterion."""
+
 Part = Callable[[Feature], Feature]
 
 
@@ -68,28 +76,14 @@ def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
 
 
 def criteria_of_outline(found: Measures, asked: Outline) -> dict[Criterion, bool]:
-    """Returns which criteria a measured road keeps, by what the reader read."""
-    out: dict[Criterion, bool] = {
-        "turns": not complaints(
-            found, Outline(groups=(), turns=asked.turns, left=asked.left, right=asked.right)
-        )
-    }
-    slopes = Outline(
-        groups=(),
-        turns=Range(),
-        grade=asked.grade,
-        grade_range=asked.grade_range,
-        steepest=asked.steepest,
-        climb=asked.climb,
-        hills=asked.hills,
-    )
-    if any((asked.grade, asked.grade_range, asked.steepest, asked.climb, asked.hills)):
-        out["incline"] = not complaints(found, slopes)
-    if asked.alternating:
-        out["order"] = not complaints(found, Outline(groups=(), turns=Range(), alternating=True))
-    sizes = Outline(groups=(), turns=Range(), each_turn=asked.each_turn, length=asked.length)
-    if asked.length or asked.each_turn.degrees or asked.each_turn.radius:
-        out["extent"] = not complaints(found, sizes)
+    """Returns which criteria a measured road keeps, by the requirements that a reader found."""
+    out: dict[Criterion, bool] = {}
+    for criterion, fields in FIELDS.items():
+        own = {name: getattr(asked, name) for name in fields}
+        if criterion == "turns" or any(
+            _is_specified(value) if isinstance(value, Feature) else value for value in own.values()
+        ):
+            out[criterion] = not complaints(found, replace(FREE, **own))
     for criterion, good in _of_features(found, asked.groups, asked.starts, asked.ends).items():
         out[criterion] = out.get(criterion, True) and good
     out["general"] = not complaints(found, asked)
@@ -107,7 +101,7 @@ def _of_features(
         if criterion != "order":
             wanted = tuple(replace(group, alternating=False) for group in wanted)
         first, last = (each and part(each) for each in (starts, ends))
-        asked = Outline(groups=(), turns=Range(), starts=first, ends=last)
+        asked = replace(FREE, starts=first, ends=last)
         says = [_says(criterion, group) for group in wanted]
         ends_say = [each for each in (first, last) if each and (criterion == "order" or _is_specified(each))]
         if any(says) or ends_say:

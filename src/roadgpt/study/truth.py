@@ -16,18 +16,21 @@ from roadgpt.brief.words import Range
 from roadgpt.check.measures import Measures
 from roadgpt.check.rules.promises import complaints
 
-SLACK = 1e-9  # of every bound, as the referee has it
+SLACK = 1e-9  # added to both ends of every range, as in the referee
 SHORTEST = 20.0  # m; a shorter road keeps nothing
-SPANS = ("turns", "left", "right", "max_grade", "climb", "length", "hilly", "min_radius", "turning")
 SLOPES = {
     "up": Range(1.0, inf),
     "down": Range(-inf, -1.0),
     "flat": Range(nextafter(-1.0, 0.0), nextafter(1.0, 0.0)),
 }
+FREE = Outline(groups=(), turns=Range())
+"""The Outline that requires nothing."""
+CALLED = {"max_grade": "steepest", "hilly": "hills"}
+"""Fields of an Outline that have another name than the key of a Truth."""
 
 
 def _pair(value: Any) -> Any:
-    """Takes a number alone as both bounds."""
+    """Returns a single number as both bounds."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return (value, value)
     return value
@@ -114,54 +117,35 @@ def groups_of(truth: Truth) -> tuple[Group, ...]:
 
 
 def holds(found: Measures, truth: Truth) -> dict[str, bool]:
-    """Returns whether a measured road keeps each key of the truth."""
+    """Returns for each key of the truth whether a measured road keeps it; a road below 20 m keeps none."""
     return {key: found.length >= SHORTEST and _holds(found, truth, key) for key in truth.given()}
 
 
 def _holds(found: Measures, truth: Truth, key: str) -> bool:
-    if key in ("min_radius", "turning"):
-        span = _range(getattr(truth, key))
-        return span is None or (found.radius if key == "min_radius" else found.turning) in span
+    """Compares a road with an Outline that requires one key and nothing else.
+
+    The slack makes "no turn" a little more than 0, which says nothing of how much a straight road may bend:
+    'turning' does.
+    """
+    value = getattr(truth, key)
     if key == "sequence":
         return sequence_holds(found, groups_of(truth))
-    return not complaints(found, _outline(truth, key))
-
-
-def _outline(truth: Truth, key: str) -> Outline:
-    """Returns an Outline that requires one key and nothing else."""
-    free, span = Outline(groups=(), turns=Range()), _range(getattr(truth, key)) if key in SPANS else None
-    match key:
-        case "turns" if span:
-            # just above 0 so that "no turn" says nothing of how much a straight may bend: 'turning' does
-            return replace(free, turns=Range(span.lo, span.hi + SLACK))
-        case "left" if span:
-            return replace(free, left=span)
-        case "right" if span:
-            return replace(free, right=span)
-        case "max_grade":
-            return replace(free, steepest=span)
-        case "climb":
-            return replace(free, climb=span)
-        case "length":
-            return replace(free, length=span)
-        case "hilly":
-            return replace(free, hills=span)
-        case "grade":
-            return replace(free, grade=truth.grade)
-        case "ends":
-            return replace(free, ends=feature_of(truth.ends))
-        case "starts":
-            return replace(free, starts=feature_of(truth.starts))
-    return replace(free, alternating=True)
+    if isinstance(value, tuple):
+        value = _range(value)
+    elif isinstance(value, ExpectedElement):
+        value = feature_of(value)
+    if key == "min_radius":
+        return found.radius in value
+    return not complaints(found, replace(FREE, **{CALLED.get(key, key): value}))
 
 
 def sequence_holds(found: Measures, groups: tuple[Group, ...]) -> bool:
-    """Returns whether the groups are all turns in their order, with the straights among them."""
+    """Returns whether the groups name all turns of a road in their order, and the straights between them."""
     turns = sum(group.feature.kind == "turn" for group in groups)
     exact = all(group.lo == group.hi == 1 for group in groups)
     if exact and len(found.turns) != turns:
         return False
-    return not complaints(found, Outline(groups=groups, turns=Range()))
+    return not complaints(found, replace(FREE, groups=groups))
 
 
 def _range(span: Span | None) -> Range | None:
