@@ -114,7 +114,7 @@ def test_reports_count_them(runs: dict[str, Run]) -> None:
     def looked(run: Run) -> RoadRecord:
         assert run.verdict is not None
         return RoadRecord(
-            1, "", run.outcome, "", True, True, True, "", False, 0.0, 1.0, np.empty((0, 2)), None, {}, None,
+            1, "", run.outcome, "", True, True, True, "", False, 0.0, np.empty((0, 2)), None, {}, None,
             max_oob=run.verdict.max_oob, beyond=run.verdict.beyond,
         )  # fmt: skip
 

@@ -8,20 +8,21 @@ from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus, Status, status_of
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
-from roadgpt.report.page import Block, Figure, Page, Section, Table, TableCell, cell, linked, write
-from roadgpt.report.page.forest import Share, forest
+from roadgpt.report.page import Block, Figure, Page, Section, Table, TableCell, linked, write
+from roadgpt.report.page.forest import forest
 from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
 from roadgpt.study.chapters.campaign_tests import coverage, failures, margins
-from roadgpt.study.chapters.faults import fault_summaries, faults, headline
-from roadgpt.study.chapters.next_steps import Steps, what_to_try
+from roadgpt.study.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
 from roadgpt.study.chapters.out_of_lane import outside_sentences, outside_table, passed_tests
 from roadgpt.study.chapters.wording import (
     decimal,
+    drawn_share,
     interval_cell,
     near_and_far,
     p_value,
     percent,
     plural,
+    row,
     share_cells,
     share_of,
 )
@@ -125,18 +126,19 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
     for each in status.cells:
         failed = each.outcomes.get("FAIL", 0)
         driven = failed + each.outcomes.get("PASS", 0)
+        about, (invalid, errors) = _about(each), (each.outcomes.get(name, 0) for name in ("INVALID", "ERROR"))
         rows.append(
-            [
-                cell(each.name),
-                *(cell(_about(each)[head]) for head in differing),
-                cell(each.done),
-                cell(each.outcomes.get("INVALID", 0)),
-                cell(each.outcomes.get("ERROR", 0)),
+            row(
+                each.name,
+                *(about[head] for head in differing),
+                each.done,
+                invalid,
+                errors,
                 *share_cells(failed, driven)[:3],
-                cell(None) if not driven else interval_cell(wilson(failed, driven)),
+                interval_cell(wilson(failed, driven)) if driven else None,
                 decimal(each.least_margin),
                 decimal(seconds.get(each.name), 0),
-            ]
+            )
         )
     heads = ["cell", *differing, "tests", "invalid", "error", "failed", "driven", "share", "Wilson 95 %",
              "nearest when kept, m", "s"]  # fmt: skip
@@ -152,7 +154,8 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
         blocks.append(_forest(cells[:MOST_CELLS]))
     beside = [linked(name, name) for name in TABLES if (record.folder / name).is_file()]
     if beside:
-        blocks.append(["Every test stands in ", *_listed(beside), "."])
+        between = " and " if len(beside) > 1 else ""
+        blocks.append(["Every test stands in ", beside[0], between, *beside[1:], "."])
     return blocks
 
 
@@ -175,20 +178,13 @@ def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:
     return differing, whose + ", ".join(same) + "." if same else ""
 
 
-def _listed(links: Sequence[TableCell]) -> list[str | TableCell]:
-    out: list[str | TableCell] = []
-    for number, link in enumerate(links):
-        out += [" and ", link] if number else [link]
-    return out
-
-
 def _forest(cells: Sequence[CellStatus]) -> Figure:
     groups = []
     for each in cells:
         failed = each.outcomes.get("FAIL", 0)
         driven = failed + each.outcomes.get("PASS", 0)
         if driven:
-            share = Share(0, failed / driven, *wilson(failed, driven), f"{failed:,} of {driven:,}")
+            share = drawn_share(0, failed, driven, f"{failed:,} of {driven:,}")
             groups.append((f"{each.name} · {each.generator} · {each.driver}", [share]))
     caption = "Share of driven roads on which the car failed, with Wilson's 95 % intervals."
     return Figure("failed", caption, forest(groups, ["failed"], caption))

@@ -1,6 +1,6 @@
-"""Reads from each run what a study needs: validity by every set of rules, drive, measured geometry."""
+"""Reads from each run what a report needs: validity by every set of rules, the drive, measured geometry."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from roadgpt.run.campaign_runs import finished
 from roadgpt.run.folder import run_folder
 from roadgpt.run.sbft_json import test_name
 from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth
-from roadgpt.study.plan import StudyPart, StudyPlan
+from roadgpt.study.plan import StudyPart
 from roadgpt.study.prompts import Prompt
 from roadgpt.study.similarity import Likeness, likeness
 from roadgpt.study.truth import SHORTEST
@@ -28,39 +28,47 @@ from roadgpt.study.truth import SHORTEST
 Array = NDArray[np.float64]
 
 DEPARTURES = ("out of lane", "fell")  # causes of failures by which the car left its lane
-BARE = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)  # any road: to see what is asked for
+STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)
+"""The road that is measured where there is none, to learn which criteria a description mentions."""
 
 
 @dataclass(frozen=True, eq=False)
 class RoadRecord:
-    """One road of a study."""
+    """The properties of one road that reports use."""
 
     index: int
     folder: str
-    """Folder of its run, relative to the study's, with forward slashes."""
+    """Folder of its run, relative to the report's, with forward slashes."""
     outcome: str
     says: str
     """The outcome as a sentence."""
     is_valid: bool
     """Whether the road breaks no strict rule."""
     is_sound: bool
-    """Whether the road breaks no strict rule but the words' requirements, which the thesis did not check."""
+    """Whether the road breaks no strict rule except the description's requirements.
+
+    The thesis did not check these.
+    """
     is_sbft: bool
     """Whether the road passes the SBFT competition's validator."""
     sbft_says: str
+    """The first objection of that validator; empty if there is none."""
     has_left: bool
     """Whether the car left its lane or fell."""
     margin: float | None
-    length: float
+    """Least distance of the car to out of bounds, metres, negative if it failed; None if it did not drive."""
     points: Array
     """Centre line ``(n, 2)``, metres; empty if there is no road."""
     failed_at: tuple[float, float] | None
+    """Where the car failed, metres; None if it did not."""
     kept: Mapping[Criterion, bool]
-    """Whether the road keeps each criterion that the description asks for."""
+    """Whether the road keeps each criterion that the description mentions."""
     likeness: Likeness | None
+    """The properties that are compared with those of other roads; None if the road cannot be compared."""
     features: Mapping[str, float] = field(default_factory=dict)
     """Features of the competition's feature maps."""
     versions: Mapping[str, str] = field(default_factory=dict)
+    """Versions of RoadGPT and of the libraries that made the run."""
     max_oob: float | None = None
     """Largest share of the car outside its lane, 0 to 1; None if the road was not driven."""
     beyond: float | None = None
@@ -87,9 +95,27 @@ class StudyPartRecord:
     wanted: int = 1
     """Number of roads that were asked for."""
 
+    @property
+    def words(self) -> str:
+        """The description."""
+        return self.part.prompt.prompt
+
+    @property
+    def designer(self) -> str:
+        """The name of the designer."""
+        return self.part.designer
+
     def count(self, which: str) -> int:
         """Returns the number of roads with a property: is_valid, is_sound, is_sbft, has_left or is_driven."""
         return sum(getattr(road, which) for road in self.roads)
+
+    def kept(self, criterion: Criterion) -> list[bool]:
+        """Returns for each road whether it keeps a criterion; empty if the description does not mention it.
+
+        A missing road keeps nothing: a prompt without any road counts with as many roads as were asked for.
+        """
+        found = [road.kept[criterion] for road in self.roads if criterion in road.kept]
+        return found if self.roads or criterion != "general" else [False] * self.wanted
 
     def href(self, road: RoadRecord) -> str:
         """Returns the address of the road's bird's-eye view, or of its run if no picture was drawn."""
@@ -103,42 +129,30 @@ class StudyPartRecord:
         return f"{self.home}/{name}".lstrip("/")
 
 
-def read_parts(plan: StudyPlan, folder: Path, problems: Mapping[str, str]) -> Iterator[StudyPartRecord]:
-    """Yields every part of a study, read from its folder.
+def read_part(
+    place: Path, part: StudyPart, home: str = "", problem: str = "", wanted: int = 1
+) -> StudyPartRecord:
+    """Returns all roads of a folder of runs.
 
     Args:
-        plan: the study.
-        folder: the study's folder.
-        problems: why roads are missing, by the name of a part's folder.
+        place: the folder of runs.
+        part: the description and the designer.
+        home: the folder, relative to that of the report; empty: the report lies in it.
+        problem: why roads are missing; empty if none is.
+        wanted: number of roads that were asked for.
 
     Raises:
         UsageError: a run cannot be read.
     """
-    for part in plan.parts():
-        yield _read_part(folder / part.name, part, part.name, problems.get(part.name, ""), plan.roads)
-
-
-def read_campaign(place: Path, part: StudyPart) -> StudyPartRecord:
-    """Returns the roads of a folder of ``roadgpt run`` as a single part.
-
-    Raises:
-        UsageError: a run cannot be read.
-    """
-    return _read_part(place, part, "", "")
-
-
-def _read_part(place: Path, part: StudyPart, home: str, problem: str, wanted: int = 1) -> StudyPartRecord:
-    indices = finished(place) if place.is_dir() else []
     roads = tuple(
-        record_of(read_run(run_folder(place, n)), part, home, _features(place / test_name(n)))
-        for n in indices
+        _record_of(read_run(run_folder(place, n)), part, home, _features(place / test_name(n)))
+        for n in (finished(place) if place.is_dir() else [])
     )
     drawn = next((kind for kind in FORMATS if (place / f"overview.{kind}").is_file()), "")
     return StudyPartRecord(part, roads, home, problem, drawn, wanted)
 
 
-def record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, float]) -> RoadRecord:
-    """Returns the record of a run."""
+def _record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, float]) -> RoadRecord:
     verdict, road = run.verdict, run.road
     sbft = inspect(road, None, run.world, "sbft") if road is not None else ()
     return RoadRecord(
@@ -152,10 +166,9 @@ def record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, float
         sbft_says=sbft[0].sentence if sbft else "" if road is not None else "no road",
         has_left=verdict is not None and verdict.cause in DEPARTURES,
         margin=verdict.margin if verdict is not None else None,
-        length=run.length,
         points=road.centreline(2.0)[:, :2] if road is not None else np.empty((0, 2)),
         failed_at=verdict.at_xy if verdict is not None else None,
-        kept=kept_of(road, part.prompt, run.brief, run.world),
+        kept=_kept(road, part.prompt, run.brief, run.world),
         likeness=_likeness(road),
         features=features,
         versions=run.versions,
@@ -164,12 +177,12 @@ def record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, float
     )
 
 
-def kept_of(road: Road | None, prompt: Prompt, brief: Brief | None, world: World) -> dict[Criterion, bool]:
-    """Returns whether a road keeps each criterion of a description; all False if there is no road."""
-    points = road.centreline() if road is not None else BARE
-    is_road = bool(np.isfinite(points).all()) and len(points) > 1
+def _kept(road: Road | None, prompt: Prompt, brief: Brief | None, world: World) -> dict[Criterion, bool]:
+    """Returns whether a road keeps each criterion of a description; all are False if there is no road."""
+    points = road.centreline() if road is not None else STRAIGHT
+    is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1
+    points = points if is_road else STRAIGHT
     asked = promises_of(brief, world) if brief is not None else None
-    points = points if is_road else BARE
     found = measure(points, asked.widest) if asked else measure(points)
     if prompt.truth is not None:
         kept = criteria_of_truth(found, prompt.truth)
@@ -177,8 +190,7 @@ def kept_of(road: Road | None, prompt: Prompt, brief: Brief | None, world: World
         kept = criteria_of_outline(found, asked)
     else:
         return {}
-    whole = road is not None and is_road and found.length >= SHORTEST
-    return {criterion: good and whole for criterion, good in kept.items()}
+    return {criterion: good and is_road and found.length >= SHORTEST for criterion, good in kept.items()}
 
 
 def _likeness(road: Road | None) -> Likeness | None:

@@ -12,22 +12,20 @@ from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt.run.card import read_card
 from roadgpt.study.baseline import NAME
-from roadgpt.study.chapters.alignment import alignment, kept
+from roadgpt.study.chapters.alignment import alignment
 from roadgpt.study.chapters.card import card_of
 from roadgpt.study.chapters.diversity import diversity, spread_of
-from roadgpt.study.chapters.faults import fault_summaries, faults, headline
-from roadgpt.study.chapters.maps import coverage, roads
-from roadgpt.study.chapters.next_steps import Steps, what_to_try
+from roadgpt.study.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
 from roadgpt.study.chapters.out_of_lane import outside_sentences, passed_roads
-from roadgpt.study.chapters.overview import overview
+from roadgpt.study.chapters.roads import Compared, coverage, every_road, overview
 from roadgpt.study.chapters.validity import (
     SBFT,
     STRICT,
+    THESIS_LEFT,
+    THESIS_VALID,
     departures,
     left_source,
     of_thesis,
-    thesis_left,
-    thesis_valid,
     valid_source,
     validity,
 )
@@ -35,12 +33,11 @@ from roadgpt.study.chapters.wording import near_and_far, percent, plural, share_
 from roadgpt.study.execution import Problem
 from roadgpt.study.plan import StudyPart, StudyPlan, read_plan
 from roadgpt.study.prompts import Prompt
-from roadgpt.study.road_record import RoadRecord, StudyPartRecord, read_campaign, read_parts
-from roadgpt.study.similarity import Spread
+from roadgpt.study.road_record import RoadRecord, StudyPartRecord, read_part
 
 PROBLEMS = "problems.json"
 
-Found = Sequence[tuple[list[RoadRecord], Spread]]
+Found = Sequence[Compared]
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
@@ -57,7 +54,11 @@ def write_study(folder: Path) -> Path:
         RoadGPTError: a file cannot be written.
     """
     plan = read_plan(folder)
-    parts = list(read_parts(plan, folder, _problems(folder)))
+    problems = _problems(folder)
+    parts = [
+        read_part(folder / part.name, part, part.name, problems.get(part.name, ""), plan.roads)
+        for part in plan.parts()
+    ]
     found = [spread_of(part) for part in parts]
     return write(page_of(plan, parts, found), folder)
 
@@ -93,7 +94,7 @@ def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> 
 
 def _pictures(parts: Sequence[StudyPartRecord], size: float) -> list[Section]:
     covered = coverage(parts)
-    return [*([covered] if covered else []), roads(parts, size)]
+    return [*([covered] if covered else []), every_road(parts, size)]
 
 
 def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> list[str]:
@@ -101,7 +102,7 @@ def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) ->
     is_thesis = plan.kind == "thesis"
     lines = []
     for designer in plan.designers:
-        own = [part for part in parts if part.part.designer == designer]
+        own = [part for part in parts if part.designer == designer]
         if not any(part.roads for part in own):
             problem = next((part.problem for part in own if part.problem), "nothing was made")
             lines.append(f"{designer} was not run: {problem}.")
@@ -110,7 +111,7 @@ def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) ->
         said = [*_valid_lines(designer, counted, is_thesis), *_left_lines(designer, counted, is_thesis)]
         passed = passed_roads([road for part in own for road in part.roads])
         said += [*outside_sentences(passed, plan.world), _kept_line(own)]
-        pairs = [(p, f) for p, f in zip(parts, found, strict=True) if p.part.designer == designer]
+        pairs = [(p, f) for p, f in zip(parts, found, strict=True) if p.designer == designer]
         said.append(_different_line([f for _, f in pairs]))
         lines += said if len(plan.designers) == 1 else [f"{designer}: {sentence}" for sentence in said]
     return lines
@@ -126,7 +127,7 @@ def _valid_lines(designer: str, parts: Sequence[StudyPartRecord], is_thesis: boo
     )
     if not is_thesis:
         return [f"{text}."]
-    theirs = thesis_valid()
+    theirs = THESIS_VALID
     return [f"{text}; {NAME} had {share_of(theirs.hits, theirs.total)} by its own checks."]
 
 
@@ -134,14 +135,14 @@ def _left_lines(designer: str, parts: Sequence[StudyPartRecord], is_thesis: bool
     ours = left_source(designer, parts)
     if not ours.total:
         return []
-    theirs = thesis_left()
+    theirs = THESIS_LEFT
     beside = f"; in the thesis on {share_of(theirs.hits, theirs.total)}" if is_thesis else ""
     return [f"The car left its lane on {share_of(ours.hits, ours.total)} driven roads{beside}."]
 
 
 def _kept_line(parts: Sequence[StudyPartRecord]) -> str:
-    good = [value for part in parts for value in kept(part, "general")]
-    counts = [value for part in parts for value in kept(part, "turns")]
+    good = [value for part in parts for value in part.kept("general")]
+    counts = [value for part in parts for value in part.kept("turns")]
     text = f"{share_of(sum(good), len(good))} roads keep every word"
     return text + (
         f"; the number of turns is right on {percent(sum(counts) / len(counts))}." if counts else "."
@@ -175,7 +176,7 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     card = read_card(folder)
     request, setup = card.request, card.request.setup
     words = request.words or "roads that were given"
-    part = read_campaign(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
+    part = read_part(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
     found = [spread_of(part)]

@@ -12,7 +12,7 @@ from roadgpt.campaign.status import CellStatus
 from roadgpt.design.elements import elements_of
 from roadgpt.report.page import Block, Table, TableCell, cell
 from roadgpt.study.chapters.campaign_tests import again
-from roadgpt.study.chapters.wording import decimal
+from roadgpt.study.chapters.wording import decimal, row
 
 MOST = 1000  # tests of all cells among which pairs are looked for; first those that lie half-way between two
 NAMED = 30  # pairs of a campaign of one cell
@@ -73,11 +73,11 @@ def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
 def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[TableCell]:
     assert kept.design is not None
     assert lost.design is not None
-    return [
+    return row(
         cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
         decimal(kept.margin),
         cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
         decimal(lost.at_s, 0),
         decimal(pair.distance),
-        cell(weightiest(elements_of(kept.design.segments), elements_of(lost.design.segments))),
-    ]
+        weightiest(elements_of(kept.design.segments), elements_of(lost.design.segments)),
+    )

@@ -11,17 +11,14 @@ from roadgpt.campaign.behaviour import BOUNDS
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import CellStatus
 from roadgpt.report.page import Block, Figure, Table, TableCell, cell
-from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.report.page.lines import bars, lines
-from roadgpt.study.chapters.maps import CALLED
-from roadgpt.study.chapters.wording import decimal, percent
+from roadgpt.study.chapters.roads import CELLS, MAPS, feature_map
+from roadgpt.study.chapters.wording import decimal, percent, row
 
 NAMED = 30  # failures, one by one
 STEPS = 200  # of a curve
 SAMPLE = 100_000  # tests whose features are read, evenly spread
-SIDE = 25  # cells of a map along each axis
 MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is in the outermost
-MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))
 
 
 def failures(
@@ -46,18 +43,17 @@ def failures(
         f"USING (cell, number) ORDER BY {order}",
         (NAMED,),
     )
-    rows = []
-    for name, number, margin, outside, cause, side, at_s, says in some:
-        rows.append(
-            [
-                cell(f"{name}/{number}", href=again(folder, name, number)),
-                *_how_far(margin, outside, drives_on),
-                cell(cause or ""),
-                cell(side or ""),
-                decimal(at_s, 0),
-                cell(says or ""),
-            ]
+    rows = [
+        row(
+            cell(f"{name}/{number}", href=again(folder, name, number)),
+            *_how_far(margin, outside, drives_on),
+            cause or "",
+            side or "",
+            decimal(at_s, 0),
+            says or "",
         )
+        for name, number, margin, outside, cause, side, at_s, says in some
+    ]
     if rows:
         words = ["roadgpt", "drive", "--again", str(folder), str(rows[0][0].value)]
         note = f"To see one: {shlex.join(words)}"
@@ -123,7 +119,7 @@ def _causes(record: Record, drives_on: bool) -> Table:
         "GROUP BY 1, 2 ORDER BY 3 DESC, 1, 2"
     )
     rows = [
-        [cell(cause or "other"), cell(side or "–"), cell(count), *_how_far(least, outside, drives_on)]
+        row(cause or "other", side or "–", count, *_how_far(least, outside, drives_on))
         for cause, side, count, least, outside in found
     ]
     return Table("causes", "How the car failed", ["cause", "side", "tests", *_far_heads(drives_on)], rows)
@@ -157,32 +153,25 @@ def coverage(record: Record, done: int) -> list[Block]:
     """Returns maps of two features each, from an even sample of tests; empty if no features are known."""
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))
+    part = f" of every {every:,}th test" if every > 1 else ""
     blocks: list[Block] = []
     for pair in MAPS:
-        if not {*pair} <= known:
-            continue
-        across, upwards = pair
-        sums = _map(record, across, upwards, every)
-        if not is_map(sums):
-            continue
-        filled = int(np.count_nonzero(sums))
-        part = f" of every {every:,}th test" if every > 1 else ""
-        caption = f"Tests{part} by {across} and {upwards}: {filled} of {SIDE * SIDE} cells are filled."
-        axes = (AxisRange(CALLED[across], *BOUNDS[across]), AxisRange(CALLED[upwards], *BOUNDS[upwards]))
-        blocks.append(Figure(f"map-{across.lower()}", caption, heat(sums, *axes, "tests", caption)))
+        if {*pair} <= known:
+            caption = f"Tests{part} by {pair[0]} and {pair[1]}: {{}} are filled."
+            blocks += feature_map("map", _map(record, *pair, every), pair, BOUNDS, "tests", caption)
     return blocks
 
 
 def _map(record: Record, across: str, upwards: str, every: int) -> NDArray[np.float64]:
-    """Returns the number of tests in each map cell, ``(SIDE, SIDE)``, counted by the store."""
+    """Returns the number of tests in each cell of a map ``(CELLS, CELLS)``, counted by the store."""
     (x0, x1), (y0, y1) = BOUNDS[across], BOUNDS[upwards]
     rows = record.query(
         "SELECT CAST((x - ?) * ? AS INTEGER), CAST((y - ?) * ? AS INTEGER), count(*) FROM "
         "(SELECT json_extract(features, ?) AS x, json_extract(features, ?) AS y FROM details "
         "WHERE number % ? = 0 AND features IS NOT NULL) WHERE x IS NOT NULL AND y IS NOT NULL GROUP BY 1, 2",
-        (x0, SIDE / (x1 - x0), y0, SIDE / (y1 - y0), f"$.{across}", f"$.{upwards}", every),
+        (x0, CELLS / (x1 - x0), y0, CELLS / (y1 - y0), f"$.{across}", f"$.{upwards}", every),
     )
-    out = np.zeros((SIDE, SIDE))
-    for column, row, count in rows:
-        out[min(max(row, 0), SIDE - 1), min(max(column, 0), SIDE - 1)] += count
+    out = np.zeros((CELLS, CELLS))
+    for column, line, count in rows:
+        out[min(max(line, 0), CELLS - 1), min(max(column, 0), CELLS - 1)] += count
     return out

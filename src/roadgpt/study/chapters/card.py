@@ -25,7 +25,11 @@ def card_of(
 ) -> dict[str, str]:
     """Returns the lines of the card by their names."""
     out = {"command": command} if command else {}
-    out |= {"seed": str(seed), "roads of each": f"{roads:,}", "made by": _designers(parts)}
+    out |= {
+        "seed": str(seed),
+        "roads of each": f"{roads:,}",
+        "made by": ", ".join(dict.fromkeys(part.designer for part in parts)),
+    }
     out["reader"] = setup.reader + _hashes(setup.reader)
     if setup.drives:
         out["driven by"] = f"{setup.driver} in {setup.simulator}"
@@ -33,10 +37,6 @@ def card_of(
         out["language model"] = setup.chat.model
     out["world"] = ", ".join(_said(name, value) for name, value in world.model_dump().items())
     return out | {"versions": _versions(parts)}
-
-
-def _designers(parts: Sequence[StudyPartRecord]) -> str:
-    return ", ".join(dict.fromkeys(part.part.designer for part in parts))
 
 
 def _said(name: str, value: float) -> str:

@@ -7,7 +7,8 @@ import numpy as np
 
 from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.heat import AxisRange, heat, is_map
-from roadgpt.study.chapters.wording import decimal, plural
+from roadgpt.study.chapters.roads import Compared
+from roadgpt.study.chapters.wording import decimal, plural, row
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 from roadgpt.study.similarity import Likeness, Spread, between, spread
 
@@ -17,13 +18,13 @@ MOST_NAMED = 50
 MOST_DRAWN = 30  # parts whose distances are drawn
 
 
-def spread_of(part: StudyPartRecord) -> tuple[list[RoadRecord], Spread]:
+def spread_of(part: StudyPartRecord) -> Compared:
     """Returns the roads of a part that are compared, and how different they are."""
     roads = [road for road in part.roads if road.likeness is not None][:MOST]
     return roads, spread([road.likeness for road in roads if road.likeness is not None])
 
 
-def diversity(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRecord], Spread]]) -> Section:
+def diversity(parts: Sequence[StudyPartRecord], found: Sequence[Compared]) -> Section:
     """Returns the section: distances within every part, near duplicates, and distances between prompts."""
     blocks: list[Block] = [
         "Two plans are superimposed by the best shift, turn and mirroring and compared at equal "
@@ -46,7 +47,7 @@ def diversity(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadR
     return Section("Diversity", blocks)
 
 
-def _within(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRecord], Spread]]) -> Table:
+def _within(parts: Sequence[StudyPartRecord], found: Sequence[Compared]) -> Table:
     rows = []
     for part, (roads, own) in zip(parts, found, strict=True):
         if len(roads) < 2:
@@ -55,17 +56,17 @@ def _within(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRec
         i = int(np.argmin(nearest))
         j = int(np.nanargmin(own.metres[i]))
         rows.append(
-            [
-                cell(part.part.prompt.prompt, href=part.overview),
-                cell(part.part.designer),
-                cell(len(roads)),
+            row(
+                cell(part.words, href=part.overview),
+                part.designer,
+                len(roads),
                 decimal(float(nearest.min()), 1, part.href(roads[i])),
                 cell(f"{roads[i].index} and {roads[j].index}", href=part.href(roads[j])),
                 decimal(float(np.median(nearest)), 1),
-                cell(len(own.duplicates)),
+                len(own.duplicates),
                 decimal(own.general),
                 decimal(own.sparseness, 1),
-            ]
+            )
         )
     heads = [
         "prompt", "made by", "roads", "nearest pair, m", "which", "nearest, median, m", "near duplicates",
@@ -85,39 +86,29 @@ def _some(part: StudyPartRecord) -> list[Likeness]:
 def _between(parts: Sequence[StudyPartRecord]) -> Table:
     """Returns a table of pairs of prompts of one designer, limited to a readable number."""
     rows: list[list[TableCell]] = []
-    for designer in dict.fromkeys(part.part.designer for part in parts):
-        own = [part for part in parts if part.part.designer == designer and part.roads][:6]
+    for designer in dict.fromkeys(part.designer for part in parts):
+        own = [part for part in parts if part.designer == designer and part.roads][:6]
         for one, other in combinations(own, 2):
-            told = between(_some(one), _some(other))
-            rows.append(
-                [
-                    cell(one.part.prompt.prompt),
-                    cell(other.part.prompt.prompt),
-                    cell(designer),
-                    decimal(told.general),
-                    decimal(told.metres, 1),
-                    cell(told.duplicates),
-                ]
-            )
+            found = between(_some(one), _some(other))
+            numbers = row(decimal(found.general), decimal(found.metres, 1), found.duplicates)
+            rows.append(row(one.words, other.words, designer, *numbers))
     heads = ["prompt", "and", "made by", "mean similarity", "nearest pair, m", "near duplicates"]
     note = f"The first {MOST_BETWEEN} roads of either, each with each."
     return Table("diversity-between", "Roads of different descriptions", heads, rows, note)
 
 
-def _twins(parts: Sequence[StudyPartRecord], found: Sequence[tuple[list[RoadRecord], Spread]]) -> list[Block]:
-    out: list[Block] = []
-    for part, (roads, own) in zip(parts, found, strict=True):
-        for i, j in own.duplicates:
-            out.append(
-                [
-                    f"{part.part.name}: roads ",
-                    linked(str(roads[i].index), part.href(roads[i])),
-                    " and ",
-                    linked(str(roads[j].index), part.href(roads[j])),
-                    f", {own.metres[i, j]:.1f} m apart",
-                ]
-            )
-    return out
+def _twins(parts: Sequence[StudyPartRecord], found: Sequence[Compared]) -> list[Block]:
+    return [
+        [
+            f"{part.part.name}: roads ",
+            linked(str(roads[i].index), part.href(roads[i])),
+            " and ",
+            linked(str(roads[j].index), part.href(roads[j])),
+            f", {own.metres[i, j]:.1f} m apart",
+        ]
+        for part, (roads, own) in zip(parts, found, strict=True)
+        for i, j in own.duplicates
+    ]
 
 
 def _matrix(part: StudyPartRecord, roads: list[RoadRecord], own: Spread) -> Figure | None:
@@ -128,7 +119,7 @@ def _matrix(part: StudyPartRecord, roads: list[RoadRecord], own: Spread) -> Figu
         return None
     axis = AxisRange("road", 0.5, len(roads) + 0.5, is_count=True)
     caption = (
-        f"{part.part.designer}, “{part.part.prompt.prompt}”: distance between every two roads, metres; "
+        f"{part.designer}, “{part.words}”: distance between every two roads, metres; "
         "the fainter, the more similar."
     )
     return Figure(f"distances-{part.part.number}", caption, heat(lower, axis, axis, "metres", caption, True))

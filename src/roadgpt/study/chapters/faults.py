@@ -1,4 +1,4 @@
-"""Makes the section on distinct faults: a gallery and a table. It simulates nothing."""
+"""Makes the sections on distinct faults and, if no road failed, on what to try next. It simulates nothing."""
 
 import shlex
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ from roadgpt.report.page import (
 )
 from roadgpt.report.page.failure_site import draw_site, site_of
 from roadgpt.run import Run
-from roadgpt.study.chapters.wording import percent, plural
+from roadgpt.study.chapters.wording import percent, plural, row
 
 SHOWN = 24  # faults with a picture
 LISTED = 300  # faults of the table
@@ -42,6 +42,10 @@ DRAWN = (
     "Each picture is of a typical failure: up is the way that the road led there, blue the way of the car, "
     "orange the car where it failed."
 )
+
+
+Steps = Sequence[tuple[str, str]]
+"""What to try next: pairs of a description and a command."""
 
 
 class FaultSummary(NamedTuple):
@@ -164,15 +168,9 @@ def _all(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Bloc
     rows = []
     for each in summaries:
         its = each.looked.stability if each.looked else None
-        rows.append(
-            [
-                cell(each.fault.number),
-                cell(len(each.fault.members)),
-                cell(str(each.name), href=_picture(folder, each)),
-                cell(None) if its is None else cell(its.share, f"{its.failed} of {len(its.drives)}"),
-                cell(each.reason),
-            ]
-        )
+        name = cell(str(each.name), href=_picture(folder, each))
+        failed = None if its is None else cell(its.share, f"{its.failed} of {len(its.drives)}")
+        rows.append(row(each.fault.number, len(each.fault.members), name, failed, each.reason))
     heads = ["fault", "tests", "typical test", "failed again", "why"]
     caption = f"All {plural(len(found.them), 'fault')}"
     if len(summaries) < len(found.them):
@@ -182,3 +180,12 @@ def _all(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Bloc
     if (folder / FOLDER / TABLE).is_file():
         beside.append(["As roadgpt faults last wrote them: ", linked(TABLE, f"{FOLDER}/{TABLE}"), "."])
     return Details("All faults as a table", [table, *beside])
+
+
+def what_to_try(steps: Steps) -> list[Section]:
+    """Returns a section with the commands to try if no road failed; empty if there are none."""
+    if not steps:
+        return []
+    caption = "No road failed; what may find one that does"
+    table = Table("next", caption, ["what", "command"], [row(*step) for step in steps])
+    return [Section("What to try next", [table])]

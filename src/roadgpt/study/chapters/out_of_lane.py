@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from roadgpt.campaign.record import Record
-from roadgpt.report.page import Table, cell
+from roadgpt.report.page import Table
 from roadgpt.road import World
-from roadgpt.study.chapters.wording import decimal, share_of
-from roadgpt.study.chapters.wording import percent as shared
+from roadgpt.study.chapters.wording import decimal, row, share_cell, share_of
 from roadgpt.study.road_record import RoadRecord
 from roadgpt.verdict import SEVERITIES, Severity, percent, severity
 from roadgpt.verdict.severity import MOSTLY
@@ -75,13 +74,13 @@ def outside_table(found: Sequence[Passed]) -> list[Table]:
     if not every:
         return []
     rows = [
-        [
-            cell(each.severity),
-            cell(each.tests),
-            cell(round(each.tests / every, 6), shared(each.tests / every)),
-            cell(round(each.share, 6), percent(each.share)) if each.tests else cell(None),
-            decimal(each.beyond) if each.tests else cell(None),
-        ]
+        row(
+            each.severity,
+            each.tests,
+            share_cell(each.tests / every),
+            share_cell(each.share, percent(each.share)) if each.tests else None,
+            decimal(each.beyond if each.tests else None),
+        )
         for each in found
     ]
     heads = ["where the car was", "passed", "share", "outside at most", "beyond the marking, m"]

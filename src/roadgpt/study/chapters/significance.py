@@ -4,17 +4,20 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from roadgpt.report.page import Block, Table, TableCell, cell
-from roadgpt.study.chapters.wording import decimal, p_value
+from roadgpt.study.chapters.wording import decimal, p_value, row
 from roadgpt.study.statistics import LEVEL, ChiSquared, chi_squared, exact, trend
 
 
 class Count(NamedTuple):
-    """How many roads of one prompt have a property."""
+    """The number of roads of one prompt that have a property."""
 
     prompt: str
     hits: int
+    """Number of roads with the property."""
     total: int
+    """Number of roads."""
     href: str = ""
+    """Address of the picture or table of these roads; empty for no link."""
 
 
 class Source(NamedTuple):
@@ -23,15 +26,16 @@ class Source(NamedTuple):
     name: str
     counts: tuple[Count, ...]
     slug: str
+    """Its name in the names of files."""
 
     @property
     def hits(self) -> int:
-        """Of all prompts."""
+        """Number of roads of all prompts that have the property."""
         return sum(count.hits for count in self.counts)
 
     @property
     def total(self) -> int:
-        """Of all prompts."""
+        """Number of roads of all prompts."""
         return sum(count.total for count in self.counts)
 
     def table(self) -> list[list[int]]:
@@ -56,39 +60,22 @@ def _table(source: Source, found: ChiSquared, hit: str, miss: str, name: str) ->
     heads = ["prompt", hit, miss, "total"]
     heads += [f"expected {each}" for each in (hit, miss)] + [f"(o − e)²/e {each}" for each in (hit, miss)]
     rows: list[Sequence[TableCell]] = []
-    for n, count in enumerate(source.counts):
-        rows.append(
-            [
-                cell(count.prompt),
-                cell(count.hits, href=count.href),
-                cell(count.total - count.hits),
-                cell(count.total),
-                *(decimal(float(value)) for value in (*found.expected[n], *found.terms[n])),
-            ]
-        )
+    for count, expected, terms in zip(source.counts, found.expected, found.terms, strict=True):
+        own = row(cell(count.hits, href=count.href), count.total - count.hits, count.total)
+        rows.append(row(count.prompt, *own, *map(decimal, (*expected.tolist(), *terms.tolist()))))
     sums = [source.hits, source.total - source.hits, source.total]
-    rows.append(
-        [
-            cell("total"),
-            *(cell(each) for each in sums),
-            cell(None, ""),
-            cell(None, ""),
-            cell(None, "χ² ="),
-            decimal(found.statistic),
-        ]
-    )
+    blank = cell(None, "")
+    rows.append(row("total", *sums, blank, blank, cell(None, "χ² ="), decimal(found.statistic)))
     return Table(name, f"{source.name}: {hit} by prompt, and chi-squared term by term", heads, rows, "", True)
 
 
 def _verdict(source: Source, found: ChiSquared, hit: str, miss: str) -> str:
+    if not source.total:
+        return f"{source.name}: no roads to count."
+    if not found.freedom and 0 < source.hits < source.total:
+        return f"{source.name}: only one prompt has roads to count, so there is nothing to compare it with."
     if not found.freedom:
-        if not source.total:
-            return f"{source.name}: no roads to count."
-        if 0 < source.hits < source.total:
-            return (
-                f"{source.name}: only one prompt has roads to count, so there is nothing to compare it with."
-            )
-        every = f"all roads are {hit}" if source.hits else f"all roads are {miss}"
+        every = f"all roads are {hit if source.hits else miss}"
         return (
             f"{source.name}: {every}, so no prompt differs from another: chi-squared is 0 with no degrees of "
             "freedom, Cramér's V is 0, and the exact test gives p = 1. The "

@@ -4,19 +4,28 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
-from roadgpt.report.page.forest import Share, forest
+from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, linked
+from roadgpt.report.page.forest import forest
 from roadgpt.study.baseline import NAME, ROADS, THESIS
 from roadgpt.study.chapters.out_of_lane import outside_table, passed_roads
 from roadgpt.study.chapters.significance import Count, Source, chi_squared_blocks
-from roadgpt.study.chapters.wording import SHARE_HEADS, p_value, plural, share_cells, share_of
+from roadgpt.study.chapters.wording import (
+    SHARE_HEADS,
+    drawn_share,
+    folded,
+    p_value,
+    row,
+    share_cells,
+    share_of,
+)
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
-from roadgpt.study.statistics import exact, wilson
+from roadgpt.study.statistics import exact
 
-MOST_NAMED = 100  # roads in a list
 MOST_DRAWN = 12  # prompts in a figure; of more, all together
 ALL = "all prompts"
 LONGEST = 66  # letters of a prompt in a figure
+
+Parts = Sequence[StudyPartRecord]
 
 
 class Kind(NamedTuple):
@@ -34,48 +43,48 @@ SBFT = Kind("sbft", "SBFT rules", "is_sbft")
 KINDS = (STRICT, SOUND, SBFT)
 
 
-def of_thesis(parts: Sequence[StudyPartRecord]) -> list[StudyPartRecord]:
+def of_thesis(parts: Parts) -> list[StudyPartRecord]:
     """Returns the parts whose prompts are in the thesis' table."""
-    return [part for part in parts if part.part.prompt.prompt in THESIS]
+    return [part for part in parts if part.words in THESIS]
 
 
-def valid_source(designer: str, parts: Sequence[StudyPartRecord], kind: Kind) -> Source:
+def _source(parts: Parts, designer: str, which: str, of: str, name: str, slug: str) -> Source:
+    """Counts the roads of a designer that have one property, of those that have another one."""
+    counts = (
+        Count(part.words, part.count(which), part.count(of) if of else len(part.roads), part.overview)
+        for part in parts
+        if part.designer == designer and part.roads
+    )
+    return Source(name, tuple(counts), slug)
+
+
+def valid_source(designer: str, parts: Parts, kind: Kind) -> Source:
     """Counts the roads of a designer that are valid by one set of rules."""
-    counts = tuple(
-        Count(part.part.prompt.prompt, part.count(kind.which), len(part.roads), part.overview)
-        for part in parts
-        if part.part.designer == designer and part.roads
-    )
-    return Source(f"{designer}, {kind.name}", counts, f"{designer}-{kind.slug}")
+    return _source(parts, designer, kind.which, "", f"{designer}, {kind.name}", f"{designer}-{kind.slug}")
 
 
-def left_source(designer: str, parts: Sequence[StudyPartRecord]) -> Source:
+def left_source(designer: str, parts: Parts) -> Source:
     """Counts the drives on valid roads of a designer on which the car left its lane."""
-    counts = tuple(
-        Count(part.part.prompt.prompt, part.count("has_left"), part.count("is_driven"), part.overview)
-        for part in parts
-        if part.part.designer == designer and part.roads
-    )
-    return Source(designer, counts, designer)
+    return _source(parts, designer, "has_left", "is_driven", designer, designer)
 
 
-def thesis_valid() -> Source:
-    """Returns the counts of valid roads from the thesis' table 6.1."""
-    counts = tuple(Count(prompt, counted.valid, ROADS) for prompt, counted in THESIS.items())
-    return Source(f"{NAME}, its own checks", counts, "thesis")
+THESIS_VALID = Source(
+    f"{NAME}, its own checks",
+    tuple(Count(prompt, own.valid, ROADS) for prompt, own in THESIS.items()),
+    "thesis",
+)
+"""The counts of valid roads from the thesis' table 6.1."""
+THESIS_LEFT = Source(
+    NAME, tuple(Count(prompt, own.left, own.valid) for prompt, own in THESIS.items()), "thesis"
+)
+"""The counts of lane departures on valid roads from the thesis."""
 
 
-def thesis_left() -> Source:
-    """Returns the counts of lane departures on valid roads from the thesis."""
-    counts = tuple(Count(prompt, counted.left, counted.valid) for prompt, counted in THESIS.items())
-    return Source(NAME, counts, "thesis")
-
-
-def validity(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_baseline: bool) -> Section:
+def validity(parts: Parts, designers: Sequence[str], has_baseline: bool) -> Section:
     """Returns the section on validity by every set of rules, beside the thesis' counts if asked for."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
-    every = [source for source in every if source.counts] + ([thesis_valid()] if has_baseline else [])
+    every = [source for source in every if source.counts] + ([THESIS_VALID] if has_baseline else [])
     blocks: list[Block] = [
         "Strict rules: inside the map, no overlap, radius and slope within limits, and every requirement of "
         "the words kept. But for the words: the same without these requirements, which the thesis did not "
@@ -94,12 +103,10 @@ def validity(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_bas
         for source in others:
             inside += chi_squared_blocks(source, "valid", "invalid", f"validity-{source.slug}")
         blocks.append(Details("The same by the other rules", inside))
-    return Section(
-        "Validity", [*blocks, *_named(parts, "Invalid roads", lambda road: not road.is_valid, _why)]
-    )
+    return Section("Validity", [*blocks, *folded("Invalid roads", _named(parts, _why))])
 
 
-def departures(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_baseline: bool) -> Section:
+def departures(parts: Parts, designers: Sequence[str], has_baseline: bool) -> Section:
     """Returns the section on lane departures on valid roads."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [left_source(designer, told) for designer in designers]
@@ -107,7 +114,7 @@ def departures(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_b
     blocks: list[Block] = []
     if not every:
         blocks.append("These roads were not driven.")
-    every += [thesis_left()] if has_baseline else []
+    every += [THESIS_LEFT] if has_baseline else []
     if every:
         blocks += [
             "Drives on which the car left its lane, on roads that are valid by the strict rules"
@@ -119,20 +126,14 @@ def departures(parts: Sequence[StudyPartRecord], designers: Sequence[str], has_b
         if len(source.counts) > 1:
             blocks += chi_squared_blocks(source, "left", "kept", f"departures-{source.slug}")
     blocks += outside_table(passed_roads([road for part in parts for road in part.roads]))
-    return Section("Leaving the lane", [*blocks, *_named(parts, "Drives that left", _has_left, _says)])
-
-
-def _has_left(road: RoadRecord) -> bool:
-    return road.has_left
-
-
-def _says(road: RoadRecord) -> str:
-    return road.says
+    left = _named(parts, lambda road: road.says if road.has_left else "")
+    return Section("Leaving the lane", [*blocks, *folded("Drives that left", left)])
 
 
 def _why(road: RoadRecord) -> str:
+    """Returns why a road is invalid; empty if it is valid."""
     sbft = f"; SBFT: {road.sbft_says}" if road.sbft_says else ""
-    return road.says + sbft
+    return "" if road.is_valid else road.says + sbft
 
 
 def _beside(source: Source, thesis: Source) -> str:
@@ -149,66 +150,45 @@ def _forest(name: str, hit: str, every: Sequence[Source]) -> Figure:
     if len(prompts) > MOST_DRAWN:
         prompts = [ALL]
         every = [s._replace(counts=(Count(ALL, s.hits, s.total),)) for s in every]
-    groups = []
-    for prompt in prompts:
-        rows = []
-        for series, source in enumerate(every):
-            for count in source.counts:
-                if count.prompt == prompt and count.total:
-                    rows.append(
-                        Share(
-                            series,
-                            count.hits / count.total,
-                            *wilson(count.hits, count.total),
-                            f"{count.hits} of {count.total}",
-                        )
-                    )
-        groups.append((_short(prompt), rows))
+    groups = [
+        (
+            textwrap.shorten(prompt, LONGEST, placeholder=" …"),
+            [
+                drawn_share(series, count.hits, count.total)
+                for series, source in enumerate(every)
+                for count in source.counts
+                if count.prompt == prompt and count.total
+            ],
+        )
+        for prompt in prompts
+    ]
     caption = f"Share of roads {'that are valid' if hit == 'valid' else 'on which the car left its lane'}"
     caption += ", by prompt; dots are shares, lines Wilson's 95 % intervals."
     return Figure(name, caption, forest(groups, [source.name for source in every], caption))
-
-
-def _short(prompt: str) -> str:
-    return textwrap.shorten(prompt, LONGEST, placeholder=" …")
 
 
 def _shares(name: str, hit: str, every: Sequence[Source]) -> Table:
     rows: list[list[TableCell]] = []
     for source in every:
         for count in source.counts:
-            rows.append(
-                [cell(count.prompt), cell(source.name), *share_cells(count.hits, count.total, count.href)]
-            )
+            rows.append(row(count.prompt, source.name, *share_cells(count.hits, count.total, count.href)))
         if len(source.counts) > 1:
-            rows.append([cell("all of these"), cell(source.name), *share_cells(source.hits, source.total)])
-    return Table(
-        f"{name}-shares", f"Shares: {hit}, with intervals", ["prompt", "made by", hit, *SHARE_HEADS], rows
-    )
+            rows.append(row("all of these", source.name, *share_cells(source.hits, source.total)))
+    heads = ["prompt", "made by", hit, *SHARE_HEADS]
+    return Table(f"{name}-shares", f"Shares: {hit}, with intervals", heads, rows)
 
 
-def _silent(parts: Sequence[StudyPartRecord]) -> list[Block]:
+def _silent(parts: Parts) -> list[Block]:
     """Lists designers that could not be run and roads that could not be made."""
-    out: list[Block] = []
-    for sentence in dict.fromkeys(f"{p.part.designer}: {p.problem}" for p in parts if p.problem):
-        out.append(f"Roads are missing: {sentence}.")
-    return out
+    sentences = dict.fromkeys(f"{part.designer}: {part.problem}" for part in parts if part.problem)
+    return [f"Roads are missing: {sentence}." for sentence in sentences]
 
 
-def _named(
-    parts: Sequence[StudyPartRecord],
-    title: str,
-    which: Callable[[RoadRecord], bool],
-    says: Callable[[RoadRecord], str],
-) -> list[Block]:
-    """Lists roads with a property, each with a link; empty if there are none."""
-    lines: list[Block] = []
-    for part in parts:
-        for road in part.roads:
-            if which(road):
-                where = linked(f"{part.part.name}, road {road.index}", part.href(road))
-                lines.append([where, f": {says(road)}"])
-    if not lines:
-        return []
-    more: list[Block] = [f"… and {len(lines) - MOST_NAMED} more."] if len(lines) > MOST_NAMED else []
-    return [Details(f"{title} ({plural(len(lines), 'road')})", lines[:MOST_NAMED] + more)]
+def _named(parts: Parts, says: Callable[[RoadRecord], str]) -> list[Block]:
+    """Returns a line with a link for each road of which something is said."""
+    return [
+        [linked(f"{part.part.name}, road {road.index}", part.href(road)), f": {sentence}"]
+        for part in parts
+        for road in part.roads
+        if (sentence := says(road))
+    ]

@@ -1,9 +1,16 @@
-"""Formats numbers for reports."""
+"""Formats numbers, intervals and lists for reports."""
 
 import math
+from collections.abc import Sequence
 
-from roadgpt.report.page import TableCell, cell
+from roadgpt.report.page import Block, Details, TableCell, cell
+from roadgpt.report.page.forest import Share
+from roadgpt.report.page.model import Raw
 from roadgpt.study.statistics import Interval, clopper_pearson, wilson
+
+MOST_NAMED = 100  # lines of a list
+SHARE_HEADS = ("of", "share", "Clopper-Pearson 95 %", "Wilson 95 %")
+"""Headings of the cells of ``share_cells``, after the first."""
 
 
 def p_value(p: float) -> str:
@@ -18,14 +25,19 @@ def percent(share: float, digits: int = 1) -> str:
     return "–" if math.isnan(share) else f"{100 * share:.{digits}f} %"
 
 
-def between(interval: Interval) -> str:
-    """Formats an interval of shares as '54.9 to 66.2 %'."""
-    return f"{100 * interval.lo:.1f} to {100 * interval.hi:.1f} %"
-
-
 def share_of(k: int, n: int) -> str:
     """Formats a count as '182 of 300 (60.7 %)'."""
     return f"{k} of {n}" + (f" ({percent(k / n)})" if n else "")
+
+
+def plural(n: int, word: str) -> str:
+    """Formats a count with its noun: '1 road', '2 roads'."""
+    return f"{n:,} {word}{'' if n == 1 else 's'}"
+
+
+def row(*values: Raw | TableCell) -> list[TableCell]:
+    """Returns a row of a table; values that are no cells yet become cells."""
+    return [value if isinstance(value, TableCell) else cell(value) for value in values]
 
 
 def decimal(value: float | None, digits: int = 2, href: str = "") -> TableCell:
@@ -35,9 +47,36 @@ def decimal(value: float | None, digits: int = 2, href: str = "") -> TableCell:
     return cell(round(value, digits + 3), f"{value:z.{digits}f}".replace("-", "−"), href)
 
 
-def metres(value: float) -> str:
-    """Formats metres as '0.18 m'; below 1 cm it says 'less than 1 cm'."""
-    return f"{value:.2f} m" if value >= 0.01 else "less than 1 cm"
+def share_cell(share: float, text: str = "") -> TableCell:
+    """Returns a share as a cell: a number from 0 to 1 in CSV; on the page the text, or percent."""
+    return cell(round(share, 6), text or percent(share))
+
+
+def interval_cell(interval: Interval) -> TableCell:
+    """Returns an interval of shares as a cell: from 0 to 1 in CSV, percent on the page."""
+    low, high = interval
+    return cell(f"{low:.4f} to {high:.4f}", f"{100 * low:.1f} to {100 * high:.1f} %")
+
+
+def share_cells(k: int, n: int, href: str = "") -> list[TableCell]:
+    """Returns the cells k, n, share, Clopper and Pearson's interval, and Wilson's interval."""
+    if not n:
+        return [cell(k, href=href), *row(n, None, None, None)]
+    exact, score = interval_cell(clopper_pearson(k, n)), interval_cell(wilson(k, n))
+    return [cell(k, href=href), *row(n, share_cell(k / n), exact, score)]
+
+
+def drawn_share(series: int, k: int, n: int, text: str = "") -> Share:
+    """Returns the share k of n as a row of a forest plot: with Wilson's interval and 'k of n' beside it."""
+    return Share(series, k / n, *wilson(k, n), text or f"{k} of {n}")
+
+
+def folded(title: str, lines: Sequence[Block]) -> list[Block]:
+    """Returns the first 100 lines about roads, folded under a title with their number; empty if none."""
+    if not lines:
+        return []
+    more = [f"… and {len(lines) - MOST_NAMED} more."] if len(lines) > MOST_NAMED else []
+    return [Details(f"{title} ({plural(len(lines), 'road')})", [*lines[:MOST_NAMED], *more])]
 
 
 def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) -> list[str]:
@@ -52,35 +91,12 @@ def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) 
     out = []
     if near is not None:
         out.append(
-            f"Of the drives that kept their lane, {near[1]} came nearest to failing: {metres(near[0])}."
+            f"Of the drives that kept their lane, {near[1]} came nearest to failing: {_metres(near[0])}."
         )
     if far is not None and far[0] < 0:
-        out.append(f"Farthest out went {far[1]}: {metres(-far[0])} beyond what is allowed.")
+        out.append(f"Farthest out went {far[1]}: {_metres(-far[0])} beyond what is allowed.")
     return out
 
 
-def share_cells(k: int, n: int, href: str = "") -> list[TableCell]:
-    """Returns the cells k, n, share, Clopper and Pearson's interval, and Wilson's interval."""
-    if not n:
-        return [cell(k, href=href), cell(n), cell(None), cell(None), cell(None)]
-    exact, score = clopper_pearson(k, n), wilson(k, n)
-    return [
-        cell(k, href=href),
-        cell(n),
-        cell(round(k / n, 6), percent(k / n)),
-        interval_cell(exact),
-        interval_cell(score),
-    ]
-
-
-def interval_cell(interval: Interval) -> TableCell:
-    """Returns an interval as a cell: shares in CSV, percent on the page."""
-    return cell(f"{interval.lo:.4f} to {interval.hi:.4f}", between(interval))
-
-
-SHARE_HEADS = ("of", "share", "Clopper-Pearson 95 %", "Wilson 95 %")
-
-
-def plural(n: int, word: str) -> str:
-    """Formats a count with its noun: '1 road', '2 roads'."""
-    return f"{n:,} {word}{'' if n == 1 else 's'}"
+def _metres(value: float) -> str:
+    return f"{value:.2f} m" if value >= 0.01 else "less than 1 cm"
