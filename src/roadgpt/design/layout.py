@@ -1,45 +1,52 @@
-"""The plan of a draft, fast and to a centimetre, and its place on the map.
+"""Walks the plan of a draft, checks that it keeps clear of itself, and places it on the map.
 
-Hundreds of drafts may have to be laid out for one road, so the curve is walked in short steps instead of
-being solved; the road that is built in the end is exact, and is judged again.
+The planner lays out hundreds of drafts for one road. The curve is therefore walked in steps of about 1 m
+instead of being solved; points are off by a few centimetres at most. The road that is built from the chosen
+draft is exact, and every rule checks it again.
 """
 
 from collections.abc import Sequence
+from math import cos, radians, sin
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import EDGE
+from roadgpt.check.ribbon import sides
 from roadgpt.geometry.curve import Array
-from roadgpt.road import World
+from roadgpt.road import Design, Road, World, build
 
 STEP = 1.0  # m between points of the walked line
 COARSE = 3  # points of the walked line from one point of the test for overlap to the next
-NEIGHBOURS = (
-    26.0  # m along the road: places nearer than this cannot meet (half a circle of 14 m radius is 44 m)
-)
-MANY = 700  # points from which on near ones are looked up in a tree: all pairs of them would take long
-SOME = 300  # points of a long line that are laid on the map before all are
-COARSENESS = 0.6  # m that the coarse points may see legs further apart than they are
-SPARE = 0.7  # m that carriageways are kept apart at least, where there is no room for the shoulders
-DIAGONALS = np.array([45.0, 135.0, 225.0, 315.0])  # headings at which a straight road has most room
-HEADINGS = 72  # that are tried on a map where the first one does not fit
+NEIGHBOURS = 26.0  # m along the road: closer places cannot meet (half a circle of 14 m radius is 44 m)
+COARSENESS = 0.6  # m by which coarse points may overestimate a distance
+SPARE = 0.7  # m between two carriageways, where there is no room for the shoulders
+DIAGONALS = np.array([45.0, 135.0, 225.0, 315.0])  # degrees: headings at which a straight has most room
+HEADINGS = 72  # tried on a map on which the first heading does not fit
+MOST_POINTS = 700  # of a line whose smallest box is looked for
+LEAST_EDGE = 0.1  # m between ribbon and border of a moved road, for rounding and the bulge between samples
+BEYOND = 1.05  # m by which SBFT's spline may run on behind either end
+CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: how a start is written
+TURNS = np.array(sorted(range(-4500, 4501), key=abs)) / HUNDREDTH  # degrees, the smallest first
+PORTIONS = 60  # of these turns, tried one after another
 
 Complex = NDArray[np.complex128]
 
 
 class PlanLine(NamedTuple):
-    """An approximate centre line that starts at the origin along +x: stations, and points as x + iy."""
+    """The walked centre line of a draft; it starts at the origin and heads along +x."""
 
     s: Array
+    """Stations in metres, about 1 m apart, ``(n,)``."""
     z: Complex
+    """Points as x + iy in metres, ``(n,)``."""
 
 
 class MapPose(NamedTuple):
-    """The position of a line on the map: start in metres, heading in degrees."""
+    """The start of a road on the map: x and y in metres, heading ``theta`` in degrees."""
 
     x: float
     y: float
@@ -47,7 +54,7 @@ class MapPose(NamedTuple):
 
 
 class PlacedPlan(NamedTuple):
-    """The elements of a draft, their centre line, and where it lies on the map."""
+    """The elements of a draft, their centre line, and the start of the road on the map."""
 
     elements: Sequence[Element]
     line: PlanLine
@@ -55,7 +62,7 @@ class PlacedPlan(NamedTuple):
 
 
 def walk(elements: Sequence[Element]) -> PlanLine:
-    """Returns the centre line of elements, in steps of about a metre."""
+    """Returns the centre line of elements, in steps of about 1 m."""
     knots, bends, length = bends_of(elements)
     s = np.linspace(0.0, length, max(2, round(length / STEP)) + 1)
     steps = np.exp(1j * _headings(s[:-1] + s[1] / 2, knots, bends)) * s[1]
@@ -63,7 +70,10 @@ def walk(elements: Sequence[Element]) -> PlanLine:
 
 
 def bends_of(elements: Sequence[Element]) -> tuple[Array, Array, float]:
-    """Returns stations (m), curvatures there (1/m, linear in between, 0 after the last) and the length."""
+    """Returns stations in metres, the curvature at each in 1/m, and the length of the elements in metres.
+
+    The curvature is linear between two stations, and 0 behind the last one.
+    """
     knots, bends, at = [0.0], [0.0], 0.0
     for element in elements:
         length = element.length
@@ -76,7 +86,7 @@ def bends_of(elements: Sequence[Element]) -> tuple[Array, Array, float]:
 
 
 def _headings(s: Array, knots: Array, bends: Array) -> Array:
-    """Radians at stations, where the curvature runs linearly from knot to knot, and is 0 after the last."""
+    """Returns the headings in radians at stations, from the values of ``bends_of``."""
     spans = np.diff(knots)
     reached = np.concatenate([[0.0], np.cumsum(spans * (bends[1:] + bends[:-1]) / 2)])
     slopes = np.append(np.diff(bends) / np.maximum(spans, 1e-9), 0.0)
@@ -86,32 +96,48 @@ def _headings(s: Array, knots: Array, bends: Array) -> Array:
 
 
 def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
-    """Returns whether no two parts of the road overlap: carriageways, and with the shoulders if asked for."""
-    z = line.z[::COARSE]
-    spacing = COARSE * (line.s[1] - line.s[0])
+    """Returns whether no two parts of the road overlap.
+
+    Args:
+        line: the centre line.
+        world: width of the carriageway and of its shoulders.
+        with_shoulders: True if carriageways must also keep off each other's shoulders.
+    """
     apart = world.road_width + (world.verge if with_shoulders else SPARE) + COARSENESS
-    first = int(NEIGHBOURS / spacing) + 1
-    if len(z) <= first:
-        return True
-    if len(z) > MANY:
-        near_pairs = cKDTree(np.stack([z.real, z.imag], axis=1)).query_pairs(apart, output_type="ndarray")
-        return not (np.abs(near_pairs[:, 1] - near_pairs[:, 0]) >= first).any()
-    dx, dy = z.real[:, None] - z.real, z.imag[:, None] - z.imag
+    s, z = line.s[::COARSE], line.z[::COARSE]
+    return not meets(z, s, z, s, apart)
+
+
+def meets(z: Complex, s: Array, other: Complex, other_s: Array, apart: float) -> bool:
+    """Returns whether points of a road come closer than ``apart`` to points of its earlier part.
+
+    Places at most 26 m apart along the road are not compared.
+
+    Args:
+        z: points as x + iy in metres, ``(n,)``.
+        s: their stations in metres.
+        other: points of the earlier part, ``(m,)``.
+        other_s: their stations in metres.
+        apart: least distance in metres.
+    """
+    x, y = other.real, other.imag
+    near_x = (x > z.real.min() - apart) & (x < z.real.max() + apart)
+    here = near_x & (y > z.imag.min() - apart) & (y < z.imag.max() + apart)
+    dx, dy = z.real[:, None] - x[here], z.imag[:, None] - y[here]
     near = dx * dx + dy * dy < apart * apart
-    return not np.triu(near, first).any()
+    return bool((near & (s[:, None] - other_s[here] > NEIGHBOURS)).any())
 
 
 def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | None:
-    """Draws a place and a heading at which the road fits on the map; None where there is none."""
+    """Draws a start and a heading at which the road lies on the map; None if none was found."""
     room = world.map_size - world.road_width - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
-    chosen = _extent(line.z, turns[:1], room)
+    chosen = _first_that_fits(line.z, turns[:1], room)
     if chosen is None:
         rng.shuffle(turns)
-        if _may_fit(line.z, turns, room):
-            chosen = _extent(line.z[::2], turns, room - 0.2)
-    if chosen is None and _is_straight(line):
-        chosen = _extent(line.z, rng.permutation(DIAGONALS), room)
+        chosen = _first_that_fits(line.z[::2], turns, room - 0.2)
+    if chosen is None and not line.z.imag.any():
+        chosen = _first_that_fits(line.z, rng.permutation(DIAGONALS), room)
     if chosen is None:
         return None
     theta, left, low, width, height = chosen
@@ -121,29 +147,89 @@ def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | N
     return MapPose(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)
 
 
-def _may_fit(z: Complex, thetas: Array, room: float) -> bool:
-    """Do some points of a long line fit at some heading? If they do not, the line does not either."""
-    every = 2 * (len(z) // (2 * SOME))
-    return every < 2 or _extent(z[::every], thetas, room) is not None
+def boxes(z: Complex, thetas: Array) -> tuple[Array, Array, Array, Array]:
+    """Returns left and lower edge, width and height of the box around points turned by each heading.
 
-
-def _is_straight(line: PlanLine) -> bool:
-    return not line.z.imag.any()
-
-
-def _extent(z: Complex, thetas: Array, room: float) -> tuple[float, float, float, float, float] | None:
-    """The first heading at which the line is no wider and no higher than ``room``; its box from the start."""
+    Args:
+        z: points as x + iy in metres.
+        thetas: degrees by which they are turned about the origin, ``(m,)``.
+    """
     turned = np.exp(1j * np.radians(thetas))[:, None] * z
     left, low = turned.real.min(axis=1), turned.imag.min(axis=1)
-    width, height = turned.real.max(axis=1) - left, turned.imag.max(axis=1) - low
-    fits = np.flatnonzero((width <= room) & (height <= room))
+    return left, low, turned.real.max(axis=1) - left, turned.imag.max(axis=1) - low
+
+
+def _first_that_fits(
+    z: Complex, thetas: Array, room: float
+) -> tuple[float, float, float, float, float] | None:
+    """Returns the first heading at which the box is no larger than ``room``, and that box."""
+    found = boxes(z, thetas)
+    fits = np.flatnonzero(np.maximum(found[2], found[3]) <= room)
     if not fits.size:
         return None
     i = int(fits[0])
-    return float(thetas[i]), float(left[i]), float(low[i]), float(width[i]), float(height[i])
+    left, low, width, height = (float(edge[i]) for edge in found)
+    return float(thetas[i]), left, low, width, height
 
 
 def smallest_box(line: PlanLine) -> float:
     """Returns the side in metres of the smallest square that holds the line at some heading."""
-    turned = np.exp(1j * np.radians(np.arange(0, 90, 5)))[:, None] * line.z[:: max(1, len(line.z) // MANY)]
-    return float(np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1)).min())
+    _, _, width, height = boxes(line.z[:: max(1, len(line.z) // MOST_POINTS)], np.arange(0.0, 90.0, 5.0))
+    return float(np.maximum(width, height).min())
+
+
+def moved_onto_map(design: Design, world: World) -> Design | None:
+    """Returns the design moved onto the map; None if its road is too large.
+
+    The road is moved no further than it must be. Where moving is not enough, it is also turned about its
+    middle by the smallest angle, in hundredths of a degree, at which it fits.
+    """
+    corners = _corners(build(design), world)
+    room = world.map_size - 2 * LEAST_EDGE
+    written = round(design.theta * HUNDREDTH) / HUNDREDTH - design.theta
+    turn = _least_turn(corners, np.append(0.0, TURNS + written), room)
+    if turn is None:
+        return None
+    x, y, z = design.starting_point
+    left, low, width, height = (float(edge[0]) for edge in boxes(corners, np.zeros(1)))
+    pivot, spin = complex(left + width / 2, low + height / 2), np.exp(1j * radians(turn))
+    start, turned = ((p - pivot) * spin + pivot for p in (complex(x, y), corners))
+    dx = _least_move(turned.real, world.map_size)
+    dy = _least_move(turned.imag, world.map_size)
+    if turn or dx or dy:
+        x, y = (round(v * CENTIMETRE) / CENTIMETRE for v in (start.real + dx, start.imag + dy))
+    theta = round((design.theta + turn) * HUNDREDTH) / HUNDREDTH if turn else design.theta
+    return design.model_copy(update={"starting_point": (float(x), float(y), z), "theta": theta % 360})
+
+
+def _corners(road: Road, world: World) -> Complex:
+    """Returns the convex hull of the ribbon, and of what SBFT's spline may run on behind its ends."""
+    half = world.road_width / 2
+    left, right = sides(road.sample(), world.profile.edges(road.sample().s))
+    behind = [_beyond(road, s, t) for s in (-BEYOND, road.length + BEYOND) for t in (-half, half)]
+    points = np.concatenate([left, right, behind])
+    x, y = points[ConvexHull(points).vertices].T
+    return np.asarray(x + 1j * y)
+
+
+def _beyond(road: Road, s: float, t: float) -> Array:
+    """Returns the point of an edge at a station before the start or behind the end, straight on from it."""
+    end = min(max(s, 0.0), road.length)
+    heading = float(road.heading(end))
+    return np.asarray(road.at(end, t)[:2] + (s - end) * np.array([cos(heading), sin(heading)]))
+
+
+def _least_turn(corners: Complex, turns: Array, room: float) -> float | None:
+    """Returns the first of some turns, in degrees, at which the box is no larger than ``room``."""
+    if np.abs(corners[:, None] - corners).max() > np.sqrt(2) * room:
+        return None
+    for some in np.array_split(turns, PORTIONS):
+        found = _first_that_fits(corners, some, room)
+        if found:
+            return found[0]
+    return None
+
+
+def _least_move(coordinates: Array, size: float) -> float:
+    """Returns the shortest way in metres along one axis that brings all points onto the map."""
+    return float(np.clip(0.0, LEAST_EDGE - coordinates.min(), size - LEAST_EDGE - coordinates.max()))

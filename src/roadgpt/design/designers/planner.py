@@ -127,7 +127,7 @@ class _Search:
             drafted = self._growth() if is_grown else self._plan(haste)
             if drafted is None:
                 continue
-            if not keeps_clear(drafted.line, self.world, not is_grown and number < SHOULDERS * drafts):
+            if not is_grown and not keeps_clear(drafted.line, self.world, number < SHOULDERS * drafts):
                 self.failed["over itself"] += 1
                 continue
             shape = shape_of(drafted.line.s, drafted.line.z)

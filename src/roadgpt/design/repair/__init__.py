@@ -19,9 +19,9 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import promises_of
+from roadgpt.design.layout import moved_onto_map
 from roadgpt.design.repair.changes import changes_between
 from roadgpt.design.repair.limits import MARGINS, Margins, limits_of
-from roadgpt.design.repair.placing import placed
 from roadgpt.design.repair.polyline import polyline_of
 from roadgpt.design.repair.slopes import sloped
 from roadgpt.design.repair.solving import Aim, solved
@@ -77,7 +77,7 @@ def _in_place(design: Design, world: World) -> Design:
     """The design inside the map and above the ground; as it is, where it lies there or is too large."""
     found = {finding.rule for finding in check.inspect(build(design), None, world)}
     if "inside_map" in found:
-        design = placed(design, world) or design
+        design = moved_onto_map(design, world) or design
     if "below_floor" in found:
         x, y, _ = design.starting_point
         height = start_height(design.segments, world.z_floor + ABOVE_GROUND)
