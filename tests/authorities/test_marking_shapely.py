@@ -56,8 +56,9 @@ def test_body_and_tyres_reach_as_far_as_shapely_says(radius: float, hand: int) -
 def test_a_share_outside_and_a_distance_beyond_the_edge_line_go_together(hand: int) -> None:
     road = bent(16.0, hand)
     drive = SlipperyBicycle().simulate(road, World(), BeamngLike(), 0, keep_driving=True)
-    right_only = MarkingMonitor.for_body(road, World(), drive.car)._replace(left=9.0)
-    both = right_only._replace(left=0.0)
+    monitor = MarkingMonitor.for_body(road, World(), drive.car)
+    monitor._replace(left=np.full_like(monitor.left, 9.0))
+    both = monitor._replace(left=np.zeros_like(monitor.left))
     is_out = drive["outside"] > 1e-3
     assert is_out.any()
     assert (both.along(drive)[is_out] > -0.02).all()

@@ -17,7 +17,7 @@ from roadgpt.export.exporters.beamng import level_name
 from roadgpt.export.exporters.beamng.files import ground_model, rotation
 from roadgpt.export.exporters.beamng.roads import level_road
 from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
-from roadgpt.road import Design, Segment, World, build
+from roadgpt.road import Design, Profile, Segment, World, build
 
 Item = dict[str, Any]
 
@@ -99,7 +99,7 @@ def test_the_middle_line_is_broken_as_in_our_opendrive_files(tmp_path: Path) -> 
 
 
 def test_painted_lines_end_where_the_judged_markings_do(tmp_path: Path) -> None:
-    found, (left, right) = objects(level(tmp_path)), WORLD.marking_edges
+    found, (left, right) = objects(level(tmp_path)), map(float, Profile.of().marking_limits(0.0))
     dash = next(name for name in found if name.startswith("middle"))
     for name, outer in (("right", right), ("left", -right), (dash, left)):
         x, y, _, width = np.array(found[name]["nodes"])[1:-1].T

@@ -14,44 +14,21 @@ from roadgpt.export.exporters.beamng.roads import level_road
 from roadgpt.export.exporters.gltf.surfaces import meshes
 from roadgpt.export.georeference import degrees
 from roadgpt.export.lanelets import lanelet_pairs
-from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import Edges, Profile, Road, World
+from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
+from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import Land
 from roadgpt.road.speed_profile import expected_speed
 
 LENGTH = 150.0
 SHOULDER = 2.0
+WIDENING = CubicProfile((0.0, LENGTH), ((3.0, 1 / LENGTH, 0.0, 0.0), (4.0, 0.0, 0.0, 0.0)))
+PROFILE = Profile.of(1, 1, WIDENING, SHOULDER)
 ROAD = Road(
     PieceCurve(60.0, 60.0, 0.3, (Piece(50.0), Piece(100.0, 0.0, 1 / 40))),
     GradeProfile(0.0, (0.0, LENGTH), (0.02, 0.02)),
+    profile=PROFILE,
 )
-
-
-class Growing(Profile):
-    """Lanes of 3 m at the start and 4 m at the end."""
-
-    def width(self, s):
-        return 3.0 + np.asarray(s) / LENGTH
-
-    def middle(self, s):
-        return -self.width(s) / 2
-
-    def edges(self, s):
-        return Edges(self.width(s), -self.width(s))
-
-    def rims(self, s):
-        return Edges(self.width(s) + SHOULDER, -self.width(s) - SHOULDER)
-
-
-class GrowingWorld(World):
-    """A World whose roads have such lanes."""
-
-    @property
-    def profile(self):
-        return Growing(4.0, SHOULDER)
-
-
-WORLD = GrowingWorld()
+WORLD = World()
 
 
 def offsets(points) -> np.ndarray:
@@ -95,7 +72,7 @@ def test_slabs_and_paint_of_a_gltf_scene_follow_the_edges() -> None:
 
 def test_embankments_begin_where_the_shoulder_ends() -> None:
     s = np.linspace(0.0, LENGTH, 40)
-    first, second, *_ = embankments(ROAD, WORLD.profile, s, Land.around(ROAD, WORLD))
+    first, second, *_ = embankments(ROAD, WORLD.profile_of(ROAD), s, Land.around(ROAD, WORLD))
     for bank, side in ((first, -1.0), (second, 1.0)):
         at, t = offsets(bank.edge)
         assert t == pytest.approx(side * (5.0 + at / LENGTH), abs=1e-6)
@@ -117,7 +94,7 @@ def test_rules_see_the_edge_where_it_is() -> None:
     """The end of the road is 3.5 m from the border: too near for a lane of 4 m, and not for one of 3 m."""
     road = Road(PieceCurve(60.0, 3.5, 0.0, (Piece(LENGTH),)), GradeProfile(0.0, (0.0, LENGTH), (0.0, 0.0)))
     assert inspect(road, None, World(lane_width=3.0)) == ()
-    first, *_ = inspect(road, None, WORLD)
+    first, *_ = inspect(road.with_profile(PROFILE), None, WORLD)
     assert first.rule == "inside_map"
     assert first.s == pytest.approx(0.5 * LENGTH, abs=1.0)
 

@@ -146,7 +146,10 @@ def test_the_road_is_drawn_where_it_is(driven: Run) -> None:
 
 def test_the_markings_are_those_that_are_judged(driven: Run) -> None:
     made = view.scene(driven)
-    left, right = driven.world.marking_edges  # the page paints its edge lines up to the lane's width
+    assert driven.road is not None
+    left, right = map(
+        float, driven.world.profile_of(driven.road).marking_limits(0.0)
+    )  # the page paints its edge lines up to the lane's width
     assert made["marking"]["width"] == 2 * left
     assert made["world"]["lane_width"] == -right
 

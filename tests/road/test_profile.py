@@ -1,22 +1,26 @@
-"""The cross-section: the default two-lane road, and World as the place where readers find it."""
+"""The cross-section of a road: lanes, shoulders and markings at each station, and its form in road files."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from roadgpt.geometry import GradeProfile, Piece, PieceCurve
+from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import Profile, Road, World
+from roadgpt.road.profile import Lane
 
 STATIONS = np.array([[0.0, 1.0, 2.5], [40.0, 60.0, 80.0]])
 BEND = Road(
     PieceCurve(0.0, 0.0, 0.0, (Piece(80.0, 1 / 40, 1 / 40),)), GradeProfile(0.0, (0.0, 80.0), (0.0, 0.0))
 )
+WIDENING = CubicProfile((0.0, 80.0), ((3.0, 0.0, 3 / 80**2, -2 / 80**3), (4.0, 0.0, 0.0, 0.0)))
 
 
 def test_a_two_lane_road_has_its_edges_where_a_drawing_has_them() -> None:
-    profile = Profile(3.25, 1.5)
+    profile = Profile.of(1, 1, 3.25, 1.5)
     for values, metres in (
         (profile.width(STATIONS), 3.25),
         (profile.shoulder(STATIONS), 1.5),
@@ -34,18 +38,133 @@ def test_a_two_lane_road_has_its_edges_where_a_drawing_has_them() -> None:
 
 def test_edges_of_a_bend_lie_on_circles_about_its_centre() -> None:
     s = np.linspace(0.0, 80.0, 9)
-    profile = World(lane_width=3.0, verge=2.5).profile
+    profile = World(lane_width=3.0, verge=2.5).profile_of(BEND)
     edges, rims = profile.edges(s), profile.rims(s)
     for offsets, radius in ((edges.left, 37.0), (edges.right, 43.0), (rims.left, 34.5), (rims.right, 45.5)):
         away = BEND.at(s, offsets)[:, :2] - [0.0, 40.0]  # a left bend of 40 m from (0, 0) along +x
         assert np.hypot(*away.T) == pytest.approx(radius, abs=1e-9)
 
 
-def test_a_world_answers_with_its_profile() -> None:
-    world = World(lane_width=2.75, verge=0.0)
-    assert world.profile == Profile(2.75, 0.0)
-    assert world.road_width == 5.5
-    assert world.marking_edges[1] == -2.75
+def test_three_lanes_along_and_two_against_have_the_edges_of_a_drawing() -> None:
+    profile = Profile.of(3, 2, 3.5, 2.0)
+    left, right = profile.lane_edges(0.0)
+    assert [float(t) for t in left] == [3.5, 7.0, 9.0]
+    assert [float(t) for t in right] == [-3.5, -7.0, -10.5, -12.5]
+    assert profile.count == (3, 2)
+    assert (float(profile.middle(0.0)), float(profile.width(0.0))) == (-8.75, 3.5)
+    assert (float(profile.lane(0.0).left), float(profile.lane(0.0).right)) == (-7.0, -10.5)
+    assert (profile.paved_reach, profile.reach) == (10.5, 12.5)
+
+
+def test_markings_are_painted_over_boundaries_and_inside_the_edges_of_the_carriageway() -> None:
+    lines = Profile.of(2, 1, 3.0, 1.0).markings(0.0)
+    found = [
+        (line.marking, round(float(line.edges.left), 3), round(float(line.edges.right), 3)) for line in lines
+    ]
+    assert found == [
+        ("solid", 3.0, 2.88),
+        ("solid", 0.06, -0.06),
+        ("broken", -2.94, -3.06),
+        ("solid", -5.88, -6.0),
+    ]
+    usual = [line.marking for line in Profile.of().markings(0.0)]
+    assert usual == ["solid", "broken", "solid"]
+    one_way = [float(line.edges.left) for line in Profile.of(1, 0, 3.0).markings(0.0)]
+    assert one_way == pytest.approx([0.0, -2.88])
+
+
+def test_a_front_tyre_may_reach_the_outer_edges_of_the_markings_beside_its_lane() -> None:
+    usual, wide, one_way = Profile.of(), Profile.of(2, 1, 3.0), Profile.of(1, 0, 3.0)
+    assert [float(t) for t in usual.marking_limits(0.0)] == pytest.approx([0.06, -4.0])
+    assert [float(t) for t in wide.marking_limits(0.0)] == pytest.approx([-2.94, -6.0])
+    assert [float(t) for t in one_way.marking_limits(0.0)] == pytest.approx([0.0, -3.0])
+    inner = replace(wide, driven=0)
+    assert [float(t) for t in inner.marking_limits(0.0)] == pytest.approx([0.06, -3.06])
+
+
+def test_a_width_that_varies_is_followed_by_middle_edges_and_reach() -> None:
+    profile = Profile.of(2, 1, WIDENING, 1.0)
+    assert profile.width([0.0, 40.0, 80.0, 99.0]) == pytest.approx([3.0, 3.5, 4.0, 4.0])
+    assert profile.middle([0.0, 40.0, 80.0]) == pytest.approx([-4.5, -5.25, -6.0])
+    assert profile.edges([40.0]).right == pytest.approx([-7.0])
+    assert profile.reach == pytest.approx(9.0)
+    bulging = CubicProfile((0.0, 2.0), ((3.0, 2.0, -1.0, 0.0), (3.0, 0.0, 0.0, 0.0)))  # 4 m in the middle
+    assert Profile.of(1, 1, bulging, 0.0).paved_reach == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "driven"),
+    [
+        ((), (Lane("shoulder", 1.0),), 0),
+        ((), (Lane("driving", 3.0),), 1),
+        ((), (Lane("shoulder", 1.0), Lane("driving", 3.0)), 0),
+        ((), (Lane("driving", -3.0),), 0),
+        ((), (Lane("driving", CubicProfile((0.0,), ((3.0, 0.1, 0.0, 0.0),))),), 0),
+    ],
+)
+def test_cross_sections_that_cannot_be_are_refused(
+    left: tuple[Lane, ...], right: tuple[Lane, ...], driven: int
+) -> None:
+    with pytest.raises(ValueError, match=r"\w"):
+        Profile(left, right, driven)
+
+
+def test_a_road_file_keeps_the_cross_section_to_the_last_digit() -> None:
+    angle = CubicProfile((0.0, 30.0), ((0.0, 0.0, 1e-4, -2e-6), (0.036, 0.0, 0.0, 0.0)))
+    road = BEND.with_profile(Profile.of(2, 1, WIDENING, 1.25, angle))
+    again = Road.from_json(json.loads(json.dumps(road.to_json())))
+    assert again.profile == road.profile
+    assert np.array_equal(again.at(STATIONS, 3.0), road.at(STATIONS, 3.0))
+    assert "profile" not in BEND.to_json()
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"driven": 3}, "driven lane"),
+        ({"driven": True}, "index"),
+        ({"right": [{"kind": "driving", "width": float("nan"), "marking": "solid"}]}, "width"),
+        ({"right": [{"kind": "driving", "width": 1e9, "marking": "solid"}]}, "width"),
+        ({"right": [{"kind": "driving", "width": [[0, 3, 0, 0]], "marking": "solid"}]}, "five numbers"),
+        ({"right": [{"kind": "tram", "width": 3, "marking": "solid"}]}, "tram"),
+        ({"right": "all"}, "list"),
+        ({"left": [{"kind": "driving", "width": 3}]}, "marking"),
+        ({"superelevation": [[0, 0.5, 0, 0, 0]]}, "beyond"),
+        ({"colour": 3}, "colour"),
+    ],
+)
+def test_cross_sections_in_files_that_cannot_be_are_refused_in_one_sentence(
+    change: dict[str, object], sentence: str
+) -> None:
+    data = BEND.with_profile(Profile.of()).to_json()
+    with pytest.raises(UsageError, match=sentence):
+        Road.from_json({**data, "profile": {**data["profile"], **change}})
+
+
+def test_a_world_lays_its_lanes_on_roads_that_have_none() -> None:
+    world = World(lanes="2+1", lane_width=3.0, lane_width_end=4.0)
+    road = world.lay(BEND)
+    assert road.profile is not None
+    assert road.profile.count == (2, 1)
+    assert road.profile.width([0.0, 40.0, 80.0]) == pytest.approx([3.0, 3.5, 4.0])
+    assert world.lay(road) is road
+    assert World(lane_width=3.0).lay(BEND) is BEND
+    assert world.road_width == 16.0
+    assert World().usual_profile(80.0) == Profile.of()
+
+
+def test_a_world_with_banked_bends_asks_for_its_road() -> None:
+    with pytest.raises(UsageError, match="lay"):
+        World(bank="auto").profile_of(BEND)
+
+
+def test_files_of_a_usual_world_name_no_lanes() -> None:
+    assert not {"lanes", "bank", "lane_width_end"} & set(World().model_dump())
+    world = World(lanes="2+2", bank=0.05)
+    assert World.model_validate_json(world.model_dump_json()) == world
+    for wrong in ({"lanes": "0+1"}, {"lanes": "2+"}, {"bank": "steep"}, {"bank": 0.5}, {"lane_width_end": 0}):
+        with pytest.raises(ValidationError):
+            World(**wrong)  # type: ignore[arg-type]
 
 
 def test_the_shoulder_is_read_under_both_names_and_written_under_the_old_one() -> None:

@@ -205,7 +205,7 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
 def _corners(road: Road, world: World) -> Complex:
     """Returns the convex hull of the ribbon, and of what SBFT's spline may run on behind its ends."""
     half = world.road_width / 2
-    left, right = sides(road.sample(), world.profile.edges(road.sample().s))
+    left, right = sides(road.sample(), world.profile_of(road).edges(road.sample().s))
     behind = [_beyond(road, s, t) for s in (-BEYOND, road.length + BEYOND) for t in (-half, half)]
     points = np.concatenate([left, right, behind])
     x, y = points[ConvexHull(points).vertices].T

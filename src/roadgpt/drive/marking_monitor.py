@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from roadgpt.drive.compiled import compiled
+from roadgpt.drive.compiled import compiled, inlined
 from roadgpt.drive.drive import Box, FloatArray
 from roadgpt.drive.sampled_road import CURVATURE, SampledRoad, locate_on, sample_road
 
@@ -32,10 +32,13 @@ class MarkingMonitor(NamedTuple):
     computed."""
 
     sampled: SampledRoad
-    left: float
-    """Position of the outer edge of the left marking, in metres to the left of the centre line."""
-    right: float
-    """Position of the outer edge of the right marking, in metres to the left of the centre line; negative."""
+    left: FloatArray
+    """Offsets of the outer edge of the left marking, in metres to the left of the centre line.
+
+    There is one for each row of the table in ``sampled``.
+    """
+    right: FloatArray
+    """Offsets of the outer edge of the right marking, likewise; negative."""
     points: FloatArray
     """Shape (n, 3): metres ahead, to the left and up of the car's centre of gravity."""
 
@@ -44,7 +47,7 @@ class MarkingMonitor(NamedTuple):
         """Returns a monitor for the outer edges of the front tyres."""
         side = box.tyres / 2
         points = [(box.axle, side, -box.height), (box.axle, -side, -box.height)]
-        return cls(sample_road(road), *world.marking_edges, np.array(points))
+        return cls._of(road, world, points)
 
     @classmethod
     def for_body(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":
@@ -52,7 +55,14 @@ class MarkingMonitor(NamedTuple):
         front, side = box.ahead + box.length / 2, box.width / 2
         way = np.linspace(front - box.length, front, ALONG)
         points = [(x, y, -box.under) for y in (-side, side) for x in way]
-        return cls(sample_road(road), *world.marking_edges, np.array(points))
+        return cls._of(road, world, points)
+
+    @classmethod
+    def _of(cls, road: "Road", world: "World", points: list[tuple[float, float, float]]) -> "MarkingMonitor":
+        sampled = sample_road(road)
+        s = np.clip(sampled.first + sampled.step * np.arange(len(sampled.table)), 0.0, sampled.length)
+        left, right = world.profile_of(road).marking_limits(s)
+        return cls(sampled, left, right, np.array(points))
 
     def beyond(self, poses: FloatArray, floor: float = -math.inf) -> FloatArray:
         """Returns how far the car reaches beyond the outer edge of the nearer marking, in metres for each
@@ -81,6 +91,15 @@ class MarkingMonitor(NamedTuple):
         return self.beyond(np.stack([drive[name] for name in POSE], axis=-1), floor)
 
 
+@inlined
+def _at(values: FloatArray, first: float, step: float, s: float) -> float:
+    """Returns the value at station ``s``, interpolated between the rows of the table."""
+    at = min(max((s - first) / step, 0.0), values.shape[0] - 1.0)
+    i = min(int(at), values.shape[0] - 2)
+    found: float = values[i] + (values[i + 1] - values[i]) * (at - i)
+    return found
+
+
 @compiled
 def farthest(
     table: FloatArray,
@@ -88,8 +107,8 @@ def farthest(
     step: float,
     poses: FloatArray,
     points: FloatArray,
-    left: float,
-    right: float,
+    left: FloatArray,
+    right: FloatArray,
     floor: float,
 ) -> FloatArray:
     """Computes the result of ``MarkingMonitor.beyond`` in compiled code."""
@@ -104,7 +123,7 @@ def farthest(
         reach = abs(math.sin(heading - way)) * long + abs(math.cos(heading - way)) * wide
         reach += abs(math.sin(poses[i, 4])) * tall + SLACK
         reach += 0.5 * (long * long + wide * wide) * bend / max(1.0 - bend * abs(t), LEAST_STRETCH)
-        found[i] = max(t - left, right - t) + reach
+        found[i] = max(t - _at(left, first, step, s), _at(right, first, step, s) - t) + reach
         if found[i] < floor:
             continue
         ch, sh = math.cos(heading), math.sin(heading)
@@ -118,7 +137,7 @@ def farthest(
             a, b, c = points[k, 0], points[k, 1], points[k, 2]
             px = x + ch * cp * a + lx * b + ux * c
             py = y + sh * cp * a + ly * b + uy * c
-            _, across, _, _, _ = locate_on(table, first, step, px, py, s + a)
-            best = max(best, across - left, right - across)
+            at, across, _, _, _ = locate_on(table, first, step, px, py, s + a)
+            best = max(best, across - _at(left, first, step, at), _at(right, first, step, at) - across)
         found[i] = best
     return found

@@ -93,7 +93,7 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
     grip = GRIP * world.friction
     pull = min(PULL / GRAVITY, grip)
     limits = DrivingLimits(min(COMFORT / GRAVITY, grip), pull, pull, world.speed_limit)
-    offset = world.profile.middle(s)
+    offset = world.profile_of(road).middle(s)
     speed = lane_speed(bend, 0.0, step, offset, limits)
     stretch = np.maximum(1 - bend * offset, 0.0)
     along = step * (stretch[1:] + stretch[:-1]) / 2

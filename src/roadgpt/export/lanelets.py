@@ -33,13 +33,13 @@ def lanelet_pairs(road: Road, world: World) -> list[LaneletPair]:
     Raises:
         ExportError: The road has a number that is not finite.
     """
-    fine = stations(road, world.profile.paved_reach)
+    fine = stations(road, world.profile_of(road).paved_reach)
     count = max(1, round(road.length / LENGTH))
     cuts = np.linspace(0.0, road.length, count + 1)
     out = []
     for start, end in zip(cuts.tolist(), cuts[1:].tolist(), strict=False):
         s = np.r_[start, fine[(fine > start + 1e-3) & (fine < end - 1e-3)], end]
-        edges = world.profile.edges(s)
+        edges = world.profile_of(road).edges(s)
         made = lines(road, s, (edges.right, 0.0, edges.left))
         right, middle, left = (np.round(each, DECIMALS) + 0.0 for each in made)
         out.append(LaneletPair(start, end, right, middle, left))

@@ -64,7 +64,7 @@ class GradeProfile:
         return np.asarray(self._table[3][i])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class CubicProfile:
     """Heights given by cubic polynomials of the distance from each station, as in OpenDRIVE's ``elevation``.
 
@@ -109,6 +109,15 @@ class CubicProfile:
         Each cubic is re-expressed as a function of the distance from its given station."""
         u, table = self._place(s)
         return shifted(np.moveaxis(table, 0, -1), u)
+
+    def extremes(self) -> tuple[float, float]:
+        """Returns the smallest and the largest height in metres from the first station to the last one."""
+        s = [*self.stations]
+        for start, end, (_, b, c, d) in zip(s, s[1:], self.coefficients, strict=False):
+            turning = np.roots([3 * d, 2 * c, b])
+            s += [start + u.real for u in turning if abs(u.imag) < 1e-9 and 0 < u.real < end - start]
+        heights = self.height(np.array(s))
+        return float(heights.min()), float(heights.max())
 
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres."""

@@ -46,7 +46,7 @@ class Land:
             level = min(world.z_floor, float(line[:, 2].min()) - 1.0)
             away = np.full((len(y), len(x)), np.inf)
             return cls(*_widened(x, y, np.full((len(y), len(x)), level), away), cell)
-        heights, away = _relief(line, x, y, cell, world.profile.reach + 1.45 * cell)
+        heights, away = _relief(line, x, y, cell, world.profile_of(road).reach + 1.45 * cell)
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:

@@ -17,10 +17,11 @@ def moved(road: Road, x: float, y: float, z: float = 0.0) -> Road:
     shift = np.array([x, y])
     if road.nodes is not None:
         nodes = road.nodes + np.array([x, y, z])[: road.nodes.shape[1]]
-        return Road.through(nodes, None if road.road_points is None else road.road_points + shift)
+        control = None if road.road_points is None else road.road_points + shift
+        return Road.through(nodes, control).with_profile(road.profile)
     assert isinstance(road.plan, PieceCurve)
     plan = replace(road.plan, x=road.plan.x + x, y=road.plan.y + y)
-    return Road(plan, _lifted(road.elevation, z) if z else road.elevation)
+    return Road(plan, _lifted(road.elevation, z) if z else road.elevation, profile=road.profile)
 
 
 def _lifted(profile: ElevationProfile, z: float) -> ElevationProfile:

@@ -1,12 +1,32 @@
-"""Defines the cross-section of a road: the edges of its lanes and shoulders at each station."""
+"""Defines the cross-section of a road at each station: its lanes, shoulders, markings and superelevation.
 
+        left                                right             offsets t, positive to the left
+    shoulder | against | against | along | along | shoulder
+             3.5 m     |         0       |       -3.5 m       t of the boundaries
+                       |     centre line
+                 carriageway
+
+Lanes on the right of the centre line run along the road, lanes on the left run against it. A road with one
+lane in each direction is the default.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
+
+LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, RMS-1)
+
+Kind = Literal["driving", "shoulder"]
+Marking = Literal["solid", "broken", "none"]
+Width = float | CubicProfile
+"""A width in metres: one number, or cubics of the station."""
 
 
 class Edges(NamedTuple):
@@ -19,43 +39,221 @@ class Edges(NamedTuple):
     right: Array
 
 
+class PaintedLine(NamedTuple):
+    """One longitudinal road marking."""
+
+    marking: Marking
+    edges: Edges
+    """The offsets of its left and its right edge."""
+
+
+@dataclass(frozen=True)
+class Lane:
+    """One lane or one shoulder."""
+
+    kind: Kind
+    width: Width
+    marking: Marking = "none"
+    """The marking at its outer edge."""
+
+
 @dataclass(frozen=True)
 class Profile:
-    """The cross-section of a road with one lane in each direction and a shoulder on both sides.
+    """The cross-section of a road. Methods take stations ``s`` in metres, of any shape.
 
-    The right lane is the driven one. Methods take stations ``s`` in metres, of any shape, and return values
-    in metres, of the same shape. Offsets are positive to the left of the centre line.
+    They return values of the same shape: widths and offsets in metres, offsets positive to the left of the
+    centre line. On a road with superelevation, widths and offsets are measured along the inclined surface.
+
+    Args:
+        left: Lanes from the centre line outwards, driving lanes first, on the left.
+        right: Likewise on the right. At least one of them is a driving lane.
+        driven: Index in ``right`` of the lane that the tested car keeps to.
+        centre_marking: The marking on the centre line.
+        superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
+            positive where it falls to the right, as in OpenDRIVE; None for a level cross-section.
+
+    Raises:
+        ValueError: ``driven`` is no driving lane, a shoulder is followed by a driving lane, a width is
+            negative, or the last cubic of a width or of the superelevation is not constant.
     """
 
-    lane_width: float
-    shoulder_width: float
+    left: tuple[Lane, ...]
+    right: tuple[Lane, ...]
+    driven: int = 0
+    centre_marking: Marking = "broken"
+    superelevation_angle: CubicProfile | None = None
+
+    def __post_init__(self) -> None:
+        lanes = [*self.left, *self.right]
+        if not 0 <= self.driven < len(_driving(self.right)):
+            raise ValueError("the driven lane must be one of the driving lanes on the right")
+        for side in (self.left, self.right):
+            if any(lane.kind == "driving" for lane in side[len(_driving(side)) :]):
+                raise ValueError("a driving lane cannot be outside a shoulder")
+        cubics = [lane.width for lane in lanes if isinstance(lane.width, CubicProfile)]
+        if any(
+            any(each.coefficients[-1][1:]) for each in [*cubics, *filter(None, [self.superelevation_angle])]
+        ):
+            raise ValueError("the last width of a lane, and the last superelevation, must be constant")
+        if any(_extremes(lane.width)[0] < -NEGATIVE for lane in lanes):
+            raise ValueError("a lane has a negative width")
+
+    @classmethod
+    def of(
+        cls,
+        forward: int = 1,
+        backward: int = 1,
+        lane_width: Width = 4.0,
+        shoulder: float = 3.0,
+        superelevation_angle: CubicProfile | None = None,
+    ) -> "Profile":
+        """Returns a cross-section of equally wide lanes. The tested car drives in the rightmost lane.
+
+        Args:
+            forward: Number of lanes along the road, one or more.
+            backward: Number of lanes against it. With 0 the road is one-way.
+            lane_width: Width of every lane.
+            shoulder: Width of the shoulder on each side in metres; 0 for none.
+            superelevation_angle: As for the class.
+        """
+
+        def side(count: int) -> tuple[Lane, ...]:
+            inner = [Lane("driving", lane_width, "broken")] * (count - 1)
+            outer = [Lane("driving", lane_width, "solid")] * min(count, 1)
+            return (*inner, *outer, *([Lane("shoulder", shoulder)] if shoulder else []))
+
+        centre: Marking = "broken" if (forward, backward) == (1, 1) else "solid"
+        return cls(side(backward), side(forward), forward - 1, centre, superelevation_angle)
 
     @property
+    def count(self) -> tuple[int, int]:
+        """The numbers of driving lanes along the road and against it."""
+        return len(_driving(self.right)), len(_driving(self.left))
+
+    @property
+    def has_shoulders(self) -> bool:
+        """Whether there is a shoulder on either side."""
+        return any(lane.kind == "shoulder" for lane in (*self.left, *self.right))
+
+    @cached_property
     def paved_reach(self) -> float:
         """The largest distance in metres between the centre line and an edge of the carriageway."""
-        return self.lane_width
+        return max(_reach(_driving(self.left)), _reach(_driving(self.right)))
 
-    @property
+    @cached_property
     def reach(self) -> float:
         """The largest distance in metres between the centre line and the outer edge of a shoulder."""
-        return self.lane_width + self.shoulder_width
+        return max(_reach(self.left), _reach(self.right))
 
     def width(self, s: ArrayLike) -> Array:
         """Returns the width of the driven lane."""
-        return np.full(np.shape(s), self.lane_width)
+        return _at(self.right[self.driven].width, s)
 
     def shoulder(self, s: ArrayLike) -> Array:
-        """Returns the width of the shoulder beside the driven lane."""
-        return np.full(np.shape(s), self.shoulder_width)
+        """Returns the width of the shoulder on the right."""
+        return _sum(self.right[len(_driving(self.right)) :], s)
 
     def middle(self, s: ArrayLike) -> Array:
         """Returns the offset of the middle of the driven lane."""
-        return np.full(np.shape(s), -self.lane_width / 2)
+        return -(_sum(self.right[: self.driven], s) + self.width(s) / 2)
+
+    def lane(self, s: ArrayLike) -> Edges:
+        """Returns the offsets of the edges of the driven lane."""
+        inner = _sum(self.right[: self.driven], s)
+        return Edges(-inner, -(inner + self.width(s)))
 
     def edges(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the carriageway."""
-        return Edges(np.full(np.shape(s), self.paved_reach), np.full(np.shape(s), -self.paved_reach))
+        return Edges(_sum(_driving(self.left), s), -_sum(_driving(self.right), s))
 
     def rims(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the outer edges of the shoulders."""
-        return Edges(np.full(np.shape(s), self.reach), np.full(np.shape(s), -self.reach))
+        return Edges(_sum(self.left, s), -_sum(self.right, s))
+
+    def lane_edges(self, s: ArrayLike) -> tuple[list[Array], list[Array]]:
+        """Returns the offsets of the outer edges of all lanes and shoulders, left and right of the centre.
+
+        Each list has one array for each lane of that side, from the centre line outwards.
+        """
+        left = [_sum(self.left[: n + 1], s) for n in range(len(self.left))]
+        return left, [-_sum(self.right[: n + 1], s) for n in range(len(self.right))]
+
+    def markings(self, s: ArrayLike) -> list[PaintedLine]:
+        """Returns the painted lines from left to right; boundaries without a marking are left out.
+
+        A line between two lanes is painted over their boundary. A line at an edge of the carriageway is
+        painted inside the lane, up to its outer edge.
+        """
+        left, right = self.lane_edges(s)
+        forward, backward = self.count
+        rows = [
+            (lane.marking, t, n == backward - 1, 1)
+            for n, (lane, t) in enumerate(zip(self.left, left, strict=True))
+        ]
+        rows.reverse()
+        rows.append((self.centre_marking, np.zeros(np.shape(s)), backward == 0, 1))
+        rows += [
+            (lane.marking, t, n == forward - 1, -1)
+            for n, (lane, t) in enumerate(zip(self.right, right, strict=True))
+        ]
+        return [
+            PaintedLine(mark, _painted(t, is_edge, side)) for mark, t, is_edge, side in rows if mark != "none"
+        ]
+
+    def marking_limits(self, s: ArrayLike) -> Edges:
+        """Returns the offsets of the outer edges of the markings beside the driven lane.
+
+        Where a boundary of the lane has no marking, its own offset is returned.
+        """
+        lane, (forward, backward) = self.lane(s), self.count
+        inner = self.right[self.driven - 1].marking if self.driven else self.centre_marking
+        left = 0.0 if inner == "none" or (self.driven == 0 and backward == 0) else LINE / 2
+        right = 0.0 if self.right[self.driven].marking == "none" or self.driven == forward - 1 else LINE / 2
+        return Edges(lane.left + left, lane.right - right)
+
+    def superelevation(self, s: ArrayLike) -> Array:
+        """Returns the angle in radians of the surface, positive where it falls to the right."""
+        if self.superelevation_angle is None:
+            return np.zeros(np.shape(s))
+        return self.superelevation_angle.height(s)
+
+
+NEGATIVE = 1e-6  # m, rounding of cubics whose width ends at 0
+
+
+def _driving(lanes: Sequence[Lane]) -> Sequence[Lane]:
+    """Returns the driving lanes from the centre line up to the first shoulder."""
+    count = next((n for n, lane in enumerate(lanes) if lane.kind != "driving"), len(lanes))
+    return lanes[:count]
+
+
+def _at(width: Width, s: ArrayLike) -> Array:
+    if isinstance(width, CubicProfile):
+        return width.height(np.maximum(s, width.stations[0]))
+    return np.full(np.shape(s), width)
+
+
+def _sum(lanes: Sequence[Lane], s: ArrayLike) -> Array:
+    out = np.zeros(np.shape(s))
+    for lane in lanes:
+        out = out + _at(lane.width, s)
+    return out
+
+
+def _painted(t: Array, is_edge: bool, side: int) -> Edges:
+    """Returns the edges of a line painted at offset ``t``, on the given side of the centre line."""
+    if not is_edge:
+        return Edges(t + LINE / 2, t - LINE / 2)
+    return Edges(t, t - LINE) if side > 0 else Edges(t + LINE, t)
+
+
+def _extremes(width: Width) -> tuple[float, float]:
+    """Returns the smallest and the largest width in metres."""
+    if not isinstance(width, CubicProfile):
+        return width, width
+    return width.extremes()
+
+
+def _reach(lanes: Sequence[Lane]) -> float:
+    """Returns the largest distance to the outer edge of the last lane; exact if one width varies."""
+    return sum(_extremes(lane.width)[1] for lane in lanes)

@@ -1,7 +1,7 @@
 """Defines the Road: 3-D geometry that is evaluated at stations and offsets."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 import numpy as np
@@ -20,6 +20,8 @@ from roadgpt.geometry import (
     project,
 )
 from roadgpt.geometry.curve import Array
+from roadgpt.road.profile import Profile
+from roadgpt.road.profile_json import profile_from_json, profile_to_json
 
 CONTROL_SPACING = 2.0  # m: closer than this, SBFT's spline keeps our radii (14.8 m nominal is accepted)
 MOST_CONTROL_POINTS = 500  # SBFT rule
@@ -30,6 +32,7 @@ SHARPEST = 1e3  # 1/m, greatest curvature in a file
 STEEPEST = 10.0  # metres up or down for each metre forward
 LOOKED_AT = 5000  # places at which the grade of a road is checked
 MOST_POINTS = 200_000  # of a road that goes through points
+BANKED_ROUNDS = 4  # of the iteration that finds the station of a point on a banked road
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +71,8 @@ class Road:
     road_points: Array | None = None
     """Control points ``(n, 2)`` of the SBFT test from which the road was read, if they differ from ``nodes``.
     """
+    profile: Profile | None = None
+    """The road's own cross-section; None if the road takes that of the World in which it is used."""
     _sampled: dict[float, Samples] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -110,22 +115,46 @@ class Road:
     def at(self, s: ArrayLike, t: ArrayLike = 0.0) -> Array:
         """Returns points ``(..., 3)`` in metres at stations ``s`` and offsets ``t`` to the left, in metres.
 
-        Roads have no superelevation, so the height does not depend on ``t``.
+        On a road with superelevation, offsets are measured along the surface, which is rotated about the
+        centre line. Source: ASAM OpenDRIVE 1.8, reference line coordinate system.
         """
         s, t = np.broadcast_arrays(np.asarray(s, float), np.asarray(t, float))
         heading = self.plan.heading(s)
-        xy = self.plan.at(s)
-        x, y = xy[..., 0] - t * np.sin(heading), xy[..., 1] + t * np.cos(heading)
-        return np.stack([x, y, self.elevation.height(s)], axis=-1)
+        xy, z, back = self.plan.at(s), self.elevation.height(s), None
+        if self.profile is not None and self.profile.superelevation_angle is not None:
+            t, up, back = self._banked(s, t)
+            z = z + up
+        sin, cos = np.sin(heading), np.cos(heading)
+        x, y = xy[..., 0] - t * sin, xy[..., 1] + t * cos
+        return np.stack([x, y, z] if back is None else [x - back * cos, y - back * sin, z], axis=-1)
+
+    def _banked(self, s: Array, t: Array) -> tuple[Array, Array, Array]:
+        """Returns how far points on the inclined surface are to the left, up and back of the centre line."""
+        assert self.profile is not None
+        angle, pitch = self.profile.superelevation(s), np.arctan(self.elevation.grade(s))
+        up = t * np.sin(angle)
+        return t * np.cos(angle), up * np.cos(pitch), up * np.sin(pitch)
 
     def locate(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
         """Returns the stations and the offsets to the left, in metres, of points given in plan.
 
-        Each point is projected onto the nearest point of the centre line.
+        Each point is projected onto the nearest point of the centre line. On a road with superelevation, the
+        offset is that of the point of the surface above or below.
         """
-        return project(
-            self.plan, np.stack(np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float)), -1)
-        )
+        points = np.stack(np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float)), -1)
+        s, t = project(self.plan, points)
+        if self.profile is None or self.profile.superelevation_angle is None:
+            return s, t
+        for _ in range(BANKED_ROUNDS):
+            t = t / np.cos(self.profile.superelevation(s))
+            back, heading = self._banked(s, t)[2], self.plan.heading(s)
+            ahead = np.stack([back * np.cos(heading), back * np.sin(heading)], -1)
+            s, t = project(self.plan, points + ahead)
+        return s, np.asarray(t / np.cos(self.profile.superelevation(s)))
+
+    def with_profile(self, profile: Profile | None) -> Self:
+        """Returns the road with this cross-section; None for that of the World."""
+        return replace(self, profile=profile, _sampled={})
 
     def heading(self, s: ArrayLike) -> Array:
         """Returns headings in radians."""
@@ -180,9 +209,13 @@ class Road:
         return self.plan.at(np.linspace(0.0, self.length, count))
 
     def to_json(self) -> dict[str, Any]:
-        """Returns the exact geometry as JSON data, from which ``Road.from_json`` restores the road."""
+        """Returns the road as JSON data, from which ``Road.from_json`` restores it exactly."""
+        out = self._geometry()
+        return out if self.profile is None else {**out, "profile": profile_to_json(self.profile)}
+
+    def _geometry(self) -> dict[str, Any]:
         if self.nodes is not None:
-            out = {"nodes": self.nodes.tolist()}
+            out: dict[str, Any] = {"nodes": self.nodes.tolist()}
             return out if self.road_points is None else {**out, "road_points": self.road_points.tolist()}
         assert isinstance(self.plan, PieceCurve)
         out = {
@@ -208,8 +241,9 @@ class Road:
             UsageError: A field is missing, is not a number or is not finite, or the road is too long or too
                 steep.
         """
+        own = profile_from_json(data["profile"]) if data.get("profile") is not None else None
         if "nodes" in data:
-            return cls.through(data["nodes"], data.get("road_points"))
+            return cls.through(data["nodes"], data.get("road_points")).with_profile(own)
         try:
             x, y, heading = (float(v) for v in data["start"])
             pieces = tuple(Piece(*(float(v) for v in row)) for row in data["pieces"])
@@ -223,7 +257,7 @@ class Road:
                 raise ValueError(f"a curvature is above {SHARPEST:,.0f} 1/m, a radius below 1 mm")
             check_length(length := sum(p.length for p in pieces))
             check_grade(profile, length)
-            return cls(PieceCurve(x, y, heading, pieces), profile)
+            return cls(PieceCurve(x, y, heading, pieces), profile, profile=own)
         except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise UsageError(
                 f"the road cannot be read: {error}; it needs start, pieces, height, stations, grades"

@@ -83,7 +83,8 @@ def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: W
     driver's limits of acceleration. Arguments are as for ``lane_speed``.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
-    offset = world.profile.middle(step * np.arange(np.size(curvature)))
+    s = step * np.arange(np.size(curvature))
+    offset = world.usual_profile(float(s[-1]) or step).middle(s)
     return lane_speed(curvature, grade, step, offset, limits)
 
 

@@ -1,15 +1,22 @@
 """Defines the World: the map, lanes, shoulders, friction and limits that all roads of a campaign share."""
 
-from typing import Annotated
+import re
+from dataclasses import replace
+from typing import Annotated, Any, Literal
 
-from pydantic import AliasChoices, BaseModel, ConfigDict, Field
+from pydantic import AliasChoices, BaseModel, ConfigDict, Field, model_serializer
 
+from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile
 from roadgpt.road.profile import Profile
+from roadgpt.road.road import Road
+from roadgpt.road.superelevation import superelevation
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-
-LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, RMS-1)
+LANES = re.compile(r"([1-4])\+([0-4])")  # lanes along the road + lanes against it
+OWN = {"lanes": "1+1", "lane_width_end": None, "bank": "none"}
+"""Fields that only roads with a cross-section of their own need; files leave out these defaults."""
 
 
 class World(BaseModel):
@@ -19,7 +26,14 @@ class World(BaseModel):
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
+    lanes: Annotated[str, Field(pattern=LANES.pattern)] = "1+1"
+    """Numbers of lanes along the road and against it. The tested car keeps to the rightmost lane."""
     lane_width: Positive = 4.0
+    """Width of every lane in metres."""
+    lane_width_end: Positive | None = None
+    """Width in metres to which the lanes widen or narrow until the end of the road; None for no change."""
+    bank: Literal["none", "auto"] | Annotated[float, Field(ge=0, le=0.12)] = "none"
+    """Superelevation of bends: none, that of CD 109 for radius and speed limit, or one ratio for all."""
     verge: NotNegative = Field(3.0, validation_alias=AliasChoices("verge", "shoulder"))
     """Width in metres of the firm shoulder beside the carriageway.
 
@@ -44,21 +58,57 @@ class World(BaseModel):
     """Height in metres of the level's ground."""
     min_length: NotNegative = 20.0
 
-    @property
-    def profile(self) -> Profile:
-        """The cross-section that all roads of this World have."""
-        return Profile(self.lane_width, self.verge)
+    @model_serializer(mode="wrap")
+    def _without_usual(self, dump: Any) -> dict[str, Any]:
+        data: dict[str, Any] = dump(self)
+        return {name: value for name, value in data.items() if name not in OWN or value != OWN[name]}
+
+    def profile_of(self, road: Road) -> Profile:
+        """Returns the cross-section of a road: its own, or this World's if it has none.
+
+        Raises:
+            UsageError: This World has banked bends, and the road was not laid in it.
+        """
+        if road.profile is not None:
+            return road.profile
+        if self.bank != "none":
+            raise UsageError("the road has no superelevation yet; use the road that world.lay(road) returns")
+        return self.usual_profile(road.length)
+
+    def lay(self, road: Road) -> Road:
+        """Returns the road with this World's lanes and banked bends.
+
+        A road that has a cross-section of its own keeps it. If this World has the usual two lanes of one
+        width and no banked bends, the road is returned as it is.
+        """
+        if road.profile is not None or all(getattr(self, name) == usual for name, usual in OWN.items()):
+            return road
+        profile = self.usual_profile(road.length)
+        if self.bank != "none":
+            ratio = None if self.bank == "auto" else self.bank
+            angle = superelevation(road.plan, self.speed_limit, ratio)
+            profile = replace(profile, superelevation_angle=angle)
+        return road.with_profile(profile)
+
+    def usual_profile(self, length: float) -> Profile:
+        """Returns the cross-section of a road of this length in metres, without superelevation.
+
+        Roads that have no cross-section of their own have this one.
+        """
+        forward, backward = map(int, self.lanes.split("+"))
+        return Profile.of(forward, backward, self._width(length), self.verge)
+
+    def _width(self, length: float) -> float | CubicProfile:
+        """Returns the width of the lanes, which changes from start to end without a kink."""
+        first, last = self.lane_width, self.lane_width_end
+        if last is None or last == first:
+            return first
+        change = last - first
+        cubic = (first, 0.0, 3 * change / length**2, -2 * change / length**3)
+        return CubicProfile((0.0, length), (cubic, (last, 0.0, 0.0, 0.0)))
 
     @property
     def road_width(self) -> float:
-        """The largest width of the carriageway in metres."""
-        return 2 * self.profile.paved_reach
-
-    @property
-    def marking_edges(self) -> tuple[float, float]:
-        """The offsets of the outer edges of the markings on the left and on the right of the driven lane.
-
-        They are in metres to the left of the middle of the road. The centre line marking is painted over the
-        middle of the road. The edge line is painted inside the lane, up to its outer edge.
-        """
-        return LINE / 2, -self.profile.paved_reach
+        """Twice the largest distance in metres between the centre line and an edge of the carriageway."""
+        count = max(int(each) for each in self.lanes.split("+"))
+        return 2 * count * max(self.lane_width, self.lane_width_end or 0.0)

@@ -29,7 +29,7 @@ def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
     s = _stations(road, rim)
     if world.verge == 0:
         return [*_surface(road, world, s), *_slab(road, world, s)]
-    banks = embankments(road, world.profile, s, terrain.land)
+    banks = embankments(road, world.profile_of(road), s, terrain.land)
     slopes = [patch for bank in banks for patch in _slope(bank, terrain)]
     return [*_surface(road, world, s), *slopes, *_posts(road, world)]
 

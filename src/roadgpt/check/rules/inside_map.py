@@ -20,7 +20,7 @@ from roadgpt.road import Road, World
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports where the road leaves the map, and whether the road is larger than the map."""
     samples, size = road.sample(), world.map_size
-    offsets = world.profile.edges(samples.s)
+    offsets = world.profile_of(road).edges(samples.s)
     low, high = extent(samples, offsets)
     room = min(low.min(), size - high.max())
     if room > 0:

@@ -21,7 +21,7 @@ from roadgpt.road import Road, World
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the first place where the road overlaps itself, and the earlier place that it overlaps."""
     samples = road.sample()
-    offsets = world.profile.edges(samples.s)
+    offsets = world.profile_of(road).edges(samples.s)
     quads = quads_of(*sides(samples, offsets))
     folded = np.flatnonzero(~is_convex(quads))
     if folded.size:

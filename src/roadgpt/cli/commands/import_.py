@@ -71,7 +71,7 @@ def _on_a_map(found: "ImportedRoad") -> tuple["Road", "World", list[str]]:
     from roadgpt.road import World, moved
 
     road, world, remarks = found.road, found.world(World()), []
-    low, high = extent(road.sample(), world.profile.edges(road.sample().s))
+    low, high = extent(road.sample(), world.profile_of(road).edges(road.sample().s))
     wide = float((high - low).max()) + 2 * ROOM
     size = max(world.map_size, ROUND * -(-wide // ROUND))
     if size > LARGEST_MAP:

@@ -72,7 +72,7 @@ def document(road: Road, world: World) -> XmlElement:
     for i, part in enumerate(reversed(parts)):
         # against the road's direction, so in the order in which they are driven
         root.extended(_lanelet(left[::-1], i, _backward(part), right[len(parts) - 1 - i], sign))
-    root.extended(_limit(sign, road.at(0.0, world.profile.edges(0.0).right), world))
+    root.extended(_limit(sign, road.at(0.0, world.profile_of(road).edges(0.0).right), world))
     root.extended(_problem(sign + 1, road, world, goal=right[-1]))
     return root
 
@@ -117,7 +117,7 @@ def _limit(id_: int, place: Array, world: World) -> XmlElement:
 def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
     """Returns the planning problem: from rest to the last lanelet, within twice the time of a calm drive."""
     start = start_of(road)
-    place = np.round(road.at(start, world.profile.middle(start)), 6)
+    place = np.round(road.at(start, world.profile_of(road).middle(start)), 6)
     out = XmlElement("planningProblem", {"id": id_})
     state = out.add("initialState")
     state.add("position").extended(_point(place[:2].tolist()))

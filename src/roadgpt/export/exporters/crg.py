@@ -14,7 +14,7 @@ from roadgpt.export.finite import finite
 from roadgpt.export.poses import Poses
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
+from roadgpt.road import Profile, Road, World
 
 STEP = 0.1  # m between cross sections
 MOST = 200_000  # cross sections; longer roads have a wider step
@@ -47,7 +47,7 @@ def document(road: Road, world: World) -> str:
     step = road.length / count
     points = finite(road.at(np.linspace(0.0, road.length, count + 1)))
     headings = np.array(_headings(points[:, :2].tolist(), step))
-    reach = _reach(headings, step, world)
+    reach = _reach(headings, step, world.profile_of(road))
     phi = [NOTHING, *map(_field, headings.tolist())]
     heights = list(map(_field, points[:, 2].tolist()))
     rows = [f"{turned}{height}{height}" for turned, height in zip(phi, heights, strict=True)]
@@ -105,16 +105,16 @@ def _headings(points: list[list[float]], step: float) -> list[float]:
     return out
 
 
-def _reach(headings: Array, step: float, world: World) -> float:
+def _reach(headings: Array, step: float, profile: Profile) -> float:
     """Returns half the surface's width in metres: lane and shoulder, or what the tightest bend allows."""
     turns = np.abs(wrap_angle(np.diff(headings)))
     room = ROOM * step / math.sin(min(float(turns.max(initial=1e-12)), math.pi / 2))
-    if room < world.profile.paved_reach:
+    if room < profile.paved_reach:
         raise ExportError(
             f"OpenCRG cannot hold a bend whose radius is {room:.1f} m, less than a lane is wide; "
             "use wider bends or a narrower lane"
         )
-    return min(world.profile.reach, room)
+    return min(profile.reach, room)
 
 
 def _field(value: float) -> str:

@@ -24,7 +24,7 @@ class Csv:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the road to ``path`` and the drive, if there is one, to NAME.drive.csv."""
         of = road.sample(STEP)
-        wide, shoulder = world.profile.width(of.s), world.profile.shoulder(of.s)
+        wide, shoulder = world.profile_of(road).width(of.s), world.profile_of(road).shoulder(of.s)
         columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, shoulder]
         _write(path, ROAD, columns)
         if poses is not None:

@@ -28,8 +28,8 @@ class GeoJson:
 
         ``roadgpt.export.georeference`` defines the geographic position of the map.
         """
-        s, wide = road.sample(STEP).s, world.profile.lane_width
-        edges = world.profile.edges(s)
+        s, wide = road.sample(STEP).s, world.lane_width
+        edges = world.profile_of(road).edges(s)
         right, middle, left = road.at(s, edges.right), road.at(s), road.at(s, edges.left)
         features = [
             _line("centre line", middle, {"length_m": road.length, "speed_kmh": world.speed_limit * 3.6}),

@@ -40,7 +40,7 @@ class Sumo:
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml, .sumocfg, and with netconvert .net.xml."""
         stem = path.name.removesuffix(self.suffix)
-        shape = np.round(line(road, stations(road, world.profile.paved_reach), 0.0), DECIMALS) + 0.0
+        shape = np.round(line(road, stations(road, world.profile_of(road).paved_reach), 0.0), DECIMALS) + 0.0
         limits = speed_zones(road, world)
         files = {
             self.suffix: _nodes(shape),
@@ -111,7 +111,7 @@ def _edges(shape: Array, world: World, limits: Sequence[SpeedZone]) -> XmlElemen
     lanes: dict[str, Value] = {
         "numLanes": 1,
         "speed": 0,
-        "width": world.profile.lane_width,
+        "width": world.lane_width,
         "friction": world.friction,
         "spreadType": "right",
     }

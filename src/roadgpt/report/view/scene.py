@@ -13,7 +13,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
 from roadgpt.report.places import places_of
 from roadgpt.road import Road, World
-from roadgpt.road.world import LINE
+from roadgpt.road.profile import LINE
 from roadgpt.run import Run
 from roadgpt.verdict.severity import MOSTLY, SEVERITIES
 

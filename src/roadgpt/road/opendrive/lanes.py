@@ -26,7 +26,7 @@ Which = Callable[["LaneSection"], tuple[int, int]]
 
 
 @dataclass(frozen=True)
-class Lane:
+class LaneElement:
     """One lane of a lane section. Either ``width`` or ``border``, the offset of its outer edge, is given."""
 
     node: Node
@@ -40,7 +40,7 @@ class LaneSection:
     """One lane section, with the lanes on the side of the driven lane, ordered from the inside out."""
 
     s: float
-    lanes: tuple[Lane, ...]
+    lanes: tuple[LaneElement, ...]
     driven: int
     """Index of the driven lane in ``lanes``; the number of lanes if this section has no driven lane."""
 
@@ -169,7 +169,7 @@ def _section(node: Node, side: str) -> LaneSection:
     s = number(node, "s")
     nodes = sorted(node.all(side, "lane"), key=lambda lane: abs(number(lane, "id")))
     lanes = tuple(
-        Lane(
+        LaneElement(
             lane,
             lane.attributes.get("type", ""),
             cubics(lane.all("width"), "sOffset", s),

@@ -21,7 +21,7 @@ from roadgpt.export.ego import goal_of, start_of
 from roadgpt.export.exporters.opendrive.lanes import NO_SHOULDER
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Edges, Profile, Road, World
-from roadgpt.road.world import LINE
+from roadgpt.road.profile import LINE
 
 # m between nodes: denser ones fold (BeamNGpy issue 240), and uneven ones make BeamNG's spline swing.
 SPACING = 2.0
@@ -113,22 +113,22 @@ def level_road(
     if not np.isfinite(middle).all():
         raise ExportError("the road has a number that is not finite; check it before it is exported")
     ground = _ground(middle, world) + lift
-    meshes = _meshes(middle, s, world.profile, rng, materials, prefix, ground)
-    decals = _decals(road, world.profile, s, up + above, materials, prefix)
+    meshes = _meshes(middle, s, world.profile_of(road), rng, materials, prefix, ground)
+    decals = _decals(road, world.profile_of(road), s, up + above, materials, prefix)
     first, goal = start_of(road), (goal_of(road) + road.length) / 2
     return LevelRoad(
         (*meshes, *decals),
-        road.at(first, world.profile.middle(first)) + up,
+        road.at(first, world.profile_of(road).middle(first)) + up,
         float(road.heading(first)),
         float(road.grade(first)),
-        road.at(goal, world.profile.middle(goal)) + up,
+        road.at(goal, world.profile_of(road).middle(goal)) + up,
         ground,
     )
 
 
 def _ground(middle: Array, world: World) -> float:
     """Returns a height in metres just below the lowest shoulder, or below the floor without a shoulder."""
-    if world.profile.shoulder_width < NO_SHOULDER:
+    if world.verge < NO_SHOULDER:
         return world.z_floor - CLEAR
     return float(middle[:, 2].min()) - UNDER - CLEAR
 
@@ -144,7 +144,7 @@ def _meshes(
 ) -> list[Strip]:
     """Returns the mesh of the shoulder, if there is one, and of the road."""
     strips = []
-    if profile.shoulder_width >= NO_SHOULDER:
+    if profile.has_shoulders:
         below = _lengthened(middle) - np.array([0.0, 0.0, UNDER])
         depths = np.maximum(DEPTH, below[:, 2] - ground)
         strips.append(_mesh(f"{prefix}verge", materials.verge, below, profile.rims(s), depths))

@@ -11,12 +11,12 @@ from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import goal_of, on_the_ground, start_of
 from roadgpt.export.embankments import Embankment, embankments
 from roadgpt.export.exporters.gltf.container import TriangleMesh
-from roadgpt.export.exporters.opendrive.lanes import DASH, GAP, NO_SHOULDER
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 from roadgpt.road.land import FAR, Land
-from roadgpt.road.world import LINE
+from roadgpt.road.profile import LINE
 
 THICKNESS = 0.5  # m, of the slabs
 PAINT = 0.005  # m by which markings lie above the road; less would flicker at a coarse depth resolution
@@ -31,9 +31,9 @@ def meshes(road: Road, world: World, poses: Poses | None = None) -> list[Triangl
     Raises:
         ExportError: The road has a number that is not finite.
     """
-    profile = world.profile
+    profile = world.profile_of(road)
     s = stations(road, profile.reach)
-    edges, rims, has_shoulder = profile.edges(s), profile.rims(s), profile.shoulder_width >= NO_SHOULDER
+    edges, rims, has_shoulder = profile.edges(s), profile.rims(s), profile.has_shoulders
     out = [_slab("road", "asphalt", road, s, *edges)]
     if has_shoulder:
         out.append(_slab("left verge", "gravel", road, s, rims.left, edges.left))
@@ -61,7 +61,7 @@ def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
     high = np.stack([at, at + columns + 1, at + columns], axis=-1)
     normals = up / np.linalg.norm(up, axis=-1, keepdims=True)
     parts = [TriangleMesh("", "grass", points, normals, points[:, :2], np.concatenate([low, high]))]
-    for bank in embankments(road, world.profile, s, land):
+    for bank in embankments(road, world.profile_of(road), s, land):
         parts.append(_sloped(bank))
     return _joined("ground", parts)
 
@@ -102,8 +102,8 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMe
     if poses is None:
         start, end = start_of(road), goal_of(road)
         part = np.r_[start, s[(s > start) & (s < end)], end]
-        middle = world.profile.middle(part)
-        half = np.minimum(PATH_WIDTH, world.profile.width(part) / 2) / 2
+        middle = world.profile_of(road).middle(part)
+        half = np.minimum(PATH_WIDTH, world.profile_of(road).width(part) / 2) / 2
         return _strip("path", "path", road, part, middle + half, middle - half, PATH)
     moved = np.r_[
         True, np.hypot(np.diff(poses.x), np.diff(poses.y)) > 1e-6

@@ -48,7 +48,7 @@ def document(road: Road, world: World) -> XmlElement:
 def _header(road: Road, world: World) -> XmlElement:
     """Returns the header: revision, bounds of lanes and shoulders, and the georeference. It has no date."""
     x, y = road.centreline()[:, :2].T
-    reach = world.profile.reach
+    reach = world.profile_of(road).reach
     header = XmlElement(
         "header",
         {

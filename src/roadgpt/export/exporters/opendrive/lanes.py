@@ -7,7 +7,7 @@ id      2      |    1    |    -1    |   -2
 
 from roadgpt.export.markup import XmlElement
 from roadgpt.road import World
-from roadgpt.road.world import LINE
+from roadgpt.road.profile import LINE
 
 DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
@@ -54,7 +54,7 @@ def _middle() -> XmlElement:
 
 
 def _driving(number: int, world: World) -> XmlElement:
-    lane = _lane(number, "driving").extended(_width(world.profile.lane_width), _mark("solid", "none"))
+    lane = _lane(number, "driving").extended(_width(world.lane_width), _mark("solid", "none"))
     lane.add("material", {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0})
     lane.add("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"})
     return lane
@@ -62,7 +62,7 @@ def _driving(number: int, world: World) -> XmlElement:
 
 def _shoulder(number: int, world: World) -> list[XmlElement]:
     """Returns the shoulder, firm ground at the height of the road; nothing where it has no width."""
-    width = world.profile.shoulder_width
+    width = world.verge
     return [_lane(number, "shoulder").extended(_width(width))] if width >= NO_SHOULDER else []
 
 

@@ -1,0 +1,117 @@
+"""Reads and writes cross-sections as the field ``profile`` of a road file.
+
+A width is a number, or rows ``[s, a, b, c, d]``: from station ``s`` on, it is ``a + b u + c u^2 + d u^3``
+metres at ``u`` metres behind ``s``. The superelevation has the same form, in radians.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, get_args
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile
+from roadgpt.road.profile import Kind, Lane, Marking, Profile, Width
+
+MOST_LANES = 20  # on one side
+MOST_ROWS = 20_000
+WIDEST = 100.0  # m, of a lane or shoulder
+STEEPEST = 0.35  # rad, of superelevation
+
+
+def profile_to_json(profile: Profile) -> dict[str, Any]:
+    """Returns the cross-section as JSON data, from which ``profile_from_json`` restores it."""
+    out = {
+        "left": [_lane_to_json(lane) for lane in profile.left],
+        "right": [_lane_to_json(lane) for lane in profile.right],
+        "driven": profile.driven,
+        "centre_marking": profile.centre_marking,
+    }
+    angle = profile.superelevation_angle
+    return out if angle is None else {**out, "superelevation": _rows(angle)}
+
+
+def profile_from_json(data: Any) -> Profile:
+    """Returns the cross-section whose ``profile_to_json`` gave ``data``.
+
+    Raises:
+        UsageError: A field is missing, unknown, of the wrong type or out of range.
+    """
+    try:
+        known = {"left", "right", "driven", "centre_marking", "superelevation"}
+        _only(data, known)
+        angle = data.get("superelevation")
+        driven = data["driven"]
+        if not isinstance(driven, int) or isinstance(driven, bool):
+            raise ValueError("driven is the index of a lane on the right")
+        return Profile(
+            _lanes(data["left"]),
+            _lanes(data["right"]),
+            driven,
+            _one_of(data["centre_marking"], Marking),
+            None if angle is None else _cubics(angle, STEEPEST),
+        )
+    except KeyError as error:
+        raise UsageError(f"the profile of the road cannot be read: {error} is missing; add it") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise UsageError(f"the profile of the road cannot be read: {error}; correct the file") from error
+
+
+def _lane_to_json(lane: Lane) -> dict[str, Any]:
+    width = _rows(lane.width) if isinstance(lane.width, CubicProfile) else lane.width
+    return {"kind": lane.kind, "width": width, "marking": lane.marking}
+
+
+def _rows(cubics: CubicProfile) -> list[list[float]]:
+    return [[s, *row] for s, row in zip(cubics.stations, cubics.coefficients, strict=True)]
+
+
+def _lanes(rows: Any) -> tuple[Lane, ...]:
+    if not isinstance(rows, list) or len(rows) > MOST_LANES:
+        raise ValueError(f"lanes are a list of up to {MOST_LANES} objects with kind, width and marking")
+    for row in rows:
+        _only(row, {"kind", "width", "marking"})
+    return tuple(
+        Lane(_one_of(row["kind"], Kind), _width(row["width"]), _one_of(row["marking"], Marking))
+        for row in rows
+    )
+
+
+def _width(data: Any) -> Width:
+    if isinstance(data, list):
+        return _cubics(data, WIDEST)
+    if isinstance(data, bool) or not isinstance(data, (int, float)) or not 0 <= data <= WIDEST:
+        raise ValueError(f"a width is a number from 0 to {WIDEST:g}, or rows [s, a, b, c, d]")
+    return float(data)
+
+
+def _cubics(rows: Any, most: float) -> CubicProfile:
+    if not isinstance(rows, list) or not 0 < len(rows) <= MOST_ROWS:
+        raise ValueError(f"1 to {MOST_ROWS:,} rows [s, a, b, c, d] are needed")
+    if any(
+        not isinstance(row, list) or len(row) != 5 or any(isinstance(v, bool) for v in row) for row in rows
+    ):
+        raise ValueError("a row has five numbers [s, a, b, c, d]")
+    numbers = [tuple(float(v) for v in row) for row in rows]
+    if not all(math.isfinite(v) for row in numbers for v in row):
+        raise ValueError("a number is not finite")
+    cubics = CubicProfile(tuple(row[0] for row in numbers), tuple((a, b, c, d) for _, a, b, c, d in numbers))
+    if max(abs(v) for v in cubics.extremes()) > most:
+        raise ValueError(f"a value is beyond {most:g}")
+    return cubics
+
+
+def _only(data: Any, known: set[str]) -> None:
+    if not isinstance(data, Mapping):
+        raise ValueError("a profile and each of its lanes is a JSON object")
+    unknown = sorted(set(map(str, data)) - known)
+    if unknown:
+        raise ValueError(
+            f"the field '{unknown[0][:40]}' is unknown; the fields are {', '.join(sorted(known))}"
+        )
+
+
+def _one_of(value: Any, choices: Any) -> Any:
+    names: Sequence[str] = get_args(choices)
+    if value not in names:
+        raise ValueError(f"'{str(value)[:40]}' is unknown; give {' or '.join(names)}")
+    return value

@@ -1,0 +1,106 @@
+"""Superelevation: its size after CD 109, its run-in, and the surface, against a rotation matrix of scipy."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from roadgpt.geometry import GradeProfile, Piece, PieceCurve, SplineCurve
+from roadgpt.road import Road, World
+
+SPEED = 50 / 3.6
+
+
+def bend(radius: float, run_in: float = 30.0, arc: float = 40.0, grade: float = 0.0) -> Road:
+    """Returns a road of straight, clothoid, arc, clothoid and straight; a negative radius turns right."""
+    k = 1 / radius
+    pieces = (Piece(30.0), Piece(run_in, 0.0, k), Piece(arc, k, k), Piece(run_in, k, 0.0), Piece(30.0))
+    plan = PieceCurve(100.0, 120.0, 0.3, pieces)
+    return Road(plan, GradeProfile(5.0, (0.0, plan.length), (grade, grade)))
+
+
+@pytest.mark.parametrize(
+    ("radius", "percent"),
+    # CD 109 by hand: 50^2 / (2.828 * 400) = 2.21; 50^2 / (2.828 * 150) = 5.89; from R = 126.3 m on, 7
+    [(400.0, 2.21), (150.0, 5.89), (127.0, 6.96), (100.0, 7.0), (20.0, 7.0)],
+)
+def test_a_bend_has_the_superelevation_of_the_design_guide(radius: float, percent: float) -> None:
+    for side in (1, -1):
+        road = World(bank="auto", speed_limit=SPEED).lay(bend(side * radius))
+        assert road.profile is not None
+        angles = road.profile.superelevation(np.array([10.0, 70.0, 80.0, 100.0, 165.0]))
+        assert 100 * np.tan(angles[1:4]) == pytest.approx(-side * percent, abs=0.01)
+        assert angles[[0, 4]] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_outside_of_a_bend_is_higher_and_the_centre_line_stays() -> None:
+    flat = bend(60.0, grade=0.04)
+    road = World(bank=0.06, lanes="2+1").lay(flat)
+    assert np.array_equal(road.at(80.0), flat.at(80.0))
+    assert road.at(80.0, -4.0)[2] > road.at(80.0)[2] > road.at(80.0, 4.0)[2]  # a left bend
+
+
+@given(
+    side=st.sampled_from([-1, 1]),
+    radius=st.floats(20, 400),
+    grade=st.floats(-0.15, 0.15),
+    ratio=st.floats(0.01, 0.12),
+    s=st.floats(0, 160),
+    t=st.floats(-14, 14),
+)
+def test_the_surface_is_that_of_three_rotations(
+    side: int, radius: float, grade: float, ratio: float, s: float, t: float
+) -> None:
+    road = World(bank=ratio).lay(bend(side * radius, grade=grade))
+    assert road.profile is not None
+    angle = float(road.profile.superelevation(s))
+    # OpenDRIVE: heading, pitch and roll about the axes as they are then; pitch is positive downhill.
+    turned = Rotation.from_euler("ZYX", [float(road.heading(s)), -math.atan(grade), angle])
+    assert road.at(s, t) == pytest.approx(road.at(s) + turned.apply([0.0, t, 0.0]), abs=1e-9)
+
+
+@given(
+    radius=st.floats(30, 400), grade=st.floats(-0.15, 0.15), ratio=st.floats(0, 0.12),
+    s=st.floats(1, 150), t=st.floats(-14, 14),
+)  # fmt: skip
+def test_a_point_of_the_surface_is_located_where_it_was_put(
+    radius: float, grade: float, ratio: float, s: float, t: float
+) -> None:
+    road = World(bank=ratio).lay(bend(radius, grade=grade))
+    x, y, _ = road.at(s, t)
+    found = road.locate(x, y)
+    assert [float(found[0]), float(found[1])] == pytest.approx([s, t], abs=1e-5)
+
+
+def test_the_run_in_lies_on_the_clothoid_and_has_no_kink() -> None:
+    road = World(bank="auto", speed_limit=SPEED).lay(bend(50.0))
+    assert road.profile is not None
+    s = np.linspace(0.0, road.length, 4001)
+    angles = road.profile.superelevation(s)
+    rate = np.gradient(angles, s)
+    assert np.abs(np.gradient(rate, s)).max() < 0.002  # rad/m^2; a ramp with kinks would have 0.09 here
+    ramp = (s > 30.0) & (s < 60.0)
+    assert (np.diff(angles[ramp]) < 0).all()
+    assert np.abs(angles[(s < 30.0) | (s > 160.0)]).max() < 1e-12
+
+
+def test_a_jump_of_curvature_is_run_in_beside_it() -> None:
+    plan = PieceCurve(0.0, 0.0, 0.0, (Piece(60.0), Piece(60.0, 0.02, 0.02), Piece(60.0)))
+    road = World(bank="auto").lay(Road(plan, GradeProfile(0.0, (0.0, 180.0), (0.0, 0.0))))
+    assert road.profile is not None
+    s = np.linspace(0.0, 180.0, 1801)
+    angles = road.profile.superelevation(s)
+    assert np.abs(np.diff(angles)).max() < 0.1 * 0.07 / 10  # at most 7 % in 10 m
+    assert float(road.profile.superelevation(90.0)) == pytest.approx(-math.atan(0.07))
+    assert float(road.profile.superelevation(60.0)) == pytest.approx(-math.atan(0.07) / 2, abs=0.003)
+
+
+def test_a_spline_is_banked_too() -> None:
+    points = [(20.0, 20.0), (80.0, 30.0), (120.0, 80.0), (110.0, 140.0)]
+    road = World(bank=0.05).lay(Road.through(points))
+    assert road.profile is not None
+    assert isinstance(road.plan, SplineCurve)
+    assert float(road.profile.superelevation(road.length / 2)) == pytest.approx(-math.atan(0.05), abs=1e-6)
