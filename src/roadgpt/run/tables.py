@@ -8,6 +8,7 @@ experiment_description.csv   the settings: the competition's columns first, then
 import csv
 import io
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 
 from roadgpt.run.atomic import write_whole
@@ -17,6 +18,11 @@ from roadgpt.run.sparseness import Sparseness, departure
 
 TABLES = ("generation_stats.csv", "oob_stats.csv")
 DESCRIPTION = "experiment_description.csv"
+SETTINGS = (
+    *("executor", "dave2_model", "beamng_home", "beamng_user", "time_budget", "map_size", "oob_tolerance"),
+    *("speed_limit", "module_name", "module_path", "class_name", "visualize_tests", "log_to", "debug"),
+)
+"""The competition's columns of experiment_description.csv, in their order."""
 ELSEWHERE = ("simulator", "designer", "chat")  # columns of their own, or none where nobody is asked
 
 
@@ -85,33 +91,35 @@ class Tally:
 
 
 def write_description(request: Request, roads: int, folder: Path) -> None:
-    """Writes experiment_description.csv; competition columns without a meaning in RoadGPT stay empty."""
-    setup, world = request.setup, request.world
-    theirs = {
-        "executor": setup.simulator,
-        "dave2_model": "",
-        "beamng_home": "",
-        "beamng_user": "",
-        "time_budget": "",
+    """Writes experiment_description.csv for a campaign."""
+    setup = request.setup
+    asked = {} if setup.chat is None else {"chat": setup.chat.model_dump_json(exclude_defaults=True)}
+    named = {key: value for key, value in setup.model_dump().items() if key not in ELSEWHERE}
+    ours = {"description": request.words, "roads": roads, "seed": request.seed, **named, **asked}
+    write_settings(request, {"module_name": "roadgpt", "class_name": setup.designer}, ours, folder)
+
+
+def write_settings(
+    request: Request, theirs: Mapping[str, object], ours: Mapping[str, object], folder: Path
+) -> None:
+    """Writes experiment_description.csv: the competition's columns in their order, then RoadGPT's.
+
+    Args:
+        request: gives simulator and world.
+        theirs: values for other columns of the competition; columns that are missing here stay empty.
+        ours: values for columns of RoadGPT, which come before those of the world.
+        folder: where the file is written.
+    """
+    world = request.world
+    known = {
+        "executor": request.setup.simulator,
         "map_size": world.map_size,
         "oob_tolerance": world.oob_tolerance,
         "speed_limit": round(world.speed_limit * 3.6, 6),
-        "module_name": "roadgpt",
-        "module_path": "",
-        "class_name": setup.designer,
-        "visualize_tests": "",
-        "log_to": "",
-        "debug": "",
     }
-    ours = {
-        "description": request.words,
-        "roads": roads,
-        "seed": request.seed,
-        **{key: value for key, value in setup.model_dump().items() if key not in ELSEWHERE},
-        **({} if setup.chat is None else {"chat": setup.chat.model_dump_json(exclude_defaults=True)}),
-        **{key: value for key, value in world.model_dump().items() if key not in theirs},
-    }
-    write_whole(folder / DESCRIPTION, _table([theirs | ours]))
+    row: dict[str, object] = dict.fromkeys(SETTINGS, "") | known | dict(theirs)
+    rest = {name: value for name, value in world.model_dump().items() if name not in row}
+    write_whole(folder / DESCRIPTION, _table([row | dict(ours) | rest]))
 
 
 def _table(rows: list[dict[str, object]]) -> str:

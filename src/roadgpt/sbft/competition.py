@@ -140,7 +140,8 @@ class Competition:
     def _number(self, asked: Any) -> int:
         """Returns the generator's own number of a test if it is valid and unused, else the next free one."""
         is_number = isinstance(asked, int) and not isinstance(asked, bool) and 0 < asked <= LARGEST_ID
-        return asked if is_number and not self.results.has(asked) else self.results.last + 1
+        numbers = self.results.numbers
+        return asked if is_number and asked not in numbers else max(numbers, default=0) + 1
 
     @property
     def _has_tests_left(self) -> bool:

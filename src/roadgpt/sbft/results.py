@@ -5,26 +5,29 @@ results/MODULE_CLASS_STAMP/
   campaign.json  runs/NNNN/  overview.png  generator.log                             RoadGPT's
 """
 
-import csv
-import io
 import os
 import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from roadgpt.errors import UsageError
+from roadgpt.geometry import interpolate
 from roadgpt.run import Run
 from roadgpt.run.atomic import json_text, missing, take_away, write_whole
 from roadgpt.run.card import CARD, Card
+from roadgpt.run.execution import records_of
 from roadgpt.run.features import features_of
 from roadgpt.run.folder import RUNS, Draw, write_run
 from roadgpt.run.model import Request
-from roadgpt.run.tables import DESCRIPTION, TABLES, Tally
+from roadgpt.run.tables import DESCRIPTION, SETTINGS, TABLES, Tally, write_settings
 from roadgpt.sbft.experiment import Experiment
-from roadgpt.sbft.single_test import interpolated_points, records_at_their_height, sbft_description
 
 HOME = Path("results")
 LOG = "generator.log"
+SUCCESS = "Successful test"
+HEIGHT = -28.0  # m, of the ground of the competition's level
 
 
 def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
@@ -63,36 +66,32 @@ class Results:
         self._request = request
         self._draw = draw
         self._tally = Tally()
-        self._numbers: set[int] = set()
+        self.numbers: set[int] = set()
+        """Numbers of the tests so far."""
 
     def add(self, run: Run) -> dict[str, Any]:
         """Writes the files of a test; returns the content of its ``test.NNNN.json``."""
         test = test_of(run)
         write_run(run, self.folder, self._draw, json_text(test, indent=None))
         self._tally.add(run)
-        self._numbers.add(run.index)
+        self.numbers.add(run.index)
         self._tally.write(self.folder)
         return test
 
-    @property
-    def last(self) -> int:
-        """The largest number of a test so far."""
-        return max(self._numbers, default=0)
-
-    def has(self, number: int) -> bool:
-        """Returns whether a test with this number exists."""
-        return number in self._numbers
-
     def describe(self, experiment: Experiment) -> None:
-        """Writes ``experiment_description.csv``."""
+        """Writes the settings and the empty tables."""
         self._tally.write(self.folder)
         self._write_card(is_finished=False)
-        row = described(experiment, self._request)
-        text = io.StringIO()
-        writer = csv.DictWriter(text, fieldnames=list(row), lineterminator="\n")
-        writer.writeheader()
-        writer.writerow(row)
-        write_whole(self.folder / DESCRIPTION, text.getvalue())
+        setup, told = self._request.setup, experiment.model_dump()
+        is_beamng = setup.simulator == "beamng"
+        homes = {
+            f"beamng_{name}": os.environ.get(f"ROADGPT_BEAMNG_{name.upper()}", "") if is_beamng else ""
+            for name in ("home", "user")
+        }
+        theirs = {name: value for name, value in told.items() if name in SETTINGS} | homes | {"log_to": LOG}
+        ours = {name: value for name, value in told.items() if name not in SETTINGS}
+        driven = {"driver": setup.driver, "seed": self._request.seed}
+        write_settings(self._request, theirs, ours | driven, self.folder)
 
     def close(self) -> None:
         """Marks the results as complete."""
@@ -104,52 +103,36 @@ class Results:
         take_away((self.folder / name for name in names), (self.folder / RUNS, *self._made))
 
     def _write_card(self, is_finished: bool) -> None:
-        card = Card(request=self._request, roads=max(len(self._numbers), 1), is_finished=is_finished)
+        card = Card(request=self._request, roads=max(len(self.numbers), 1), is_finished=is_finished)
         write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
 
 
 def test_of(run: Run) -> dict[str, Any]:
-    """Returns a test as the competition writes it; an invalid test has only the first five fields."""
-    plan = interpolated_points(run)
+    """Returns a test as the competition writes it; an invalid test has only the first five fields.
+
+    Heights are shifted to those of the competition's level, whose ground is at -28 m.
+    """
+    control = np.empty((0, 2)) if run.road is None else run.road.control_points()
+    nodes = control if run.road is None else interpolate(control)
     test: dict[str, Any] = {
         "is_valid": run.is_valid,
         "validation_message": run.validation_message,
-        "road_points": [] if run.road is None else run.road.control_points().tolist(),
-        "interpolated_points": plan.tolist(),
+        "road_points": control.tolist(),
+        "interpolated_points": nodes.tolist(),
         "id": run.index,
     }
     if not run.is_valid:
         return test
-    records = records_at_their_height(run)
+    records = (
+        records_of(run.road, run.drive, run.world) if run.road is not None and run.drive is not None else []
+    )
+    lowered = [one._replace(pos=[*one.pos[:2], round(one.pos[2] + HEIGHT, 4)]) for one in records]
+    said = run.description if run.verdict is None else run.verdict.sbft_description
+    if run.verdict is not None and said != SUCCESS:
+        said += f" {run.request.setup.simulator}/{run.index:04d}"
     return test | {
-        "execution_data": records,
+        "execution_data": lowered,
         "test_outcome": run.outcome,
-        "description": sbft_description(run),
-        "features": features_of(plan, records),
+        "description": said,
+        "features": features_of(nodes, lowered),
     }
-
-
-def described(experiment: Experiment, request: Request) -> dict[str, Any]:
-    """Returns the columns of experiment_description.csv: the competition's in their order, then RoadGPT's."""
-    setup, world = request.setup, request.world
-    is_beamng = setup.simulator == "beamng"
-    theirs = {
-        "executor": setup.simulator,
-        "dave2_model": "",
-        "beamng_home": os.environ.get("ROADGPT_BEAMNG_HOME", "") if is_beamng else "",
-        "beamng_user": os.environ.get("ROADGPT_BEAMNG_USER", "") if is_beamng else "",
-        "time_budget": experiment.time_budget,
-        "map_size": world.map_size,
-        "oob_tolerance": world.oob_tolerance,
-        "speed_limit": round(world.speed_limit * 3.6, 6),
-        "module_name": experiment.module_name,
-        "module_path": experiment.module_path,
-        "class_name": experiment.class_name,
-        "visualize_tests": "",
-        "log_to": LOG,
-        "debug": experiment.debug,
-    }
-    ours = {name: value for name, value in experiment.model_dump().items() if name not in theirs}
-    driven = {"driver": setup.driver, "seed": request.seed}
-    rest = {name: value for name, value in world.model_dump().items() if name not in theirs}
-    return theirs | ours | driven | rest

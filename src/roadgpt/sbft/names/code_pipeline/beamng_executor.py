@@ -12,7 +12,6 @@ from typing import Any, Dict, Optional, Tuple
 
 from code_pipeline.executors import HANDED, AbstractTestExecutor, TestResult, settle
 from code_pipeline.tests_generation import RoadTestFactory
-from roadgpt_inside import checkout
 from self_driving.simulation_data import SimulationDataRecord
 
 FloatDTuple = Tuple[float, float, float, float]
@@ -125,7 +124,3 @@ def _settled(the_test: Any, answer: Dict[str, Any]) -> TestResult:
         if answer["is_valid"]:
             settle(the_test, outcome, description, records, answer["features"])
     return outcome, description, [] if outcome == "ERROR" else records
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

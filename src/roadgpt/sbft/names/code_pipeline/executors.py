@@ -12,7 +12,6 @@ from typing import Any, Dict, List, Optional, Tuple
 from code_pipeline.test_analysis import compute_all_features
 from code_pipeline.tests_generation import TestGenerationStatistic
 from code_pipeline.validation import TestValidator
-from roadgpt_inside import checkout
 from self_driving.simulation_data import SimulationDataRecord
 
 log = logging.getLogger(__name__)
@@ -272,7 +271,3 @@ def settle(test: Any, outcome: str, description: str, records: List[Any], featur
 
 
 __all__ = ["AbstractTestExecutor", "Budget", "MockExecutor", "SimulationDataRecord"]
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -5,15 +5,9 @@ from __future__ import annotations
 from itertools import tee
 from typing import Any, Iterable
 
-from roadgpt_inside import checkout
-
 
 def pairwise(iterable: Iterable[Any]) -> Any:
     """Returns an iterator over (first, second), (second, third), and so on."""
     ones, others = tee(iterable)
     next(others, None)
     return zip(ones, others)
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

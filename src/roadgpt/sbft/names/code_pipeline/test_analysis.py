@@ -8,8 +8,6 @@ from bisect import bisect_right
 from statistics import fmean, pstdev
 from typing import Any, Dict, Sequence, Tuple
 
-from roadgpt_inside import checkout
-
 THE_NORTH = [0, 1]
 FEWEST_RECORDS = 3  # with fewer, a drive has no features
 
@@ -87,7 +85,3 @@ def max_lateral_position(execution_data: Sequence[Any]) -> Feature:
 def _nodes(the_test: Any) -> Sequence[Sequence[float]]:
     nodes: Sequence[Sequence[float]] = getattr(the_test, "interpolated_points", the_test)
     return nodes
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

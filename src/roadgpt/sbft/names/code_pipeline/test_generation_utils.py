@@ -7,8 +7,6 @@ import signal
 import sys
 from typing import Any, Callable, List
 
-from roadgpt_inside import checkout
-
 _REGISTERED: List[Callable[[], None]] = []
 
 
@@ -50,7 +48,3 @@ def ended() -> None:
     """Calls the registered functions, the most recently registered one first."""
     while _REGISTERED:
         _REGISTERED.pop()()
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -15,7 +15,6 @@ from code_pipeline.test_analysis import (
     mean_lateral_position,
     sd_steering,
 )
-from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 from self_driving.simulation_data import SimulationDataRecord
 
@@ -117,7 +116,3 @@ def _tests(folder: str) -> List[Path]:
     for place, _, files in os.walk(folder):
         found += sorted(Path(place, name) for name in files if "test." in name and name.endswith(".json"))
     return found
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -10,7 +10,6 @@ from itertools import count
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from roadgpt_client import RoadGPTError, plain
-from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 from self_driving.road_polygon import RoadPolygon
 
@@ -176,7 +175,3 @@ class TestGenerationStatistic:
         """Returns the text of the competition's generation_stats.csv."""
         row = self._row()
         return ",".join(row) + "\n" + ",".join(f"{value:g}" for value in row.values())
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

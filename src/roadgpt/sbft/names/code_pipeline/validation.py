@@ -8,7 +8,6 @@ from typing import Any, Sequence, Tuple
 
 from code_pipeline.tests_generation import RoadTestFactory
 from roadgpt_client import RoadGPTError
-from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 from self_driving.bbox import RoadBoundingBox
 
@@ -147,7 +146,3 @@ class TestValidator:
         if not self.is_minimum_length(the_test):
             return TOO_SHORT
         return TOO_SHARP if self.is_too_sharp(the_test) else ""
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from roadgpt_inside import checkout
-
 
 class _ShapelyPolygon:
     """A polygon of shapely that is made on access."""
@@ -35,7 +33,3 @@ class RoadTestVisualizer:
     def visualize_road_test(self, the_test: Any) -> None:
         """Stores the test without drawing it."""
         self.last_submitted_test = the_test
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -1,55 +1,69 @@
-"""Finds modules and names of the competition that RoadGPT does not provide in a checkout of the competition's
-code, or reports them as missing.
+"""Imports the modules under the competition's names: RoadGPT's own, else those of a checkout of the
+competition's code.
 
-Most of these names control BeamNG or the DAVE-2 network, which a generator does not need in RoadGPT.
+A name that a module of RoadGPT lacks is taken from the same module of the checkout. Most of these names
+control BeamNG or the DAVE-2 network, which a generator does not need in RoadGPT.
 """
 
 from __future__ import annotations
 
-import importlib.util
 import sys
+from functools import partial
+from importlib.machinery import PathFinder, SourceFileLoader
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any, List, Optional
 
+NAMES = Path(__file__).parent.parent
 PACKAGES = ("code_pipeline", "self_driving")
 ADVICE = "put a checkout of the competition's code on PYTHONPATH, or do without it"
 
+RENAMED = {"code_pipeline.utils": "pairs", "self_driving.utils": "places"}
+"""Modules of the competition whose files have other names in RoadGPT, with the names of these files."""
+BEAMNG = ("self_driving.vehicle_state_reader", "VehicleStateReader")
+"""Module and name of a class that RoadGPT's version of a module leaves out, because it needs BeamNG."""
 
-HERE = {"code_pipeline.utils": "code_pipeline/pairs.py", "self_driving.utils": "self_driving/places.py"}
-"""Modules of the competition whose files have other names in RoadGPT, with these files."""
+
+class _Loader(SourceFileLoader):
+    """Loads a module of RoadGPT, whose missing names are taken from a checkout."""
+
+    def exec_module(self, module: Any) -> None:
+        super().exec_module(module)
+        vars(module)["__getattr__"] = partial(_attribute, module.__name__)
 
 
-class Missing:
-    """An import finder that runs after all others: reports modules of the competition that neither RoadGPT
-    nor a checkout provides."""
+class Finder:
+    """An import finder for the modules of the competition's packages."""
 
     @staticmethod
     def find_spec(name: str, path: Optional[List[str]] = None, target: Any = None) -> Any:
-        """Returns the location of a module that RoadGPT provides; None for modules that are not the
-        competition's.
+        """Returns the location of a module of the competition; None for all other modules.
 
         Raises:
             ModuleNotFoundError: the module belongs to the competition, but was not found.
         """
-        del path, target
-        if name in HERE:
-            return importlib.util.spec_from_file_location(name, Path(__file__).parent.parent / HERE[name])
+        del target
         package, _, rest = name.partition(".")
-        if package in PACKAGES and rest:
+        if package not in PACKAGES or not rest:
+            return None
+        own = NAMES / package / f"{RENAMED.get(name, rest)}.py"
+        if own.is_file():
+            return spec_from_file_location(name, own, loader=_Loader(name, str(own)))
+        theirs = PathFinder.find_spec(name, path)
+        if theirs is None:
             raise ModuleNotFoundError(f"RoadGPT has no stand-in for {name}; {ADVICE}", name=name)
-        return None
+        return theirs
 
 
 def watch() -> None:
-    """Installs the finder that reports missing modules of the competition by name."""
+    """Installs the finder."""
     finders: List[Any] = sys.meta_path
-    if Missing not in finders:
-        finders.append(Missing)
+    if Finder not in finders:
+        finders.insert(0, Finder)
 
 
-def attribute(module: str, name: str) -> Any:
-    """Returns an attribute that RoadGPT's version of a module lacks, from the same module in a checkout of
-    the competition's code.
+def _attribute(module: str, name: str) -> Any:
+    """Returns an attribute that RoadGPT's version of a module lacks, from the same module in a checkout.
 
     Raises:
         AttributeError: the checkout lacks it as well, or the name is one of Python's own.
@@ -60,28 +74,23 @@ def attribute(module: str, name: str) -> Any:
     theirs = _theirs(module)
     if theirs is not None and hasattr(theirs, name):
         return getattr(theirs, name)
-    if theirs is None and name in BEAMNG.get(module, ()):
+    if theirs is None and (module, name) == BEAMNG:
         raise ImportError(f"RoadGPT has no stand-in for {module}.{name}; {ADVICE}", name=module)
     raise AttributeError(f"RoadGPT's stand-in for {module} has no '{name}'; {ADVICE}")
 
 
-BEAMNG = {"self_driving.vehicle_state_reader": ("VehicleStateReader",)}
-
-
 def _theirs(module: str) -> Any:
-    """Returns the module of a checkout, loaded once beside ours; None if there is no checkout."""
+    """Returns the module of a checkout, loaded once beside RoadGPT's; None if there is no checkout."""
     package, _, stem = module.partition(".")
     name = f"{package}._checkout_{stem}"
     if name in sys.modules:
         return sys.modules[name]
     for folder in list(sys.modules[package].__path__)[1:]:
         path = Path(folder, f"{stem}.py")
-        if not path.is_file():
+        spec = spec_from_file_location(name, path)
+        if not path.is_file() or spec is None or spec.loader is None:
             continue
-        spec = importlib.util.spec_from_file_location(name, path)
-        if spec is None or spec.loader is None:
-            continue
-        made = sys.modules[name] = importlib.util.module_from_spec(spec)
+        made = sys.modules[name] = module_from_spec(spec)
         try:
             spec.loader.exec_module(made)
         except BaseException:

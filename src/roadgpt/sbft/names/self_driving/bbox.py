@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any, List, Sequence
 
-from roadgpt_inside import checkout
-
 
 class RoadBoundingBox:
     """A rectangle that roads must not leave."""
@@ -55,7 +53,3 @@ class RoadBoundingBox:
     def contains(self, other: Any) -> bool:
         """Returns whether the centre line of a road is inside the rectangle."""
         return bool(self.bbox.contains(other.polyline))
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from roadgpt_inside import checkout
-
 
 class BeamNGPose:
     """Position in metres, and rotation as a quaternion."""
@@ -13,7 +11,3 @@ class BeamNGPose:
     def __init__(self, pos: Any = None, rot: Any = None) -> None:
         self.pos = pos or (0, 0, 0)
         self.rot = rot or (0, 0, 0, 1)
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

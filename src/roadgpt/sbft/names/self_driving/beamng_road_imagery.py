@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from roadgpt_inside import checkout
 from self_driving.road_points import RoadPoints
 
 
@@ -33,7 +32,3 @@ class BeamNGRoadImagery:
         if self._figure is None:
             self.plot()
         self._figure.savefig(image_path)
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import uuid
-from typing import Any, Optional, Sequence
-
-from roadgpt_inside import checkout
+from typing import Optional, Sequence
 
 
 class BeamNGWaypoint:
@@ -28,7 +26,3 @@ class BeamNGWaypoint:
             "scale": [4, 4, 4],
         }
         return json.dumps(told)
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -6,8 +6,6 @@ import json
 import uuid
 from typing import Any, Dict, List, Optional, Sequence
 
-from roadgpt_inside import checkout
-
 
 class DecalRoad:
     """A decal road in BeamNG, which is one line of a level's file."""
@@ -69,7 +67,3 @@ class DecalRoad:
             "nodes": self.nodes,
         }
         return json.dumps(told)
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

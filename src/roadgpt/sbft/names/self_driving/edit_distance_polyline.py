@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Sequence, Tuple
+from typing import List, Sequence, Tuple
 
-from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 
 AngleLength = Tuple[float, float]
@@ -17,7 +16,3 @@ def iterative_levenshtein(s: Sequence[Sequence[float]], t: Sequence[Sequence[flo
     """Returns the weighted Levenshtein distance between two sequences of steps (change of direction,
     length)."""
     return float(ask("distance", one=[p[:2] for p in s], other=[p[:2] for p in t]))
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

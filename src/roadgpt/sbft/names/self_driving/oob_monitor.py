@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any, Tuple
 
-from roadgpt_inside import checkout
-
 CORNERS = ("rear_bottom_left", "rear_bottom_right", "front_bottom_right", "front_bottom_left")
 
 
@@ -78,7 +76,3 @@ class OutOfBoundsMonitor:
 
         box = self.vehicle_state_reader.get_vehicle_bbox()
         return Polygon([box[corner][:2] for corner in CORNERS])
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

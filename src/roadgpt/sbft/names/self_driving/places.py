@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Sequence, Tuple
-
-from roadgpt_inside import checkout
+from typing import Sequence, Tuple
 
 
 def get_node_coords(node: Sequence[float]) -> Tuple[float, float, float]:
@@ -16,7 +14,3 @@ def get_node_coords(node: Sequence[float]) -> Tuple[float, float, float]:
 def points_distance(p1: Sequence[float], p2: Sequence[float]) -> float:
     """Returns the distance between two points in 3-D, in metres."""
     return math.sqrt(sum((a - b) ** 2 for a, b in zip(get_node_coords(p1), get_node_coords(p2))))
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any, List, Sequence, Tuple
 
-from roadgpt_inside import checkout
 from self_driving.beamng_pose import BeamNGPose
 
 List4DTuple = List[Tuple[float, float, float, float]]
@@ -98,7 +97,3 @@ class RoadPoints:
         for points, colour in ((self.middle, "#FEA952"), (self.left, "white"), (self.right, "white")):
             ax.plot([p[0] for p in points], [p[1] for p in points], color=colour, linewidth=1)
         ax.axis("equal")
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any, List, Sequence
 
-from roadgpt_inside import checkout
 from roadgpt_inside.asking import ask
 from self_driving.road_points import RoadPoints
 
@@ -95,7 +94,3 @@ def _area(left: List[Any], right: List[Any]) -> Any:
     from shapely.geometry import Polygon
 
     return Polygon([*left, *right[::-1]])
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -11,8 +11,6 @@ from collections import namedtuple
 from pathlib import Path
 from typing import Any, List, Optional, Union
 
-from roadgpt_inside import checkout
-
 SimulationDataRecordProperties = [
     "timer",
     "pos",
@@ -162,7 +160,3 @@ class SimulationData:
         self.info.success = success
         if exception:
             self.exception_str = str(exception)
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)

@@ -3,14 +3,8 @@
 from __future__ import annotations
 
 from collections import namedtuple
-from typing import Any
 
-from roadgpt_inside import checkout
 from self_driving.simulation_data import SimulationDataRecordProperties
 
 VehicleStateProperties = SimulationDataRecordProperties[:12]
 VehicleState = namedtuple("VehicleState", VehicleStateProperties)  # type: ignore[misc]
-
-
-def __getattr__(name: str) -> Any:
-    return checkout.attribute(__name__, name)
