@@ -1,14 +1,16 @@
 """Every test begins without settings, without habits, and in a folder of its own."""
 
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from chat.stub_server import Stub, says, serving
 from roadgpt import provenance
-from roadgpt.chat import client, server_quirks
+from roadgpt.chat import server_quirks
 
 KEY = "sk-canary-0123456789abcdefghijklmnop"
 OURS = ("OPENAI_", "ROADGPT_", "AZURE_OPENAI_")
@@ -39,5 +41,6 @@ def stub() -> Iterator[Stub]:
 def waits(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The pauses between tries, which nobody has to sit through."""
     taken: list[float] = []
-    monkeypatch.setattr(client, "sleep", taken.append)
+    clock = SimpleNamespace(sleep=taken.append, time=time.time)
+    monkeypatch.setattr("openai._base_client.time", clock)
     return taken

@@ -99,8 +99,10 @@ def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
 
 
 def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
+    from openai import _constants
+
     from roadgpt.brief.readers.grammar import MOST_CHARACTERS
-    from roadgpt.chat import conversation, request_error, response_limits, strict_json
+    from roadgpt.chat import conversation, response_limits, strict_json
     from roadgpt.chat.providers.openai import MOST_REQUESTS
     from roadgpt.drive.drive import UNPACKED
     from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, WHOLE_DRIVE
@@ -126,7 +128,7 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     files = [LARGEST, MOST_POINTS, round(STEEPEST), UNPACKED // 1_000_000, response_limits.OF_AN_ERROR]
     tries = [MAX_SEGMENTS, MOST_ROUNDS, GIVE_UP, MOST]
     counts = [MOST_CHARACTERS, *files, *tries, MOST_PAGES * PER_PAGE]
-    waits = [request_error.PATIENCE, request_error.LONGEST_WAIT]
+    waits = [_constants.MAX_RETRY_AFTER_DELAY, _constants.MAX_RETRY_DELAY]
     asked = [*waits, strict_json.MOST_CHARACTERS, strict_json.MOST_DEPTH, MOST_REQUESTS]
     assert found == [
         *map(str, counts),

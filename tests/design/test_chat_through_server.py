@@ -2,14 +2,16 @@
 
 import json
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from chat.stub_server import Scene, Stub, drops, fails, floods, says, serving
 from roadgpt.brief.readers.grammar import GrammarReader
-from roadgpt.chat import ChatSettings, client, server_quirks
+from roadgpt.chat import ChatSettings, server_quirks
 from roadgpt.errors import RoadGPTError
 from roadgpt.run import Setup, campaign, perform
 
@@ -76,7 +78,8 @@ def _alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         monkeypatch.delenv(name)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "home"))
     monkeypatch.setenv("OPENAI_API_KEY", "sk-secret-of-mine")
-    monkeypatch.setattr(client, "sleep", lambda seconds: None)
+    clock = SimpleNamespace(sleep=lambda seconds: None, time=time.time)
+    monkeypatch.setattr("openai._base_client.time", clock)
     monkeypatch.chdir(tmp_path)
     server_quirks.forget()
     yield

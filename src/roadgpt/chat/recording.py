@@ -7,11 +7,9 @@ from pydantic import BaseModel
 
 from roadgpt.chat.json_schema import schema_of
 from roadgpt.chat.meter import Account, occasion
-from roadgpt.chat.model import ChatSettings, Message, Reply, Spent, Usage
+from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
 from roadgpt.chat.store import ExchangeStore
-from roadgpt.errors import RefusedError, ReplyError, UnparsableError
-
-FAILURES = {kind.__name__: kind for kind in (RefusedError, UnparsableError, ReplyError)}
+from roadgpt.errors import ReplyError
 
 
 def question_of(
@@ -63,20 +61,3 @@ class Recorder:
 
     def _keep(self, question: dict[str, Any], answer: dict[str, Any]) -> None:
         self._store.keep(question, occasion(), answer, self._account.meter.turns)
-
-
-def replayed(kept: dict[str, Any], schema: type[BaseModel] | None, account: Account) -> Reply:
-    """Returns a recorded Reply; validates its data again and counts its cost again.
-
-    Raises:
-        ReplyError: the exchange was recorded as a failure.
-        ValueError: the record is neither a reply nor a failure.
-    """
-    account.add(Spent.model_validate(kept["spent"]))
-    if "failure" in kept:
-        failure = kept["failure"]
-        raise FAILURES[failure["kind"]](failure["sentence"], failure["text"])
-    reply = {name: value for name, value in kept["reply"].items() if name != "data"}
-    data = kept["reply"]["data"]
-    usage = Usage.model_validate(reply.pop("usage"))
-    return Reply(**reply, usage=usage, data=None if schema is None else schema.model_validate(data))

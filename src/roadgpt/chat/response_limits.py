@@ -1,19 +1,24 @@
-"""Limits the size and time of every HTTP response, including errors, and refuses redirects to other servers.
+"""An HTTP client that limits the size and time of every response and refuses redirects to other servers.
 
 A server may answer with a gigabyte even when it reports an error, and a compressed megabyte may contain a
-gigabyte. So every response is decompressed piece by piece, and only up to the limit.
+gigabyte. So every response is decompressed piece by piece, and only up to the limit. The library ``openai``
+uses this client and repeats requests that failed; a response header tells it which failures may pass.
 """
 
+import contextvars
+import json
+import threading
 import time
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 from urllib.parse import urljoin, urlsplit
 
-from httpx2 import SyncByteStream
+import httpx2
+from openai import DefaultHttpxClient
 
 from roadgpt.chat.address import origin_of
-from roadgpt.chat.request_error import RequestError
+from roadgpt.chat.request_error import BUSY, RequestError, is_spent_up
 from roadgpt.chat.strict_json import NotReadableError, plain
 
 PACKED = {"gzip", "x-gzip"}
@@ -21,64 +26,92 @@ ASK_FOR = "gzip"
 GZIP = 31  # zlib's window bits for gzip with the largest window
 OF_AN_ERROR = 100_000  # bytes; the message of an error is at its beginning
 FIRST_ERROR = 400
+GRACE = 0.2  # s after the time limit, in which the request itself may report the problem
 
 
-class ResponseLimits:
-    """A response hook of the HTTP client: limits the size and time of every response before it is read."""
+class BrokenOffError(httpx2.ReadError):
+    """Raised if the connection ends in the middle of a response."""
 
-    def __init__(self, most: int, seconds: float, late: Callable[[], Exception]) -> None:
-        self.most, self.seconds, self.late = most, seconds, late
 
-    def __call__(self, response: Any) -> None:
-        """Limits a response.
+class LimitedClient(DefaultHttpxClient):
+    """An HTTP client whose responses are complete, of limited size, and arrive within a time limit."""
+
+    def __init__(self, most: int, seconds: float) -> None:
+        """Takes the most bytes of a response, decompressed, and the time limit of one attempt in seconds."""
+        self.most, self.seconds = most, seconds
+        super().__init__(event_hooks={"response": [self._limited]})
+
+    def send(self, request: httpx2.Request, **how: Any) -> httpx2.Response:
+        """Sends one request, and gives up after the time limit even if bytes still trickle in.
 
         Raises:
-            RequestError: it redirects to another server, or has a content encoding that was not requested.
+            httpx2.TransportError: there is no complete response; the library may send the request again.
+            RequestError: the server redirects to another server, or compresses its answer in another way.
+            NotReadableError: the response exceeds the limit of size.
         """
+        box: list[Any] = []
+        context, send = contextvars.copy_context(), super().send
+
+        def work() -> None:
+            try:
+                box.append(send(request, **how))
+            except BaseException as error:  # passed to the waiting thread
+                box.append(error)
+
+        thread = threading.Thread(target=context.run, args=(work,), daemon=True)
+        thread.start()
+        thread.join(self.seconds + GRACE)
+        if not box:
+            raise httpx2.ReadTimeout("no complete response", request=request)
+        if isinstance(box[0], BaseException):
+            raise box[0]
+        return _graded(box[0])
+
+    def _limited(self, response: Any) -> None:
+        """Limits a response before it is read."""
+        here = str(response.request.url)
         if "location" in response.headers and 300 <= response.status_code < FIRST_ERROR:
-            _stay(str(response.request.url), response.headers["location"])
+            _stay(here, response.headers["location"])
         packing = response.headers.get("content-encoding", "identity").strip().lower()
         if packing not in PACKED | {"identity", ""}:
             raise RequestError(
-                f"{_host(str(response.request.url))} compresses its answer as '{plain(packing, 20)}', "
-                "which was not requested"
+                f"{_host(here)} compresses its answer as '{plain(packing, 20)}', which was not requested"
             )
         if "content-encoding" in response.headers:
             del response.headers["content-encoding"]
-        response.stream = _Within(response.stream, self, packing in PACKED, response.status_code)
+        most = min(OF_AN_ERROR, self.most) if response.status_code >= FIRST_ERROR else self.most
+        response.stream = _Within(response, most, self.seconds, packing in PACKED)
 
 
-class _Within(SyncByteStream):
+class _Within(httpx2.SyncByteStream):
     """The bytes of a response, decompressed and limited."""
 
-    def __init__(self, stream: Any, bound: ResponseLimits, is_packed: bool, status: int) -> None:
-        self.stream, self.bound = stream, bound
+    def __init__(self, response: Any, most: int, seconds: float, is_packed: bool) -> None:
+        self.stream, self.most = response.stream, most
+        self.is_error = response.status_code >= FIRST_ERROR
         self.unpacker = zlib.decompressobj(GZIP) if is_packed else None
-        self.is_error = status >= FIRST_ERROR
-        self.most = min(OF_AN_ERROR, bound.most) if self.is_error else bound.most
-        self.deadline = time.monotonic() + bound.seconds
+        self.deadline = time.monotonic() + seconds
 
     def __iter__(self) -> Iterator[bytes]:
-        """Yields pieces; of an error response only its beginning.
-
-        Raises:
-            NotReadableError: the response exceeds the limit of size.
-            RequestError: it exceeds the limit of time.
-        """
+        """Yields pieces; of an error response only its beginning."""
         left = self.most
-        for part in self.stream:
-            if time.monotonic() > self.deadline:
-                raise self.bound.late()
-            piece = self._unpacked(part, left + 1)
-            if len(piece) > left:
-                if self.is_error:
-                    yield piece[:left]
+        try:
+            for part in self.stream:
+                if time.monotonic() > self.deadline:
+                    raise httpx2.ReadTimeout("no complete response")
+                piece = self._unpacked(part, left + 1)
+                if len(piece) > left and not self.is_error:
+                    raise NotReadableError(
+                        f"it has more than {self.most:,} bytes, which is far more than was asked for"
+                    )
+                yield piece[:left]
+                left -= len(piece)
+                if left < 0:
                     return
-                raise NotReadableError(
-                    f"it has more than {self.most:,} bytes, which is far more than was asked for"
-                )
-            left -= len(piece)
-            yield piece
+        except httpx2.TimeoutException:
+            raise
+        except httpx2.TransportError as error:
+            raise BrokenOffError(str(error)) from error
 
     def _unpacked(self, part: bytes, most: int) -> bytes:
         if self.unpacker is None:
@@ -91,6 +124,23 @@ class _Within(SyncByteStream):
     def close(self) -> None:
         """Closes the connection."""
         self.stream.close()
+
+
+def _graded(response: httpx2.Response) -> httpx2.Response:
+    """Sets the status of an error that a server reports under status 200, and says whether to try again."""
+    if response.status_code < FIRST_ERROR:
+        try:
+            body = json.loads(response.content)
+        except (ValueError, RecursionError):
+            return response
+        error = body.get("error") if isinstance(body, dict) else None
+        if not error or body.get("choices") or body.get("output"):
+            return response
+        code = error.get("code") if isinstance(error, dict) else None
+        response.status_code = code if isinstance(code, int) and FIRST_ERROR <= code < 600 else 500
+    may_pass = response.status_code in BUSY and not is_spent_up(response.status_code, response.text)
+    response.headers["x-should-retry"] = str(may_pass).lower()
+    return response
 
 
 def _stay(here: str, location: str) -> None:

@@ -28,8 +28,7 @@ class ServerQuirks:
     caps: tuple[str, ...]
     """Possible names of the parameter for the length limit of a reply; the first is in use."""
     response_format: ResponseFormat = ResponseFormat.SCHEMA
-    dropped: set[str] = field(default_factory=set)
-    """Names of the parameters that the server rejected."""
+    takes_temperature: bool = True
     unusable: dict[ResponseFormat, int] = field(default_factory=dict)
     keeps_conversations: bool = True
 

@@ -29,7 +29,6 @@ from roadgpt.errors import ChatError, RefusedError, UnparsableError
 ABOUT_FORMAT = ("response_format", "json", "schema", "grammar", "format", "structured", "guided")
 OTHER_WAY = {400, 404, 415, 422, 500, 501}  # statuses after which another response format may work
 MOST_REQUESTS = 8  # for one question: three response formats, a second try, and dropped parameters
-SAMPLING = ("temperature",)
 
 
 class OpenAI:
@@ -37,11 +36,9 @@ class OpenAI:
 
     def __init__(self, settings: ChatSettings) -> None:
         self._client = ApiClient(settings, key_for(settings.base_url))
-        self._settings = (
-            settings if settings.model else settings.model_copy(update={"model": self._only_model()})
-        )
+        self._model = settings.model or self._only_model()
+        self._settings = settings.model_copy(update={"model": self._model})
         self._account = Account(self._settings)
-        self._model = self._settings.model or ""
         self._quirks = quirks_of(self._client.place, self._model, settings.api)
         self._conversations: WeakKeyDictionary[Meter, Conversation] = WeakKeyDictionary()
 
@@ -65,11 +62,8 @@ class OpenAI:
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
         """Returns the answer, in whatever format the server supports; raises the errors of ``Chat.ask``."""
         before = self.spent
-        way = FormatFallback(
-            list(messages),
-            self._quirks.response_format if schema is not None else ResponseFormat.TEXT,
-            schema is None,
-        )
+        first = self._quirks.response_format if schema is not None else ResponseFormat.TEXT
+        way = FormatFallback(list(messages), first, schema is None)
         answer = Answer()
         for _ in range(MOST_REQUESTS):
             try:
@@ -113,10 +107,9 @@ class OpenAI:
     ) -> Answer:
         """Sends one request and counts it."""
         form = None if schema is None else schema_of(schema)
-        told = [
-            *messages,
-            *([_instruction(form)] if form is not None and response_format > ResponseFormat.SCHEMA else []),
-        ]
+        told = list(messages)
+        if form is not None and response_format > ResponseFormat.SCHEMA:
+            told.append(_instruction(form))
         room = self._account.reply_tokens(told, self._model)
         begun = time.perf_counter()
         try:
@@ -144,23 +137,16 @@ class OpenAI:
         body: dict[str, Any] = {"model": self._model}
         if quirks.caps:
             body[quirks.caps[0]] = room
-        if self._settings.temperature is not None and "temperature" not in quirks.dropped:
+        if self._settings.temperature is not None and quirks.takes_temperature:
             body["temperature"] = self._settings.temperature
         if form is None or response_format == ResponseFormat.TEXT:
             return body
+        is_schema = response_format == ResponseFormat.SCHEMA
         named: dict[str, Any] = {"name": "answer", "schema": form, "strict": True}
         if self._settings.api == "responses":
-            kind = (
-                {"type": "json_schema", **named}
-                if response_format == ResponseFormat.SCHEMA
-                else {"type": "json_object"}
-            )
+            kind = {"type": "json_schema", **named} if is_schema else {"type": "json_object"}
             return {**body, "text": {"format": kind}}
-        kind = (
-            {"type": "json_schema", "json_schema": named}
-            if response_format == ResponseFormat.SCHEMA
-            else {"type": "json_object"}
-        )
+        kind = {"type": "json_schema", "json_schema": named} if is_schema else {"type": "json_object"}
         return {**body, "response_format": kind}
 
     def _adapts(self, fault: RequestError) -> bool:
@@ -169,10 +155,10 @@ class OpenAI:
             return False
         quirks = self._quirks
         said = f"{fault.parameter} {fault.details}"
-        for name in SAMPLING:
-            if name in said and name not in quirks.dropped and getattr(self._settings, name) is not None:
-                quirks.dropped.add(name)
-                return True
+        is_sent = self._settings.temperature is not None and quirks.takes_temperature
+        if is_sent and "temperature" in said:
+            quirks.takes_temperature = False
+            return True
         if quirks.caps and (quirks.caps[0] == fault.parameter or quirks.caps[0] in fault.details):
             quirks.caps = quirks.caps[1:]
             return True

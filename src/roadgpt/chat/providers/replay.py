@@ -9,9 +9,11 @@ from pydantic import BaseModel
 
 from roadgpt.chat.meter import Account, occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
-from roadgpt.chat.recording import question_of, replayed
+from roadgpt.chat.recording import question_of
 from roadgpt.chat.store import ExchangeStore
-from roadgpt.errors import ChatError, UsageError
+from roadgpt.errors import ChatError, RefusedError, ReplyError, UnparsableError, UsageError
+
+FAILURES = {kind.__name__: kind for kind in (RefusedError, UnparsableError, ReplyError)}
 
 
 class Replay:
@@ -56,7 +58,12 @@ class Replay:
         if kept is None:
             raise ChatError(self._missing())
         try:
-            return replayed(kept, schema, self._account)
+            self._account.add(Spent.model_validate(kept["spent"]))
+            if "failure" in kept:
+                failure = kept["failure"]
+                raise FAILURES[failure["kind"]](failure["sentence"], failure["text"])
+            data = None if schema is None else schema.model_validate(kept["reply"]["data"])
+            return Reply.model_validate({**kept["reply"], "data": data})
         except (KeyError, TypeError, ValueError):
             raise UsageError(
                 f"a recording in {self._settings.replay} cannot be read; record it again with --record"
