@@ -21,9 +21,8 @@ from roadgpt.run.folder import run_folder
 from roadgpt.run.sbft_json import test_name
 from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth
 from roadgpt.study.plan import StudyPart
-from roadgpt.study.prompts import Prompt
 from roadgpt.study.similarity import Likeness, likeness
-from roadgpt.study.truth import SHORTEST
+from roadgpt.study.truth import SHORTEST, Truth
 
 Array = NDArray[np.float64]
 
@@ -168,7 +167,7 @@ def _record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, floa
         margin=verdict.margin if verdict is not None else None,
         points=road.centreline(2.0)[:, :2] if road is not None else np.empty((0, 2)),
         failed_at=verdict.at_xy if verdict is not None else None,
-        kept=_kept(road, part.prompt, run.brief, run.world),
+        kept=kept_of(road, run.brief, run.world, part.prompt.truth),
         likeness=_likeness(road),
         features=features,
         versions=run.versions,
@@ -177,15 +176,24 @@ def _record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, floa
     )
 
 
-def _kept(road: Road | None, prompt: Prompt, brief: Brief | None, world: World) -> dict[Criterion, bool]:
-    """Returns whether a road keeps each criterion of a description; all are False if there is no road."""
+def kept_of(
+    road: Road | None, brief: Brief | None, world: World, truth: Truth | None = None
+) -> dict[Criterion, bool]:
+    """Returns whether a road keeps each criterion of a description.
+
+    Args:
+        road: the road; None: all criteria are False.
+        brief: what the reader read; None: only the truth counts.
+        world: the map, which limits what can be asked for.
+        truth: what people wrote down; if given, it counts, and not the Brief.
+    """
     points = road.centreline() if road is not None else STRAIGHT
     is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1
     points = points if is_road else STRAIGHT
     asked = promises_of(brief, world) if brief is not None else None
     found = measure(points, asked.widest) if asked else measure(points)
-    if prompt.truth is not None:
-        kept = criteria_of_truth(found, prompt.truth)
+    if truth is not None:
+        kept = criteria_of_truth(found, truth)
     elif asked is not None:
         kept = criteria_of_outline(found, asked)
     else:

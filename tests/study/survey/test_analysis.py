@@ -233,6 +233,6 @@ def test_a_survey_that_nobody_answered_is_told(tmp_path: Path) -> None:
     answers = load_answers(folder)
     store.close()
     assert [(row.source, row.score, row.attention) for row in answers.rows] == [("people", 5, "not answered")]
-    assert answers.unchecked == (rater.code,)
+    assert answers.unchecked == {rater.code}
     with pytest.raises(UsageError, match="made-up raters are"):
         synthetic(survey(), 0)

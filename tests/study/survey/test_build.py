@@ -20,10 +20,10 @@ from roadgpt.road import Design, Segment
 from roadgpt.run import Run, Setup, perform, prove, write_run
 from roadgpt.run.card import CARD as CAMPAIGN
 from roadgpt.run.card import Card
-from roadgpt.study.survey import build, films
-from roadgpt.study.survey.described_criteria import criteria_of
+from roadgpt.study.survey import build, media
+from roadgpt.study.survey.item_criteria import criteria_of
+from roadgpt.study.survey.media import Axes
 from roadgpt.study.survey.plan import plan_text, read_plan
-from roadgpt.study.survey.road_plots import Axes
 from roadgpt.study.survey.sampling import plan_from_runs
 from roadgpt.study.survey.survey import Survey, read_survey
 
@@ -238,7 +238,7 @@ def test_films_are_made_once_and_where_none_can_be_that_is_said(
         made.append(path)
         path.write_bytes(view.encode())
 
-    monkeypatch.setattr(build, "are_possible", lambda: True)
+    monkeypatch.setattr(build, "can_film", lambda: True)
     monkeypatch.setattr(build, "make_film", record)
     plan = read_plan(tmp_path / "S.toml")
     survey = build.make_survey(plan, tmp_path, tmp_path / "out")
@@ -246,7 +246,7 @@ def test_films_are_made_once_and_where_none_can_be_that_is_said(
     assert survey.lacks == ""
     build.make_survey(plan, tmp_path, tmp_path / "out")
     assert [path.read_bytes() for path in made] == [b"chase", b"bonnet"], "what is there is not made again"
-    monkeypatch.setattr(build, "are_possible", lambda: False)
+    monkeypatch.setattr(build, "can_film", lambda: False)
     without = build.make_survey(plan, tmp_path, tmp_path / "out")
     assert "there are no films" in without.lacks
     assert not list((tmp_path / "out" / "media").glob("*.mp4"))
@@ -261,12 +261,12 @@ def test_a_film_for_raters_ends_before_its_outcome_is_told(monkeypatch: pytest.M
     def plan(*runs: Run, path: Path, view: str, settings: Settings) -> None:
         last.append(Film.of(runs, "chase", settings).times[-1])
 
-    monkeypatch.setattr(films, "film_of", lambda a, *rest: plan(a, **dict(zip(NAMES, rest, strict=True))))
+    monkeypatch.setattr(media, "film_of", lambda a, *rest: plan(a, **dict(zip(NAMES, rest, strict=True))))
     monkeypatch.setattr(
-        films, "split_film", lambda a, b, *rest: plan(a, b, **dict(zip(NAMES, rest, strict=True)))
+        media, "split_film", lambda a, b, *rest: plan(a, b, **dict(zip(NAMES, rest, strict=True)))
     )
-    films.make_film([run], Path("one.mp4"), "chase")
-    films.make_film([run, run], Path("two.mp4"), "chase")
+    media.make_film([run], Path("one.mp4"), "chase")
+    media.make_film([run, run], Path("two.mp4"), "chase")
     assert run.drive is not None
     assert len(last) == 2
     assert all(run.drive.duration - 0.2 < time < run.drive.duration for time in last)
@@ -301,7 +301,7 @@ def test_a_survey_without_films_is_made_without_films(
     def forbidden(*_: object) -> None:
         raise AssertionError("a film was made")
 
-    monkeypatch.setattr(build, "are_possible", lambda: True)
+    monkeypatch.setattr(build, "can_film", lambda: True)
     monkeypatch.setattr(build, "make_film", forbidden)
     out = tmp_path / "s"
     words = ["new", "--from", str(runs), "--out", str(out), "--asks", "J", "--contact", "j@x.example"]

@@ -17,7 +17,6 @@ from hypothesis import strategies as st
 
 from roadgpt.study.survey.app import CLOSED, FORM, JSON
 from roadgpt.study.survey.limits import MOST_ADDRESS, MOST_BYTES
-from roadgpt.study.survey.page_order import pages_for
 from roadgpt.study.survey.questions import CHECK, MATCHES, MOST_LETTERS
 from roadgpt.study.survey.server import Server
 from roadgpt.study.survey.store import AnswerStore, Rater
@@ -79,7 +78,7 @@ def number_of(server: Server, token: str, id_: str) -> int:
     """Of the page on which a rater is asked something."""
     rater = server.app.store.rater_of(token)
     assert rater is not None
-    own = pages_for(server.app.survey, rater.digest)
+    own = server.app.survey.pages_for(rater.digest)
     return next(n for n, page in enumerate(own, 1) if id_ in [q.id for q in page.questions])
 
 
@@ -519,8 +518,8 @@ def test_every_rater_has_an_order_of_their_own_and_keeps_it() -> None:
     orders = {}
     for number in range(60):
         digest = f"{number:064x}"
-        own = pages_for(asked, digest)
-        assert own == pages_for(asked, digest)
+        own = asked.pages_for(digest)
+        assert own == asked.pages_for(digest)
         assert sorted(page.questions[0].id for page in own) == sorted(p.questions[0].id for p in asked.pages)
         parts = [page.part for page in own]
         assert (parts[0], parts[-1]) == ("about", "end")

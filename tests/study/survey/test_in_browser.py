@@ -8,11 +8,10 @@ import pytest
 from chromium import FOUND, Page, browser
 from roadgpt.road import Design, Segment
 from roadgpt.run import Setup, prove
-from roadgpt.study.survey.page_order import pages_for
+from roadgpt.study.survey.media import write_view
 from roadgpt.study.survey.questions import MATCHES
 from roadgpt.study.survey.server import Server
 from roadgpt.study.survey.survey import MEDIA, Medium
-from roadgpt.study.survey.view_3d import write_view
 from survey_made import EVIL, PICTURE, folder_of, port_of, served, survey
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="no chromium is installed")
@@ -83,7 +82,7 @@ def test_a_whole_rating(tab: Page, server: Server, size: str) -> None:
     went(tab, "document.querySelector('button').click()")
     rater = server.app.store.rater_of(token)
     assert rater is not None
-    own = pages_for(server.app.survey, rater.digest)
+    own = server.app.survey.pages_for(rater.digest)
     wanted: dict[str, str] = {}
     for number, page in enumerate(own, 1):
         assert tab.run("location.pathname") == f"/r/{token}/{number}"
@@ -175,7 +174,7 @@ def test_pictures_and_the_view_are_seen_and_the_view_can_reach_nothing(tab: Page
     rater = server.app.store.rater_of(token)
     assert rater is not None
     server.app.store.agree(rater)
-    own = pages_for(server.app.survey, rater.digest)
+    own = server.app.survey.pages_for(rater.digest)
     number = next(n for n, page in enumerate(own, 1) if page.item and page.item.id == "a1")
     tab.told.clear()
     tab.asked.clear()

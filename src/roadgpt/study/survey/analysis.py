@@ -12,7 +12,7 @@ from roadgpt.study.survey.rating_charts import about_bars, rating_bars
 from roadgpt.study.survey.store import ANSWERS, AnswerStore
 from roadgpt.study.survey.survey import read_survey
 from roadgpt.study.survey.synthetic import synthetic
-from roadgpt.study.survey.tally import RatingTally, about_counts, tally
+from roadgpt.study.survey.tally import about_counts, tally
 
 FIGURES = "figures"
 TABLES = {"people": "answers.csv", "synthetic": "answers-synthetic.csv"}
@@ -85,37 +85,32 @@ def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
     """Returns the page with the report; its figures are drawn into an existing folder."""
     is_synthetic = answers.source == "synthetic"
     match, alike = tally(answers, "alignment"), tally(answers, "similarity")
-    blocks = report_blocks.SurveyBlocks(is_synthetic)
-    about = about_counts(answers)
-    who: list[Block] = [blocks.numbers(answers)]
-    if about:
-        drawn = about_bars(about, figures, is_synthetic)
-        who += [blocks.figure(drawn, "Who answered: how many raters gave each answer."), blocks.about(about)]
-    parts = [Section("Who answered", who)]
+    counts = about_counts(answers)
+    who: list[Block] = [report_blocks.raters(answers)]
+    if counts:
+        who += [about_bars(counts, figures, is_synthetic), report_blocks.about(counts)]
+    sections = [Section("Who answered", who)]
     for title, found in (
         ("Do roads match their descriptions?", match),
         ("How similar are two roads?", alike),
     ):
         if found.units:
-            parts.append(Section(title, _part(blocks, found, figures, is_synthetic)))
-    parts.append(Section("Do raters agree?", [blocks.agreement([match, alike])]))
-    parts.append(Section("People and measurements", blocks.machine([match, alike])))
-    parts.append(Section("Remarks", [blocks.remarks(answers)]))
+            drawn, table = rating_bars(found, figures, is_synthetic), report_blocks.ratings(found)
+            sections.append(Section(title, [drawn, table, *report_blocks.differences(found)]))
+    sections += [
+        Section("Do raters agree?", [report_blocks.agreements([match, alike])]),
+        Section("People and measurements", report_blocks.measurements([match, alike])),
+        Section("Remarks", [report_blocks.remarks(answers)]),
+    ]
+    if is_synthetic:
+        sections = [Section(each.title, [*map(report_blocks.marked, each.blocks)]) for each in sections]
     return Page(
         title=f"{'SYNTHETIC: ' if is_synthetic else ''}{answers.survey.title}",
         lead=MADE_UP if is_synthetic else "The answers of people.",
         summary=[*([MADE_UP] if is_synthetic else []), *report_blocks.summary(answers, match, alike)],
-        sections=parts,
+        sections=sections,
         card=_card(answers, command),
     )
-
-
-def _part(
-    blocks: report_blocks.SurveyBlocks, found: RatingTally, figures: Path, is_synthetic: bool
-) -> list[Block]:
-    drawn = rating_bars(found, figures, is_synthetic)
-    caption = "All answers; the middle answer is centred on zero, and the numbers count raters."
-    return [blocks.figure(drawn, caption), blocks.ratings(found), *blocks.differences(found)]
 
 
 def _card(answers: Answers, command: str) -> dict[str, str]:

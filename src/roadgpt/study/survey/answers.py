@@ -4,25 +4,19 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from roadgpt.report.page.text import unformulated
-from roadgpt.study.survey.page_order import pages_for
 from roadgpt.study.survey.questions import CHECK, MATCHES, Part
 from roadgpt.study.survey.store import AnswerStore, code_of
 from roadgpt.study.survey.survey import Survey
 
 Source = Literal["people", "synthetic"]
 Attention = Literal["passed", "failed", "not asked", "not answered"]
-HEADS = (
-    "source", "rater", "attention", "part", "item", "prompt", "criterion", "question", "answer", "score",
-    "page_of_rater",
-)  # fmt: skip
 
 
-@dataclass(frozen=True)
-class AnswerRow:
-    """One answer of one rater."""
+class AnswerRow(NamedTuple):
+    """One answer of one rater; its fields are the columns of ``answers.csv``."""
 
     source: Source
     rater: str
@@ -52,19 +46,19 @@ class Answers:
     withdrawn: int
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def failed(self) -> frozenset[str]:
         """The raters who failed the attention check; their answers are left out of the analysis."""
-        return tuple(sorted({row.rater for row in self.rows if row.attention == "failed"}))
+        return frozenset(row.rater for row in self.rows if row.attention == "failed")
+
+    @property
+    def unchecked(self) -> frozenset[str]:
+        """The raters who did not answer the attention check; their answers are analysed."""
+        return frozenset(row.rater for row in self.rows if row.attention == "not answered")
 
     @property
     def used(self) -> tuple[AnswerRow, ...]:
         """The rows that are analysed."""
         return tuple(row for row in self.rows if row.attention != "failed")
-
-    @property
-    def unchecked(self) -> tuple[str, ...]:
-        """The raters who did not answer the attention check; their answers are analysed."""
-        return tuple(sorted({row.rater for row in self.rows if row.attention == "not answered"}))
 
     @property
     def finished(self) -> int:
@@ -118,7 +112,7 @@ def _rows(survey: Survey, digest: str, given: Mapping[str, str], source: Source)
             score=question.score(given[question.id]) if question.is_rating else None,
             page_of_rater=number,
         )
-        for number, page in enumerate(pages_for(survey, digest), 1)
+        for number, page in enumerate(survey.pages_for(digest), 1)
         for question in page.questions
         if question.id in given
     ]
@@ -136,7 +130,6 @@ def csv_of(rows: Sequence[AnswerRow]) -> str:
     """Returns all rows as CSV; an apostrophe precedes what a spreadsheet would take for a formula."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(HEADS)
-    for row in rows:
-        writer.writerow([unformulated(getattr(row, head)) for head in HEADS])
+    writer.writerow(AnswerRow._fields)
+    writer.writerows([unformulated(value) for value in row] for row in rows)
     return text.getvalue()

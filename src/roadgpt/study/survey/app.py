@@ -26,7 +26,6 @@ from starlette.routing import Route
 from starlette.types import Receive, Scope, Send
 
 from roadgpt.study.survey.limits import FRAMES, RequestGuard, refusal
-from roadgpt.study.survey.page_order import pages_for
 from roadgpt.study.survey.pages import own_answers, questionnaire, render
 from roadgpt.study.survey.questions import clean
 from roadgpt.study.survey.store import MOST_RATERS, AnswerStore, Rater
@@ -228,7 +227,7 @@ class SurveyApp:
         return self._page("deleted.html")
 
     def _pages(self, rater: Rater) -> Sequence[QuestionPage]:
-        return pages_for(self.survey, rater.digest)
+        return self.survey.pages_for(rater.digest)
 
     def _page(self, template: str, status: int = 200, **values: object) -> Response:
         return HTMLResponse(render(template, self.survey, **values), status)

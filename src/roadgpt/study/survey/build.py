@@ -14,15 +14,12 @@ from pathlib import Path
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.run import Run, read_run
 from roadgpt.run.atomic import json_text, sweep, write_whole
-from roadgpt.study.survey.described_criteria import criteria_of
-from roadgpt.study.survey.films import WHY_NONE, are_possible, make_film
-from roadgpt.study.survey.measured_scores import match_scores, similarity_scores
-from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan, criterion_text
-from roadgpt.study.survey.questions import ABOUT
-from roadgpt.study.survey.road_plots import Axes, draw_plots
+from roadgpt.study.survey.item_criteria import criteria_of, match_scores, similarity_scores
+from roadgpt.study.survey.media import WHY_NONE, Axes, can_film, draw_plots, make_film, write_view
+from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan
+from roadgpt.study.survey.questions import ABOUT, CRITERIA
 from roadgpt.study.survey.store import ANSWERS
 from roadgpt.study.survey.survey import CARD, MEDIA, Item, Medium, Survey
-from roadgpt.study.survey.view_3d import write_view
 
 Tell = Callable[[str], None]
 PLACES = ("top", "bottom")
@@ -44,17 +41,17 @@ def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lamb
     """
     out = Path(out)
     _must_be_free(out)
-    alignment = [(road, _run(base, road.run)) for road in plan.alignment]
-    similarity = [(pair, [_run(base, name) for name in pair.runs]) for pair in plan.similarity]
-    runs = [run for _, run in alignment] + [run for _, both in similarity for run in both]
-    axes = Axes.of([run.road for run in runs if run.road is not None])
-    films = plan.films and are_possible()
-    work = _Work(out / MEDIA, axes, films, plan.views, _Pages(len(alignment) + len(similarity), tell))
+    named: list[tuple[str, RoadPlan | PairPlan]]
+    named = [(f"a{n}", road) for n, road in enumerate(plan.alignment, 1)]
+    named += [(f"s{n}", pair) for n, pair in enumerate(plan.similarity, 1)]
+    runs = [[_run(base, name) for name in each.names] for _, each in named]
+    axes = Axes.of([run.road for both in runs for run in both if run.road is not None])
+    films = plan.films and can_film()
+    builder = _ItemBuilder(out / MEDIA, axes, films, plan.views, len(named), tell)
     try:
         (out / MEDIA).mkdir(parents=True, exist_ok=True)
         sweep(out / MEDIA)
-        items = [work.road(f"a{n}", road, run) for n, (road, run) in enumerate(alignment, 1)]
-        items += [work.pair(f"s{n}", pair, both) for n, (pair, both) in enumerate(similarity, 1)]
+        items = [builder.item(name, each, own) for (name, each), own in zip(named, runs, strict=True)]
         survey = Survey(
             title=plan.title,
             asks=plan.asks,
@@ -93,15 +90,36 @@ def _run(base: Path, name: str) -> Run:
     return run
 
 
-class _Pages:
-    """Reports which page is being made and how long the rest will take."""
+class _ItemBuilder:
+    """Makes the items of a survey, and reports which page is being made and how long the rest will take."""
 
-    def __init__(self, total: int, tell: Tell) -> None:
+    def __init__(
+        self, folder: Path, axes: Axes, has_films: bool, has_views: bool, total: int, tell: Tell
+    ) -> None:
+        self.folder, self.axes, self.has_films, self.has_views = folder, axes, has_films, has_views
         self.total, self.tell = total, tell
         self.begun, self.count = time.monotonic(), 0
 
-    def begin(self, sentence: str) -> None:
-        """Reports that the next page is begun."""
+    def item(self, name: str, plan: RoadPlan | PairPlan, runs: list[Run]) -> Item:
+        """Makes the item of a road and its description, or of two roads, one shown above the other."""
+        prompt, is_pair = _prompt(plan.prompt or runs[0].words, plan.names[0]), len(runs) > 1
+        self._begin(prompt + (" (two roads)" if is_pair else ""))
+        media: list[Medium] = []
+        for number, (run, place) in enumerate(zip(runs, PLACES, strict=False), 1):
+            own, lead = (f"{name}-{number}", f"Road {number} ({place}): ") if is_pair else (name, "")
+            media += self._plots(own, run, lead)
+        criteria = criteria_of(runs[0].brief) if plan.criteria is None else plan.criteria
+        return Item(
+            id=name,
+            part="similarity" if is_pair else "alignment",
+            prompt=prompt,
+            criteria=tuple(CRITERIA.get(criterion, criterion) for criterion in criteria),
+            media=(*media, *self._films(name, runs), *self._view(name, prompt, runs)),
+            roads=plan.names,
+            machine=similarity_scores(*runs) if is_pair else match_scores(runs[0], prompt),
+        )
+
+    def _begin(self, sentence: str) -> None:
         left = ""
         if self.count:
             seconds = (time.monotonic() - self.begun) / self.count * (self.total - self.count)
@@ -111,56 +129,13 @@ class _Pages:
         self.count += 1
         self.tell(f"page {self.count} of {self.total}{left}: {sentence}")
 
-
-class _Work:
-    """Makes the items of a survey and reports its progress."""
-
-    def __init__(self, folder: Path, axes: Axes, has_films: bool, has_views: bool, pages: _Pages) -> None:
-        self.folder, self.axes, self.pages = folder, axes, pages
-        self.has_films, self.has_views = has_films, has_views
-
-    def road(self, name: str, plan: RoadPlan, run: Run) -> Item:
-        """Makes the item of a road and its description."""
-        prompt = _prompt(plan.prompt or run.words, plan.run)
-        self.pages.begin(prompt)
-        criteria = criteria_of(run.brief) if plan.criteria is None else plan.criteria
-        return Item(
-            id=name,
-            part="alignment",
-            prompt=prompt,
-            criteria=tuple(map(criterion_text, criteria)),
-            media=(*self._plots(name, run, ""), *self._films(name, [run]), *self._view(name, prompt, [run])),
-            roads=(plan.run,),
-            machine=match_scores(run, prompt),
-        )
-
-    def pair(self, name: str, plan: PairPlan, runs: list[Run]) -> Item:
-        """Makes the item of two roads of one description, one shown above the other."""
-        prompt = _prompt(plan.prompt or runs[0].words, plan.runs[0])
-        self.pages.begin(f"{prompt} (two roads)")
-        plots: list[Medium] = []
-        for number, (run, place) in enumerate(zip(runs, PLACES, strict=True), 1):
-            plots += self._plots(f"{name}-{number}", run, f"Road {number} ({place}): ")
-        return Item(
-            id=name,
-            part="similarity",
-            prompt=prompt,
-            criteria=tuple(map(criterion_text, plan.criteria)),
-            media=(*plots, *self._films(name, runs), *self._view(name, prompt, runs)),
-            roads=plan.runs,
-            machine=similarity_scores(*runs),
-        )
-
     def _plots(self, name: str, run: Run, lead: str) -> list[Medium]:
         assert run.road is not None
-        above, height = draw_plots(run.road, run.world, self.axes, self.folder, name)
-        titles = (
-            f"{lead}bird's-eye view of the road",
-            f"{lead}height of the road over the distance along it",
-        )
+        files = draw_plots(run.road, run.world, self.axes, self.folder, name)
+        texts = ("bird's-eye view of the road", "height of the road over the distance along it")
         return [
-            Medium(name=file, kind="picture", title=title[0].upper() + title[1:])
-            for file, title in zip((above, height), titles, strict=True)
+            Medium(name=file, kind="picture", title=_capital(lead + text))
+            for file, text in zip(files, texts, strict=True)
         ]
 
     def _films(self, name: str, runs: list[Run]) -> list[Medium]:
@@ -168,11 +143,11 @@ class _Work:
             return []
         made = []
         for camera, said in CAMERAS.items():
-            title = said[0].upper() + said[1:] + (", road 1 left, road 2 right" if len(runs) > 1 else "")
             path = self.folder / f"{name}-{camera}-{_mark(runs)}.mp4"
             if not path.is_file():
-                self.pages.tell(f"  {said}")
+                self.tell(f"  {said}")
                 make_film(runs, path, camera)
+            title = _capital(said) + (", road 1 left, road 2 right" if len(runs) > 1 else "")
             made.append(Medium(name=path.name, kind="film", title=title))
         return made
 
@@ -184,6 +159,10 @@ class _Work:
         write_view(runs, titles, self.folder / file)
         what = "both roads" if len(runs) > 1 else "the road"
         return [Medium(name=file, kind="view", title=f"View {what} in 3-D")]
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def _prompt(words: str, name: str) -> str:

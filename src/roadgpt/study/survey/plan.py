@@ -10,7 +10,7 @@ from pydantic import Field, ValidationError
 from roadgpt.brief.model import Frozen
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_text
-from roadgpt.study.survey.questions import CRITERIA, PAIR_CRITERIA, Question
+from roadgpt.study.survey.questions import PAIR_CRITERIA, Question
 
 Words = Annotated[str, Field(min_length=1, max_length=4000)]
 PURPOSE = (
@@ -35,6 +35,11 @@ class RoadPlan(Frozen):
     criteria: tuple[Words, ...] | None = None
     """The criteria; None: those that the description mentions."""
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of its runs, of which there is one."""
+        return (self.run,)
+
 
 class PairPlan(Frozen):
     """Two roads of one description, which are compared with each other."""
@@ -42,6 +47,11 @@ class PairPlan(Frozen):
     runs: tuple[Words, Words]
     prompt: str = ""
     criteria: tuple[Words, ...] = PAIR_CRITERIA
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the two runs."""
+        return self.runs
 
 
 class AboutPlan(Frozen):
@@ -111,29 +121,16 @@ def read_plan(path: Path | str) -> SurveyPlan:
     return plan
 
 
-def criterion_text(criterion: str) -> str:
-    """Returns a criterion as raters read it: "number of turns" for ``turns``."""
-    return CRITERIA.get(criterion, criterion)
-
-
 def plan_text(plan: SurveyPlan) -> str:
     """Returns a plan as the text of a SURVEY.toml, to be edited."""
     own: dict[str, Any] = plan.model_dump(mode="json", exclude={"about", "alignment", "similarity"})
     own["purpose"] = plan.said_purpose
     lines = ["# The survey. Change it and say: roadgpt study survey new SURVEY.toml --out DIR"]
     lines += [f"{name} = {_toml(value)}" for name, value in own.items()]
-    for name, items in (
-        ("about", plan.about or ()),
-        ("alignment", plan.alignment),
-        ("similarity", plan.similarity),
-    ):
-        for item in items:
-            lines += ["", f"[[{name}]]"]
-            lines += [
-                f"{key} = {_toml(value)}"
-                for key, value in item.model_dump(mode="json").items()
-                if value is not None
-            ]
+    for name in ("about", "alignment", "similarity"):
+        for item in getattr(plan, name) or ():
+            values = item.model_dump(mode="json", exclude_none=True)
+            lines += ["", f"[[{name}]]", *(f"{key} = {_toml(value)}" for key, value in values.items())]
     return "\n".join(lines) + "\n"
 
 

@@ -9,6 +9,9 @@ from typing import Literal
 from roadgpt.brief.model import Frozen
 
 Part = Literal["about", "alignment", "check", "similarity", "end"]
+"""The parts of a questionnaire."""
+Rated = Literal["alignment", "similarity"]
+"""The parts in which raters rate roads."""
 MOST_LETTERS = 2000  # of a remark
 REMARKS = "remarks"
 OVERALL = "overall"
@@ -64,100 +67,84 @@ class Question(Frozen):
 
 
 RATHER_NOT = "I would rather not say"
-ABOUT = (
-    Question(
-        id="about.age",
-        text="How old are you?",
-        answers=("under 20", "20 to 29", "30 to 39", "40 to 49", "50 to 59", "60 or older", RATHER_NOT),
-    ),
-    Question(
-        id="about.occupation",
-        text="What is your occupation?",
-        answers=(
-            "student",
-            "researcher",
-            "engineer or developer",
-            "teacher or lecturer",
-            "something else",
-            RATHER_NOT,
+HOW_OFTEN = ("never", "occasionally", "regularly", RATHER_NOT)
+ABOUT = tuple(
+    Question(id=f"about.{name}", text=text, answers=answers)
+    for name, text, answers in (
+        (
+            "age",
+            "How old are you?",
+            ("under 20", "20 to 29", "30 to 39", "40 to 49", "50 to 59", "60 or older", RATHER_NOT),
         ),
-    ),
-    Question(id="about.licence", text="Do you have a driver's licence?", answers=("yes", "no", RATHER_NOT)),
-    Question(
-        id="about.countries",
-        text="In how many countries have you driven?",
-        answers=("none", "1", "2 to 3", "4 to 6", "7 or more", RATHER_NOT),
-    ),
-    Question(
-        id="about.ai",
-        text="How often do you use generative AI (chat and the like)?",
-        answers=("never", "occasionally", "regularly", RATHER_NOT),
-    ),
-    Question(
-        id="about.simulators",
-        text="How often do you use driving simulators?",
-        answers=("never", "occasionally", "regularly", RATHER_NOT),
-    ),
+        (
+            "occupation",
+            "What is your occupation?",
+            (
+                "student",
+                "researcher",
+                "engineer or developer",
+                "teacher or lecturer",
+                "something else",
+                RATHER_NOT,
+            ),
+        ),
+        ("licence", "Do you have a driver's licence?", ("yes", "no", RATHER_NOT)),
+        (
+            "countries",
+            "In how many countries have you driven?",
+            ("none", "1", "2 to 3", "4 to 6", "7 or more", RATHER_NOT),
+        ),
+        ("ai", "How often do you use generative AI (chat and the like)?", HOW_OFTEN),
+        ("simulators", "How often do you use driving simulators?", HOW_OFTEN),
+    )
 )
+"""The thesis' questions about the rater."""
 
 
-def alignment_questions(item: str, criteria: tuple[str, ...]) -> tuple[Question, ...]:
-    """Returns the questions about a road and its description: overall, each criterion, remarks."""
-    overall = Question(
-        id=f"{item}.{OVERALL}",
-        text="How well does the road match the description in general?",
-        answers=MATCHES,
-        criterion=OVERALL,
-    )
-    return (
-        overall,
-        *_each(item, criteria, "{}: how well does the road match?", MATCHES),
-        _remarks(item, "this road"),
-    )
+def rating_questions(item: str, part: Rated, criteria: tuple[str, ...]) -> tuple[Question, ...]:
+    """Returns the questions about a road and its description, or about two roads.
 
+    The first one is about the whole, one follows for each criterion, and the last one asks for remarks.
 
-def similarity_questions(item: str, criteria: tuple[str, ...]) -> tuple[Question, ...]:
-    """Returns the questions about two roads: overall, each criterion, remarks."""
-    overall = Question(
-        id=f"{item}.{OVERALL}",
-        text="How similar are road 1 (top) and road 2 (bottom) in general?",
-        answers=ALIKE,
-        criterion=OVERALL,
-    )
-    return (
-        overall,
-        *_each(item, criteria, "{}: how similar are the two roads?", ALIKE_IN),
-        _remarks(item, "these two roads"),
-    )
-
-
-def _each(item: str, criteria: tuple[str, ...], text: str, answers: tuple[str, ...]) -> tuple[Question, ...]:
-    return tuple(
-        Question(
-            id=f"{item}.{number}",
-            text=text.format(criterion[:1].upper() + criterion[1:]),
-            answers=answers,
-            criterion=criterion,
+    Args:
+        item: id of the road or of the pair.
+        part: "alignment" for a road and its description, "similarity" for two roads.
+        criteria: the criteria as raters read them.
+    """
+    if part == "alignment":
+        overall, each = (
+            "How well does the road match the description in general?",
+            "how well does the road match?",
         )
-        for number, criterion in enumerate(criteria, 1)
+        answers, in_each, what = MATCHES, MATCHES, "this road"
+    else:
+        overall, each = (
+            "How similar are road 1 (top) and road 2 (bottom) in general?",
+            "how similar are the two roads?",
+        )
+        answers, in_each, what = ALIKE, ALIKE_IN, "these two roads"
+    remarks = f"Do you have any remarks about {what}? (optional)"
+    return (
+        Question(id=f"{item}.{OVERALL}", text=overall, answers=answers, criterion=OVERALL),
+        *(
+            Question(
+                id=f"{item}.{number}",
+                text=f"{criterion[:1].upper()}{criterion[1:]}: {each}",
+                answers=in_each,
+                criterion=criterion,
+            )
+            for number, criterion in enumerate(criteria, 1)
+        ),
+        Question(id=f"{item}.{REMARKS}", text=remarks, is_needed=False),
     )
 
 
-def _remarks(item: str, what: str) -> Question:
-    return Question(
-        id=f"{item}.{REMARKS}", text=f"Do you have any remarks about {what}? (optional)", is_needed=False
-    )
-
-
-def check_question() -> Question:
-    """Returns the attention check, whose text contains the right answer."""
-    return Question(
-        id="check",
-        text=f"This question checks that questions are read. Please choose “{MATCHES[CHECK]}” here.",
-        answers=MATCHES,
-    )
-
-
+ATTENTION = Question(
+    id="check",
+    text=f"This question checks that questions are read. Please choose “{MATCHES[CHECK]}” here.",
+    answers=MATCHES,
+)
+"""The attention check, whose text contains the right answer."""
 END = Question(
     id="end.remarks", text="Is there anything else that you want to tell us? (optional)", is_needed=False
 )

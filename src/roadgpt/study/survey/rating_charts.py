@@ -5,16 +5,16 @@ right speaks for the road.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure as Drawing
 from matplotlib.patches import Patch
 
 from roadgpt.report.canvas import BLUE, VERMILLION, dress, in_our_style, new_figure, save, save_all
+from roadgpt.report.page import Figure
 from roadgpt.report.page.chart import embedded, palette
 from roadgpt.report.text_width import fitted
 from roadgpt.study.survey.tally import RatingTally, Unit
@@ -32,16 +32,8 @@ IN_PAGE = "width: 58rem; min-width: 38rem"  # on a phone it is scrolled and not 
 MADE_UP = "SYNTHETIC: made-up raters, no data of people"
 
 
-@dataclass(frozen=True)
-class PageFigure:
-    """A figure as SVG for the page."""
-
-    name: str
-    svg: str
-
-
 @in_our_style
-def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> PageFigure:
+def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Figure:
     """Draws all ratings of one part, item by item."""
     items = list(dict.fromkeys(unit.item.id for unit in found.units))
     high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW
@@ -79,7 +71,8 @@ def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> PageFig
             y += ROW
     _legend(figure, found.units[0].question.answers, high)
     label = f"ratings of {'roads and descriptions' if found.part == 'alignment' else 'two roads'}"
-    return _finished(figure, found.part, label, folder, is_synthetic)
+    caption = "All answers; the middle answer is centred on zero, and the numbers count raters."
+    return _finished(figure, found.part, label, caption, folder, is_synthetic)
 
 
 def _bar(axes: Axes, unit: Unit, y: float) -> None:
@@ -100,7 +93,7 @@ def _bar(axes: Axes, unit: Unit, y: float) -> None:
         at += share
 
 
-def _legend(figure: Figure, answers: Sequence[str], high: float) -> None:
+def _legend(figure: Drawing, answers: Sequence[str], high: float) -> None:
     patches = [Patch(fc=shade, label=answer) for shade, answer in zip(SHADES, answers, strict=True)]
     legend = figure.legend(
         handles=patches, loc="upper left", bbox_to_anchor=(0.005, 1 - 0.28 / high), ncols=3, fontsize=8.5,
@@ -112,7 +105,7 @@ def _legend(figure: Figure, answers: Sequence[str], high: float) -> None:
 @in_our_style
 def about_bars(
     counts: Sequence[tuple[str, Sequence[tuple[str, int]]]], folder: Path, is_synthetic: bool
-) -> PageFigure:
+) -> Figure:
     """Draws how often each answer was given to each question about the raters."""
     rows = -(-len(counts) // 2)
     heights = [
@@ -139,11 +132,14 @@ def about_bars(
             axes.text(count + 0.02 * most, y, str(count), ha="left", **style)
         title = fitted(text, WIDE / 2 - 0.3, 10, True)
         figure.text((left - 1.6) / WIDE, (upper + 0.16) / high, title, size=10, weight="bold", color=INK)
-    return _finished(figure, "raters", "answers of raters about themselves", folder, is_synthetic)
+    label, caption = "answers of raters about themselves", "Who answered: how many raters gave each answer."
+    return _finished(figure, "raters", label, caption, folder, is_synthetic)
 
 
-def _finished(figure: Figure, name: str, label: str, folder: Path, is_synthetic: bool) -> PageFigure:
-    """Writes a figure as PNG, PDF and SVG; returns an SVG whose text takes the page's colours."""
+def _finished(
+    figure: Drawing, name: str, label: str, caption: str, folder: Path, is_synthetic: bool
+) -> Figure:
+    """Writes a figure as PNG, PDF and SVG; returns it for the page, whose colours its text takes."""
     if is_synthetic:
         figure.text(0.995, 0.995, MADE_UP, size=10, weight="bold", color=VERMILLION, ha="right", va="top")
         figure.text(
@@ -155,4 +151,4 @@ def _finished(figure: Figure, name: str, label: str, folder: Path, is_synthetic:
         svg = embedded(figure, label).replace("<svg ", f'<svg style="{IN_PAGE}" ', 1)
     figure.patch.set_alpha(1)
     save_all(figure, folder / f"{name}.png", ("pdf", "png"))
-    return PageFigure(name, svg)
+    return Figure(name, caption, svg)

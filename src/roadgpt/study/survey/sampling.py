@@ -10,7 +10,7 @@ from roadgpt.run.campaign_runs import finished
 from roadgpt.run.card import CARD
 from roadgpt.run.folder import run_folder
 from roadgpt.run.seeds import seed_of
-from roadgpt.study.survey.described_criteria import criteria_of
+from roadgpt.study.survey.item_criteria import criteria_of
 from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan
 
 DEEPEST = 4  # folders below the study's in which campaigns are looked for

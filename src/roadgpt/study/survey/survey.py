@@ -5,6 +5,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
 from pydantic import ValidationError
 
 from roadgpt.brief.model import Frozen
@@ -12,12 +13,12 @@ from roadgpt.errors import UsageError
 from roadgpt.reading import read_json
 from roadgpt.study.survey.questions import (
     ABOUT,
+    ATTENTION,
     END,
     Part,
     Question,
-    alignment_questions,
-    check_question,
-    similarity_questions,
+    Rated,
+    rating_questions,
 )
 
 CARD = "survey.json"
@@ -37,7 +38,7 @@ class Item(Frozen):
     """A road and its description, or two roads of one description."""
 
     id: str
-    part: Literal["alignment", "similarity"]
+    part: Rated
     prompt: str
     criteria: tuple[str, ...] = ()
     media: tuple[Medium, ...] = ()
@@ -48,9 +49,8 @@ class Item(Frozen):
 
     @property
     def questions(self) -> tuple[Question, ...]:
-        """The questions about it."""
-        ask = alignment_questions if self.part == "alignment" else similarity_questions
-        return ask(self.id, self.criteria)
+        """The questions about the road or the pair."""
+        return rating_questions(self.id, self.part, self.criteria)
 
 
 class QuestionPage(Frozen):
@@ -84,16 +84,37 @@ class Survey(Frozen):
 
     @cached_property
     def pages(self) -> tuple[QuestionPage, ...]:
-        """All pages in the order of the file; ``page_order`` gives each rater another order."""
+        """All pages in the order of the file; ``pages_for`` gives each rater another order."""
         pages = [QuestionPage(part="about", questions=self.about)] if self.about else []
-        for part in ("alignment", "similarity"):
-            pages += [
-                QuestionPage(part=item.part, questions=item.questions, item=item)
-                for item in self.of_part(part)
-            ]
+        pages += [
+            QuestionPage(part=item.part, questions=item.questions, item=item)
+            for item in (*self.of_part("alignment"), *self.of_part("similarity"))
+        ]
         if self.has_check:
-            pages.append(QuestionPage(part="check", questions=(check_question(),)))
+            pages.append(QuestionPage(part="check", questions=(ATTENTION,)))
         return (*pages, QuestionPage(part="end", questions=(END,)))
+
+    def pages_for(self, digest: str) -> tuple[QuestionPage, ...]:
+        """Returns all pages in the order of one rater, which is always the same for this rater.
+
+        The page about the rater comes first, then the roads in random order, then the pairs in random order,
+        then the end. The attention check is put among the roads; if there are two or more, it is neither
+        first nor last.
+
+        Args:
+            digest: digest of the rater's token, hexadecimal.
+        """
+        rng = np.random.default_rng(int(digest, 16))
+        about, roads, check, pairs, end = (
+            [page for page in self.pages if page.part == part]
+            for part in ("about", "alignment", "check", "similarity", "end")
+        )
+        roads, pairs = ([pages[i] for i in rng.permutation(len(pages))] for pages in (roads, pairs))
+        among = roads if roads else pairs
+        if check:
+            place = int(rng.integers(1, len(among))) if len(among) > 1 else len(among)
+            among[place:place] = check
+        return (*about, *roads, *pairs, *end)
 
     @cached_property
     def questions(self) -> Mapping[str, Question]:

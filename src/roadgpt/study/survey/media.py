@@ -1,7 +1,8 @@
-"""Draws the two plots of a road that raters see: all roads of a survey on the same axes, without a verdict.
+"""Draws what raters see of a road: plots, films and a 3-D view, without verdict, measures or marks.
 
-As in RoadGPT's thesis the axes are neutral: no road fills its plot more than another. Roads that fit are
-shown on the thesis' own (x and y from 0 to 220 m, 200 m along the road, 20 m of height).
+The plots of all roads of a survey have the same axes, as in RoadGPT's thesis: no road fills its plot more
+than another. Roads that fit are shown on the thesis' own axes: x and y from 0 to 220 m, 200 m along the road,
+20 m of height.
 """
 
 from collections.abc import Sequence
@@ -12,17 +13,30 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from roadgpt.errors import UsageError
 from roadgpt.report.birds_eye import THESIS
 from roadgpt.report.canvas import FAINT, INK, SOFT, add_axes, in_our_style, new_figure, save
+from roadgpt.report.film import Settings, film_of, split_film
+from roadgpt.report.film.encoding import encoder
 from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
 from roadgpt.report.labels import Labels
 from roadgpt.report.plan_view import GROUND, Array, Frame, draw_ends, draw_road, stations_of
+from roadgpt.report.view import page_of, scene
 from roadgpt.road import Road, World
+from roadgpt.run import Run
+from roadgpt.run.atomic import write_whole
 
 SIDE = 4.2  # inches of both plots, so that they can be read on a phone
 LEFT, BOTTOM, RIGHT, TOP = 0.72, 0.58, 0.2, 0.16  # inches
 MARGIN = 12.0  # m around the roads, where they do not fit on the thesis' axes
 STEPS = (10, 20, 25, 50, 100, 200, 500, 1000, 2000, 5000)  # m between lines of the grid
+BEFORE_THE_END = 0.1  # s; at the end of a drive, films show its outcome, which raters should not know
+WHY_NONE = (
+    "there are no films, because the library for them is not installed; raters see plots and the 3-D view. "
+    "To add films, run python -m pip install 'roadgpt[film]' and make the survey again"
+)
+HIDDEN = {"outcome": "", "description": "", "about": "", "words": "", "places": []}
+"""What a 3-D view shows to users, but not to raters."""
 
 
 @dataclass(frozen=True)
@@ -99,3 +113,30 @@ def _heights(road: Road, shown: Axes) -> Figure:
     surface.set_clip_box(axes.bbox.padded(4))
     axes.plot([road.length, road.length], [0, z[-1]], color=SOFT, lw=1, ls=(0, (3, 3)), zorder=3)
     return figure
+
+
+def can_film() -> bool:
+    """Returns whether the library that encodes films is installed."""
+    try:
+        encoder()
+    except UsageError:
+        return False
+    return True
+
+
+def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
+    """Makes a film of one drive, or of two in a split screen."""
+    longest = max(run.drive.duration for run in runs if run.drive is not None)
+    settings = Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
+    if len(runs) == 1:
+        film_of(runs[0], path, view, settings)
+    else:
+        split_film(runs[0], runs[1], path, view, settings)
+
+
+def write_view(runs: Sequence[Run], titles: Sequence[str], path: Path) -> None:
+    """Writes the page of one road or of two."""
+    write_whole(
+        path,
+        page_of([scene(run) | {"title": title} | HIDDEN for run, title in zip(runs, titles, strict=True)]),
+    )
